@@ -1,0 +1,42 @@
+/// An axis-aligned box in space; in plan where only `x` and `y` are used.
+///
+/// The default is empty (`min > max`), so that boxes can be grown from nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Smallest x, y and z.
+    pub min: [f64; 3],
+    /// Largest x, y and z.
+    pub max: [f64; 3],
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Bounds { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] }
+    }
+}
+
+impl Bounds {
+    /// Grows the box so that it holds `p`. A NaN coordinate changes nothing.
+    pub fn add(&mut self, p: [f64; 3]) {
+        for ((min, max), value) in self.min.iter_mut().zip(&mut self.max).zip(p) {
+            *min = min.min(value);
+            *max = max.max(value);
+        }
+    }
+
+    /// Grows the box so that it holds `other`.
+    pub fn merge(&mut self, other: &Bounds) {
+        self.add(other.min);
+        self.add(other.max);
+    }
+
+    /// Whether nothing was added yet (in plan).
+    pub fn is_empty(&self) -> bool {
+        !(self.min[0] <= self.max[0] && self.min[1] <= self.max[1])
+    }
+
+    /// Whether `(x, y)` lies in the box or on its border.
+    pub fn holds(&self, x: f64, y: f64) -> bool {
+        self.min[0] <= x && x <= self.max[0] && self.min[1] <= y && y <= self.max[1]
+    }
+}

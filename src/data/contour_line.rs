@@ -1,0 +1,15 @@
+/// One contour: a polyline on one level, high ground on its right.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContourLine {
+    /// The height, in the units of the data.
+    pub level: f64,
+    /// The vertices in plan, in order; a closed line repeats its first vertex at the end.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl ContourLine {
+    /// Whether the line ends where it began.
+    pub fn is_closed(&self) -> bool {
+        self.points.len() > 2 && self.points.first() == self.points.last()
+    }
+}

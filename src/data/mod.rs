@@ -1,0 +1,24 @@
+//! Plain records that stand between formats and algorithms.
+//!
+//! [`io`](crate::io) turns bytes into these and these into bytes; [`terrain`](crate::terrain) turns
+//! these into each other. Neither knows the other. A verb returns a *source* (a surface, an iterator
+//! of lines, a filler of raster blocks) and a writer takes one, so that nothing has to be whole in
+//! memory because of the border between them.
+
+mod bounds;
+mod contour_line;
+mod frame;
+mod grid;
+mod mesh;
+mod points;
+mod shape;
+mod surface;
+
+pub use bounds::Bounds;
+pub use contour_line::ContourLine;
+pub use frame::{Frame, Window};
+pub use grid::{BlockSource, Grid};
+pub use mesh::Mesh;
+pub use points::{PointBatch, PointFlags, PointInfo, PointSource};
+pub use shape::{Layer, Shape, ShapeKind};
+pub use surface::Surface;

@@ -1,0 +1,101 @@
+use super::Bounds;
+use crate::crs::Crs;
+use crate::error::Result;
+
+/// What a lidar point says of itself, as in LAS 1.4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PointFlags(pub u8);
+
+impl PointFlags {
+    /// Made by other means than the sensor.
+    pub const SYNTHETIC: u8 = 1;
+    /// A model key point.
+    pub const KEY_POINT: u8 = 2;
+    /// Deleted: not to be used.
+    pub const WITHHELD: u8 = 4;
+    /// In the overlap of two flight lines.
+    pub const OVERLAP: u8 = 8;
+
+    /// Whether the point is to be ignored.
+    pub fn is_withheld(self) -> bool {
+        self.0 & Self::WITHHELD != 0
+    }
+}
+
+/// A run of points as columns of equal length.
+///
+/// Formats without classes or returns leave those columns empty.
+#[derive(Debug, Clone, Default)]
+pub struct PointBatch {
+    /// Eastings, or longitudes.
+    pub x: Vec<f64>,
+    /// Northings, or latitudes.
+    pub y: Vec<f64>,
+    /// Heights.
+    pub z: Vec<f64>,
+    /// Classification codes (2 is ground), or empty.
+    pub class: Vec<u8>,
+    /// Flags, or empty.
+    pub flags: Vec<PointFlags>,
+    /// Return numbers, or empty.
+    pub return_number: Vec<u8>,
+}
+
+impl PointBatch {
+    /// Points in the batch.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether the batch holds no point.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Forgets the points and keeps the memory.
+    pub fn clear(&mut self) {
+        self.x.clear();
+        self.y.clear();
+        self.z.clear();
+        self.class.clear();
+        self.flags.clear();
+        self.return_number.clear();
+    }
+}
+
+/// What a file says of its points before they are read. None of it is to be trusted for
+/// allocation.
+#[derive(Debug, Clone, Default)]
+pub struct PointInfo {
+    /// "LAS 1.4, point format 6, LAZ"
+    pub format: String,
+    /// The stated number of points.
+    pub count: Option<u64>,
+    /// The stated extent.
+    pub bounds: Option<Bounds>,
+    /// Coordinate system.
+    pub crs: Option<Crs>,
+    /// Whether the points carry classes.
+    pub has_classes: bool,
+    /// Scale and offset per axis, for formats on an integer lattice.
+    pub lattice: Option<([f64; 3], [f64; 3])>,
+    /// What a user should be told: a disagreement, a guess, something ignored.
+    pub warnings: Vec<String>,
+}
+
+/// A stream of points, in batches of bounded size.
+pub trait PointSource {
+    /// What the header says.
+    fn info(&self) -> &PointInfo;
+
+    /// Replaces the content of `batch` with the next points; an empty batch is the end.
+    ///
+    /// # Errors
+    /// When the data is damaged. Points already handed out are good.
+    fn read(&mut self, batch: &mut PointBatch) -> Result<()>;
+
+    /// What came up while reading (a file that ends early, say); complete after the last batch.
+    fn warnings(&self) -> &[String] {
+        &[]
+    }
+}

@@ -1,0 +1,73 @@
+use crate::crs::Crs;
+
+/// The geometry of one record of a vector layer.
+///
+/// A vertex is `[x, y, z]`; a `z` of NaN says that the vertex has no height. Measures (M) are not
+/// kept.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A record without geometry.
+    Null,
+    /// One or many points.
+    Points(Vec<[f64; 3]>),
+    /// The parts of a polyline.
+    Lines(Vec<Vec<[f64; 3]>>),
+    /// The rings of a polygon, each with its first vertex repeated at the end, outer rings
+    /// clockwise as in a shapefile (readers do not repair the order).
+    Polygon(Vec<Vec<[f64; 3]>>),
+    /// The triangles of a multipatch.
+    Triangles(Vec<[[f64; 3]; 3]>),
+}
+
+/// The kinds of [`Shape`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ShapeKind {
+    /// [`Shape::Null`]
+    Null,
+    /// [`Shape::Points`]
+    Points,
+    /// [`Shape::Lines`]
+    Lines,
+    /// [`Shape::Polygon`]
+    Polygon,
+    /// [`Shape::Triangles`]
+    Triangles,
+}
+
+impl Shape {
+    /// The kind of geometry.
+    pub fn kind(&self) -> ShapeKind {
+        match self {
+            Shape::Null => ShapeKind::Null,
+            Shape::Points(_) => ShapeKind::Points,
+            Shape::Lines(_) => ShapeKind::Lines,
+            Shape::Polygon(_) => ShapeKind::Polygon,
+            Shape::Triangles(_) => ShapeKind::Triangles,
+        }
+    }
+
+    /// Every vertex, in order.
+    pub fn vertices(&self) -> Box<dyn Iterator<Item = &[f64; 3]> + '_> {
+        match self {
+            Shape::Null => Box::new(std::iter::empty()),
+            Shape::Points(points) => Box::new(points.iter()),
+            Shape::Lines(parts) | Shape::Polygon(parts) => Box::new(parts.iter().flatten()),
+            Shape::Triangles(triangles) => Box::new(triangles.iter().flatten()),
+        }
+    }
+}
+
+/// The shapes of a vector file.
+#[derive(Debug, Clone, Default)]
+pub struct Layer {
+    /// "shapefile PolyLineZ"
+    pub format: String,
+    /// In the order of the file; null shapes included.
+    pub shapes: Vec<Shape>,
+    /// Coordinate system, if known.
+    pub crs: Option<Crs>,
+    /// Names of the attributes.
+    pub fields: Vec<String>,
+    /// What a user should be told.
+    pub warnings: Vec<String>,
+}

@@ -1,0 +1,145 @@
+//! The one error of the I/O side.
+//!
+//! Errors are sorted by who can act on them ([`Kind`]), and say where it happened, what was found,
+//! what was expected and, where there is one, the cure. The geometric core has no errors of this
+//! kind: it cannot fail on input that it accepted.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The result of everything that reads, writes or is told what to do.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Who can act on an [`Error`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The data is not what its format says: the file is to be repaired.
+    Format,
+    /// The data is fine, but this program (or this build of it) cannot read it.
+    Unsupported,
+    /// The caller asked for something that makes no sense.
+    Usage,
+    /// A stated limit was passed.
+    Limit,
+    /// The operating system failed.
+    Io,
+}
+
+/// What went wrong, where, and what to do about it.
+///
+/// Shown as `path: place: message`; the cure is kept apart, so that the command line can print it
+/// on a line of its own. Messages are lower case, without a full stop.
+#[derive(Debug)]
+pub struct Error {
+    inner: Box<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    kind: Kind,
+    message: String,
+    path: Option<PathBuf>,
+    place: Option<String>,
+    cure: Option<String>,
+    source: Option<Box<dyn std::error::Error + Send + Sync>>,
+}
+
+impl Error {
+    #[cold]
+    fn new(kind: Kind, message: String) -> Self {
+        Error { inner: Box::new(Inner { kind, message, path: None, place: None, cure: None, source: None }) }
+    }
+
+    /// The data breaks the rules of its format.
+    #[cold]
+    pub fn format(message: impl Into<String>) -> Self {
+        Self::new(Kind::Format, message.into())
+    }
+
+    /// The data uses something that is not supported; the message names it.
+    #[cold]
+    pub fn unsupported(message: impl Into<String>) -> Self {
+        Self::new(Kind::Unsupported, message.into())
+    }
+
+    /// The caller asked for something that makes no sense.
+    #[cold]
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self::new(Kind::Usage, message.into())
+    }
+
+    /// A stated limit was passed; the message names the limit and the value.
+    #[cold]
+    pub fn limit(message: impl Into<String>) -> Self {
+        Self::new(Kind::Limit, message.into())
+    }
+
+    /// Something below failed: the operating system, or a library that reads for us.
+    #[cold]
+    pub fn caused_by(kind: Kind, source: impl std::error::Error + Send + Sync + 'static) -> Self {
+        let mut error = Self::new(kind, source.to_string());
+        error.inner.source = Some(Box::new(source));
+        error
+    }
+
+    /// Adds the file, unless one is named already (the innermost is the most exact).
+    #[must_use]
+    pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
+        self.inner.path.get_or_insert_with(|| path.as_ref().to_path_buf());
+        self
+    }
+
+    /// Adds the place in the file ("record 12", "byte 4096", "line 3"), unless one is named already.
+    #[must_use]
+    pub fn at(mut self, place: impl Into<String>) -> Self {
+        self.inner.place.get_or_insert_with(|| place.into());
+        self
+    }
+
+    /// Adds what the user can do about it.
+    #[must_use]
+    pub fn cure(mut self, cure: impl Into<String>) -> Self {
+        self.inner.cure = Some(cure.into());
+        self
+    }
+
+    /// Who can act on it.
+    pub fn kind(&self) -> Kind {
+        self.inner.kind
+    }
+
+    /// What the user can do about it, if anything is known.
+    pub fn cure_text(&self) -> Option<&str> {
+        self.inner.cure.as_deref()
+    }
+
+    /// The file it happened in, if any.
+    pub fn path(&self) -> Option<&Path> {
+        self.inner.path.as_deref()
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(path) = &self.inner.path {
+            write!(f, "{}: ", path.display())?;
+        }
+        if let Some(place) = &self.inner.place {
+            write!(f, "{place}: ")?;
+        }
+        f.write_str(&self.inner.message)
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.inner.source.as_ref().map(|e| e.as_ref() as _)
+    }
+}
+
+impl From<std::io::Error> for Error {
+    #[cold]
+    fn from(source: std::io::Error) -> Self {
+        Self::caused_by(Kind::Io, source)
+    }
+}

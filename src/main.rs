@@ -1,0 +1,7 @@
+//! The `breakline` program.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    breakline::cli::run()
+}
