@@ -1,1 +1,7 @@
-//! (see docs/architecture.md)
+//! What a surveyor says: TIN, breakline, contour, raster, hillshade.
+
+mod builder;
+mod tin;
+
+pub use builder::{DuplicateRule, TinBuilder, TinReport};
+pub use tin::Tin;
