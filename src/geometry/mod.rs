@@ -1,1 +1,177 @@
-//! (see docs/architecture.md)
+//! What a triangulation asks of its points: the "geometric traits" concept.
+//!
+//! A triangulation never looks at a coordinate. It asks a [`Geometry`], and the geometry decides
+//! what a point is: a pair of numbers, a 3D point seen in plan, a record of the user's own. Nothing
+//! is copied or projected for that.
+//!
+//! | model | points | predicates |
+//! |---|---|---|
+//! | [`Plane`] | `[f64; 2]` | in the plane |
+//! | [`Terrain`] | `[f64; 3]` | in plan: on x and y; z is carried along |
+//! | [`Space`] | `[f64; 3]` | in space |
+//!
+//! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
+
+mod perturbation;
+mod plane;
+mod space;
+mod terrain;
+
+pub(crate) use perturbation::{in_sphere, in_sphere_of_flat};
+pub use plane::Plane;
+pub use space::Space;
+pub use terrain::Terrain;
+
+use std::cmp::Ordering;
+use std::fmt::Debug;
+
+use crate::num::Sign;
+
+/// The questions a triangulation asks of points. `N` is the number of vertices of a full cell: 3 for
+/// triangles, 4 for tetrahedra.
+///
+/// # Laws
+/// - `compare` is a total order; points that compare `Equal` are the same *site* for all other
+///   questions. Along any straight line it runs monotonically.
+/// - `orientation` changes its sign when two points are exchanged, and is zero exactly when the
+///   points lie in a common hyperplane (line, plane).
+/// - `side_of_sphere` is positive inside for a positively oriented simplex, negative outside, zero
+///   on the sphere, and changes its sign with the orientation.
+/// - All answers are those of one and the same set of exact points.
+///
+/// # Models
+/// [`Plane`], [`Terrain`], [`Space`]; users add their own:
+///
+/// ```
+/// use std::cmp::Ordering;
+/// use breakline::geometry::{Geometry, Plane};
+/// use breakline::num::Sign;
+/// use breakline::triangulation::Delaunay;
+///
+/// #[derive(Clone, Copy, Debug)]
+/// struct Well { east: f64, north: f64, depth: f32 }
+///
+/// #[derive(Default)]
+/// struct Wells(Plane);
+///
+/// fn at(well: &Well) -> [f64; 2] { [well.east, well.north] }
+///
+/// impl Geometry<3> for Wells {
+///     type Point = Well;
+///     fn admits(&self, p: &Well) -> bool { self.0.admits(&at(p)) }
+///     fn compare(&self, p: &Well, q: &Well) -> Ordering { self.0.compare(&at(p), &at(q)) }
+///     fn orientation(&self, s: [&Well; 3]) -> Sign {
+///         let s = s.map(at);
+///         self.0.orientation(s.each_ref())
+///     }
+///     fn side_of_sphere(&self, s: [&Well; 3], q: &Well) -> Sign {
+///         let s = s.map(at);
+///         self.0.side_of_sphere(s.each_ref(), &at(q))
+///     }
+/// }
+///
+/// let mut wells = Delaunay::new(Wells::default());
+/// for (east, north, depth) in [(0.0, 0.0, 9.5), (4.0, 0.0, 12.0), (0.0, 3.0, 7.0)] {
+///     wells.insert(Well { east, north, depth })?;
+/// }
+/// assert_eq!(wells.finite_cells().count(), 1);
+/// # Ok::<(), breakline::triangulation::Refused>(())
+/// ```
+pub trait Geometry<const N: usize> {
+    /// What is triangulated.
+    type Point: Copy + Debug + Send + Sync;
+
+    /// Whether the point's coordinates are finite and in the range that the arithmetic is proven for.
+    fn admits(&self, p: &Self::Point) -> bool;
+
+    /// Total order on sites; lexicographic by coordinates in the models here.
+    fn compare(&self, p: &Self::Point, q: &Self::Point) -> Ordering;
+
+    /// The orientation of a simplex: positive if counter-clockwise (right-handed in space).
+    fn orientation(&self, simplex: [&Self::Point; N]) -> Sign;
+
+    /// On which side of the simplex's circumscribed sphere `q` lies: positive inside, if the simplex
+    /// is positively oriented.
+    fn side_of_sphere(&self, simplex: [&Self::Point; N], q: &Self::Point) -> Sign;
+
+    /// The orientation of fewer than `N` points within the flat (line, plane) that they span: of two
+    /// points their order, of three (asked for `N = 4` only) their turn in a plane, seen from a side
+    /// that is fixed for the plane. Zero if they span less.
+    fn orientation_in_flat(&self, simplex: &[&Self::Point]) -> Sign {
+        match simplex {
+            [p, q] => self.compare(q, p).into(),
+            _ => Sign::Zero,
+        }
+    }
+
+    /// Whether `q`, which lies in the flat of the simplex, lies inside (positive), on or outside of
+    /// the sphere around it there; whatever the orientation of the simplex. Two points: between
+    /// them.
+    fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
+        match simplex {
+            [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
+            _ => Sign::Negative,
+        }
+    }
+}
+
+/// A geometry that knows numbers for its points. Only for sorting: no answer depends on it.
+pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
+    /// The coordinates, up to three of them.
+    type Coordinates: AsRef<[f64]>;
+
+    /// Coordinates of a point.
+    fn coordinates(&self, p: &Self::Point) -> Self::Coordinates;
+}
+
+/// A geometry of the plane that can make points where segments cross and clone them with new places.
+/// What constrained triangulations need beyond predicates.
+pub trait Crossing: Geometry<3> {
+    /// The point where segments `a b` and `c d` cross in their interiors, rounded. Must not depend
+    /// on the order of the two segments, nor of their ends.
+    fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point;
+}
+
+/// Lexicographic order of coordinates.
+#[inline(always)]
+fn lexicographic<const D: usize>(p: [f64; D], q: [f64; D]) -> Ordering {
+    for axis in 0..D {
+        if p[axis] != q[axis] {
+            return if p[axis] < q[axis] { Ordering::Less } else { Ordering::Greater };
+        }
+    }
+    Ordering::Equal
+}
+
+/// Where two segments cross, in plan, as fractions of the way along each; each segment is turned so
+/// that it starts at its lexicographic minimum, and `ab` is the smaller segment of the two.
+struct Crossed<T> {
+    ab: [T; 2],
+    cd: [T; 2],
+    along_ab: f64,
+    along_cd: f64,
+}
+
+impl<T: Copy> Crossed<T> {
+    fn new(ab: [T; 2], cd: [T; 2], plan: impl Fn(T) -> [f64; 2]) -> Self {
+        let sorted = |[p, q]: [T; 2]| if lexicographic(plan(p), plan(q)).is_gt() { [q, p] } else { [p, q] };
+        let (mut ab, mut cd) = (sorted(ab), sorted(cd));
+        let order = lexicographic(plan(ab[0]), plan(cd[0])).then_with(|| lexicographic(plan(ab[1]), plan(cd[1])));
+        if order.is_gt() {
+            std::mem::swap(&mut ab, &mut cd);
+        }
+        let [a, b, c, d] = [ab[0], ab[1], cd[0], cd[1]].map(plan);
+        let along_ab = crate::kernel::crossing(a, b, c, d);
+        let along_cd = crate::kernel::crossing(c, d, a, b);
+        Crossed { ab, cd, along_ab, along_cd }
+    }
+
+    /// The place in plan, taken on the first segment and kept within its box.
+    fn place(&self, plan: impl Fn(T) -> [f64; 2]) -> [f64; 2] {
+        let [a, b] = self.ab.map(plan);
+        std::array::from_fn(|axis| {
+            let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
+            (a[axis] + self.along_ab * (b[axis] - a[axis])).clamp(low, high)
+        })
+    }
+}

@@ -1,1 +1,162 @@
-//! (see docs/architecture.md)
+//! Predicates: one formula, any arithmetic.
+//!
+//! A [`Predicate`] is a polynomial in differences of coordinates, written once in
+//! [`formula`](self); its sign says on which side something lies. A [`Kernel`] is a choice of
+//! arithmetic to find that sign, so a user changes one type to change it:
+//!
+//! | kernel | arithmetic | is |
+//! |---|---|---|
+//! | [`Fast`] | `f64` | no guarantee; for comparison and experiments |
+//! | [`Exact`] | arbitrary precision | the judge in tests; any finite coordinates |
+//! | [`Expansions`] | sums of `f64` | exact within [`RANGE`], never filtered |
+//! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then expansions | the default |
+//!
+//! New ones are combined with [`Filtered`]: a quick [`Filter`] that may give up, before a sure
+//! kernel.
+//!
+//! Law: the answer is the sign of the real number (except [`Fast`]); swapping two points of an
+//! orientation, or two points that span the circle, flips it.
+
+mod adaptive;
+mod formula;
+
+pub use adaptive::{ErrorBound, OnLattice};
+pub use formula::{InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing};
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use crate::num::{Dyadic, Expansion, Number, Sign};
+
+/// A polynomial whose sign answers a question.
+pub trait Predicate {
+    /// Degree in the differences.
+    const DEGREE: i32;
+
+    /// Number of coordinate axes.
+    const AXES: usize;
+
+    /// The coordinates that enter, on one axis. Differences are only taken between these.
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone;
+
+    /// The polynomial, in the arithmetic that `difference` returns.
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T;
+}
+
+/// Magnitudes of coordinates for which an arithmetic is proven: zero, and `min..=max`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Smallest magnitude but zero.
+    pub min: f64,
+    /// Largest magnitude.
+    pub max: f64,
+}
+
+/// Where `f64` neither overflows nor underflows in any predicate of this crate: `2^-160..=2^200`.
+///
+/// Coordinates are multiples of `2^-160 / 2^52 = 2^-212`, so are their differences, and terms of
+/// degree 5 (in-sphere, the highest) are multiples of `2^-1060 > 2^-1074`: no error term is lost.
+/// Upwards, 2^7 terms of `(2^201)^5` stay below `2^1024`, splitting for exact products included,
+/// since no factor of a product is larger than `2^804`.
+pub const RANGE: Range = Range { min: f64::from_bits((1023 - 160) << 52), max: f64::from_bits((1023 + 200) << 52) };
+
+impl Range {
+    /// Every finite number.
+    pub const FINITE: Range = Range { min: 0.0, max: f64::MAX };
+
+    /// What both admit.
+    const fn and(self, other: Range) -> Range {
+        Range {
+            min: if self.min > other.min { self.min } else { other.min },
+            max: if self.max < other.max { self.max } else { other.max },
+        }
+    }
+
+    /// Whether a coordinate is admitted. Never a NaN.
+    #[inline]
+    pub fn admits(self, x: f64) -> bool {
+        let magnitude = x.abs();
+        magnitude == 0.0 || (self.min <= magnitude && magnitude <= self.max)
+    }
+}
+
+/// A choice of arithmetic that can always tell a predicate's sign.
+pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
+    /// The coordinates it is proven for.
+    const RANGE: Range;
+
+    /// The sign of the predicate.
+    fn sign<P: Predicate>(predicate: &P) -> Sign;
+}
+
+/// An arithmetic that is quick and sometimes cannot tell.
+pub trait Filter: Copy + Default + Debug + Send + Sync + 'static {
+    /// The coordinates it is proven for.
+    const RANGE: Range;
+
+    /// The sign of the predicate, if certain.
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign>;
+}
+
+/// Tries `Quick`, and asks `Sure` when it cannot tell.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Filtered<Quick, Sure>(PhantomData<(Quick, Sure)>);
+
+impl<Quick: Filter, Sure: Kernel> Kernel for Filtered<Quick, Sure> {
+    const RANGE: Range = Quick::RANGE.and(Sure::RANGE);
+
+    #[inline(always)]
+    fn sign<P: Predicate>(predicate: &P) -> Sign {
+        match Quick::try_sign(predicate) {
+            Some(sign) => sign,
+            None => surely::<Sure, P>(predicate),
+        }
+    }
+}
+
+/// Out of line, so that the filter's code stays small in the hot loops.
+#[cold]
+#[inline(never)]
+fn surely<K: Kernel, P: Predicate>(predicate: &P) -> Sign {
+    K::sign(predicate)
+}
+
+/// Plain floating point: wrong near zero.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Fast;
+
+impl Kernel for Fast {
+    const RANGE: Range = RANGE;
+
+    #[inline(always)]
+    fn sign<P: Predicate>(predicate: &P) -> Sign {
+        Sign::of(&predicate.value(|a, b| a - b))
+    }
+}
+
+/// Arbitrary precision: right for every finite coordinate, and slow.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Exact;
+
+impl Kernel for Exact {
+    const RANGE: Range = Range::FINITE;
+
+    fn sign<P: Predicate>(predicate: &P) -> Sign {
+        predicate.value(Dyadic::difference).sign()
+    }
+}
+
+/// Floating-point expansions: right within [`RANGE`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Expansions;
+
+impl Kernel for Expansions {
+    const RANGE: Range = RANGE;
+
+    fn sign<P: Predicate>(predicate: &P) -> Sign {
+        predicate.value(Expansion::difference).sign()
+    }
+}
+
+/// The default: as fast as floating point where that is certain, exact everywhere.
+pub type Adaptive = Filtered<ErrorBound, Filtered<OnLattice, Expansions>>;

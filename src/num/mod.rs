@@ -1,1 +1,93 @@
-//! (see docs/architecture.md)
+//! Numbers that can tell their sign.
+//!
+//! A predicate of computational geometry is the sign of a polynomial in differences of
+//! coordinates. The polynomials are written once, in [`kernel`](crate::kernel), generic in
+//! [`Number`]; what differs from kernel to kernel is the number put in.
+//!
+//! | number | exact | cost | used for |
+//! |---|---|---|---|
+//! | `f64` | no | 1 | experiments, comparison |
+//! | [`Bounded`] | knows how wrong it may be | 2 | filter: nearly every call ends here |
+//! | `i128` | within its range, see [`lattice`] | 5 | coordinates on a common grid: ties are the rule there |
+//! | [`Expansion`] | within the exponents of f64 | 100 | what the filters leave open |
+//! | [`Dyadic`] | always | 500 | the judge, and magnitudes outside of everything else |
+
+mod bounded;
+mod dyadic;
+mod expansion;
+pub mod lattice;
+
+pub use bounded::Bounded;
+pub use dyadic::Dyadic;
+pub use expansion::Expansion;
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// The sign of a real number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(i8)]
+pub enum Sign {
+    /// Below zero: clockwise, outside, below.
+    Negative = -1,
+    /// Zero: collinear, cocircular, coplanar.
+    Zero = 0,
+    /// Above zero: counter-clockwise, inside, above.
+    Positive = 1,
+}
+
+impl Sign {
+    /// The sign of a number that is not NaN.
+    #[inline]
+    pub fn of<T: PartialOrd + Default>(value: &T) -> Self {
+        let zero = T::default();
+        if *value > zero {
+            Sign::Positive
+        } else if *value < zero {
+            Sign::Negative
+        } else {
+            Sign::Zero
+        }
+    }
+}
+
+impl Neg for Sign {
+    type Output = Sign;
+
+    #[inline]
+    fn neg(self) -> Sign {
+        match self {
+            Sign::Negative => Sign::Positive,
+            Sign::Zero => Sign::Zero,
+            Sign::Positive => Sign::Negative,
+        }
+    }
+}
+
+impl Mul for Sign {
+    type Output = Sign;
+
+    #[inline]
+    fn mul(self, other: Sign) -> Sign {
+        match other {
+            Sign::Negative => -self,
+            Sign::Zero => Sign::Zero,
+            Sign::Positive => self,
+        }
+    }
+}
+
+impl From<std::cmp::Ordering> for Sign {
+    #[inline]
+    fn from(ordering: std::cmp::Ordering) -> Self {
+        match ordering {
+            std::cmp::Ordering::Less => Sign::Negative,
+            std::cmp::Ordering::Equal => Sign::Zero,
+            std::cmp::Ordering::Greater => Sign::Positive,
+        }
+    }
+}
+
+/// What the polynomials are computed in: a ring.
+pub trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+
+impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}

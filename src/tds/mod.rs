@@ -1,1 +1,387 @@
-//! (see docs/architecture.md)
+//! Combinatorics: vertices, cells and who is whose neighbor. Has never heard of coordinates.
+//!
+//! The conventions that everything relies on:
+//! - A triangulation is kept as one of the *sphere*: beside the finite vertices there is one
+//!   [`INFINITE`](VertexId::INFINITE) vertex, joined to the hull. So every cell has all its
+//!   neighbors, and the hull needs no special case.
+//! - A full cell has `N` vertices: 3 for triangles, 4 for tetrahedra. Neighbor `i` lies opposite
+//!   vertex `i`.
+//! - All cells are oriented alike: counter-clockwise, for those without the infinite vertex, as the
+//!   geometry sees them.
+//! - Before the points span the space, the complex has a lower [dimension](Tds::dimension): -1 (no
+//!   point), 0 (one), 1 (collinear), 2 (coplanar). Its cells then have `dimension + 1` vertices, in the
+//!   low slots of the same arrays.
+
+mod check;
+mod id;
+mod zone;
+
+pub use check::Flaw;
+pub use id::{CellId, VertexId};
+pub use zone::Zone;
+
+/// The vertices and neighbors of one cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Links<const N: usize> {
+    vertices: [VertexId; N],
+    neighbors: [CellId; N],
+}
+
+impl<const N: usize> Links<N> {
+    const UNUSED: Self = Links { vertices: [VertexId::NONE; N], neighbors: [CellId::NONE; N] };
+}
+
+/// A triangulated sphere of dimension up to `N - 1`, with payload `V` at each vertex and `C` at each
+/// cell (free when `()`).
+#[derive(Debug, Clone)]
+pub struct Tds<const N: usize, V = (), C = ()> {
+    dimension: i32,
+    links: Vec<Links<N>>,
+    cell_data: Vec<C>,
+    /// Numbers of removed cells, reused from the end.
+    unused: Vec<CellId>,
+    /// A cell of each finite vertex.
+    vertex_cell: Vec<CellId>,
+    vertex_data: Vec<V>,
+    infinite_cell: CellId,
+}
+
+impl<const N: usize, V, C: Copy + Default> Default for Tds<N, V, C> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
+    /// The infinite vertex alone: dimension -1.
+    pub fn new() -> Self {
+        Tds {
+            dimension: -1,
+            links: Vec::new(),
+            cell_data: Vec::new(),
+            unused: Vec::new(),
+            vertex_cell: Vec::new(),
+            vertex_data: Vec::new(),
+            infinite_cell: CellId::NONE,
+        }
+    }
+
+    /// Makes room for that many more vertices and the cells that come with them.
+    pub fn reserve(&mut self, vertices: usize) {
+        // In the plane there are two triangles to a vertex; in space about 6.7 tetrahedra.
+        let cells = if N == 3 { 2 * vertices } else { 7 * vertices };
+        self.links.reserve_exact(cells);
+        self.cell_data.reserve_exact(cells);
+        self.vertex_cell.reserve_exact(vertices);
+        self.vertex_data.reserve_exact(vertices);
+    }
+
+    /// Of the complex: -1 without a vertex, `N - 1` when full.
+    #[inline]
+    pub fn dimension(&self) -> i32 {
+        self.dimension
+    }
+
+    /// Finite vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_cell.len()
+    }
+
+    /// Cells, the infinite ones included.
+    pub fn cell_count(&self) -> usize {
+        self.links.len() - self.unused.len()
+    }
+
+    /// One more than the largest cell number: cells are numbered below this, with gaps.
+    #[inline]
+    pub fn cell_slots(&self) -> usize {
+        self.links.len()
+    }
+
+    /// The finite vertices, in order of their numbers.
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + use<N, V, C> {
+        (0..self.vertex_cell.len()).map(VertexId::new)
+    }
+
+    /// All cells, the infinite ones included, in order of their numbers.
+    pub fn cells(&self) -> impl Iterator<Item = CellId> + '_ {
+        (0..self.links.len()).map(CellId::new).filter(|&c| self.is_used(c))
+    }
+
+    /// Whether the number stands for a cell.
+    #[inline]
+    pub fn is_used(&self, cell: CellId) -> bool {
+        self.links.get(cell.index()).is_some_and(|links| links.vertices[0] != VertexId::NONE)
+    }
+
+    /// The vertices of a cell: `dimension + 1` of them.
+    #[inline]
+    pub fn cell_vertices(&self, cell: CellId) -> &[VertexId] {
+        &self.links[cell.index()].vertices[..(self.dimension + 1) as usize]
+    }
+
+    /// The neighbors of a cell, each opposite the vertex in the same place.
+    #[inline]
+    pub fn cell_neighbors(&self, cell: CellId) -> &[CellId] {
+        &self.links[cell.index()].neighbors[..(self.dimension + 1) as usize]
+    }
+
+    /// All `N` vertices of a cell of a full-dimensional complex.
+    #[inline(always)]
+    pub fn corners(&self, cell: CellId) -> &[VertexId; N] {
+        &self.links[cell.index()].vertices
+    }
+
+    /// One vertex of a cell.
+    #[inline(always)]
+    pub fn vertex(&self, cell: CellId, i: usize) -> VertexId {
+        self.links[cell.index()].vertices[i]
+    }
+
+    /// The cell opposite vertex `i`.
+    #[inline(always)]
+    pub fn neighbor(&self, cell: CellId, i: usize) -> CellId {
+        self.links[cell.index()].neighbors[i]
+    }
+
+    /// Where a vertex stands in a cell.
+    #[inline]
+    pub fn index_of(&self, cell: CellId, vertex: VertexId) -> Option<usize> {
+        self.links[cell.index()].vertices.iter().position(|&v| v == vertex)
+    }
+
+    /// The index of the facet that `cell` shares with its neighbor `other`. In a triangulation two cells
+    /// share one facet at the most.
+    #[inline(always)]
+    pub fn index_of_neighbor(&self, cell: CellId, other: CellId) -> usize {
+        self.links[cell.index()].neighbors.iter().position(|&n| n == other).unwrap_or(0)
+    }
+
+    /// Whether the infinite vertex is a corner.
+    #[inline(always)]
+    pub fn is_infinite(&self, cell: CellId) -> bool {
+        self.links[cell.index()].vertices.contains(&VertexId::INFINITE)
+    }
+
+    /// A cell that has this vertex; `None` for the infinite vertex of an empty complex.
+    #[inline]
+    pub fn cell_of(&self, vertex: VertexId) -> Option<CellId> {
+        let cell = if vertex == VertexId::INFINITE { self.infinite_cell } else { self.vertex_cell[vertex.index()] };
+        (cell != CellId::NONE).then_some(cell)
+    }
+
+    /// The payload of a cell.
+    #[inline(always)]
+    pub fn cell_data(&self, cell: CellId) -> &C {
+        &self.cell_data[cell.index()]
+    }
+
+    /// The payload of a cell, to change.
+    #[inline(always)]
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        &mut self.cell_data[cell.index()]
+    }
+
+    /// The payload of a finite vertex.
+    pub fn vertex_data(&self, vertex: VertexId) -> &V {
+        &self.vertex_data[vertex.index()]
+    }
+
+    /// The payload of a finite vertex, to change.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        &mut self.vertex_data[vertex.index()]
+    }
+
+    /// Adds a vertex that no cell has yet.
+    pub(crate) fn add_vertex(&mut self, data: V) -> VertexId {
+        self.vertex_cell.push(CellId::NONE);
+        self.vertex_data.push(data);
+        VertexId::new(self.vertex_cell.len() - 1)
+    }
+
+    /// Adds a cell without neighbors.
+    #[inline]
+    fn add_cell(&mut self, vertices: [VertexId; N], data: C) -> CellId {
+        let links = Links { vertices, neighbors: [CellId::NONE; N] };
+        match self.unused.pop() {
+            Some(cell) => {
+                self.links[cell.index()] = links;
+                self.cell_data[cell.index()] = data;
+                cell
+            }
+            None => {
+                self.links.push(links);
+                self.cell_data.push(data);
+                CellId::new(self.links.len() - 1)
+            }
+        }
+    }
+
+    #[inline]
+    fn remove_cell(&mut self, cell: CellId) {
+        self.links[cell.index()] = Links::UNUSED;
+        self.unused.push(cell);
+    }
+
+    /// Makes two cells neighbors across the facets opposite their vertices `i` and `j`.
+    #[inline(always)]
+    pub(crate) fn link(&mut self, a: CellId, i: usize, b: CellId, j: usize) {
+        self.links[a.index()].neighbors[i] = b;
+        self.links[b.index()].neighbors[j] = a;
+    }
+
+    /// Replaces the vertices of a cell, and makes it the cell of each of them.
+    #[inline]
+    pub(crate) fn set_corners(&mut self, cell: CellId, vertices: [VertexId; N]) {
+        self.links[cell.index()].vertices = vertices;
+        for vertex in vertices {
+            self.set_cell_of(vertex, cell);
+        }
+    }
+
+    #[inline(always)]
+    fn set_cell_of(&mut self, vertex: VertexId, cell: CellId) {
+        if vertex == VertexId::INFINITE {
+            self.infinite_cell = cell;
+        } else {
+            self.vertex_cell[vertex.index()] = cell;
+        }
+    }
+
+    /// Adds a vertex outside of the flat that the others span, which raises the dimension by one.
+    ///
+    /// The new sphere is the suspension of the old one: every cell joined to the new vertex, and
+    /// every finite cell joined to the infinite one. All cells are replaced.
+    ///
+    /// Time proportional to the number of cells; happens at most `N` times.
+    pub(crate) fn raise_dimension(&mut self, apex: VertexId) {
+        assert!(self.dimension + 1 < N as i32, "the complex is full-dimensional");
+        let old_dimension = self.dimension;
+        let slot = (old_dimension + 1) as usize; // of the vertex that each cell gains
+        let old = std::mem::take(&mut self.links);
+        self.cell_data.clear();
+        self.unused.clear();
+        self.dimension += 1;
+
+        if old_dimension == -1 {
+            let mut vertices = [VertexId::NONE; N];
+            for vertex in [apex, VertexId::INFINITE] {
+                vertices[0] = vertex;
+                let cell = self.add_cell(vertices, C::default());
+                self.set_cell_of(vertex, cell);
+            }
+            self.link(CellId::new(0), 0, CellId::new(1), 0);
+            return;
+        }
+
+        let is_finite = |cell: CellId| {
+            old[cell.index()].vertices[0] != VertexId::NONE && !old[cell.index()].vertices.contains(&VertexId::INFINITE)
+        };
+        // Cell `c` joined to the apex keeps its number; joined to infinity it gets a new one.
+        let mut to_infinity = vec![CellId::NONE; old.len()];
+        for (index, links) in old.iter().enumerate() {
+            let mut vertices = links.vertices;
+            vertices[slot] = apex;
+            self.add_cell(vertices, C::default());
+            if links.vertices[0] == VertexId::NONE {
+                self.links[index] = Links::UNUSED;
+            }
+        }
+        for index in 0..old.len() {
+            let cell = CellId::new(index);
+            if is_finite(cell) {
+                let mut vertices = old[index].vertices;
+                vertices[slot] = VertexId::INFINITE;
+                to_infinity[index] = self.add_cell(vertices, C::default());
+            }
+        }
+        for (index, links) in old.iter().enumerate() {
+            let cell = CellId::new(index);
+            if links.vertices[0] == VertexId::NONE {
+                self.unused.push(cell);
+                continue;
+            }
+            self.links[index].neighbors[..slot].copy_from_slice(&links.neighbors[..slot]);
+            if is_finite(cell) {
+                let above = to_infinity[index];
+                self.links[index].neighbors[slot] = above;
+                self.links[above.index()].neighbors[slot] = cell;
+                for i in 0..slot {
+                    let beside = links.neighbors[i];
+                    self.links[above.index()].neighbors[i] =
+                        if is_finite(beside) { to_infinity[beside.index()] } else { beside };
+                }
+            } else {
+                // Facet without the apex: that of the finite cell beside it, joined to infinity.
+                let at_infinity = links.vertices.iter().position(|&v| v == VertexId::INFINITE).unwrap_or(0);
+                self.links[index].neighbors[slot] = to_infinity[links.neighbors[at_infinity].index()];
+            }
+        }
+        if old_dimension == 0 {
+            // The two points of a sphere of dimension 0 are opposites, which one vertex cannot show.
+            (0..old.len()).map(CellId::new).filter(|&c| !is_finite(c)).for_each(|c| self.mirror(c));
+        }
+        // The two halves of the suspension are mirror images.
+        for above in to_infinity.into_iter().filter(|&c| c != CellId::NONE) {
+            self.mirror(above);
+        }
+        for index in 0..self.links.len() {
+            for slot in 0..N {
+                let vertex = self.links[index].vertices[slot];
+                if vertex != VertexId::NONE {
+                    self.set_cell_of(vertex, CellId::new(index));
+                }
+            }
+        }
+    }
+
+    /// Turns the orientation of one cell around.
+    fn mirror(&mut self, cell: CellId) {
+        let links = &mut self.links[cell.index()];
+        links.vertices.swap(0, 1);
+        links.neighbors.swap(0, 1);
+    }
+
+    /// Turns the orientation of every cell around. From dimension 1 on.
+    pub(crate) fn mirror_all(&mut self) {
+        for index in 0..self.links.len() {
+            self.mirror(CellId::new(index));
+        }
+    }
+}
+
+/// What exists in the plane only.
+impl<V, C: Copy + Default> Tds<3, V, C> {
+    /// The finite cells and infinite cells around a vertex, counter-clockwise, starting anywhere.
+    ///
+    /// Empty below dimension 2.
+    pub fn around(&self, vertex: VertexId) -> impl Iterator<Item = CellId> + '_ {
+        let start = if self.dimension == 2 { self.cell_of(vertex) } else { None };
+        std::iter::successors(start, move |&cell| {
+            let i = self.index_of(cell, vertex)?;
+            let next = self.neighbor(cell, ccw(i));
+            (Some(next) != start).then_some(next)
+        })
+    }
+
+    /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the
+    /// vertex opposite), if there is such an edge. Time proportional to the degree of `a`.
+    pub fn edge(&self, a: VertexId, b: VertexId) -> Option<(CellId, usize)> {
+        self.around(a).find_map(|cell| {
+            let i = self.index_of(cell, a)?;
+            (self.vertex(cell, ccw(i)) == b).then_some((cell, cw(i)))
+        })
+    }
+}
+
+/// The next corner of a triangle, counter-clockwise.
+#[inline(always)]
+pub const fn ccw(i: usize) -> usize {
+    (i + 1) % 3
+}
+
+/// The next corner of a triangle, clockwise.
+#[inline(always)]
+pub const fn cw(i: usize) -> usize {
+    (i + 2) % 3
+}

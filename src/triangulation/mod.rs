@@ -1,1 +1,266 @@
-//! (see docs/architecture.md)
+//! Triangulations: geometry times combinatorics.
+//!
+//! One engine, [`Triangulation`], locates points, grows the zone that a new point is in conflict with,
+//! and replaces it by the point's star. It knows neither the dimension nor the law that the
+//! triangulation obeys. The kinds are thin:
+//!
+//! | kind | law |
+//! |---|---|
+//! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere; in the plane and in space |
+//! | [`ConstrainedDelaunay`] | the same among vertices that see each other past the constraints; in the plane |
+//!
+//! They own an engine and lend it for reading only.
+//!
+//! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among
+//! the triangulations, so that each is a function of the set of points (and constraints): the order of
+//! insertion does not show in the cells.
+//!
+//! The core cannot fail on points that it admitted; [`Refused`] says which are not.
+
+mod check;
+mod constrained;
+mod delaunay;
+mod locate;
+mod segment;
+mod sort;
+
+pub use check::{Flaw, Level};
+pub use constrained::{ConstrainedDelaunay, Walls};
+pub use delaunay::Delaunay;
+pub use locate::Location;
+pub use sort::spatial_order;
+
+use std::fmt;
+
+use crate::geometry::{Geometry, in_sphere, in_sphere_of_flat};
+use crate::num::Sign;
+use crate::tds::{CellId, Tds, VertexId, Zone};
+
+/// A point that a triangulation cannot take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refused {
+    /// The point at this position has a coordinate that is not finite, or whose magnitude is outside
+    /// of what the arithmetic is proven for (see [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
+    Coordinate(usize),
+    /// There are more points than 32-bit numbers can count with their cells: the limit is 2^31 - 2.
+    TooMany,
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Refused::Coordinate(index) => {
+                write!(f, "point {index} has a coordinate that is not finite or too large or small to compute with")
+            }
+            Refused::TooMany => write!(f, "more than {MAX_VERTICES} points"),
+        }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// Two cells to a vertex must be numbered.
+const MAX_VERTICES: usize = VertexId::LIMIT / 2;
+
+/// Points and cells without a law of their own: what the kinds share, for reading.
+#[derive(Debug, Clone)]
+pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
+    geometry: G,
+    tds: Tds<N, V, C>,
+    points: Vec<G::Point>,
+    /// Scratch of the insertion.
+    zone: Zone,
+    /// Where the last insertion ended, where the next begins to look.
+    last: Option<CellId>,
+}
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
+    fn new(geometry: G) -> Self {
+        Triangulation { geometry, tds: Tds::new(), points: Vec::new(), zone: Zone::default(), last: None }
+    }
+
+    /// The geometry.
+    pub fn geometry(&self) -> &G {
+        &self.geometry
+    }
+
+    /// The combinatorics.
+    pub fn tds(&self) -> &Tds<N, V, C> {
+        &self.tds
+    }
+
+    /// -1 without a point, 0 with one, 1 if all are collinear, and so on.
+    pub fn dimension(&self) -> i32 {
+        self.tds.dimension()
+    }
+
+    /// Finite vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.points.len()
+    }
+
+    /// The point of a finite vertex.
+    #[inline(always)]
+    pub fn point(&self, vertex: VertexId) -> &G::Point {
+        &self.points[vertex.index()]
+    }
+
+    /// All points, in the order of their vertices.
+    pub fn points(&self) -> &[G::Point] {
+        &self.points
+    }
+
+    /// The cells without the infinite vertex, in order of their numbers. Below full dimension these
+    /// have fewer vertices: segments, or triangles in space.
+    pub fn finite_cells(&self) -> impl Iterator<Item = CellId> + '_ {
+        self.tds.cells().filter(|&cell| !self.tds.is_infinite(cell))
+    }
+
+    /// The points of a full cell without the infinite vertex.
+    #[inline(always)]
+    fn simplex(&self, cell: CellId) -> [&G::Point; N] {
+        self.tds.corners(cell).map(|v| &self.points[v.index()])
+    }
+
+    /// Whether the complex spans the space.
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        self.tds.dimension() as usize == N - 1
+    }
+
+    /// The points of a finite cell of any dimension, with `q` in place of the vertex at `replaced`.
+    fn flat_with<'a>(&'a self, cell: CellId, replaced: usize, q: &'a G::Point) -> Vec<&'a G::Point> {
+        let vertices = self.tds.cell_vertices(cell).iter().enumerate();
+        vertices.map(|(i, v)| if i == replaced { q } else { &self.points[v.index()] }).collect()
+    }
+
+    /// The orientation of a cell with `q` in place of one vertex, all others finite. Positive if `q` is
+    /// on the side of the facet opposite that vertex on which the cell is (or, with the infinite vertex
+    /// replaced, beyond the hull there).
+    #[inline(always)]
+    fn side_of_facet(&self, cell: CellId, replaced: usize, q: &G::Point) -> Sign {
+        if self.is_full() {
+            let corners = self.tds.corners(cell);
+            let simplex = std::array::from_fn(|i| if i == replaced { q } else { &self.points[corners[i].index()] });
+            self.geometry.orientation(simplex)
+        } else {
+            self.side_of_facet_in_flat(cell, replaced, q)
+        }
+    }
+
+    #[cold]
+    fn side_of_facet_in_flat(&self, cell: CellId, replaced: usize, q: &G::Point) -> Sign {
+        self.geometry.orientation_in_flat(&self.flat_with(cell, replaced, q))
+    }
+
+    /// Whether a new point `q` destroys the cell under the empty sphere law, ties decided. The sphere of
+    /// an infinite cell is the open half space beyond its finite facet, with the inside of the facet's
+    /// own sphere.
+    #[inline(always)]
+    fn in_conflict(&self, cell: CellId, q: &G::Point) -> bool {
+        if !self.is_full() {
+            return self.in_conflict_in_flat(cell, q);
+        }
+        let corners = self.tds.corners(cell);
+        match corners.iter().position(|&v| v == VertexId::INFINITE) {
+            None => in_sphere(&self.geometry, self.simplex(cell), q),
+            Some(infinite) => self.beyond_hull(cell, infinite, q),
+        }
+    }
+
+    fn beyond_hull(&self, cell: CellId, infinite: usize, q: &G::Point) -> bool {
+        match self.side_of_facet(cell, infinite, q) {
+            Sign::Positive => true,
+            Sign::Negative => false,
+            Sign::Zero => {
+                let mut facet = self.flat_with(cell, infinite, q);
+                facet.remove(infinite);
+                in_sphere_of_flat(&self.geometry, &facet, q)
+            }
+        }
+    }
+
+    #[cold]
+    fn in_conflict_in_flat(&self, cell: CellId, q: &G::Point) -> bool {
+        let vertices = self.tds.cell_vertices(cell);
+        match vertices.iter().position(|&v| v == VertexId::INFINITE) {
+            None => in_sphere_of_flat(&self.geometry, &self.flat_with(cell, usize::MAX, q), q),
+            Some(infinite) if vertices.len() == 2 => {
+                // The end of a line: the edge inwards says which way is out.
+                let inner = self.tds.neighbor(cell, infinite);
+                let end = vertices[1 - infinite];
+                let replaced = 1 - self.tds.index_of(inner, end).unwrap_or(0);
+                self.side_of_facet(inner, replaced, q) == Sign::Negative
+            }
+            Some(infinite) => self.beyond_hull(cell, infinite, q),
+        }
+    }
+
+    /// Checks that a point may come in.
+    fn admit(&self, p: &G::Point) -> Result<(), Refused> {
+        if !self.geometry.admits(p) {
+            return Err(Refused::Coordinate(self.points.len()));
+        }
+        if self.points.len() >= MAX_VERTICES {
+            return Err(Refused::TooMany);
+        }
+        Ok(())
+    }
+
+    fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
+        self.points.push(p);
+        self.tds.add_vertex(data)
+    }
+
+    /// Adds a point outside of what the others span.
+    fn raise_dimension(&mut self, p: G::Point, data: V) -> VertexId {
+        let vertex = self.add_vertex(p, data);
+        self.tds.raise_dimension(vertex);
+        let finite = self.finite_cells().next();
+        if let Some(cell) = finite.filter(|_| self.dimension() > 0) {
+            let simplex = self.flat_with(cell, usize::MAX, &p);
+            let positive = if self.is_full() {
+                self.geometry.orientation(self.simplex(cell)) == Sign::Positive
+            } else {
+                self.geometry.orientation_in_flat(&simplex) == Sign::Positive
+            };
+            if !positive {
+                self.tds.mirror_all();
+            }
+        }
+        self.last = finite;
+        vertex
+    }
+
+    /// Adds a point under the empty sphere law, given where it is; `passes` says over which facets the
+    /// conflict zone may grow, `data` what the cells of the star inherit.
+    ///
+    /// Expected time proportional to the number of cells replaced.
+    fn insert_at(
+        &mut self,
+        p: G::Point,
+        location: Location,
+        vertex_data: V,
+        passes: impl Fn(&Tds<N, V, C>, CellId, usize) -> bool,
+        data: impl Fn(&C, usize) -> C,
+    ) -> VertexId {
+        let (cell, touching) = match location {
+            Location::Vertex(vertex) => return vertex,
+            Location::OutsideAffineHull => return self.raise_dimension(p, vertex_data),
+            Location::Cell { cell, touching } => (cell, touching),
+            Location::OutsideHull { cell } => (cell, 0),
+        };
+        let vertex = self.add_vertex(p, vertex_data);
+        let mut zone = std::mem::take(&mut self.zone);
+        zone.start(self.tds.cell_slots());
+        zone.add(cell);
+        // A point on a facet destroys the cells on both sides, wall or not.
+        for i in (0..N).filter(|i| touching >> i & 1 == 1) {
+            zone.add(self.tds.neighbor(cell, i));
+        }
+        zone.grow(&self.tds, |from, i, beyond| passes(&self.tds, from, i) && self.in_conflict(beyond, &p));
+        self.last = Some(self.tds.star(&mut zone, vertex, data));
+        self.zone = zone;
+        vertex
+    }
+}

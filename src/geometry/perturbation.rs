@@ -1,0 +1,71 @@
+//! One answer where several are right.
+//!
+//! Points on a common empty sphere have many Delaunay triangulations. Lift each point to the
+//! paraboloid, and raise the lifts by `e1 >> e2 >> ...`, the lexicographically largest point first:
+//! the lower hull of the lifted points is then one definite triangulation, a function of the points
+//! alone (Devillers and Teillaud 2011 perturb in the same spirit). Raising a corner of a simplex by `e`
+//! raises its hyperplane at `q` by `e` times the barycentric coordinate of `q`; raising `q` itself
+//! takes it out of the sphere. The first of the points, from the largest down, for which that
+//! coordinate is not zero decides.
+
+use std::cmp::Ordering;
+
+use super::Geometry;
+use crate::num::Sign;
+
+/// Whether `q` lies inside of the circumscribed sphere of a positively oriented simplex; on the
+/// sphere, whether it does after the perturbation.
+#[inline(always)]
+pub(crate) fn in_sphere<G: Geometry<N>, const N: usize>(geometry: &G, simplex: [&G::Point; N], q: &G::Point) -> bool {
+    match geometry.side_of_sphere(simplex, q) {
+        Sign::Positive => true,
+        Sign::Negative => false,
+        Sign::Zero => decide(geometry, &simplex, q, |replaced| {
+            let mut corners = simplex;
+            corners[replaced] = q;
+            geometry.orientation(corners)
+        }),
+    }
+}
+
+/// The same within the flat that the simplex spans, for either orientation of it.
+pub(crate) fn in_sphere_of_flat<G: Geometry<N>, const N: usize>(
+    geometry: &G,
+    simplex: &[&G::Point],
+    q: &G::Point,
+) -> bool {
+    match geometry.side_of_sphere_in_flat(simplex, q) {
+        Sign::Positive => true,
+        Sign::Negative => false,
+        Sign::Zero => decide(geometry, simplex, q, |replaced| {
+            let mut corners = simplex.to_vec();
+            corners[replaced] = q;
+            geometry.orientation_in_flat(&corners) * geometry.orientation_in_flat(simplex)
+        }),
+    }
+}
+
+/// `barycentric(i)` is the sign of `q`'s barycentric coordinate for corner `i`.
+#[cold]
+fn decide<G: Geometry<N>, const N: usize>(
+    geometry: &G,
+    simplex: &[&G::Point],
+    q: &G::Point,
+    barycentric: impl Fn(usize) -> Sign,
+) -> bool {
+    let mut order = [0, 1, 2, 3];
+    let order = &mut order[..simplex.len()];
+    order.sort_unstable_by(|&i, &j| geometry.compare(simplex[j], simplex[i]));
+    for &corner in order.iter() {
+        if geometry.compare(q, simplex[corner]) != Ordering::Less {
+            // A corner of the simplex itself (compare is Equal) is on the sphere, and stays so.
+            return false;
+        }
+        match barycentric(corner) {
+            Sign::Positive => return true,
+            Sign::Negative => return false,
+            Sign::Zero => {}
+        }
+    }
+    false
+}

@@ -1,0 +1,49 @@
+use std::cmp::Ordering;
+use std::marker::PhantomData;
+
+use super::{Coordinates, Crossed, Crossing, Geometry, lexicographic};
+use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
+use crate::num::Sign;
+
+/// Points of the plane.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Plane<K = Adaptive>(PhantomData<K>);
+
+impl<K: Kernel> Geometry<3> for Plane<K> {
+    type Point = [f64; 2];
+
+    #[inline]
+    fn admits(&self, p: &[f64; 2]) -> bool {
+        p.iter().all(|&x| K::RANGE.admits(x))
+    }
+
+    #[inline(always)]
+    fn compare(&self, p: &[f64; 2], q: &[f64; 2]) -> Ordering {
+        lexicographic(*p, *q)
+    }
+
+    #[inline(always)]
+    fn orientation(&self, simplex: [&[f64; 2]; 3]) -> Sign {
+        K::sign(&Orientation2(simplex.map(|p| *p)))
+    }
+
+    #[inline(always)]
+    fn side_of_sphere(&self, [a, b, c]: [&[f64; 2]; 3], q: &[f64; 2]) -> Sign {
+        K::sign(&InCircle([*a, *b, *c, *q]))
+    }
+}
+
+impl<K: Kernel> Coordinates<3> for Plane<K> {
+    type Coordinates = [f64; 2];
+
+    #[inline]
+    fn coordinates(&self, p: &[f64; 2]) -> [f64; 2] {
+        *p
+    }
+}
+
+impl<K: Kernel> Crossing for Plane<K> {
+    fn crossing(&self, ab: [&[f64; 2]; 2], cd: [&[f64; 2]; 2]) -> [f64; 2] {
+        Crossed::new(ab, cd, |p| *p).place(|p| *p)
+    }
+}

@@ -1,0 +1,72 @@
+use std::cmp::Ordering;
+use std::marker::PhantomData;
+
+use super::{Coordinates, Geometry, lexicographic};
+use crate::kernel::{Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3};
+use crate::num::Sign;
+
+/// Points in space.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Space<K = Adaptive>(PhantomData<K>);
+
+impl<K: Kernel> Space<K> {
+    /// The first projection along an axis in which three points have an area, and its sign. For
+    /// triangles of one plane that is always the same projection.
+    fn projection(&self, [a, b, c]: [&[f64; 3]; 3]) -> Option<([usize; 2], Sign)> {
+        [[0, 1], [1, 2], [2, 0]].into_iter().find_map(|axes| {
+            let sign = K::sign(&Orientation2([a, b, c].map(|p| axes.map(|axis| p[axis]))));
+            (sign != Sign::Zero).then_some((axes, sign))
+        })
+    }
+}
+
+impl<K: Kernel> Geometry<4> for Space<K> {
+    type Point = [f64; 3];
+
+    #[inline]
+    fn admits(&self, p: &[f64; 3]) -> bool {
+        p.iter().all(|&x| K::RANGE.admits(x))
+    }
+
+    #[inline(always)]
+    fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
+        lexicographic(*p, *q)
+    }
+
+    #[inline(always)]
+    fn orientation(&self, simplex: [&[f64; 3]; 4]) -> Sign {
+        K::sign(&Orientation3(simplex.map(|p| *p)))
+    }
+
+    #[inline(always)]
+    fn side_of_sphere(&self, [a, b, c, d]: [&[f64; 3]; 4], q: &[f64; 3]) -> Sign {
+        K::sign(&InSphere([*a, *b, *c, *d, *q]))
+    }
+
+    fn orientation_in_flat(&self, simplex: &[&[f64; 3]]) -> Sign {
+        match *simplex {
+            [p, q] => self.compare(q, p).into(),
+            [a, b, c] => self.projection([a, b, c]).map_or(Sign::Zero, |(_, sign)| sign),
+            _ => Sign::Zero,
+        }
+    }
+
+    fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
+        match *simplex {
+            [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
+            [a, b, c] => self.projection([a, b, c]).map_or(Sign::Negative, |(axes, turn)| {
+                turn * K::sign(&InCircleOfPlane { points: [*a, *b, *c, *q], axes })
+            }),
+            _ => Sign::Negative,
+        }
+    }
+}
+
+impl<K: Kernel> Coordinates<4> for Space<K> {
+    type Coordinates = [f64; 3];
+
+    #[inline]
+    fn coordinates(&self, p: &[f64; 3]) -> [f64; 3] {
+        *p
+    }
+}

@@ -1,0 +1,181 @@
+//! The formulas, each written once.
+
+use super::Predicate;
+use crate::num::{Expansion, Number};
+
+/// `a b - c d`
+#[inline(always)]
+fn cross<T: Number>(a: &T, b: &T, c: &T, d: &T) -> T {
+    a.clone() * b.clone() - c.clone() * d.clone()
+}
+
+#[inline(always)]
+fn square<T: Number>(a: &T) -> T {
+    a.clone() * a.clone()
+}
+
+/// `p - q`, axis by axis.
+#[inline(always)]
+fn minus<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T) -> [T; D] {
+    std::array::from_fn(|axis| difference(p[axis], q[axis]))
+}
+
+/// Of three points in the plane: positive if they turn counter-clockwise, zero if collinear.
+#[derive(Debug, Clone, Copy)]
+pub struct Orientation2(pub [[f64; 2]; 3]);
+
+impl Predicate for Orientation2 {
+    const DEGREE: i32 = 2;
+    const AXES: usize = 2;
+
+    #[inline(always)]
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.0.iter().map(move |p| p[axis])
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c] = self.0;
+        let [ux, uy] = minus(a, c, difference);
+        let [vx, vy] = minus(b, c, difference);
+        cross(&ux, &vy, &uy, &vx)
+    }
+}
+
+/// The in-circle determinant of three vectors from the point in question, given in a plane, and
+/// their squared lengths.
+#[inline(always)]
+fn in_circle<T: Number>(a: [T; 2], b: [T; 2], c: [T; 2], lengths: [T; 3]) -> T {
+    let [a_length, b_length, c_length] = lengths;
+    let bc = cross(&b[0], &c[1], &b[1], &c[0]);
+    let ca = cross(&c[0], &a[1], &c[1], &a[0]);
+    let ab = cross(&a[0], &b[1], &a[1], &b[0]);
+    a_length * bc + b_length * ca + c_length * ab
+}
+
+/// Of a counter-clockwise triangle and a fourth point: positive if the point lies inside of the
+/// circumscribed circle, zero if on it.
+#[derive(Debug, Clone, Copy)]
+pub struct InCircle(pub [[f64; 2]; 4]);
+
+impl Predicate for InCircle {
+    const DEGREE: i32 = 4;
+    const AXES: usize = 2;
+
+    #[inline(always)]
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.0.iter().map(move |p| p[axis])
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c, d] = self.0;
+        let [a, b, c] = [a, b, c].map(|p| minus(p, d, difference));
+        let lengths = [&a, &b, &c].map(|v| square(&v[0]) + square(&v[1]));
+        in_circle(a, b, c, lengths)
+    }
+}
+
+/// Of four points in space: positive if `b - a`, `c - a`, `d - a` are a right-handed system, zero if
+/// coplanar.
+#[derive(Debug, Clone, Copy)]
+pub struct Orientation3(pub [[f64; 3]; 4]);
+
+impl Predicate for Orientation3 {
+    const DEGREE: i32 = 3;
+    const AXES: usize = 3;
+
+    #[inline(always)]
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.0.iter().map(move |p| p[axis])
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c, d] = self.0;
+        // From d, the determinant changes its sign: exchanging a and b makes up for it.
+        let [ux, uy, uz] = minus(b, d, difference);
+        let [vx, vy, vz] = minus(a, d, difference);
+        let [wx, wy, wz] = minus(c, d, difference);
+        let vw = cross(&vx, &wy, &vy, &wx);
+        let wu = cross(&wx, &uy, &wy, &ux);
+        let uv = cross(&ux, &vy, &uy, &vx);
+        uz * vw + vz * wu + wz * uv
+    }
+}
+
+/// Of a positively oriented tetrahedron and a fifth point: positive if the point lies inside of the
+/// circumscribed sphere, zero if on it.
+#[derive(Debug, Clone, Copy)]
+pub struct InSphere(pub [[f64; 3]; 5]);
+
+impl Predicate for InSphere {
+    const DEGREE: i32 = 5;
+    const AXES: usize = 3;
+
+    #[inline(always)]
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.0.iter().map(move |p| p[axis])
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c, d, e] = self.0;
+        // Rows b, a, c, d: the 4 x 4 determinant is then positive inside.
+        let [a, b, c, d] = [b, a, c, d].map(|p| minus(p, e, difference));
+        let plane = |p: &[T; 3], q: &[T; 3]| cross(&p[0], &q[1], &p[1], &q[0]);
+        let (ab, bc, cd, da) = (plane(&a, &b), plane(&b, &c), plane(&c, &d), plane(&d, &a));
+        let (ac, bd) = (plane(&a, &c), plane(&b, &d));
+        let volume = |p: &T, qr: &T, q: &T, pr: &T, r: &T, pq: &T| {
+            p.clone() * qr.clone() - q.clone() * pr.clone() + r.clone() * pq.clone()
+        };
+        let abc = volume(&a[2], &bc, &b[2], &ac, &c[2], &ab);
+        let bcd = volume(&b[2], &cd, &c[2], &bd, &d[2], &bc);
+        // Two minors have their rows in another order: ac = -ca, and so on.
+        let cda = c[2].clone() * da.clone() + d[2].clone() * ac.clone() + a[2].clone() * cd.clone();
+        let dab = d[2].clone() * ab.clone() + a[2].clone() * bd.clone() + b[2].clone() * da.clone();
+        let length = |v: &[T; 3]| square(&v[0]) + square(&v[1]) + square(&v[2]);
+        (length(&d) * abc - length(&c) * dab) + (length(&b) * cda - length(&a) * bcd)
+    }
+}
+
+/// Of three points in a plane in space and a fourth in the same plane: the in-circle test there,
+/// positive inside if the first three turn counter-clockwise seen along the axis that is left out.
+///
+/// Areas in the plane and in a projection of it have a constant ratio, so that the determinant of
+/// the plane can be taken with projected areas and lengths in space.
+#[derive(Debug, Clone, Copy)]
+pub struct InCircleOfPlane {
+    /// The triangle, and the point in question.
+    pub points: [[f64; 3]; 4],
+    /// The two axes of a projection in which the triangle has an area.
+    pub axes: [usize; 2],
+}
+
+impl Predicate for InCircleOfPlane {
+    const DEGREE: i32 = 4;
+    const AXES: usize = 3;
+
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.points.iter().map(move |p| p[axis])
+    }
+
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c, d] = self.points;
+        let vectors = [a, b, c].map(|p| minus(p, d, difference));
+        let lengths = vectors.each_ref().map(|v| square(&v[0]) + square(&v[1]) + square(&v[2]));
+        let [a, b, c] = vectors.map(|v| self.axes.map(|axis| v[axis].clone()));
+        in_circle(a, b, c, lengths)
+    }
+}
+
+/// Where segment `a b` crosses the line through `c` and `d`, as the fraction of the way from `a`.
+///
+/// The two areas are computed exactly and only their quotient is rounded, so that the place is right
+/// to the last bits however small the angle is. The caller knows that the segment crosses.
+pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
+    let area = |p| Orientation2([c, d, p]).value(Expansion::difference);
+    let (at_a, at_b) = (area(a), area(b));
+    let from_a = at_a.estimate();
+    from_a / (at_a - at_b).estimate()
+}

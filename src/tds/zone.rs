@@ -1,0 +1,151 @@
+use super::{CellId, Tds, VertexId};
+
+/// A set of cells that is to be replaced by the star of one vertex, and the facets around it.
+///
+/// Kept by its owner from one insertion to the next, so that no insertion allocates.
+#[derive(Debug, Clone, Default)]
+pub struct Zone {
+    /// The cells.
+    pub(crate) cells: Vec<CellId>,
+    /// The facets on its border: the cell within, and the index of the facet in it.
+    pub(crate) border: Vec<(CellId, u8)>,
+    /// For each cell number, whether it is in `cells`; all false between uses.
+    marked: Vec<bool>,
+    /// The new cells, in the order of `border`.
+    star: Vec<CellId>,
+}
+
+impl Zone {
+    /// The cells in the zone.
+    pub fn cells(&self) -> &[CellId] {
+        &self.cells
+    }
+
+    /// The facets around the zone: a cell within, and the index of the facet in it.
+    pub fn border(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
+        self.border.iter().map(|&(cell, i)| (cell, i as usize))
+    }
+
+    pub(crate) fn start(&mut self, slots: usize) {
+        debug_assert!(self.cells.is_empty() && self.border.is_empty());
+        if self.marked.len() < slots {
+            self.marked.resize(slots.max(self.marked.capacity()), false);
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn holds(&self, cell: CellId) -> bool {
+        self.marked[cell.index()]
+    }
+
+    #[inline(always)]
+    pub(crate) fn add(&mut self, cell: CellId) {
+        if !std::mem::replace(&mut self.marked[cell.index()], true) {
+            self.cells.push(cell);
+        }
+    }
+
+    /// Forgets the cells.
+    pub(crate) fn finish(&mut self) {
+        for cell in self.cells.drain(..) {
+            self.marked[cell.index()] = false;
+        }
+        self.border.clear();
+    }
+
+    /// Grows the zone from the cells that it already holds over every facet that `takes` accepts (asked
+    /// with a cell of the zone, the index of the facet, and the cell beyond), and collects the border.
+    pub(crate) fn grow<const N: usize, V, C: Copy + Default>(
+        &mut self,
+        tds: &Tds<N, V, C>,
+        mut takes: impl FnMut(CellId, usize, CellId) -> bool,
+    ) {
+        let width = (tds.dimension() + 1) as usize;
+        let mut next = 0;
+        while next < self.cells.len() {
+            let cell = self.cells[next];
+            next += 1;
+            for i in 0..width {
+                let beyond = tds.neighbor(cell, i);
+                if self.holds(beyond) {
+                    continue;
+                }
+                if takes(cell, i, beyond) {
+                    self.add(beyond);
+                } else {
+                    self.border.push((cell, i as u8));
+                }
+            }
+        }
+        // A cell refused across one facet may have been taken across another.
+        let marked = &self.marked;
+        self.border.retain(|&(cell, i)| !marked[tds.neighbor(cell, i as usize).index()]);
+    }
+}
+
+impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
+    /// Replaces the cells of a zone by the star of `apex`: one cell for each facet of the border. `data`
+    /// says what payload that cell gets, from that of the cell that had the facet and its index. The
+    /// new vertex stands in the new cell where the vertex opposite the facet stood in the old one, so
+    /// that the orientation is kept.
+    ///
+    /// The zone must be a ball; it is empty afterwards. Returns the last cell of the star.
+    ///
+    /// To link the new cells with each other, one turns around each ridge of the border within the zone,
+    /// from one facet of the border to the next.
+    pub(crate) fn star(&mut self, zone: &mut Zone, apex: VertexId, data: impl Fn(&C, usize) -> C) -> CellId {
+        let width = (self.dimension() + 1) as usize;
+        zone.star.clear();
+        for &(old, i) in &zone.border {
+            let i = i as usize;
+            let mut vertices = self.links[old.index()].vertices;
+            vertices[i] = apex;
+            let payload = data(&self.cell_data[old.index()], i);
+            let new = self.add_cell(vertices, payload);
+            let outside = self.links[old.index()].neighbors[i];
+            let j = self.index_of_neighbor(outside, old);
+            self.link(new, i, outside, j);
+            // Found again from within the zone while turning.
+            self.links[old.index()].neighbors[i] = new;
+            zone.star.push(new);
+        }
+        if zone.marked.len() < self.links.len() {
+            zone.marked.resize(self.links.len().max(zone.marked.capacity()), false);
+        }
+        for (&(old, i), &new) in zone.border.iter().zip(&zone.star) {
+            let i = i as usize;
+            for ridge in 0..width {
+                if ridge == i || self.links[new.index()].neighbors[ridge] != CellId::NONE {
+                    continue;
+                }
+                // `cell` has the ridge and two more vertices; go on across the facet that drops `drop`.
+                let (mut cell, mut gain, mut drop) = (old, i, ridge);
+                loop {
+                    let beyond = self.links[cell.index()].neighbors[drop];
+                    if !zone.holds(beyond) {
+                        // The border: `beyond` is the new cell there, which has the apex where `drop` was.
+                        self.link(new, ridge, beyond, gain);
+                        break;
+                    }
+                    let kept = self.links[cell.index()].vertices[gain];
+                    let back = self.index_of_neighbor(beyond, cell);
+                    drop = self.links[beyond.index()].vertices.iter().position(|&v| v == kept).unwrap_or(0);
+                    gain = back;
+                    cell = beyond;
+                }
+            }
+        }
+        for index in 0..zone.star.len() {
+            let new = zone.star[index];
+            for slot in 0..width {
+                let vertex = self.links[new.index()].vertices[slot];
+                self.set_cell_of(vertex, new);
+            }
+        }
+        for index in 0..zone.cells.len() {
+            self.remove_cell(zone.cells[index]);
+        }
+        zone.finish();
+        zone.star.last().copied().unwrap_or(CellId::NONE)
+    }
+}

@@ -1,0 +1,226 @@
+use std::ops::Deref;
+
+use crate::geometry::{Coordinates, Crossing};
+use crate::tds::{CellId, VertexId, ccw, cw};
+
+use super::segment::Scratch;
+use super::{Flaw, Level, Location, Refused, Triangulation, spatial_order};
+
+/// Which edges of a triangle are constraints: bit `i` is set for the one opposite vertex `i`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Walls(u8);
+
+impl Walls {
+    /// Whether the edge opposite vertex `i` is one.
+    #[inline(always)]
+    pub fn has(self, i: usize) -> bool {
+        self.0 >> i & 1 == 1
+    }
+
+    /// The same with the edge opposite vertex `i` set as told.
+    #[inline]
+    pub(super) fn with(self, i: usize, wall: bool) -> Self {
+        Walls(self.0 & !(1 << i) | u8::from(wall) << i)
+    }
+
+    /// Only the edge opposite vertex `i`, if it was one.
+    #[inline(always)]
+    fn only(self, i: usize) -> Self {
+        Walls(self.0 & 1 << i)
+    }
+}
+
+/// A constrained Delaunay triangulation of the plane: given edges are there, and no vertex lies inside
+/// of a triangle's circumscribed circle unless a constraint stands between them (Lee and Lin 1986;
+/// Chew 1989).
+///
+/// Segments may touch, overlap, repeat and cross. One that runs through a vertex is split there; where
+/// two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it (for
+/// [`Terrain`](crate::geometry::Terrain): the lower of the two heights). Pieces of a line that crosses
+/// others may so be off by the rounding of those vertices.
+#[derive(Debug, Clone)]
+pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
+    pub(super) inner: Triangulation<G, 3, V, Walls>,
+    /// Segments among collinear points, which no triangle can hold yet.
+    pub(super) waiting: Vec<[VertexId; 2]>,
+    /// Vertices added where segments cross.
+    pub(super) crossings: Vec<VertexId>,
+    pub(super) scratch: Scratch,
+}
+
+impl<G: Crossing, V> Deref for ConstrainedDelaunay<G, V> {
+    type Target = Triangulation<G, 3, V, Walls>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.inner
+    }
+}
+
+impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+    /// Without points.
+    pub fn new(geometry: G) -> Self {
+        ConstrainedDelaunay {
+            inner: Triangulation::new(geometry),
+            waiting: Vec::new(),
+            crossings: Vec::new(),
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// Adds a point; the vertex that is there already, if the site is taken. On a constraint, the
+    /// constraint is split.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or out of range; nothing has changed then.
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
+        self.inner.admit(&p)?;
+        let vertex = self.insert_near(p, None);
+        self.insert_waiting();
+        Ok(vertex)
+    }
+
+    pub(super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
+        let location = self.inner.locate(&p, near);
+        // The ends of a constraint that the point splits.
+        let split = match location {
+            Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
+                let i = touching.trailing_zeros() as usize;
+                let ends = [self.tds().vertex(cell, ccw(i)), self.tds().vertex(cell, cw(i))];
+                self.tds().cell_data(cell).has(i).then_some(ends)
+            }
+            _ => None,
+        };
+        let passes = |tds: &crate::tds::Tds<3, V, Walls>, cell, i| !tds.cell_data(cell).has(i);
+        let vertex = self.inner.insert_at(p, location, V::default(), passes, |walls, i| walls.only(i));
+        for end in split.into_iter().flatten() {
+            self.set_wall(vertex, end, true);
+        }
+        vertex
+    }
+
+    /// Adds the constraint between two vertices, with all that it meets on its way.
+    ///
+    /// # Complexity
+    /// Quadratic in the number of triangles that one piece crosses (in practice a few), and a vertex
+    /// insertion for each constraint that it crosses.
+    pub fn insert_segment(&mut self, a: VertexId, b: VertexId) {
+        if self.dimension() < 2 {
+            self.waiting.push([a, b]);
+        } else {
+            self.force(a, b);
+        }
+    }
+
+    /// Adds points and the constraints between consecutive ones; returns their vertices.
+    ///
+    /// # Errors
+    /// The position of the first point that is refused; nothing has changed then.
+    pub fn insert_polyline(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, Refused> {
+        if let Some(bad) = points.iter().position(|p| self.inner.admit(p).is_err()) {
+            return Err(Refused::Coordinate(bad));
+        }
+        let vertices = points.iter().map(|&p| self.insert(p)).collect::<Result<Vec<_>, _>>()?;
+        for pair in vertices.windows(2) {
+            self.insert_segment(pair[0], pair[1]);
+        }
+        Ok(vertices)
+    }
+
+    /// Puts in what could not be while all points were collinear.
+    pub(super) fn insert_waiting(&mut self) {
+        if self.dimension() == 2 && !self.waiting.is_empty() {
+            for [a, b] in std::mem::take(&mut self.waiting) {
+                self.force(a, b);
+            }
+        }
+    }
+
+    /// Whether the edge of a cell opposite its vertex `i` is a constraint.
+    #[inline]
+    pub fn is_constrained(&self, cell: CellId, i: usize) -> bool {
+        self.tds().cell_data(cell).has(i)
+    }
+
+    /// Each constrained edge once, as the pair of its vertices, the smaller first.
+    pub fn constrained_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
+        self.tds().cells().filter(|_| self.dimension() == 2).flat_map(move |cell| {
+            (0..3).filter(move |&i| self.is_constrained(cell, i)).filter_map(move |i| {
+                let (a, b) = (self.tds().vertex(cell, ccw(i)), self.tds().vertex(cell, cw(i)));
+                (a < b).then_some([a, b]) // the cell on the other side has it as `b a`
+            })
+        })
+    }
+
+    /// The vertices that were added where constraints cross.
+    pub fn crossings(&self) -> &[VertexId] {
+        &self.crossings
+    }
+
+    /// Sets or clears the flag of an existing edge, on both sides.
+    pub(super) fn set_wall(&mut self, a: VertexId, b: VertexId, wall: bool) {
+        for [a, b] in [[a, b], [b, a]] {
+            if let Some((cell, i)) = self.inner.tds.edge(a, b) {
+                let data = self.inner.tds.cell_data_mut(cell);
+                *data = data.with(i, wall);
+            }
+        }
+    }
+
+    /// Replaces the point of a vertex by one of the same site: another height, say.
+    pub(crate) fn replace_point(&mut self, vertex: VertexId, p: G::Point) {
+        debug_assert!(self.inner.geometry.compare(&p, &self.inner.points[vertex.index()]).is_eq());
+        self.inner.points[vertex.index()] = p;
+    }
+
+    /// Checks up to the level, with exact predicates. No flaw means that the triangulation is what it
+    /// claims to be.
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        let flaws = self.flaws(level, |cell, i| !self.is_constrained(cell, i));
+        if !flaws.is_empty() || level < Level::Law || self.dimension() < 2 {
+            return flaws;
+        }
+        let one_sided = |cell: CellId, i: usize| {
+            let beside = self.tds().neighbor(cell, i);
+            self.is_constrained(cell, i) != self.is_constrained(beside, self.tds().index_of_neighbor(beside, cell))
+        };
+        let edges = self.tds().cells().flat_map(|cell| (0..3).map(move |i| (cell, i)));
+        edges.filter(|&(cell, i)| one_sided(cell, i)).map(|(cell, i)| Flaw::OneSided(cell, i)).collect()
+    }
+}
+
+impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+    /// Triangulates points that are all different, and that the caller has put in spatial order: the
+    /// vertices are numbered as the points are, and no copy of them is made.
+    ///
+    /// # Errors
+    /// The first point that is refused, by its position.
+    pub(crate) fn from_sorted(geometry: G, points: Vec<G::Point>) -> Result<Self, Refused> {
+        let mut triangulation = Self::new(geometry);
+        triangulation.inner.tds.reserve(points.len());
+        triangulation.inner.points.reserve_exact(points.len());
+        for p in points {
+            triangulation.inner.admit(&p)?;
+            triangulation.insert_near(p, None);
+        }
+        Ok(triangulation)
+    }
+
+    /// Triangulates many points, taken in spatial order. Returns the vertex of each point beside.
+    ///
+    /// # Errors
+    /// The first point that is refused, by its position.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
+        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
+            return Err(Refused::Coordinate(bad));
+        }
+        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
+        let mut triangulation = Self::new(geometry);
+        triangulation.inner.tds.reserve(points.len());
+        triangulation.inner.points.reserve_exact(points.len());
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        for index in order {
+            vertices[index as usize] = triangulation.insert(points[index as usize])?;
+        }
+        Ok((triangulation, vertices))
+    }
+}

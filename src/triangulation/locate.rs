@@ -1,0 +1,111 @@
+use crate::geometry::Geometry;
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId};
+
+use super::Triangulation;
+
+/// Where a point lies in a triangulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Location {
+    /// On a vertex.
+    Vertex(VertexId),
+    /// In a finite cell, or on its border. Bit `i` of `touching` is set if the point lies on the facet
+    /// opposite vertex `i`: in the plane, no bit says inside of the triangle and one bit on that edge.
+    Cell {
+        /// The cell.
+        cell: CellId,
+        /// The facets that the point lies on.
+        touching: u8,
+    },
+    /// Outside of the convex hull, in sight of the finite facet of this infinite cell.
+    OutsideHull {
+        /// An infinite cell.
+        cell: CellId,
+    },
+    /// Outside of the line or plane that all points lie in; also for an empty triangulation, and for
+    /// a second place beside a single point.
+    OutsideAffineHull,
+}
+
+/// Marsaglia's xorshift: the walk turns corners in an order that no input can foresee, the same in
+/// every run.
+struct Dice(u32);
+
+impl Dice {
+    #[inline(always)]
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        ((u64::from(self.0) * n as u64) >> 32) as usize
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
+    /// Finds where `q` lies, by a remembering stochastic walk (Devillers, Pion, Teillaud 2002) from a
+    /// cell nearby, or from the last insertion. Ends on any triangulation, with probability one; in
+    /// the order of the square root of the number of vertices when started anywhere.
+    pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
+        let start = near.filter(|&c| self.tds.is_used(c)).or(self.last.filter(|&c| self.tds.is_used(c)));
+        match self.dimension() {
+            -1 => return Location::OutsideAffineHull,
+            0 => {
+                return match self.geometry.compare(q, &self.points[0]) {
+                    std::cmp::Ordering::Equal => Location::Vertex(VertexId::new(0)),
+                    _ => Location::OutsideAffineHull,
+                };
+            }
+            _ => {}
+        }
+        let Some(mut cell) = start.or_else(|| self.tds.cell_of(VertexId::INFINITE)) else {
+            return Location::OutsideAffineHull;
+        };
+        if !self.is_full() && self.leaves_flat(q) {
+            return Location::OutsideAffineHull;
+        }
+        let width = self.tds.cell_vertices(cell).len();
+        if let Some(infinite) = self.tds.index_of(cell, VertexId::INFINITE) {
+            cell = self.tds.neighbor(cell, infinite);
+        }
+        let mut dice = Dice(0x9E37_79B9);
+        let mut from = None;
+        'walk: loop {
+            let mut touching = 0u8;
+            let first = dice.below(width);
+            for turn in 0..width {
+                let i = if first + turn < width { first + turn } else { first + turn - width };
+                let beyond = self.tds.neighbor(cell, i);
+                if from == Some(beyond) {
+                    continue; // we came from there: `q` lies strictly on this side
+                }
+                match self.side_of_facet(cell, i, q) {
+                    Sign::Positive => {}
+                    Sign::Zero => touching |= 1 << i,
+                    Sign::Negative if self.tds.is_infinite(beyond) => return Location::OutsideHull { cell: beyond },
+                    Sign::Negative => {
+                        from = Some(cell);
+                        cell = beyond;
+                        continue 'walk;
+                    }
+                }
+            }
+            if touching.count_ones() as usize == width - 1 {
+                // On all facets but one: on the vertex opposite that one.
+                return Location::Vertex(self.tds.vertex(cell, (!touching).trailing_zeros() as usize));
+            }
+            return Location::Cell { cell, touching };
+        }
+    }
+
+    /// Whether `q` lies outside of the line or plane of all points.
+    fn leaves_flat(&self, q: &G::Point) -> bool {
+        let Some(cell) = self.finite_cells().next() else { return true };
+        let mut simplex = self.flat_with(cell, usize::MAX, q);
+        simplex.push(q);
+        let sign = match <[&G::Point; N]>::try_from(simplex) {
+            Ok(full) => self.geometry.orientation(full),
+            Err(flat) => self.geometry.orientation_in_flat(&flat),
+        };
+        sign != Sign::Zero
+    }
+}

@@ -1,0 +1,307 @@
+//! Forcing a segment into a constrained Delaunay triangulation.
+//!
+//! 1. *Trace*: walk along the segment from its start and collect the triangles it crosses, until it
+//!    meets a vertex or a constraint.
+//! 2. At a vertex: the triangles crossed so far are taken out, the new edge is put in, and the polygons
+//!    on its two sides are triangulated again, each triangle with the vertex that makes the empty
+//!    circle (Anglada 1997), from a stack, not by recursion. Go on from the vertex.
+//! 3. At a constraint: it is lifted, the place of the crossing becomes a vertex, and four pieces are
+//!    put in.
+
+use std::collections::HashMap;
+
+use crate::geometry::{Crossing, in_sphere};
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId, ccw, cw};
+
+use super::{ConstrainedDelaunay, Walls};
+
+/// Buffers of the segment insertion, kept from one to the next.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scratch {
+    /// Triangles that the segment crosses, in order.
+    corridor: Vec<CellId>,
+    /// Vertices to the left of the segment, with its two ends, in order; and to the right.
+    left: Vec<VertexId>,
+    right: Vec<VertexId>,
+    /// Directed edges that wait for the triangle on their other side.
+    open: HashMap<[VertexId; 2], (CellId, usize)>,
+    /// Constraints that stick into the corridor without being crossed.
+    spikes: Vec<[VertexId; 2]>,
+    /// Triangles whose edges may have to be flipped.
+    unsettled: Vec<CellId>,
+}
+
+/// How a trace ended.
+enum Met {
+    /// At this vertex, which may be the segment's end.
+    Vertex(VertexId),
+    /// At the constraint opposite corner `i` of the cell.
+    Wall(CellId, usize),
+}
+
+/// Pieces of pieces: each level of crossings moves a line by a rounding at the most. Never seen to
+/// matter; a line that exceeds it is left out and found by the check.
+const MAX_DEPTH: u32 = 256;
+
+impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+    /// Puts in the segment between two vertices. The triangulation spans the plane.
+    pub(super) fn force(&mut self, a: VertexId, b: VertexId) {
+        let mut pieces = vec![(a, b, 0)];
+        while let Some((a, b, depth)) = pieces.pop() {
+            if a == b || depth > MAX_DEPTH {
+                continue;
+            }
+            match self.trace(a, b) {
+                Met::Vertex(v) => {
+                    self.retriangulate(a, v);
+                    self.set_wall(a, v, true);
+                    self.settle();
+                    pieces.push((v, b, depth));
+                }
+                Met::Wall(cell, i) => {
+                    let (c, d) = (self.tds().vertex(cell, ccw(i)), self.tds().vertex(cell, cw(i)));
+                    let x =
+                        self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
+                    self.set_wall(c, d, false);
+                    self.scratch.unsettled.extend([cell, self.tds().neighbor(cell, i)]);
+                    self.settle();
+                    let before = self.vertex_count();
+                    let near = self.tds().cell_of(c);
+                    let v = self.insert_near(x, near);
+                    if self.vertex_count() > before {
+                        self.crossings.push(v);
+                    }
+                    pieces.extend([(v, b, depth + 1), (a, v, depth + 1), (v, d, depth + 1), (c, v, depth + 1)]);
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn turn(&self, a: VertexId, b: VertexId, c: VertexId) -> Sign {
+        self.inner.geometry.orientation([a, b, c].map(|v| self.point(v)))
+    }
+
+    /// Whether `p` lies ahead of `a` on the way to `b`, all three being collinear.
+    fn is_ahead(&self, a: VertexId, b: VertexId, p: VertexId) -> bool {
+        let compare = |p: VertexId, q: VertexId| self.inner.geometry.compare(self.point(p), self.point(q));
+        compare(a, p) == compare(a, b)
+    }
+
+    /// Walks from `a` towards `b` and fills the corridor and its two sides.
+    fn trace(&mut self, a: VertexId, b: VertexId) -> Met {
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.corridor.clear();
+        scratch.left.clear();
+        scratch.right.clear();
+        scratch.left.push(a);
+        scratch.right.push(a);
+        let met = self.trace_into(a, b, &mut scratch);
+        self.scratch = scratch;
+        met
+    }
+
+    fn trace_into(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
+        let tds = self.tds();
+        // The triangle at `a` through which the segment leaves, or a neighbor right on the way.
+        let mut leaves = None;
+        for cell in tds.around(a) {
+            let Some(i) = tds.index_of(cell, a) else { continue };
+            let (u, w) = (tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
+            if u == VertexId::INFINITE {
+                continue;
+            }
+            match self.turn(a, u, b) {
+                Sign::Zero if self.is_ahead(a, b, u) => return Met::Vertex(u),
+                Sign::Positive if w != VertexId::INFINITE && self.turn(a, w, b) == Sign::Negative => {
+                    leaves = Some((cell, i, u, w));
+                    break;
+                }
+                _ => {}
+            }
+        }
+        let Some((mut cell, mut i, mut right, mut left)) = leaves else {
+            // Unreachable: the triangles around a vertex of a convex region leave no gap.
+            return Met::Vertex(b);
+        };
+        loop {
+            scratch.corridor.push(cell);
+            scratch.left.extend((scratch.left.last() != Some(&left)).then_some(left));
+            scratch.right.extend((scratch.right.last() != Some(&right)).then_some(right));
+            if tds.cell_data(cell).has(i) {
+                return Met::Wall(cell, i);
+            }
+            let beyond = tds.neighbor(cell, i);
+            let j = tds.index_of_neighbor(beyond, cell);
+            let p = tds.vertex(beyond, j);
+            match self.turn(a, b, p) {
+                Sign::Zero => {
+                    scratch.corridor.push(beyond);
+                    scratch.left.push(p);
+                    scratch.right.push(p);
+                    return Met::Vertex(p);
+                }
+                // `beyond` is (p, left, right) counter-clockwise: drop the one on p's side.
+                Sign::Positive => {
+                    i = ccw(j);
+                    left = p;
+                }
+                Sign::Negative => {
+                    i = cw(j);
+                    right = p;
+                }
+            }
+            cell = beyond;
+        }
+    }
+
+    /// Replaces the corridor by triangles on both sides of the edge `a b`.
+    fn retriangulate(&mut self, a: VertexId, b: VertexId) {
+        if self.scratch.corridor.is_empty() {
+            return; // the edge is there
+        }
+        let mut scratch = std::mem::take(&mut self.scratch);
+        self.open_border(&mut scratch);
+        // Left: the polygon runs from a over the chain to b, the base a b has it on its left. Right: the
+        // base is b a, the chain runs from b back to a.
+        scratch.right.reverse();
+        let mut reuse = std::mem::take(&mut scratch.corridor);
+        let left = std::mem::take(&mut scratch.left);
+        let right = std::mem::take(&mut scratch.right);
+        self.fill(&left, &mut reuse, &mut scratch);
+        self.fill(&right, &mut reuse, &mut scratch);
+        debug_assert!(reuse.is_empty() && scratch.open.is_empty(), "the corridor was not filled");
+        debug_assert!(self.inner.tds.edge(a, b).is_some());
+        (scratch.left, scratch.right, scratch.corridor) = (left, right, reuse);
+        let spikes = std::mem::take(&mut scratch.spikes);
+        self.scratch = scratch;
+        for &[u, v] in &spikes {
+            self.set_wall(u, v, true);
+        }
+        self.scratch.spikes = spikes;
+        self.scratch.spikes.clear();
+    }
+
+    /// Lists the edges around the corridor, with the cell on their outer side.
+    fn open_border(&self, scratch: &mut Scratch) {
+        let tds = self.tds();
+        scratch.open.clear();
+        let corridor = &scratch.corridor;
+        for (at, &cell) in corridor.iter().enumerate() {
+            let crossed = [at.checked_sub(1), Some(at + 1)].map(|k| k.and_then(|k| corridor.get(k)).copied());
+            for i in 0..3 {
+                let outside = tds.neighbor(cell, i);
+                if crossed.contains(&Some(outside)) {
+                    continue; // the corridor goes on there
+                }
+                let edge = [tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i))];
+                let j = tds.index_of_neighbor(outside, cell);
+                // The corridor may touch itself around the tip of a spike; both sides are then ours.
+                let own = scratch.open.remove(&[edge[1], edge[0]]).is_some();
+                if own {
+                    scratch.spikes.extend(tds.cell_data(cell).has(i).then_some(edge));
+                } else {
+                    scratch.open.insert(edge, (outside, j));
+                }
+            }
+        }
+    }
+
+    /// Triangulates the polygon `chain` whose base runs from its first to its last vertex, with cells
+    /// from `reuse`.
+    fn fill(&mut self, chain: &[VertexId], reuse: &mut Vec<CellId>, scratch: &mut Scratch) {
+        let mut bases = vec![(0, chain.len() - 1)];
+        while let Some((first, last)) = bases.pop() {
+            if last - first < 2 {
+                continue;
+            }
+            let (a, b) = (chain[first], chain[last]);
+            let mut best = None;
+            for k in first + 1..last {
+                let p = chain[k];
+                if self.turn(a, b, p) != Sign::Positive {
+                    continue; // behind the base, or an end of it met again at a spike
+                }
+                let closer = |c: usize| {
+                    chain[c] != p
+                        && in_sphere(&self.inner.geometry, [a, b, chain[c]].map(|v| self.point(v)), self.point(p))
+                };
+                if best.is_none_or(closer) {
+                    best = Some(k);
+                }
+            }
+            let (Some(apex), Some(cell)) = (best, reuse.pop()) else {
+                debug_assert!(false, "a polygon without a triangle on its base");
+                continue;
+            };
+            self.inner.tds.set_corners(cell, [a, b, chain[apex]]);
+            *self.inner.tds.cell_data_mut(cell) = Walls::default();
+            for (i, edge) in [[b, chain[apex]], [chain[apex], a], [a, b]].into_iter().enumerate() {
+                match scratch.open.remove(&edge) {
+                    Some((beside, j)) => {
+                        self.inner.tds.link(cell, i, beside, j);
+                        let wall = self.is_constrained(beside, j);
+                        let data = self.inner.tds.cell_data_mut(cell);
+                        *data = data.with(i, wall);
+                    }
+                    None => {
+                        scratch.open.insert([edge[1], edge[0]], (cell, i));
+                    }
+                }
+            }
+            scratch.unsettled.push(cell);
+            bases.push((first, apex));
+            bases.push((apex, last));
+        }
+    }
+
+    /// Flips edges until no vertex sees another in its circle (Lawson 1977), starting from the cells in
+    /// `unsettled`.
+    pub(super) fn settle(&mut self) {
+        while let Some(cell) = self.scratch.unsettled.pop() {
+            if self.tds().is_infinite(cell) {
+                continue;
+            }
+            let flippable = (0..3).find(|&i| {
+                let beside = self.tds().neighbor(cell, i);
+                if self.is_constrained(cell, i) || self.tds().is_infinite(beside) {
+                    return false;
+                }
+                let far = self.tds().vertex(beside, self.tds().index_of_neighbor(beside, cell));
+                in_sphere(&self.inner.geometry, self.inner.simplex(cell), self.point(far))
+            });
+            if let Some(i) = flippable {
+                let beside = self.tds().neighbor(cell, i);
+                self.flip(cell, i);
+                self.scratch.unsettled.extend([cell, beside]);
+            }
+        }
+    }
+
+    /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.
+    fn flip(&mut self, cell: CellId, i: usize) {
+        let tds = &mut self.inner.tds;
+        let beside = tds.neighbor(cell, i);
+        let j = tds.index_of_neighbor(beside, cell);
+        // cell = (p, q, r), beside = (s, r, q), the edge q r becomes p s.
+        let (p, q, r) = (tds.vertex(cell, i), tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
+        let s = tds.vertex(beside, j);
+        let side = |tds: &crate::tds::Tds<3, V, Walls>, of: CellId, k: usize| {
+            let outside = tds.neighbor(of, k);
+            (outside, tds.index_of_neighbor(outside, of), tds.cell_data(of).has(k))
+        };
+        let pq = side(tds, cell, cw(i));
+        let rp = side(tds, cell, ccw(i));
+        let sr = side(tds, beside, cw(j));
+        let qs = side(tds, beside, ccw(j));
+        tds.set_corners(cell, [p, q, s]);
+        tds.set_corners(beside, [p, s, r]);
+        for (of, k, (outside, back, _)) in [(cell, 2, pq), (cell, 0, qs), (beside, 0, sr), (beside, 1, rp)] {
+            tds.link(of, k, outside, back);
+        }
+        tds.link(cell, 1, beside, 2);
+        *tds.cell_data_mut(cell) = Walls::default().with(2, pq.2).with(0, qs.2);
+        *tds.cell_data_mut(beside) = Walls::default().with(0, sr.2).with(1, rp.2);
+    }
+}

@@ -1,0 +1,261 @@
+//! Laws of the triangulations, on small integer grids where ties are the rule.
+
+use std::collections::BTreeSet;
+
+use breakline::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
+use breakline::kernel::{Adaptive, Exact, Expansions, Kernel};
+use breakline::tds::VertexId;
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, Refused, Triangulation};
+
+/// splitmix64
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            items.swap(i, self.below(i as u64 + 1) as usize);
+        }
+    }
+}
+
+/// The finite cells as sets of points, whatever their numbers and order.
+fn cells<G, const N: usize, V, C>(t: &Triangulation<G, N, V, C>) -> BTreeSet<Vec<Vec<i64>>>
+where
+    G: Coordinates<N>,
+    C: Copy + Default,
+{
+    let place = |v: &VertexId| t.geometry().coordinates(t.point(*v)).as_ref().iter().map(|x| (x * 1024.0) as i64).collect();
+    t.finite_cells()
+        .map(|cell| {
+            let mut corners: Vec<Vec<i64>> = t.tds().cell_vertices(cell).iter().map(place).collect();
+            corners.sort();
+            corners
+        })
+        .collect()
+}
+
+fn grid_points<const D: usize>(random: &mut Random, count: u64, side: u64, scale: f64) -> Vec<[f64; D]> {
+    (0..count).map(|_| std::array::from_fn(|_| random.below(side) as f64 * scale)).collect()
+}
+
+/// Builds in several orders; every build must be flawless and have the same cells.
+fn same_in_any_order<G, const N: usize>(geometry: G, mut points: Vec<G::Point>, random: &mut Random)
+where
+    G: Coordinates<N> + Clone,
+{
+    let (bulk, _) = Delaunay::from_points(geometry.clone(), &points).unwrap();
+    assert_eq!(bulk.check(Level::Law), []);
+    let expected = cells(&bulk);
+    for _ in 0..3 {
+        random.shuffle(&mut points);
+        let mut one_by_one = Delaunay::new(geometry.clone());
+        for &p in &points {
+            one_by_one.insert(p).unwrap();
+        }
+        assert_eq!(one_by_one.check(Level::Law), [], "{points:?}");
+        assert_eq!(cells(&one_by_one), expected, "{points:?}");
+    }
+}
+
+#[test]
+fn planar_delaunay_is_a_function_of_the_set() {
+    let mut random = Random(1);
+    for round in 0..4000 {
+        let (count, side) = (1 + random.below(24), 1 + random.below(7));
+        let scale = if round % 2 == 0 { 1.0 } else { 0.37 };
+        let points = grid_points::<2>(&mut random, count, side, scale);
+        same_in_any_order(Plane::<Adaptive>::default(), points, &mut random);
+    }
+}
+
+#[test]
+fn spatial_delaunay_is_a_function_of_the_set() {
+    let mut random = Random(2);
+    for round in 0..1500 {
+        let (count, side) = (1 + random.below(22), 1 + random.below(4));
+        let scale = if round % 2 == 0 { 1.0 } else { 0.37 };
+        let points = grid_points::<3>(&mut random, count, side, scale);
+        same_in_any_order(Space::<Adaptive>::default(), points, &mut random);
+    }
+}
+
+#[test]
+fn kernels_agree() {
+    fn build<K: Kernel>(points: &[[f64; 2]]) -> BTreeSet<Vec<Vec<i64>>> {
+        cells(&Delaunay::from_points(Plane::<K>::default(), points).unwrap().0)
+    }
+    let mut random = Random(3);
+    for _ in 0..200 {
+        let points = grid_points::<2>(&mut random, 30, 9, 0.01);
+        let exact = build::<Exact>(&points);
+        assert_eq!(build::<Adaptive>(&points), exact);
+        assert_eq!(build::<Expansions>(&points), exact);
+    }
+}
+
+#[test]
+fn dimensions_grow_one_by_one() {
+    let mut t = Delaunay::new(Space::<Adaptive>::default());
+    assert_eq!(t.dimension(), -1);
+    let points = [
+        ([0.0, 0.0, 0.0], 0, 1),
+        ([2.0, 0.0, 0.0], 1, 1),
+        ([1.0, 0.0, 0.0], 1, 2),
+        ([5.0, 0.0, 0.0], 1, 3),
+        ([1.0, 1.0, 0.0], 2, 3),
+        ([1.0, -1.0, 0.0], 2, 6),
+        ([1.0, 0.0, 3.0], 3, 6),
+        ([1.0, 0.0, -3.0], 3, 12),
+    ];
+    for (p, dimension, finite_cells) in points {
+        t.insert(p).unwrap();
+        assert_eq!(t.check(Level::Law), []);
+        assert_eq!((t.dimension(), t.finite_cells().count()), (dimension, finite_cells), "{p:?}");
+    }
+    t.insert([1.0, 0.0, 0.0]).unwrap();
+    assert_eq!(t.vertex_count(), points.len());
+}
+
+#[test]
+fn refused_points_are_named() {
+    let points = [[0.0, 0.0], [1.0, f64::NAN]];
+    assert_eq!(Delaunay::from_points(Plane::<Adaptive>::default(), &points).err(), Some(Refused::Coordinate(1)));
+    let mut t = Delaunay::new(Plane::<Adaptive>::default());
+    assert_eq!(t.insert([f64::INFINITY, 0.0]), Err(Refused::Coordinate(0)));
+    assert_eq!(t.insert([1e300, 0.0]), Err(Refused::Coordinate(0)));
+    let mut t = Delaunay::new(Plane::<Exact>::default());
+    for p in [[1e300, 0.0], [1e-310, 1e-310], [-1e300, 5.0], [0.0, -1e300]] {
+        t.insert(p).unwrap();
+    }
+    assert_eq!(t.check(Level::Law), []);
+}
+
+/// Every piece of each segment between vertices that lie on it must be a constrained edge.
+fn covers(t: &ConstrainedDelaunay<Plane>, a: [f64; 2], b: [f64; 2]) -> bool {
+    let g = Plane::<Exact>::default();
+    let between = |p: &[f64; 2]| {
+        let (low, high) = if g.compare(&a, &b).is_lt() { (a, b) } else { (b, a) };
+        g.compare(p, &low).is_ge() && g.compare(p, &high).is_le()
+    };
+    let mut on: Vec<VertexId> = t
+        .tds()
+        .vertices()
+        .filter(|&v| g.orientation([&a, &b, t.point(v)]) == breakline::num::Sign::Zero && between(t.point(v)))
+        .collect();
+    on.sort_by(|&u, &v| g.compare(t.point(u), t.point(v)));
+    on.windows(2).all(|pair| t.tds().edge(pair[0], pair[1]).is_some_and(|(cell, i)| t.is_constrained(cell, i)))
+}
+
+#[test]
+fn constraints_hold_and_do_not_depend_on_their_order() {
+    let mut random = Random(4);
+    let mut crossings = 0;
+    for _ in 0..3000 {
+        let side = 2 + random.below(7);
+        let count = 3 + random.below(14);
+        // Even coordinates, and segments that cross at grid points only or not at all: exact.
+        let points = grid_points::<2>(&mut random, count, side, 4.0);
+        let mut segments = Vec::new();
+        for _ in 0..random.below(8) {
+            let pair: [[f64; 2]; 2] = std::array::from_fn(|_| points[random.below(count) as usize]);
+            let crosses_off_grid = segments.iter().any(|&s| crossing_is_rounded(s, pair));
+            if !crosses_off_grid {
+                segments.push(pair);
+            }
+        }
+        let build = |points: &[[f64; 2]], segments: &[[[f64; 2]; 2]]| {
+            let (mut t, _) = ConstrainedDelaunay::from_points(Plane::default(), points).unwrap();
+            for &[a, b] in segments {
+                t.insert_polyline(&[a, b]).unwrap();
+            }
+            t
+        };
+        let first: ConstrainedDelaunay<Plane> = build(&points, &segments);
+        crossings += first.crossings().len();
+        if first.dimension() < 2 {
+            continue;
+        }
+        let expected = cells(&first);
+        let mut shuffled = (points.clone(), segments.clone());
+        for _ in 0..3 {
+            random.shuffle(&mut shuffled.0);
+            random.shuffle(&mut shuffled.1);
+            let t = build(&shuffled.0, &shuffled.1);
+            assert_eq!(t.check(Level::Law), [], "{shuffled:?}");
+            assert!(segments.iter().all(|&[a, b]| covers(&t, a, b)), "{shuffled:?}");
+            assert_eq!(cells(&t), expected, "{shuffled:?}");
+        }
+    }
+    assert!(crossings > 100, "only {crossings} crossings were tried");
+}
+
+/// Whether the two segments cross at a place that has no exact coordinates in steps of 1/1024.
+fn crossing_is_rounded([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
+    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
+    let minus = |p: [f64; 2], q: [f64; 2]| [p[0] - q[0], p[1] - q[1]];
+    let (ab, cd) = (minus(b, a), minus(d, c));
+    let area = cross(ab, cd);
+    if area == 0.0 {
+        return false;
+    }
+    let t = cross(minus(c, a), cd) / area;
+    let s = cross(minus(c, a), ab) / area;
+    if !(0.0..=1.0).contains(&t) || !(0.0..=1.0).contains(&s) {
+        return false;
+    }
+    // Exact only if the place is a dyadic fraction: multiply up and look.
+    (0..2).any(|axis| {
+        let numerator = cross(minus(c, a), cd) * ab[axis] * 1024.0;
+        numerator % area != 0.0
+    })
+}
+
+#[test]
+fn wild_crossings_leave_a_valid_triangulation() {
+    let mut random = Random(5);
+    for round in 0..1500 {
+        let offset = if round % 2 == 0 { [0.0, 0.0] } else { [500_000.0, 4_649_000.0] };
+        let mut t: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
+        let mut segments = Vec::new();
+        for _ in 0..2 + random.below(12) {
+            let point = |random: &mut Random| -> [f64; 2] {
+                std::array::from_fn(|axis| offset[axis] + random.below(40) as f64 * 0.01)
+            };
+            let pair = [point(&mut random), point(&mut random)];
+            segments.push(pair);
+            t.insert_polyline(&pair).unwrap();
+            assert_eq!(t.check(Level::Law), [], "{segments:?}");
+        }
+    }
+}
+
+#[test]
+fn points_fall_on_constraints() {
+    let mut t: ConstrainedDelaunay<Terrain> = ConstrainedDelaunay::new(Terrain::default());
+    t.insert_polyline(&[[0.0, 0.0, 1.0], [8.0, 0.0, 1.0], [8.0, 8.0, 1.0], [0.0, 8.0, 1.0], [0.0, 0.0, 1.0]]).unwrap();
+    t.insert_polyline(&[[0.0, 0.0, 1.0], [8.0, 8.0, 9.0]]).unwrap();
+    for p in [[4.0, 4.0, 0.0], [4.0, 0.0, 0.0], [2.0, 2.0, 0.0], [1.0, 7.0, 0.0]] {
+        t.insert(p).unwrap();
+        assert_eq!(t.check(Level::Law), []);
+    }
+    assert_eq!(t.constrained_edges().count(), 5 + 3);
+    // A level line at 3 crosses the diagonal, which rises from 0 at (4, 4) to 1 at (8, 8).
+    t.insert_polyline(&[[5.0, 1.0, 3.0], [5.0, 7.0, 3.0]]).unwrap();
+    let crossing = t.crossings();
+    assert_eq!(crossing.len(), 1);
+    assert_eq!(t.point(crossing[0])[..2], [5.0, 5.0]);
+    assert_eq!(t.point(crossing[0])[2], 0.25);
+    assert_eq!(t.check(Level::Law), []);
+}
