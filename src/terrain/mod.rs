@@ -1,7 +1,12 @@
 //! What a surveyor says: TIN, breakline, contour, raster, hillshade.
 
 mod builder;
+mod clip;
+mod duplicates;
+mod soundness;
 mod tin;
 
-pub use builder::{DuplicateRule, TinBuilder, TinReport};
+pub use builder::{TinBuilder, TinReport};
+pub use duplicates::DuplicateRule;
+pub use soundness::{SurfaceFlaw, surface_flaws};
 pub use tin::Tin;

@@ -1,44 +1,152 @@
-use super::TinReport;
 use crate::crs::Crs;
 use crate::data::Surface;
+use crate::geometry::Terrain;
+use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
-/// A surface of triangles over points and breaklines.
+use super::TinReport;
+
+/// A surface of triangles over points and breaklines: a constrained Delaunay triangulation in plan, and
+/// which of its triangles are part of the surface.
 #[derive(Debug)]
 pub struct Tin {
+    pub(super) triangulation: ConstrainedDelaunay<Terrain>,
+    /// For each cell number, whether it is part of the surface.
+    pub(super) inside: Vec<bool>,
     pub(super) report: TinReport,
-    pub(super) crs: Option<Crs>,
+    crs: Option<Crs>,
 }
 
 impl Tin {
+    /// With all finite faces.
+    pub(super) fn new(triangulation: ConstrainedDelaunay<Terrain>, crs: Option<Crs>) -> Self {
+        let mut tin = Tin { triangulation, inside: Vec::new(), report: TinReport::default(), crs };
+        tin.include_all();
+        tin
+    }
+
+    /// Makes every finite face part of the surface.
+    pub(super) fn include_all(&mut self) {
+        let tds = self.triangulation.tds();
+        let is_face = |cell| tds.is_used(cell) && !tds.is_infinite(cell);
+        self.inside = (0..tds.cell_slots()).map(|index| is_face(CellId::new(index))).collect();
+    }
+
     /// What went in and what became of it.
     pub fn report(&self) -> &TinReport {
         &self.report
     }
+
+    /// The triangulation beneath, which goes on to the convex hull.
+    pub fn triangulation(&self) -> &ConstrainedDelaunay<Terrain> {
+        &self.triangulation
+    }
+
+    /// Checks the triangulation up to the level, with exact predicates; no flaw means that it is a
+    /// constrained Delaunay triangulation.
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        self.triangulation.check(level)
+    }
+
+    /// The height at a place in plan, linear on the triangle there; `None` outside of the surface.
+    ///
+    /// # Complexity
+    /// A walk through about as many triangles as lie in a row across the surface.
+    pub fn elevation(&self, x: f64, y: f64) -> Option<f64> {
+        if !(x.is_finite() && y.is_finite()) {
+            return None;
+        }
+        match self.triangulation.locate(&[x, y, 0.0], None) {
+            Location::Vertex(vertex) => {
+                let inside = self.triangulation.tds().around(vertex).any(|cell| self.inside[cell.index()]);
+                inside.then(|| self.triangulation.point(vertex)[2])
+            }
+            Location::Cell { cell, touching } => {
+                let beside = (0..3).filter(|i| touching >> i & 1 == 1);
+                let beside = beside.map(|i| self.triangulation.tds().neighbor(cell, i));
+                let cell = std::iter::once(cell).chain(beside).find(|cell| self.inside[cell.index()])?;
+                let corners = self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
+                Some(linear(corners, [x, y]))
+            }
+            Location::OutsideHull { .. } | Location::OutsideAffineHull => None,
+        }
+    }
+
+    /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges longer
+    /// than `limit`. Returns their number.
+    pub(super) fn peel(&mut self, limit: f64) -> usize {
+        let tds = self.triangulation.tds();
+        let mut peeled = 0;
+        let at_hull = |cell: CellId| {
+            let infinite = tds.index_of(cell, VertexId::INFINITE)?;
+            Some((tds.neighbor(cell, infinite), cell))
+        };
+        let mut exposed: Vec<(CellId, CellId)> = tds.cells().filter_map(at_hull).collect();
+        while let Some((cell, from)) = exposed.pop() {
+            let i = tds.index_of_neighbor(cell, from);
+            let ends = [ccw(i), cw(i)].map(|k| self.triangulation.point(tds.vertex(cell, k)));
+            let length = (ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]);
+            let open = self.inside[cell.index()] && !self.triangulation.is_constrained(cell, i);
+            if !open || length <= limit {
+                continue;
+            }
+            self.inside[cell.index()] = false;
+            peeled += 1;
+            let onward = [ccw(i), cw(i)].map(|k| tds.neighbor(cell, k));
+            exposed.extend(onward.into_iter().filter(|n| self.inside[n.index()]).map(|n| (n, cell)));
+        }
+        peeled
+    }
+
+    /// Vertices and faces of the surface.
+    pub(super) fn count(&self) -> (usize, usize) {
+        let tds = self.triangulation.tds();
+        let mut used = vec![false; tds.vertex_count()];
+        let mut faces = 0;
+        for index in (0..self.inside.len()).filter(|&i| self.inside[i]) {
+            faces += 1;
+            tds.corners(CellId::new(index)).iter().for_each(|v| used[v.index()] = true);
+        }
+        (used.into_iter().filter(|&u| u).count(), faces)
+    }
+}
+
+/// The height at `q` of the plane through three points. Exactly that of a corner at a corner.
+pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
+    let cross = |p: [f64; 3], r: [f64; 3]| (p[0] - q[0]) * (r[1] - q[1]) - (p[1] - q[1]) * (r[0] - q[0]);
+    let (at_a, at_b, at_c) = (cross(b, c), cross(c, a), cross(a, b));
+    let area = at_a + at_b + at_c;
+    if area == 0.0 {
+        return a[2];
+    }
+    a[2] + (at_b * (b[2] - a[2]) + at_c * (c[2] - a[2])) / area
 }
 
 impl Surface for Tin {
     fn vertex_count(&self) -> usize {
-        0
+        self.triangulation.vertex_count()
     }
 
-    fn position(&self, _vertex: u32) -> [f64; 3] {
-        [0.0; 3]
+    fn position(&self, vertex: u32) -> [f64; 3] {
+        self.triangulation.points()[vertex as usize]
     }
 
     fn face_count(&self) -> usize {
-        0
+        self.inside.len()
     }
 
-    fn face(&self, _face: u32) -> Option<[u32; 3]> {
-        None
+    fn face(&self, face: u32) -> Option<[u32; 3]> {
+        let inside = *self.inside.get(face as usize)?;
+        inside.then(|| self.triangulation.tds().corners(CellId::new(face as usize)).map(|v| v.index() as u32))
     }
 
-    fn neighbor(&self, _face: u32, _i: usize) -> Option<u32> {
-        None
+    fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
+        let beside = self.triangulation.tds().neighbor(CellId::new(face as usize), i);
+        self.inside[beside.index()].then_some(beside.index() as u32)
     }
 
-    fn is_constrained(&self, _face: u32, _i: usize) -> bool {
-        false
+    fn is_constrained(&self, face: u32, i: usize) -> bool {
+        self.triangulation.is_constrained(CellId::new(face as usize), i)
     }
 
     fn crs(&self) -> Option<&Crs> {

@@ -197,11 +197,15 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     pub(crate) fn from_sorted(geometry: G, points: Vec<G::Point>) -> Result<Self, Refused> {
         let mut triangulation = Self::new(geometry);
         triangulation.inner.tds.reserve(points.len());
-        triangulation.inner.points.reserve_exact(points.len());
-        for p in points {
-            triangulation.inner.admit(&p)?;
-            triangulation.insert_near(p, None);
+        if let Some(bad) = points.iter().position(|p| !triangulation.inner.geometry.admits(p)) {
+            return Err(Refused::Coordinate(bad));
         }
+        let count = points.len();
+        triangulation.inner.points = points;
+        for index in 0..count {
+            triangulation.insert_near(triangulation.inner.points[index], None);
+        }
+        debug_assert_eq!(triangulation.vertex_count(), count, "two points on one site");
         Ok(triangulation)
     }
 

@@ -96,7 +96,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     /// Finite vertices.
     pub fn vertex_count(&self) -> usize {
-        self.points.len()
+        self.tds.vertex_count()
     }
 
     /// The point of a finite vertex.
@@ -199,17 +199,20 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// Checks that a point may come in.
     fn admit(&self, p: &G::Point) -> Result<(), Refused> {
         if !self.geometry.admits(p) {
-            return Err(Refused::Coordinate(self.points.len()));
+            return Err(Refused::Coordinate(self.vertex_count()));
         }
-        if self.points.len() >= MAX_VERTICES {
+        if self.vertex_count() >= MAX_VERTICES {
             return Err(Refused::TooMany);
         }
         Ok(())
     }
 
     fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
-        self.points.push(p);
-        self.tds.add_vertex(data)
+        let vertex = self.tds.add_vertex(data);
+        if vertex.index() == self.points.len() {
+            self.points.push(p); // else a bulk construction has put it there
+        }
+        vertex
     }
 
     /// Adds a point outside of what the others span.
