@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use breakline::data::{Bounds, PointBatch, PointSource};
 use breakline::error::Kind;
-use breakline::io::las;
+use breakline::io::{las, points};
 use serde_json::Value;
 
 /// What reading a file to its end gives.
@@ -23,7 +23,7 @@ struct Summary {
     warnings: Vec<String>,
 }
 
-fn summarize(source: &mut impl PointSource) -> breakline::Result<Summary> {
+fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summary> {
     let mut summary = Summary::default();
     let mut batch = PointBatch::default();
     loop {
@@ -309,6 +309,59 @@ fn a_stream_gives_what_its_file_gives() {
         assert_eq!((a.count, a.lattice_sums), (b.count, b.lattice_sums));
         assert_eq!(a.count, 1065);
     }
+}
+
+#[test]
+fn points_are_opened_by_what_they_are() {
+    for (path, format, count) in [
+        ("lidar/formats/simple_with_page.copc.laz", "LAS 1.4, point format 7, COPC", 1065),
+        ("lidar/formats/lazrs/point-color.las", "LAS 1.2, point format 2", 1065),
+    ] {
+        let Some(file) = common::shared(path) else { return };
+        let mut source = points::open(&file).unwrap();
+        assert_eq!(source.info().format, format);
+        assert_eq!(summarize(source.as_mut()).unwrap().count, count);
+        // Named as something else, it is known by its first bytes.
+        let folder = tempfile::tempdir().unwrap();
+        let renamed = folder.path().join("points.txt");
+        std::fs::copy(&file, &renamed).unwrap();
+        assert_eq!(points::open(&renamed).unwrap().info().format, format);
+    }
+    let Some(file) = common::shared("dem/bigtujunga.tif") else { return };
+    let error = points::open(&file).map(|_| ()).unwrap_err();
+    assert_eq!(error.kind(), Kind::Unsupported);
+    assert!(error.to_string().contains("a TIFF file; points are read from LAS"), "{error}");
+}
+
+/// Points written as text come back as they were.
+#[test]
+fn text_of_real_points_is_read_back() {
+    use std::fmt::Write as _;
+    let Some(file) = common::shared("lidar/lake_breakline/lake.laz") else { return };
+    let all = columns(&file);
+    let mut text = String::from("Easting;Northing;Height;Class\n");
+    for i in 0..all.len() {
+        let line = format!("{};{};{};{}", all.x[i], all.y[i], all.z[i], all.class[i]);
+        // A decimal comma in every other line.
+        writeln!(text, "{}", if i % 2 == 0 { line } else { line.replace('.', ",") }).unwrap();
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lake.csv");
+    std::fs::write(&path, text).unwrap();
+    let mut source = points::open(&path).unwrap();
+    assert!(source.info().has_classes);
+    let (mut read, mut batch) = (PointBatch::default(), PointBatch::default());
+    loop {
+        source.read(&mut batch).unwrap();
+        if batch.is_empty() {
+            break;
+        }
+        read.x.append(&mut batch.x);
+        read.y.append(&mut batch.y);
+        read.z.append(&mut batch.z);
+        read.class.append(&mut batch.class);
+    }
+    assert_eq!((read.x, read.y, read.z, read.class), (all.x, all.y, all.z, all.class));
 }
 
 /// Bytes changed at random: an answer, in time, whatever they are.

@@ -2,5 +2,7 @@
 
 pub mod las;
 mod output;
+pub mod points;
+pub mod text;
 
 pub use output::Output;

@@ -36,6 +36,8 @@ mod reader;
 mod record;
 mod records;
 mod reference;
+#[cfg(test)]
+mod tests;
 
 pub use header::{Header, RecordInfo};
 pub use reader::{LasReader, from_stream, open};

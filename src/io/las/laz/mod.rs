@@ -184,3 +184,17 @@ fn damaged(chunk: &Chunk, number: usize, reason: &str) -> Error {
         .at(format!("chunk {number} at byte {start} (points {first} to {})", first + points - 1))
         .cure("copy or download the file again")
 }
+
+/// Where the chunks of a file begin.
+#[cfg(test)]
+pub(super) fn chunks_of(bytes: &[u8]) -> Vec<u64> {
+    let mut input = Input::spool(bytes, std::path::Path::new("test")).unwrap();
+    let mut header = Header::check(bytes, input.length, &mut Vec::new()).unwrap();
+    let payloads = super::records::read(&input, &mut header, &mut Vec::new()).unwrap();
+    let compression = Compression::check(payloads.laszip.as_deref(), &header).unwrap();
+    let chunks = table::read(&mut input, &compression, &header).unwrap();
+    if matches!(compression.order, Order::Layered(_)) {
+        assert_eq!(table::walk(&mut input, &compression, &header).unwrap(), chunks);
+    }
+    chunks.iter().map(|chunk| chunk.start).collect()
+}
