@@ -207,6 +207,13 @@ fn check_lattice(raw: &RawHeader) -> Result<()> {
                 .at(format!("byte {}", 155 + 8 * axis))
                 .cure("the coordinates cannot be told without it: get the file again from its producer"));
         }
+        let farthest = scale.abs() * f64::from(1_u32 << 31) + offset.abs();
+        if !farthest.is_finite() {
+            return Err(Error::format(format!(
+                "{name} scale {scale} and offset {offset} lead to infinite coordinates"
+            ))
+            .at(format!("byte {}", 131 + 8 * axis)));
+        }
     }
     Ok(())
 }

@@ -51,7 +51,8 @@ fn from_keys(directory: &[u8], payloads: &Payloads, warnings: &mut Vec<String>) 
     let keys = GeoKeys {
         directory: words(directory),
         doubles: doubles.chunks_exact(8).map(|bytes| f64_at(bytes, 0)).collect(),
-        ascii: until_zero(ascii).into_owned(),
+        // Keys count bytes, so every byte becomes one.
+        ascii: ascii.iter().map(|&byte| if byte.is_ascii() { char::from(byte) } else { '?' }).collect(),
     };
     match keys.crs() {
         Ok(crs) => crs,
