@@ -2,9 +2,25 @@
 //!
 //! Nothing here reprojects; that is PROJ's task, behind [`Transform`].
 
-mod geokeys;
+//!
+//! Whatever a format writes (a code, WKT of any kind, GeoKeys) becomes a `Definition`: datum, projection with its
+//! parameters, unit. Two systems are the same when their definitions are; names never decide. Codes come from the EPSG
+//! registry in `proj-core`.
 
-pub use geokeys::GeoKeys;
+mod definition;
+mod geokeys;
+mod projection;
+mod registry;
+mod unit;
+mod wkt_read;
+mod wkt_tree;
+mod wkt_write;
+
+pub use geokeys::{GeoKeys, RasterType};
+pub use unit::Unit;
+
+use definition::Definition;
+use wkt_write::Dialect;
 
 use crate::error::{Error, Result};
 
@@ -19,15 +35,6 @@ pub enum CrsKind {
     Geocentric,
     /// Engineering and other local systems, and what could not be told.
     Local,
-}
-
-/// A unit of length or angle.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unit {
-    /// "metre", "US survey foot", "degree"
-    pub name: String,
-    /// Metres (or radians) in one unit.
-    pub factor: f64,
 }
 
 /// A coordinate system, identified well enough to compare it, to print it and to write it into a
@@ -51,39 +58,162 @@ pub struct Crs {
 }
 
 impl Crs {
-    /// The system with this code: a horizontal, compound or geocentric one.
+    /// The system with this code: a horizontal, compound or geocentric one. A compound one is split into its parts.
     ///
     /// # Errors
     /// If the registry has no such code.
     pub fn from_epsg(code: u32) -> Result<Self> {
-        Err(Error::unsupported(format!("EPSG:{code}")))
+        let Some(found) = registry::find(code) else {
+            let error = match registry::find_vertical(code) {
+                Some(vertical) => Error::usage(format!("EPSG:{code} ({}) is a vertical system alone", vertical.name))
+                    .cure(format!("state the horizontal system with it, as EPSG:25832+{code}")),
+                None => Error::usage(format!("EPSG:{code} is not the code of a coordinate system")),
+            };
+            return Err(error);
+        };
+        let height = found.vertical.as_ref().map(|part| part.unit.clone());
+        Ok(Crs {
+            name: found.name,
+            epsg: Some(found.code),
+            vertical_epsg: found.vertical.and_then(|part| part.code),
+            vertical_unit: if found.kind == CrsKind::Geocentric { Some(found.unit.clone()) } else { height },
+            kind: found.kind,
+            unit: found.unit,
+            wkt: None,
+        })
     }
 
-    /// Reads WKT, version 1 (OGC or ESRI) or 2.
+    /// Reads WKT, version 1 (OGC or Esri) or 2. A definition without a code gets the code of the system in the registry
+    /// that has the same datum, projection, parameters and unit, if there is one.
     ///
     /// # Errors
     /// If the text is not WKT of a coordinate system.
     pub fn from_wkt(text: &str) -> Result<Self> {
-        Err(Error::unsupported(text.to_owned()))
+        wkt_read::read(text).map(|(crs, _)| crs)
     }
 
-    /// Reads what a user types: `EPSG:25832`, `EPSG:25832+7837`, `25832`, or WKT.
+    /// Reads what a user types: `EPSG:25832`, `EPSG:25832+7837`, `25832`, `urn:ogc:def:crs:EPSG::25832`, or WKT.
     ///
     /// # Errors
     /// With the forms that are understood.
     pub fn from_user(text: &str) -> Result<Self> {
-        Self::from_wkt(text)
+        let text = text.trim();
+        if text.contains(['[', '(']) {
+            return Self::from_wkt(text);
+        }
+        let lower = text.to_ascii_lowercase();
+        let prefixes = [
+            "epsg:",
+            "urn:ogc:def:crs:epsg:",
+            "http://www.opengis.net/def/crs/epsg/",
+            "https://www.opengis.net/def/crs/epsg/",
+        ];
+        let rest = prefixes.iter().find_map(|prefix| lower.strip_prefix(prefix)).unwrap_or(&lower);
+        // The version of the registry stands before the code, in URNs often as nothing.
+        let codes = if lower.len() == rest.len() { rest } else { rest.rsplit([':', '/']).next().unwrap_or(rest) };
+        let (horizontal, vertical) = match codes.split_once('+') {
+            Some((horizontal, vertical)) => (horizontal, Some(vertical)),
+            None => (codes, None),
+        };
+        let unknown = |_| {
+            Error::usage(format!("\"{text}\" is not a coordinate system"))
+                .cure("write EPSG:25832, EPSG:25832+7837 (with heights), or WKT")
+        };
+        let mut crs = Self::from_epsg(horizontal.trim().parse().map_err(unknown)?)?;
+        if let Some(vertical) = vertical {
+            let code = vertical.trim().trim_start_matches("epsg:").parse().map_err(unknown)?;
+            let found = registry::find_vertical(code)
+                .ok_or_else(|| Error::usage(format!("EPSG:{code} is not the code of a vertical coordinate system")))?;
+            crs.name = format!("{} + {}", crs.name, found.name);
+            crs.vertical_epsg = found.code;
+            crs.vertical_unit = Some(found.unit);
+        }
+        Ok(crs)
     }
 
-    /// The definition as WKT 1 for a `.prj` file.
+    /// The definition for a `.prj` file: WKT 1 in Esri's words, which GDAL, QGIS and ArcGIS identify. Horizontal only, as
+    /// most readers expect.
     pub fn to_prj(&self) -> String {
-        self.wkt.clone().unwrap_or_default()
+        self.write(Dialect::Esri)
     }
 
-    /// Whether both mean the same horizontal system (and the same vertical one where both state
-    /// one), by code where both have one, else by definition.
+    /// The definition as found; else as WKT 1 in GDAL's words with EPSG codes, compound where heights are known.
+    pub fn to_wkt(&self) -> String {
+        if let Some(wkt) = &self.wkt {
+            return wkt.clone();
+        }
+        let horizontal = self.write(Dialect::Gdal);
+        match &self.vertical_unit {
+            Some(unit) if self.vertical_epsg.is_some() => {
+                wkt_write::write_compound(&self.name, &horizontal, (self.vertical_epsg, unit))
+            }
+            _ => horizontal,
+        }
+    }
+
+    fn write(&self, dialect: Dialect) -> String {
+        let found = self.epsg.and_then(registry::find);
+        // The name of the horizontal part, where the registry knows it.
+        let name = found.as_ref().map_or(self.name.clone(), |found| found.name.clone());
+        let definition = found.and_then(|found| found.definition).or_else(|| self.definition());
+        definition
+            .and_then(|definition| wkt_write::write(&definition, &name, self.epsg, dialect))
+            .or_else(|| self.wkt.clone())
+            .unwrap_or_else(|| wkt_write::write_local(&self.name, &self.unit, dialect))
+    }
+
+    fn definition(&self) -> Option<Definition> {
+        match &self.wkt {
+            Some(wkt) => wkt_read::read(wkt).ok()?.1,
+            None => registry::find(self.epsg?)?.definition,
+        }
+    }
+
+    /// Whether both mean the same horizontal system (and the same vertical one where both state one): by code where both
+    /// have one, else by definition (datum, projection, parameters, unit), never by name.
     pub fn is_same(&self, other: &Crs) -> bool {
-        self == other
+        if self == other {
+            return true;
+        }
+        let vertical = match (self.vertical_epsg, other.vertical_epsg) {
+            (Some(a), Some(b)) => a == b,
+            _ => match (&self.vertical_unit, &other.vertical_unit) {
+                (Some(a), Some(b)) => a.is_same(b),
+                _ => true,
+            },
+        };
+        let by_code = self.epsg.is_some() && self.epsg == other.epsg;
+        let by_definition = || match (self.definition(), other.definition()) {
+            (Some(a), Some(b)) => a.is_same(&b),
+            // Nothing is known but the text.
+            _ => self.epsg.is_none() && other.epsg.is_none() && self.wkt.is_some() && self.wkt == other.wkt,
+        };
+        vertical && self.kind == other.kind && (by_code || by_definition())
+    }
+
+    /// The unit of lengths in plan; `None` where coordinates are angles.
+    pub fn length_unit(&self) -> Option<&Unit> {
+        (self.kind != CrsKind::Geographic).then_some(&self.unit)
+    }
+
+    /// Whether lengths in plan are in one of the feet.
+    pub fn is_foot(&self) -> bool {
+        self.length_unit().is_some_and(Unit::is_foot)
+    }
+
+    /// For printing: `EPSG:2994 (NAD83(HARN) / Oregon GIC Lambert (ft)), foot` and, where heights are known,
+    /// `, heights in US survey foot (EPSG:6360)`.
+    pub fn describe(&self) -> String {
+        let mut text = format!("{self}, {}", self.unit.name);
+        if self.kind == CrsKind::Geocentric {
+            text += ", geocentric";
+        } else if let Some(unit) = &self.vertical_unit {
+            text += &format!(", heights in {}", unit.name);
+            if let Some(code) = self.vertical_epsg {
+                text += &format!(" (EPSG:{code})");
+            }
+        }
+        text
     }
 }
 

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 /// A file of the shared data folder, beside the repository; `None`, said plainly, when it is absent.
-pub fn shared(path: &str) -> Option<PathBuf> {
+pub(crate) fn shared(path: &str) -> Option<PathBuf> {
     let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
     if full.exists() {
         return Some(full);

@@ -1,0 +1,66 @@
+use super::projection::{Projection, normalized};
+use super::{CrsKind, Unit};
+
+/// What a coordinate system is made of, whatever format it was read from.
+#[derive(Debug, Clone)]
+pub(super) struct Definition {
+    pub(super) kind: CrsKind,
+    pub(super) datum: Datum,
+    /// Name and EPSG code of the geographic system below a projected one, or of the system itself.
+    pub(super) geographic: (String, Option<u32>),
+    /// In which longitudes and latitudes are written.
+    pub(super) angle: Unit,
+    pub(super) projection: Option<Projection>,
+    /// Of the coordinates.
+    pub(super) unit: Unit,
+}
+
+/// What longitudes and latitudes refer to.
+#[derive(Debug, Clone)]
+pub(super) struct Datum {
+    pub(super) name: String,
+    pub(super) code: Option<u32>,
+    pub(super) ellipsoid: Ellipsoid,
+    /// Degrees east of Greenwich.
+    pub(super) meridian: f64,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Ellipsoid {
+    pub(super) name: String,
+    pub(super) code: Option<u32>,
+    /// Semi-major axis in metres.
+    pub(super) a: f64,
+    /// Inverse flattening; 0 for a sphere.
+    pub(super) rf: f64,
+}
+
+impl Definition {
+    /// Whether a pair of coordinates means the same place in both.
+    pub(super) fn is_same(&self, other: &Definition) -> bool {
+        let projection = match (&self.projection, &other.projection) {
+            (Some(a), Some(b)) => a.is_same(b),
+            (None, None) => true,
+            _ => false,
+        };
+        self.kind == other.kind && self.unit.is_same(&other.unit) && projection && self.datum.is_same(&other.datum)
+    }
+}
+
+impl Datum {
+    pub(super) fn is_same(&self, other: &Datum) -> bool {
+        let same = match (self.code, other.code) {
+            (Some(a), Some(b)) => a == b,
+            _ => normalized(&self.name) == normalized(&other.name) && self.ellipsoid.is_same(&other.ellipsoid),
+        };
+        same && (self.meridian - other.meridian).abs() < 1e-7
+    }
+}
+
+impl Ellipsoid {
+    /// To what definitions differ in for the same ellipsoid: digits cut off. (GRS 1980 and WGS 84 are the same by this;
+    /// the datum's name tells them apart.)
+    pub(super) fn is_same(&self, other: &Ellipsoid) -> bool {
+        (self.a - other.a).abs() < 0.01 && (self.rf - other.rf).abs() < 1e-4
+    }
+}

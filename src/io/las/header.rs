@@ -1,0 +1,271 @@
+//! The header with its values checked.
+
+use super::raw::{LONGEST_HEADER, RawHeader, SHORTEST_HEADER};
+use crate::data::Bounds;
+use crate::error::{Error, Result};
+
+/// Bytes of a record of point formats 0 to 10 without extra bytes.
+const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
+
+/// Bits of the point format byte that LASzip takes for itself.
+const COMPRESSED: u8 = 0x80;
+const COMPRESSED_OLD: u8 = 0x40;
+
+/// Bit of the global encoding that says that the coordinate system is written in WKT.
+const WKT_BIT: u16 = 1 << 4;
+
+/// What a LAS file says of itself.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Header {
+    /// Major and minor version, (1, 0) to (1, 5).
+    pub version: (u8, u8),
+    /// Point format, 0 to 10.
+    pub point_format: u8,
+    /// Whether the points are compressed by LASzip.
+    pub is_compressed: bool,
+    /// Bytes of an uncompressed point record.
+    pub record_length: u16,
+    /// Stated number of points.
+    pub count: u64,
+    /// Stated number of points by return number, from the first return on.
+    pub returns: Vec<u64>,
+    /// Steps of the lattice per axis.
+    pub scale: [f64; 3],
+    /// Origin of the lattice.
+    pub offset: [f64; 3],
+    /// Stated extent; `None` if it is no box.
+    pub bounds: Option<Bounds>,
+    /// System identifier: the instrument, or the operation that made the file.
+    pub system: String,
+    /// Generating software.
+    pub software: String,
+    /// Year and day of the year, if stated.
+    pub created: Option<(u16, u16)>,
+    /// Whether the header says that the coordinate system is written in WKT.
+    pub says_wkt: bool,
+    /// Records between header and points, and after the points.
+    pub records: Vec<RecordInfo>,
+
+    pub(super) layout: Layout,
+}
+
+/// One variable length record, without its payload.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct RecordInfo {
+    /// Who defines it: "LASF_Projection", "copc".
+    pub user_id: String,
+    /// What it is, by that user's numbers.
+    pub record_id: u16,
+    /// Bytes of the payload.
+    pub length: u64,
+    /// As written in the file.
+    pub description: String,
+}
+
+/// Where things are in the file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout {
+    pub(super) vlr_start: u64,
+    pub(super) vlr_count: u64,
+    pub(super) points_start: u64,
+    /// The first byte after the points that belongs to something else, or the end of the file.
+    pub(super) points_end: u64,
+    pub(super) evlr_start: u64,
+    pub(super) evlr_count: u64,
+}
+
+impl Header {
+    /// Checks the first bytes of a file of `file_length` bytes. What is odd but can be read goes to
+    /// `warnings`.
+    pub(super) fn check(bytes: &[u8], file_length: u64, warnings: &mut Vec<String>) -> Result<Self> {
+        check_signature(bytes)?;
+        if bytes.len() < SHORTEST_HEADER {
+            return Err(Error::format(format!(
+                "the file ends after {} bytes, within its header of at least {SHORTEST_HEADER}",
+                bytes.len()
+            ))
+            .cure("the file was cut: copy or download it again"));
+        }
+        let raw = RawHeader::parse(bytes);
+        check_version(&raw, bytes.len())?;
+        let point_format = check_format(&raw)?;
+        check_lattice(&raw)?;
+
+        let layout = lay_out(&raw, file_length)?;
+        let count = count_points(&raw, warnings);
+        let extended = raw.version.1 >= 4;
+        let mut returns: Vec<u64> = match extended && raw.returns.iter().any(|&n| n > 0) {
+            true => raw.returns.to_vec(),
+            false => raw.legacy_returns.iter().map(|&n| n.into()).collect(),
+        };
+        while returns.last() == Some(&0) {
+            returns.pop();
+        }
+        Ok(Header {
+            version: raw.version,
+            point_format,
+            is_compressed: raw.format & COMPRESSED != 0,
+            record_length: raw.record_length,
+            count,
+            returns,
+            scale: raw.scale,
+            offset: raw.offset,
+            bounds: check_bounds(&raw, count, warnings),
+            created: (raw.year != 0).then_some((raw.year, raw.day)),
+            says_wkt: raw.global_encoding & WKT_BIT != 0,
+            system: raw.system,
+            software: raw.software,
+            records: Vec::new(),
+            layout,
+        })
+    }
+
+    /// Whether the file is a cloud optimized point cloud.
+    pub fn is_copc(&self) -> bool {
+        self.records.iter().any(|record| record.user_id == "copc" && record.record_id == 1)
+    }
+
+    /// "LAS 1.4, point format 6, LAZ"
+    pub(super) fn format(&self) -> String {
+        let packing = match (self.is_compressed, self.is_copc()) {
+            (false, _) => "",
+            (true, false) => ", LAZ",
+            (true, true) => ", COPC",
+        };
+        let (major, minor) = self.version;
+        format!("LAS {major}.{minor}, point format {}{packing}", self.point_format)
+    }
+}
+
+fn check_signature(bytes: &[u8]) -> Result<()> {
+    if bytes.is_empty() {
+        return Err(Error::format("the file is empty").cure("copy or download it again"));
+    }
+    let found = &bytes[..bytes.len().min(4)];
+    if found != b"LASF" {
+        return Err(Error::format(format!(
+            "not a LAS file: it begins with \"{}\", expected \"LASF\"",
+            found.escape_ascii()
+        )));
+    }
+    Ok(())
+}
+
+fn check_version(raw: &RawHeader, available: usize) -> Result<()> {
+    let (major, minor) = raw.version;
+    if major != 1 || minor > 5 {
+        return Err(Error::unsupported(format!("LAS version {major}.{minor}; supported are 1.0 to 1.5"))
+            .at("byte 24")
+            .cure("save it as LAS 1.4"));
+    }
+    let least = if minor >= 4 { LONGEST_HEADER } else { SHORTEST_HEADER };
+    if usize::from(raw.header_size) < least || available < least {
+        let found = available.min(raw.header_size.into());
+        return Err(Error::format(format!(
+            "the header has {found} bytes, a LAS {major}.{minor} header has at least {least}"
+        ))
+        .at("byte 94")
+        .cure("the file was never finished, or it is damaged: get it again from its producer"));
+    }
+    Ok(())
+}
+
+fn check_format(raw: &RawHeader) -> Result<u8> {
+    if raw.format & COMPRESSED_OLD != 0 {
+        return Err(Error::unsupported(format!(
+            "point format byte {:#04x}: compressed by a pre-release LASzip",
+            raw.format
+        ))
+        .at("byte 104"));
+    }
+    let format = raw.format & !COMPRESSED;
+    let Some(&least) = RECORD_LENGTHS.get(usize::from(format)) else {
+        return Err(Error::unsupported(format!("point format {format}; supported are 0 to 10")).at("byte 104"));
+    };
+    if raw.record_length < least {
+        return Err(Error::format(format!(
+            "point records of {} bytes; point format {format} has at least {least}",
+            raw.record_length
+        ))
+        .at("byte 105"));
+    }
+    Ok(format)
+}
+
+fn check_lattice(raw: &RawHeader) -> Result<()> {
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let (scale, offset) = (raw.scale[axis], raw.offset[axis]);
+        if !scale.is_finite() || scale == 0.0 {
+            return Err(Error::format(format!("{name} scale is {scale}, expected a finite number other than 0"))
+                .at(format!("byte {}", 131 + 8 * axis))
+                .cure("the coordinates cannot be told without it: get the file again from its producer"));
+        }
+        if !offset.is_finite() {
+            return Err(Error::format(format!("{name} offset is {offset}, expected a finite number"))
+                .at(format!("byte {}", 155 + 8 * axis))
+                .cure("the coordinates cannot be told without it: get the file again from its producer"));
+        }
+        let farthest = scale.abs() * f64::from(1_u32 << 31) + offset.abs();
+        if !farthest.is_finite() {
+            return Err(Error::format(format!(
+                "{name} scale {scale} and offset {offset} lead to infinite coordinates"
+            ))
+            .at(format!("byte {}", 131 + 8 * axis)));
+        }
+    }
+    Ok(())
+}
+
+fn lay_out(raw: &RawHeader, file_length: u64) -> Result<Layout> {
+    let vlr_start = u64::from(raw.header_size);
+    let points_start = u64::from(raw.points_start);
+    if points_start < vlr_start {
+        return Err(Error::format(format!(
+            "the points are said to begin at byte {points_start}, within the header of {vlr_start} bytes"
+        ))
+        .at("byte 96"));
+    }
+    if points_start > file_length {
+        return Err(Error::format(format!(
+            "the points are said to begin at byte {points_start}, but the file has {file_length} bytes"
+        ))
+        .at("byte 96")
+        .cure("the file was cut or its header is damaged: copy or download it again"));
+    }
+    let (evlr_start, evlr_count) = match raw.version.1 {
+        4.. => (raw.evlr_start, u64::from(raw.evlr_count)),
+        _ => (0, 0),
+    };
+    let waveform_start = if raw.version.1 >= 3 { raw.waveform_start } else { 0 };
+    let points_end = [(evlr_count > 0).then_some(evlr_start), Some(waveform_start)]
+        .into_iter()
+        .flatten()
+        .filter(|&end| end > points_start)
+        .fold(file_length, u64::min);
+    Ok(Layout { vlr_start, vlr_count: raw.vlr_count.into(), points_start, points_end, evlr_start, evlr_count })
+}
+
+/// LAS 1.4 has two counts: one of 64 bits, and one of 32 for old readers that may be zero.
+fn count_points(raw: &RawHeader, warnings: &mut Vec<String>) -> u64 {
+    let legacy = u64::from(raw.legacy_count);
+    if raw.version.1 < 4 || (raw.count == 0 && legacy > 0) {
+        return legacy;
+    }
+    if legacy > 0 && legacy != raw.count {
+        warnings
+            .push(format!("the header states {} points, and {legacy} for old readers; the first is taken", raw.count));
+    }
+    raw.count
+}
+
+fn check_bounds(raw: &RawHeader, count: u64, warnings: &mut Vec<String>) -> Option<Bounds> {
+    let bounds = Bounds { min: raw.min, max: raw.max };
+    let is_box =
+        (0..3).all(|axis| raw.min[axis].is_finite() && raw.max[axis].is_finite() && raw.min[axis] <= raw.max[axis]);
+    if !is_box && count > 0 {
+        warnings.push("the extent in the header is no box (a minimum exceeds its maximum) and is ignored".into());
+    }
+    is_box.then_some(bounds)
+}

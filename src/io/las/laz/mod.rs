@@ -1,0 +1,200 @@
+//! Compressed points: the `laz` crate decodes, this decides what it is given.
+//!
+//! The crate's own readers trust the chunk table, decode all fields and end with an error or a panic
+//! where bytes are missing. Here the table is checked against the file first, chunks are decoded
+//! by all threads from memory, and layered chunks (formats 6 to 10) only as far as columns are made of them.
+
+mod chunk;
+mod compression;
+mod stream;
+mod table;
+
+use std::collections::VecDeque;
+
+use rayon::prelude::*;
+
+use self::compression::{ChunkSize, Compression, Order};
+use self::stream::Stream;
+use self::table::Chunk;
+use super::header::Header;
+use super::input::Input;
+use super::record::RecordLayout;
+use crate::data::PointBatch;
+use crate::error::{Error, Result};
+
+/// Chunks that are decoded before any is handed out, for each thread.
+const CHUNKS_PER_THREAD: usize = 2;
+
+/// Points that may be decoded before any is handed out, for each thread; one chunk always is.
+const POINTS_PER_THREAD: u64 = 1 << 18;
+
+/// Points in a chunk that is decoded at once. LASzip writes 50 000; COPC some 100 000.
+const LARGEST_CHUNK: u64 = 1 << 23;
+
+/// Reads the points of a LAZ file.
+#[derive(Debug)]
+pub(super) enum Laz {
+    /// By chunks, with several threads.
+    Chunks(Chunks),
+    /// By one thread, where chunks cannot be found or are too large.
+    Stream(Stream),
+}
+
+impl Laz {
+    pub(super) fn new(
+        mut input: Input,
+        header: &Header,
+        payload: Option<&[u8]>,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self> {
+        let compression = Compression::check(payload, header)?;
+        let is_streamed = match compression.chunks {
+            ChunkSize::Whole => true,
+            ChunkSize::Fixed(size) => compression.order == Order::Pointwise && size > LARGEST_CHUNK,
+            ChunkSize::Variable => false,
+        };
+        if is_streamed {
+            return Ok(Laz::Stream(Stream::new(input, compression, header)?));
+        }
+        let chunks = match table::read(&mut input, &compression, header) {
+            Ok(chunks) => chunks,
+            _ if header.count == 0 => Vec::new(),
+            Err(reason) if matches!(compression.order, Order::Layered(_)) => {
+                let chunks = table::walk(&mut input, &compression, header)?;
+                warnings.push(format!("{reason}; the chunks are found by their own heads"));
+                chunks
+            }
+            Err(reason) if compression.chunks == ChunkSize::Variable => {
+                return Err(Error::format(format!(
+                    "{reason}, and chunks of different sizes cannot be found without it"
+                ))
+                .cure("copy or download the file again"));
+            }
+            Err(reason) => {
+                warnings.push(format!("{reason}; the points are decoded one after the other"));
+                return Ok(Laz::Stream(Stream::new(input, compression, header)?));
+            }
+        };
+        let found = chunks.last().map_or(0, |chunk| chunk.first + chunk.points);
+        if found < header.count {
+            warnings.push(format!(
+                "the header states {} points, but the file holds {found} in whole chunks: it was cut, or its header \
+                 is wrong; the {found} are read",
+                header.count
+            ));
+        }
+        if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > LARGEST_CHUNK) {
+            return Err(Error::limit(format!(
+                "a chunk of {} points; at most {LARGEST_CHUNK} are supported",
+                chunk.points
+            ))
+            .at(format!("byte {}", chunk.start))
+            .cure("compress the file again with chunks of 50000 points"));
+        }
+        Ok(Laz::Chunks(Chunks {
+            layout: RecordLayout::new(header),
+            input,
+            compression,
+            waiting: chunks.into(),
+            decoded: VecDeque::new(),
+            spare: Vec::new(),
+            next: 1,
+        }))
+    }
+
+    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
+        match self {
+            Laz::Chunks(chunks) => chunks.read(batch),
+            Laz::Stream(stream) => stream.read(batch, warnings),
+        }
+    }
+}
+
+/// Decodes some chunks ahead, and hands out one after the other.
+#[derive(Debug)]
+pub(super) struct Chunks {
+    input: Input,
+    compression: Compression,
+    layout: RecordLayout,
+    waiting: VecDeque<Chunk>,
+    decoded: VecDeque<Result<PointBatch>>,
+    /// Batches whose memory is used again.
+    spare: Vec<PointBatch>,
+    /// Number of the first chunk that waits.
+    next: usize,
+}
+
+impl Chunks {
+    fn read(&mut self, batch: &mut PointBatch) -> Result<()> {
+        if self.decoded.is_empty() {
+            self.decode_ahead()?;
+        }
+        if let Some(decoded) = self.decoded.pop_front() {
+            self.spare.push(std::mem::replace(batch, decoded?));
+        }
+        Ok(())
+    }
+
+    fn decode_ahead(&mut self) -> Result<()> {
+        let group = self.take_group();
+        let (Some(first), Some(last)) = (group.first(), group.last()) else { return Ok(()) };
+        let start = first.start;
+        let bytes = self.input.bytes(start, (last.start + last.bytes - start) as usize)?;
+        let (compression, layout, number) = (&self.compression, self.layout, self.next);
+        self.next += group.len();
+        self.spare.resize_with(group.len(), PointBatch::default);
+        let work: Vec<_> = group.iter().zip(self.spare.drain(..)).enumerate().collect();
+        let decoded: Vec<_> = work
+            .into_par_iter()
+            .map(|(i, (chunk, mut batch))| {
+                batch.clear();
+                let place = (chunk.start - start) as usize;
+                let bytes = bytes.get(place..place + chunk.bytes as usize).unwrap_or_default();
+                match chunk::decode(bytes, chunk.points, compression, layout, &mut batch) {
+                    Ok(()) => Ok(batch),
+                    Err(reason) => Err(damaged(chunk, number + i, &reason)),
+                }
+            })
+            .collect();
+        self.decoded.extend(decoded);
+        Ok(())
+    }
+
+    /// The chunks to decode next; they lie one after the other in the file.
+    fn take_group(&mut self) -> Vec<Chunk> {
+        let threads = rayon::current_num_threads();
+        let mut group = Vec::new();
+        let mut points = 0;
+        while let Some(&chunk) = self.waiting.front() {
+            points += chunk.points;
+            let is_full = group.len() == CHUNKS_PER_THREAD * threads || points > POINTS_PER_THREAD * threads as u64;
+            if is_full && !group.is_empty() {
+                break;
+            }
+            group.push(chunk);
+            self.waiting.pop_front();
+        }
+        group
+    }
+}
+
+fn damaged(chunk: &Chunk, number: usize, reason: &str) -> Error {
+    let Chunk { start, first, points, .. } = *chunk;
+    Error::format(format!("the compressed points are damaged: {reason}"))
+        .at(format!("chunk {number} at byte {start} (points {first} to {})", first + points - 1))
+        .cure("copy or download the file again")
+}
+
+/// Where the chunks of a file begin.
+#[cfg(test)]
+pub(super) fn chunks_of(bytes: &[u8]) -> Vec<u64> {
+    let mut input = Input::spool(bytes, std::path::Path::new("test")).unwrap();
+    let mut header = Header::check(bytes, input.length, &mut Vec::new()).unwrap();
+    let payloads = super::records::read(&input, &mut header, &mut Vec::new()).unwrap();
+    let compression = Compression::check(payloads.laszip.as_deref(), &header).unwrap();
+    let chunks = table::read(&mut input, &compression, &header).unwrap();
+    if matches!(compression.order, Order::Layered(_)) {
+        assert_eq!(table::walk(&mut input, &compression, &header).unwrap(), chunks);
+    }
+    chunks.iter().map(|chunk| chunk.start).collect()
+}

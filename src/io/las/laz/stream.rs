@@ -1,0 +1,118 @@
+//! Decodes points one after the other, without knowing where chunks begin.
+
+use std::fs::File;
+use std::io::{BufReader, ErrorKind, Seek, SeekFrom};
+
+use laz::record::{RecordDecompressor, SequentialPointRecordDecompressor};
+
+use super::chunk::BLOCK;
+use super::compression::{ChunkSize, Compression};
+use super::table::POINTER;
+use crate::data::PointBatch;
+use crate::error::{Error, Result};
+use crate::io::las::contain::contain;
+use crate::io::las::header::Header;
+use crate::io::las::input::Input;
+use crate::io::las::record::RecordLayout;
+
+/// Blocks in a batch.
+const BATCH: usize = 256;
+
+/// A decoder for files in point order whose chunks all have the same size, or that have none: the
+/// next chunk begins where the last one ended.
+pub(in crate::io::las) struct Stream {
+    decoder: SequentialPointRecordDecompressor<'static, BufReader<File>>,
+    compression: Compression,
+    layout: RecordLayout,
+    chunk_size: u64,
+    in_chunk: u64,
+    done: u64,
+    total: u64,
+    block: Vec<u8>,
+}
+
+impl std::fmt::Debug for Stream {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stream").field("done", &self.done).field("total", &self.total).finish_non_exhaustive()
+    }
+}
+
+/// Why decoding stopped.
+enum Stop {
+    /// The bytes ran out.
+    End,
+    Failed(std::io::Error),
+}
+
+impl Stream {
+    pub(super) fn new(input: Input, compression: Compression, header: &Header) -> Result<Self> {
+        let start = header.layout.points_start;
+        let (start, chunk_size) = match compression.chunks {
+            ChunkSize::Whole => (start, u64::MAX),
+            ChunkSize::Fixed(size) => (start + POINTER, size),
+            ChunkSize::Variable => (start + POINTER, 0),
+        };
+        let mut file = input.file;
+        file.seek(SeekFrom::Start(start))?;
+        let mut decoder = SequentialPointRecordDecompressor::new(BufReader::with_capacity(1 << 16, file));
+        decoder.set_fields_from(&compression.items).map_err(|error| Error::format(error.to_string()))?;
+        let layout = RecordLayout::new(header);
+        let block = vec![0; BLOCK * layout.stride];
+        Ok(Stream { decoder, compression, layout, chunk_size, in_chunk: 0, done: 0, total: header.count, block })
+    }
+
+    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
+        for _ in 0..BATCH {
+            let count = (self.total - self.done).min(BLOCK as u64) as usize;
+            let mut whole = 0;
+            let result = contain(|| self.decode_block(count, &mut whole));
+            if result.is_some() {
+                self.layout.append(&self.block[..whole * self.layout.stride], batch);
+                self.done += whole as u64;
+            }
+            match result {
+                Some(Ok(())) => {}
+                Some(Err(Stop::End)) => {
+                    warnings.push(format!(
+                        "the file ends within its compressed points: {} of {} are read",
+                        self.done, self.total
+                    ));
+                    self.total = self.done;
+                }
+                Some(Err(Stop::Failed(error))) => {
+                    return Err(Error::from(error).at(format!("point {}", self.done)));
+                }
+                None => {
+                    return Err(Error::format(
+                        "the compressed points are damaged: the decoder found an impossible value",
+                    )
+                    .at(format!("point {}", self.done))
+                    .cure("copy or download the file again"));
+                }
+            }
+            if self.done == self.total {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Decodes `count` records to the block; `whole` counts those that are complete.
+    fn decode_block(&mut self, count: usize, whole: &mut usize) -> std::result::Result<(), Stop> {
+        for record in self.block.chunks_exact_mut(self.layout.stride).take(count) {
+            if self.in_chunk == self.chunk_size {
+                self.decoder.reset();
+                let fields = self.decoder.set_fields_from(&self.compression.items);
+                fields.map_err(|error| Stop::Failed(std::io::Error::other(error)))?;
+                self.in_chunk = 0;
+            }
+            self.decoder.decompress_next(record).map_err(|error| match error.kind() {
+                ErrorKind::UnexpectedEof => Stop::End,
+                _ => Stop::Failed(error),
+            })?;
+            self.in_chunk += 1;
+            *whole += 1;
+        }
+        Ok(())
+    }
+}

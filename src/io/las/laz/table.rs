@@ -1,0 +1,124 @@
+//! Where the chunks of a LAZ file are.
+
+use std::io::Cursor;
+
+use laz::laszip::ChunkTable;
+
+use super::compression::{ChunkSize, Compression, Order};
+use crate::io::las::contain::contain;
+use crate::io::las::header::Header;
+use crate::io::las::input::Input;
+use crate::io::las::raw::{u32_at, u64_at};
+
+/// Bytes before the first chunk: the place of the chunk table.
+pub(super) const POINTER: u64 = 8;
+
+/// A run of points that is compressed by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Chunk {
+    pub(super) start: u64,
+    pub(super) bytes: u64,
+    /// Number of its first point in the file.
+    pub(super) first: u64,
+    pub(super) points: u64,
+}
+
+/// Reads the chunk table and checks every entry against the file.
+///
+/// # Errors
+/// With the reason why there is no table to rely on.
+pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header) -> Result<Vec<Chunk>, String> {
+    let points_start = header.layout.points_start;
+    let table = find(input, points_start).ok_or("the place of the chunk table was never written")?;
+    let damaged = |what: String| format!("the chunk table at byte {table} {what}");
+    if table.saturating_add(8) > input.length {
+        return Err(damaged(format!("lies beyond the end of the file at byte {}", input.length)));
+    }
+    let mut start = points_start + POINTER;
+    let room = table.saturating_sub(start);
+    let mut read = |count| input.bytes(table, count).map_err(|error| damaged(error.to_string()));
+    let count = u32_at(&read(8)?, 4);
+    // Every chunk begins with an uncompressed point.
+    if u64::from(count) > room / compression.stride as u64 + 1 {
+        return Err(damaged(format!("lists {count} chunks, more than {room} bytes can hold")));
+    }
+    // An entry is two numbers of 32 bits, which the coder makes a little larger at worst.
+    let bytes = read(64 + 16 * count as usize)?;
+    let variable = compression.chunks == ChunkSize::Variable;
+    let entries = contain(|| ChunkTable::read(&mut Cursor::new(&bytes), variable))
+        .and_then(Result::ok)
+        .ok_or_else(|| damaged("cannot be decoded".into()))?;
+
+    let mut chunks = Vec::with_capacity(entries.len());
+    let mut first = 0;
+    for entry in &entries {
+        // The crate widens numbers of 32 bits with their sign.
+        let (bytes, stated) = (entry.byte_count & 0xffff_ffff, entry.point_count & 0xffff_ffff);
+        let points = match compression.chunks {
+            ChunkSize::Fixed(size) => size.min(header.count - first),
+            _ => stated.min(header.count - first),
+        };
+        let number = chunks.len() + 1;
+        if bytes > table - start {
+            return Err(damaged(format!("has chunk {number} of {bytes} bytes reach into it")));
+        }
+        if points == 0 {
+            break;
+        }
+        // No coder makes points twice as large as they were.
+        let is_last = first + points == header.count;
+        let largest = 2 * points * compression.stride as u64 + 4096;
+        if bytes < compression.stride as u64 || (bytes > largest && !is_last) {
+            return Err(damaged(format!("has chunk {number} take {bytes} bytes for {points} points")));
+        }
+        chunks.push(Chunk { start, bytes, first, points });
+        start += bytes;
+        first += points;
+    }
+    Ok(chunks)
+}
+
+/// The place of the table is written before the first chunk, or, by writers that cannot go back, in
+/// the last bytes of the file.
+fn find(input: &mut Input, points_start: u64) -> Option<u64> {
+    let last = input.length.checked_sub(8);
+    let mut place_at = |start| {
+        let bytes = input.bytes(start, 8).ok().filter(|bytes| bytes.len() == 8)?;
+        let place = u64_at(&bytes, 0);
+        (place > points_start && place <= i64::MAX as u64).then_some(place)
+    };
+    place_at(points_start).or_else(|| place_at(last?))
+}
+
+/// Finds layered chunks without a table: each states its points and the bytes of its layers.
+///
+/// Returns the chunks that are whole.
+pub(super) fn walk(input: &mut Input, compression: &Compression, header: &Header) -> std::io::Result<Vec<Chunk>> {
+    let Order::Layered(layers) = compression.order else { return Ok(Vec::new()) };
+    let mut chunks = Vec::new();
+    let (mut start, mut first) = (header.layout.points_start + POINTER, 0);
+    while first < header.count {
+        let head = compression.stride + 4 + 4 * layers;
+        let bytes = input.bytes(start, head)?;
+        if bytes.len() < head {
+            break;
+        }
+        let points = u64::from(u32_at(&bytes, compression.stride));
+        let sizes = layer_sizes(&bytes[compression.stride + 4..]);
+        let bytes = head as u64 + sizes.sum::<u64>();
+        let is_sound = points > 0 && !matches!(compression.chunks, ChunkSize::Fixed(most) if points > most);
+        if !is_sound || bytes > header.layout.points_end.saturating_sub(start) {
+            break;
+        }
+        let points = points.min(header.count - first);
+        chunks.push(Chunk { start, bytes, first, points });
+        start += bytes;
+        first += points;
+    }
+    Ok(chunks)
+}
+
+/// Sizes of layers, 32 bits each.
+pub(super) fn layer_sizes(bytes: &[u8]) -> impl Iterator<Item = u64> + '_ {
+    bytes.chunks_exact(4).map(|size| u64::from(u32_at(size, 0)))
+}

@@ -1,0 +1,43 @@
+//! LAS and LAZ: lidar points.
+//!
+//! Reads LAS 1.0 to 1.4, and files that say 1.5; point formats 0 to 10, plain or compressed by
+//! LASzip; COPC as the LAZ file that it is, with all of its points.
+//!
+//! Headers, records and coordinate systems are read here, from bytes (`raw`, without judgement) to
+//! checked values (`header`); the `laz` crate decompresses. A coordinate is `X * scale + offset` in
+//! f64. Nothing in the file is trusted for an allocation, and a panic of the decoder is contained.
+//!
+//! # Damaged files
+//!
+//! | what | comes out as |
+//! |---|---|
+//! | not LAS, header cut, unknown version or point format | error |
+//! | record length too small for the point format | error |
+//! | scale zero, infinite or NaN; offset infinite or NaN | error |
+//! | points said to begin within the header or beyond the end of the file | error |
+//! | number of variable length records too large, record longer than its place | warning |
+//! | coordinate system empty or not understood | warning, and no coordinate system |
+//! | extent that is no box | warning, and no extent |
+//! | count larger than the file holds, file cut within a record | whole records, and a warning |
+//! | count 0 in front of points | no point, and a warning |
+//! | LAZ: chunk table missing or damaged, chunks of one size | all points, by one thread, and a warning |
+//! | LAZ: the same, formats 6 to 10 | all points of whole chunks, and a warning |
+//! | LAZ: the same, formats 0 to 5, chunks of many sizes | error |
+//! | LAZ: file cut | points up to the cut (formats 6 to 10: whole chunks), and a warning |
+//! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
+
+mod contain;
+mod header;
+mod input;
+mod laz;
+mod plain;
+mod raw;
+mod reader;
+mod record;
+mod records;
+mod reference;
+#[cfg(test)]
+mod tests;
+
+pub use header::{Header, RecordInfo};
+pub use reader::{LasReader, from_stream, open};

@@ -1,0 +1,66 @@
+//! Points that are not compressed.
+
+use std::io::{Read, Seek, SeekFrom};
+
+use super::header::Header;
+use super::input::Input;
+use super::record::RecordLayout;
+use crate::data::PointBatch;
+use crate::error::Result;
+
+/// Most points in a batch, and most bytes of their records.
+const BATCH_POINTS: usize = 1 << 17;
+const BATCH_BYTES: usize = 1 << 22;
+
+/// Reads records one after the other, as many as the file has.
+#[derive(Debug)]
+pub(super) struct Plain {
+    input: Input,
+    layout: RecordLayout,
+    left: u64,
+    buffer: Vec<u8>,
+}
+
+impl Plain {
+    /// Finds out how many records there are, whatever the header says.
+    pub(super) fn new(mut input: Input, header: &Header, warnings: &mut Vec<String>) -> Result<Self> {
+        let layout = RecordLayout::new(header);
+        let start = header.layout.points_start;
+        let bytes = header.layout.points_end - start;
+        let room = bytes / layout.stride as u64;
+        if room < header.count {
+            let torn = match bytes % layout.stride as u64 {
+                0 => String::new(),
+                rest => format!(" and {rest} bytes of another"),
+            };
+            warnings.push(format!(
+                "the header states {} points, but the file holds {room}{torn}: it was cut, or its header is wrong; \
+                 the {room} are read",
+                header.count
+            ));
+        } else if header.count == 0 && room > 0 {
+            warnings.push(format!(
+                "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file was perhaps never \
+                 finished; nothing is read"
+            ));
+        }
+        input.file.seek(SeekFrom::Start(start))?;
+        Ok(Plain { input, layout, left: room.min(header.count), buffer: Vec::new() })
+    }
+
+    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
+        let stride = self.layout.stride;
+        let most = (BATCH_BYTES / stride).clamp(1, BATCH_POINTS);
+        let count = self.left.min(most as u64) as usize;
+        self.buffer.clear();
+        (&self.input.file).take((count * stride) as u64).read_to_end(&mut self.buffer)?;
+        let whole = self.buffer.len() / stride;
+        self.layout.append(&self.buffer[..whole * stride], batch);
+        self.left -= whole as u64;
+        if whole < count {
+            warnings.push(format!("the file became shorter while it was read: {} points are missing", self.left));
+            self.left = 0;
+        }
+        Ok(())
+    }
+}

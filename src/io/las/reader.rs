@@ -1,0 +1,109 @@
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::header::Header;
+use super::input::Input;
+use super::laz::Laz;
+use super::plain::Plain;
+use super::raw::LONGEST_HEADER;
+use super::{records, reference};
+use crate::data::{PointBatch, PointInfo, PointSource};
+use crate::error::Result;
+
+/// Reads the points of a LAS or LAZ file; made by [`open`](super::open).
+#[derive(Debug)]
+pub struct LasReader {
+    name: PathBuf,
+    header: Header,
+    info: PointInfo,
+    points: Points,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug)]
+enum Points {
+    Plain(Plain),
+    Compressed(Box<Laz>),
+    /// After the last point or an error.
+    Done,
+}
+
+impl LasReader {
+    pub(super) fn new(input: Input) -> Result<Self> {
+        let name = input.name.clone();
+        Self::start(input).map_err(|error| error.in_file(name))
+    }
+
+    fn start(mut input: Input) -> Result<Self> {
+        let name = input.name.clone();
+        let mut warnings = Vec::new();
+        let bytes = input.bytes(0, LONGEST_HEADER)?;
+        let mut header = Header::check(&bytes, input.length, &mut warnings)?;
+        let payloads = records::read(&input, &mut header, &mut warnings)?;
+        let crs = reference::choose(&payloads, header.says_wkt, &mut warnings);
+        let points = match header.is_compressed {
+            false => Points::Plain(Plain::new(input, &header, &mut warnings)?),
+            true => {
+                let laz = Laz::new(input, &header, payloads.laszip.as_deref(), &mut warnings)?;
+                Points::Compressed(Box::new(laz))
+            }
+        };
+        let info = PointInfo {
+            format: header.format(),
+            count: Some(header.count),
+            bounds: header.bounds,
+            crs,
+            has_classes: true,
+            lattice: Some((header.scale, header.offset)),
+            warnings,
+        };
+        Ok(LasReader { name, header, info, points, warnings: Vec::new() })
+    }
+
+    /// What the file's header says.
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+}
+
+impl PointSource for LasReader {
+    fn info(&self) -> &PointInfo {
+        &self.info
+    }
+
+    fn read(&mut self, batch: &mut PointBatch) -> Result<()> {
+        batch.clear();
+        let result = match &mut self.points {
+            Points::Plain(plain) => plain.read(batch, &mut self.warnings),
+            Points::Compressed(laz) => laz.read(batch, &mut self.warnings),
+            Points::Done => Ok(()),
+        };
+        if result.is_err() || batch.is_empty() {
+            self.points = Points::Done;
+        }
+        result.map_err(|error| error.in_file(&self.name))
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+}
+
+/// Opens a LAS or LAZ file, of any size; `-` is the standard input.
+///
+/// Compressed points are decoded by as many threads as the current `rayon` pool has. What cannot be
+/// read from any place (a pipe, the standard input) is first copied to a temporary file.
+///
+/// # Errors
+/// If the file cannot be read, or its header is damaged beyond what the [module](super) lists.
+pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
+    LasReader::new(Input::open(path.as_ref())?)
+}
+
+/// Reads a stream, by way of a temporary file; `name` is for messages.
+///
+/// # Errors
+/// As [`open`].
+pub fn from_stream(stream: impl Read, name: impl AsRef<Path>) -> Result<LasReader> {
+    LasReader::new(Input::spool(stream, name.as_ref())?)
+}

@@ -1,0 +1,64 @@
+//! The coordinate system of a LAS file, from WKT or GeoTIFF keys.
+
+use super::raw::{f64_at, until_zero};
+use super::record::words;
+use super::records::Payloads;
+use crate::crs::{Crs, GeoKeys};
+
+/// Takes the coordinate system that the file states.
+///
+/// A file may have both kinds of records. The WKT bit of the header then decides (LAS 1.4, global
+/// encoding), with a warning if they disagree. What cannot be understood is skipped with a warning:
+/// heights are still heights.
+pub(super) fn choose(payloads: &Payloads, says_wkt: bool, warnings: &mut Vec<String>) -> Option<Crs> {
+    let wkt = payloads.wkt.as_deref().and_then(|bytes| from_wkt(bytes, warnings));
+    let keys = payloads.geo_directory.as_deref().and_then(|directory| from_keys(directory, payloads, warnings));
+    let (Some(wkt), Some(keys)) = (&wkt, &keys) else {
+        return wkt.or(keys);
+    };
+    let (taken, other, reason) = match says_wkt {
+        true => ((wkt, "WKT"), (keys, "GeoTIFF keys"), "the header's WKT bit is set"),
+        false => ((keys, "GeoTIFF keys"), (wkt, "WKT"), "the header's WKT bit is not set"),
+    };
+    if !wkt.is_same(keys) {
+        warnings.push(format!(
+            "two coordinate systems: {} by its {}, {} by its {}; the first is taken, because {reason}",
+            taken.0, taken.1, other.0, other.1
+        ));
+    }
+    Some(taken.0.clone())
+}
+
+fn from_wkt(bytes: &[u8], warnings: &mut Vec<String>) -> Option<Crs> {
+    let text = until_zero(bytes);
+    let text = text.trim();
+    if text.is_empty() {
+        warnings.push("the record for a coordinate system in WKT is empty".into());
+        return None;
+    }
+    match Crs::from_wkt(text) {
+        Ok(crs) => Some(crs),
+        Err(error) => {
+            warnings.push(format!("the coordinate system in WKT is not understood and ignored: {error}"));
+            None
+        }
+    }
+}
+
+fn from_keys(directory: &[u8], payloads: &Payloads, warnings: &mut Vec<String>) -> Option<Crs> {
+    let doubles = payloads.geo_doubles.as_deref().unwrap_or_default();
+    let ascii = payloads.geo_ascii.as_deref().unwrap_or_default();
+    let keys = GeoKeys {
+        directory: words(directory),
+        doubles: doubles.chunks_exact(8).map(|bytes| f64_at(bytes, 0)).collect(),
+        // Keys count bytes, so every byte becomes one.
+        ascii: ascii.iter().map(|&byte| if byte.is_ascii() { char::from(byte) } else { '?' }).collect(),
+    };
+    match keys.crs() {
+        Ok(crs) => crs,
+        Err(error) => {
+            warnings.push(format!("the GeoTIFF keys of the coordinate system are not understood and ignored: {error}"));
+            None
+        }
+    }
+}
