@@ -93,10 +93,12 @@ impl GeoKeys {
         let code = crs.epsg.and_then(|code| u16::try_from(code).ok()).filter(|&code| code < USER_DEFINED);
         match crs.kind {
             CrsKind::Projected => {
-                writer.short(key::MODEL_TYPE, 1);
                 writer.unit(&crs.unit, (key::LENGTH, key::LENGTH_SIZE));
                 match code {
-                    Some(code) => writer.short(key::PROJECTED, code),
+                    Some(code) => {
+                        writer.short(key::MODEL_TYPE, 1);
+                        writer.short(key::PROJECTED, code);
+                    }
                     None => writer.user_defined_projected(crs),
                 }
             }
@@ -230,10 +232,13 @@ impl Entries {
 
     /// The name in a citation, which may be a list: "PCS Name = NAD83 / Nebraska|..".
     fn name(&self) -> Option<String> {
-        let citation = self.text(key::PROJECTED_CITATION).filter(|text| !text.starts_with(PE_STRING));
-        let text = citation.or_else(|| self.text(key::CITATION)).or_else(|| self.text(key::GEODETIC_CITATION))?;
-        let named = text.split('|').find_map(|part| part.trim().strip_prefix("PCS Name = "));
-        Some(named.or(text.split('|').next()).unwrap_or(text).trim().to_owned())
+        let ids = [key::PROJECTED_CITATION, key::CITATION, key::GEODETIC_CITATION];
+        // What ERDAS writes is about itself.
+        let is_name = |text: &&str| !text.starts_with(PE_STRING) && !text.starts_with("IMAGINE GeoTIFF Support");
+        let text = ids.iter().filter_map(|&id| self.text(id)).find(is_name)?;
+        let named = |label: &str| text.split('|').find_map(|part| part.trim().strip_prefix(label));
+        let name = named("PCS Name = ").or_else(|| named("GCS Name = ")).or_else(|| text.split('|').next());
+        Some(name.unwrap_or(text).trim().to_owned())
     }
 
     fn unit(&self, (code, size): (u16, u16), table: fn(u16) -> Option<Unit>, custom: fn(f64) -> Unit) -> Option<Unit> {
@@ -285,7 +290,7 @@ impl Entries {
 
     /// The system of a code, in the unit that is stated beside it.
     fn coded(&self, code: u32, kind: CrsKind, stated: Option<Unit>) -> Crs {
-        let name = || self.name().unwrap_or_else(|| format!("EPSG:{code}"));
+        let name = || self.name().unwrap_or_default();
         let Some(found) = registry::find(code).filter(|found| found.kind == kind || kind == CrsKind::Geocentric) else {
             let unit = match kind {
                 CrsKind::Geographic => Unit::degree(),
@@ -333,7 +338,7 @@ impl Entries {
             CrsKind::Projected => Some(self.projection(&angle, &unit)?),
             _ => None,
         };
-        let name = self.name().unwrap_or_else(|| "unnamed".into());
+        let name = self.name().unwrap_or_default();
         Some(defined(&Definition { kind, datum, geographic, angle, projection, unit }, &name))
     }
 
@@ -451,9 +456,12 @@ fn plain(name: String, epsg: Option<u32>, kind: CrsKind, unit: Unit) -> Crs {
     Crs { name, epsg, vertical_epsg: None, kind, unit, vertical_unit: None, wkt: None }
 }
 
+/// From a definition; without a name that of the registry, if it is there.
 fn defined(definition: &Definition, name: &str) -> Crs {
     let epsg = registry::identify(definition, name);
-    let mut crs = plain(name.to_owned(), epsg, definition.kind, definition.unit.clone());
+    let known = epsg.filter(|_| name.is_empty()).and_then(registry::find).map(|found| found.name);
+    let name = &known.unwrap_or_else(|| if name.is_empty() { "unnamed".into() } else { name.to_owned() });
+    let mut crs = plain(name.clone(), epsg, definition.kind, definition.unit.clone());
     crs.wkt = wkt_write::write(definition, name, epsg, Dialect::Gdal);
     if crs.kind == CrsKind::Geocentric {
         crs.vertical_unit = Some(crs.unit.clone());
@@ -505,20 +513,22 @@ impl Writer {
     }
 
     fn user_defined_projected(&mut self, crs: &Crs) {
-        self.short(key::PROJECTED, USER_DEFINED);
-        let Some(definition) = crs.definition() else {
-            return;
-        };
-        let known = match &definition.projection {
+        let definition = crs.definition();
+        let known = match definition.as_ref().and_then(|definition| definition.projection.as_ref()) {
             Some(Projection::Known(method, values)) => method.row().geokey.map(|code| (method.row(), code, values)),
             _ => None,
         };
-        let Some((row, code, values)) = known else {
-            let wkt = crs.to_wkt();
-            self.text(key::PROJECTED_CITATION, &format!("{PE_STRING}{wkt}"));
+        let (Some(definition), Some((row, code, values))) = (&definition, known) else {
+            // As GDAL does it: no projection of the keys, and the definition as text.
+            self.short(key::MODEL_TYPE, USER_DEFINED);
+            if definition.is_some() {
+                self.text(key::PROJECTED_CITATION, &format!("{PE_STRING}{}", crs.to_prj()));
+            }
             return;
         };
-        self.user_defined_datum(&definition);
+        self.short(key::MODEL_TYPE, 1);
+        self.short(key::PROJECTED, USER_DEFINED);
+        self.user_defined_datum(definition);
         self.unit(&definition.angle, (key::ANGLE, key::ANGLE_SIZE));
         self.text(key::PROJECTED_CITATION, &crs.name);
         self.short(key::CONVERSION, USER_DEFINED);
@@ -555,7 +565,9 @@ impl Writer {
 
     fn finish(mut self) -> GeoKeys {
         self.entries.sort_by_key(|entry| entry[0]);
-        let mut directory = vec![1, 1, 0, self.entries.len() as u16];
+        // Heights count since GeoTIFF 1.1 only: GDAL looks at the revision.
+        let revision = u16::from(self.entries.iter().any(|entry| entry[0] >= key::VERTICAL));
+        let mut directory = vec![1, 1, revision, self.entries.len() as u16];
         directory.extend(self.entries.iter().flatten());
         GeoKeys { directory, doubles: self.doubles, ascii: self.ascii }
     }

