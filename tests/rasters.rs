@@ -5,9 +5,11 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
-use breakline::data::{BlockSource, Window};
-use breakline::error::Kind;
-use breakline::io::{geotiff, raster};
+use breakline::crs::Crs;
+use breakline::data::{BlockSource, Frame, Window};
+use breakline::error::{Error, Kind, Result};
+use breakline::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
+use breakline::io::{png, raster};
 use common::shared;
 use serde_json::Value;
 
@@ -72,7 +74,7 @@ fn real_files_are_what_the_facts_say() {
         check_facts(&name, &path, &facts[&name]);
         read += 1;
     }
-    assert_eq!(read, 76);
+    assert_eq!(read, 83);
 }
 
 fn check_facts(name: &str, path: &Path, facts: &Value) {
@@ -255,4 +257,181 @@ fn other_formats_are_named() {
     let error = raster::open(path).unwrap_err();
     assert_eq!(error.kind(), Kind::Unsupported);
     assert!(error.to_string().contains("DTED") && error.cure_text().unwrap().contains("`gdal`"), "{error}");
+}
+
+/// Heights with holes: some cells, and one tile of the larger sizes.
+struct Hills {
+    frame: Frame,
+    is_empty: bool,
+}
+
+impl BlockSource for Hills {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        None
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        for (i, cell) in out.iter_mut().enumerate() {
+            *cell = self.height(window.column + i % window.width, window.row + i / window.width);
+        }
+        Ok(())
+    }
+}
+
+impl Hills {
+    fn new(width: usize, height: usize) -> Self {
+        let transform = [500_000.25, 0.5, 0.0, 4_000_000.125, 0.0, -0.5];
+        Hills { frame: Frame { width, height, transform }, is_empty: false }
+    }
+
+    fn height(&self, column: usize, row: usize) -> f32 {
+        let in_hole = (256..512).contains(&row) && column < 256;
+        match (column * 31 + row * 17) % 53 {
+            _ if self.is_empty || in_hole => f32::NAN,
+            0 if column + row > 0 => f32::NAN,
+            1 => f32::INFINITY,
+            noise => 300.0 + (column as f32 * 0.05).sin() * 40.0 + row as f32 * 0.1 + noise as f32 * 0.01,
+        }
+    }
+}
+
+fn written(source: &dyn BlockSource, cells: CellFormat) -> (geotiff::GeoTiffReader, RasterSummary, Vec<u8>) {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("out.tif");
+    let summary = geotiff::write(&target, source, WriteOptions { cells, ..WriteOptions::default() }).unwrap();
+    let bytes = std::fs::read(&target).unwrap();
+    let reader = geotiff::open(&target).unwrap();
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left beside the file");
+    (reader, summary, bytes)
+}
+
+#[test]
+fn heights_come_back_as_they_were_written() {
+    for (width, height) in [(1, 1), (255, 257), (300, 700), (256, 256), (513, 2)] {
+        let hills = Hills::new(width, height);
+        let (reader, summary, _) = written(&hills, CellFormat::Heights);
+        assert_eq!(reader.frame(), hills.frame);
+        assert_eq!(reader.info().nodata, Some(-9999.0));
+        let grid = reader.read_grid().unwrap();
+        let mut valid = 0;
+        for row in 0..height {
+            for column in 0..width {
+                let (found, wanted) = (grid.value(column, row), hills.height(column, row));
+                if wanted.is_finite() {
+                    assert_eq!(found, f64::from(wanted), "{width} x {height}: column {column}, row {row}");
+                    valid += 1;
+                } else {
+                    assert!(found.is_nan(), "{width} x {height}: column {column}, row {row}");
+                }
+            }
+        }
+        assert_eq!(summary.valid, valid);
+        assert_eq!(reader.extremes().unwrap().range, Some([summary.min, summary.max]));
+    }
+}
+
+#[test]
+fn a_raster_without_values_is_a_few_bytes() {
+    let mut hills = Hills::new(3000, 2000);
+    hills.is_empty = true;
+    let (reader, summary, bytes) = written(&hills, CellFormat::Heights);
+    assert!(summary.valid == 0 && summary.min.is_nan() && summary.max.is_nan());
+    assert!(bytes.len() < 2000, "{} bytes", bytes.len());
+    assert!(reader.read_grid().unwrap().values.iter().all(|v| v.is_nan()));
+    assert_eq!(reader.info().warnings, Vec::<String>::new());
+}
+
+#[test]
+fn rotated_and_south_up_frames_come_back() {
+    for transform in [[1841001.75, 1.5, -5.0, 1144003.25, -5.0, -1.5], [10.0, 0.5, 0.0, 20.0, 0.0, 0.5]] {
+        let mut hills = Hills::new(20, 30);
+        hills.frame.transform = transform;
+        assert_eq!(written(&hills, CellFormat::Heights).0.frame(), hills.frame);
+    }
+}
+
+#[test]
+fn bytes_do_not_depend_on_the_number_of_threads() {
+    let threads = |count| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        pool.install(|| written(&Hills::new(5000, 1100), CellFormat::Heights).2)
+    };
+    assert!(threads(1) == threads(2));
+}
+
+/// A ramp over and beyond the range of a byte, without a value in every third column.
+struct Ramp;
+
+impl BlockSource for Ramp {
+    fn frame(&self) -> Frame {
+        Frame::north_up(100.0, 200.0, 2.0, 400, 300)
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        None
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        for (i, cell) in out.iter_mut().enumerate() {
+            let column = window.column + i % window.width;
+            *cell = if column % 3 == 2 { f32::NAN } else { column as f32 - 20.0 };
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn shades_are_bytes_from_one() {
+    let (reader, summary, _) = written(&Ramp, CellFormat::Shades);
+    assert_eq!(reader.info().sample.to_string(), "uint8");
+    assert_eq!((summary.min, summary.max), (1.0, 255.0));
+    let grid = reader.read_grid().unwrap();
+    assert_eq!([0, 31, 300].map(|column| grid.value(column, 77)), [1.0, 11.0, 255.0]);
+    assert!(grid.value(2, 0).is_nan());
+}
+
+#[test]
+fn a_picture_is_gray_and_knows_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("relief.png");
+    png::write_gray(&target, &Ramp).unwrap();
+    let file = std::io::BufReader::new(std::fs::File::open(&target).unwrap());
+    let mut reader = ::png::Decoder::new(file).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!((info.width, info.height, info.color_type), (400, 300, ::png::ColorType::GrayscaleAlpha));
+    for row in [0, 255, 256, 299] {
+        for (column, gray) in [(0, [0, 255]), (21, [1, 255]), (2, [0, 0]), (399, [255, 255])] {
+            assert_eq!(pixels[2 * (row * 400 + column)..][..2], gray, "column {column}, row {row}");
+        }
+    }
+    let place = std::fs::read_to_string(folder.path().join("relief.pgw")).unwrap();
+    assert_eq!(place, "2\n0\n0\n-2\n101\n199\n");
+}
+
+#[test]
+fn a_source_that_fails_leaves_no_file() {
+    struct Failing;
+    impl BlockSource for Failing {
+        fn frame(&self) -> Frame {
+            Frame::north_up(0.0, 0.0, 1.0, 1000, 1000)
+        }
+        fn crs(&self) -> Option<&Crs> {
+            None
+        }
+        fn fill(&self, window: Window, _: &mut [f32]) -> Result<()> {
+            if window.row > 500 { Err(Error::format("the source broke")) } else { Ok(()) }
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("out.tif");
+    let error = geotiff::write(&target, &Failing, WriteOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("the source broke"));
+    let error = png::write_gray(folder.path().join("out.png"), &Failing).unwrap_err();
+    assert!(error.to_string().contains("the source broke"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -6,7 +6,6 @@
 //! there, tiles and strips are the same, and blocks can be decoded on all cores.
 
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -17,6 +16,7 @@ use super::nodata::Nodata;
 use super::tags;
 use crate::data::Window;
 use crate::error::{Error, Kind, Result};
+use crate::io::contain::contain;
 
 /// The values of the part of a piece that lies in a window: row by row, NaN where there is none.
 pub(super) fn values(layout: &Layout, nodata: &Nodata, bytes: &Bytes, piece: &Piece, part: Window) -> Result<Vec<f64>> {
@@ -32,8 +32,8 @@ pub(super) fn values(layout: &Layout, nodata: &Nodata, bytes: &Bytes, piece: &Pi
     }
     // The decoders beneath are well tested, but not proven: a panic in one of them is a damaged
     // block, not the end of the program.
-    let decoded = catch_unwind(AssertUnwindSafe(|| decode(file)))
-        .unwrap_or_else(|_| Err(Error::format("the decoder gave up")))
+    let decoded = contain(|| decode(file))
+        .unwrap_or_else(|| Err(Error::format("the decoder gave up")))
         .map_err(|e| place(in_compression(e, layout.compression)))?;
     Ok(pick(&decoded, layout, nodata, piece, part))
 }

@@ -2,7 +2,8 @@
 //!
 //! Reading goes in three layers: [`ifd`] fetches raw tags and trusts no offset, [`layout`] checks
 //! and bounds what they say about blocks, [`block`] turns one block into values with the decoders
-//! of the `tiff` crate. [`georeference`] and [`nodata`] give the numbers their meaning.
+//! of the `tiff` crate. [`georeference`] and [`nodata`] give the numbers their meaning. Writing is
+//! [`write()`] over [`directory`] (the header) and [`tile`] (the cells).
 //!
 //! Conventions: band 1 of the first image is read; a value that is not there is NaN (nodata by tag
 //! 42113, compared in the sample type of the file; blocks left out of a sparse file; infinities);
@@ -14,16 +15,20 @@
 //! and 3, bands interleaved or apart. What is not supported is refused by name.
 
 mod block;
+mod directory;
 mod georeference;
 mod ifd;
 mod layout;
 mod nodata;
 mod read;
 mod tags;
+mod tile;
+mod write;
 
 pub use ifd::ByteOrder;
 pub use layout::{SampleKind, SampleType};
 pub use read::{Extremes, GeoTiffInfo, GeoTiffReader, open};
+pub use write::{CellFormat, RasterSummary, WriteOptions, write};
 
 /// Most cells that one read brings into memory (4 GiB of values).
 pub const MAX_CELLS: usize = 1 << 29;
