@@ -75,6 +75,8 @@ fn real_files_are_what_the_facts_say() {
         read += 1;
     }
     assert_eq!(read, 83);
+    let name = "lidar/bcts/bcts_dsm_5m.tif";
+    check_facts(name, &shared(name).expect("it is there"), &facts[name]);
 }
 
 fn check_facts(name: &str, path: &Path, facts: &Value) {
@@ -434,4 +436,36 @@ fn a_source_that_fails_leaves_no_file() {
     let error = png::write_gray(folder.path().join("out.png"), &Failing).unwrap_err();
     assert!(error.to_string().contains("the source broke"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_damaged_byte_anywhere_ends_in_values_or_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("damaged.tif");
+    let (_, _, whole) = written(&Hills::new(40, 9), CellFormat::Heights);
+    let mut files = vec![whole];
+    for name in
+        ["byte_LZW_tiled", "byte_ZSTD_tiled", "byte_bigtiff_strip5lines", "sparse_tiled_contig", "int16_big_endian"]
+    {
+        files.extend(shared(&format!("dem/gdal/{name}.tif")).map(|path| std::fs::read(path).unwrap()));
+    }
+    let (mut opened, mut read, mut refused) = (0, 0, 0);
+    for file in files {
+        // Beyond the header, one of 29 bytes is enough.
+        for at in (0..file.len()).filter(|&at| at < 500 || at % 29 == 0) {
+            let damage = [0x01, 0x80, 0xff][at % 3];
+            let mut file = file.clone();
+            file[at] ^= damage;
+            std::fs::write(&target, &file).unwrap();
+            let Ok(reader) = geotiff::open(&target) else {
+                refused += 1;
+                continue;
+            };
+            opened += 1;
+            let info = reader.info();
+            let part = Window { column: 0, row: 0, width: info.width.min(100), height: info.height.min(100) };
+            read += usize::from(reader.read_window(part).is_ok());
+        }
+    }
+    assert!(refused > 200 && opened > 200 && read > 200, "{refused} {opened} {read}");
 }

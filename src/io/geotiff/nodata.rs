@@ -35,9 +35,10 @@ impl Nodata {
         self.value.map(|value| value as f32)
     }
 
-    /// Whether a half precision sample is the value, rounded to half precision.
+    /// Whether a half precision sample is the value, brought to half precision by rounding or, as
+    /// GDAL does, by cutting off.
     pub(super) fn is_half(&self, sample: f64) -> bool {
-        self.value.is_some_and(|value| value == sample || (value - sample).abs() <= sample.abs() / 2048.0)
+        self.value.is_some_and(|value| value == sample || (value - sample).abs() < sample.abs() / 1024.0)
     }
 
     /// Whether no sample of this type can be the value.
@@ -116,10 +117,11 @@ mod tests {
     }
 
     #[test]
-    fn half_precision_is_compared_after_rounding() {
-        // -9999 is no half; the nearest is -10000.
+    fn half_precision_is_compared_in_half_precision() {
+        // -9999 is no half; its neighbors are -10000 and -9992.
         let nodata = Nodata::parse("-9999").unwrap();
-        assert!(nodata.is_half(-10000.0) && !nodata.is_half(-9984.0) && !nodata.is_half(5.0));
+        assert!(nodata.is_half(-10000.0) && nodata.is_half(-9992.0));
+        assert!(!nodata.is_half(-10008.0) && !nodata.is_half(-9984.0) && !nodata.is_half(5.0));
     }
 
     #[test]
