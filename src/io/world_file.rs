@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::data::Frame;
 use crate::error::{Error, Result};
 
-/// The text of a world file: the steps of a column and a row, and the centre of the first cell.
+/// The text of a world file: the steps of a column and a row, and the center of the first cell.
 pub(crate) fn text(frame: &Frame) -> String {
     let t = &frame.transform;
     let [x, y] = frame.centre(0, 0);

@@ -6,7 +6,7 @@ pub(super) struct ModelTags {
     pub(super) pixel_scale: Option<Vec<f64>>,
     pub(super) tiepoints: Option<Vec<f64>>,
     pub(super) transformation: Option<Vec<f64>>,
-    /// The coordinates are those of cell centres (PixelIsPoint).
+    /// The coordinates are those of cell centers (PixelIsPoint).
     pub(super) is_point: bool,
 }
 
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_raster_begins_half_a_cell_before_its_first_centre() {
+    fn a_point_raster_begins_half_a_cell_before_its_first_center() {
         let tags = ModelTags {
             transformation: Some(vec![1.5, -5.0, 0.0, 1841000.0, -5.0, -1.5, 0.0, 1144000.0]),
             is_point: true,

@@ -1,9 +1,9 @@
 //! GeoTIFF: heights in, heights and hillshades out.
 //!
-//! Reading goes in three layers: [`ifd`] fetches raw tags and trusts no offset, [`layout`] checks
-//! and bounds what they say about blocks, [`block`] turns one block into values with the decoders
-//! of the `tiff` crate. [`georeference`] and [`nodata`] give the numbers their meaning. Writing is
-//! [`write()`] over [`directory`] (the header) and [`tile`] (the cells).
+//! Reading goes in three layers: `ifd` fetches raw tags and trusts no offset, `layout` checks
+//! and bounds what they say about blocks, `block` turns one block into values with the decoders
+//! of the `tiff` crate. `georeference` and `nodata` give the numbers their meaning. Writing is
+//! [`write()`] over `directory` (the header) and `tile` (the cells).
 //!
 //! Conventions: band 1 of the first image is read; a value that is not there is NaN (nodata by tag
 //! 42113, compared in the sample type of the file; blocks left out of a sparse file; infinities);
@@ -36,6 +36,5 @@ pub const MAX_CELLS: usize = 1 << 29;
 /// Largest block that is decoded, in bytes: what a 16-bit strip of 16384 x 16384 cells takes.
 pub const MAX_BLOCK_BYTES: u64 = 1 << 29;
 
-/// Most blocks of one file: a raster of a million by a million cells in tiles of 256 x 256 has as
-/// many.
+/// Most blocks of one file: enough for a million by a million cells in tiles of 256 x 256.
 pub const MAX_BLOCKS: u64 = 1 << 24;

@@ -42,7 +42,7 @@ pub struct GeoTiffInfo {
     pub scale: f64,
     /// See `scale`.
     pub offset: f64,
-    /// Whether the file calls its coordinates those of cell centres; `transform` is that of corners
+    /// Whether the file calls its coordinates those of cell centers; `transform` is that of corners
     /// all the same.
     pub is_point: bool,
     /// From cell corners to coordinates, as in [`Frame`]; `None` without usable georeferencing.
@@ -277,13 +277,15 @@ impl GeoTiffReader {
     /// # Errors
     /// If a block is damaged or not in the file.
     pub fn extremes(&self) -> Result<Extremes> {
-        /// Cells looked at together.
+        /// Cells looked at together, and most cells of a block that is looked at whole.
         const CELLS: usize = 1 << 24;
+        const BLOCK_CELLS: usize = 1 << 26;
         let Frame { width, height, .. } = self.frame();
-        let block_height = self.info.block[1];
-        let rows = (CELLS / width).max(1);
-        let rows = if rows > block_height { rows / block_height * block_height } else { rows };
-        let columns = width.min(CELLS);
+        // Whole blocks, so that none is decoded twice.
+        let [block_width, block_height] = self.info.block;
+        let block_height = block_height.min((BLOCK_CELLS / block_width).max(1));
+        let columns = width.min(block_width * (CELLS / (block_width * block_height)).max(1));
+        let rows = block_height * (CELLS / (columns * block_height)).max(1);
         let mut found = Extremes::default();
         for row in (0..height).step_by(rows) {
             for column in (0..width).step_by(columns) {
