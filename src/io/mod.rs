@@ -4,5 +4,11 @@ pub mod las;
 mod output;
 pub mod points;
 pub mod text;
+mod contain;
+pub mod geotiff;
+mod output;
+pub mod png;
+pub mod raster;
+mod world_file;
 
 pub use output::Output;

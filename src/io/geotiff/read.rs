@@ -1,0 +1,408 @@
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::georeference::ModelTags;
+use super::ifd::{ByteOrder, Bytes, Directory};
+use super::layout::{Layout, Piece, SampleType, Stored};
+use super::nodata::{Nodata, scale_and_offset};
+use super::{MAX_CELLS, block, tags};
+use crate::crs::{Crs, GeoKeys};
+use crate::data::{BlockSource, Frame, Grid, Window};
+use crate::error::{Error, Result};
+use crate::io::world_file;
+
+/// What the header of a GeoTIFF says.
+#[derive(Debug, Clone)]
+pub struct GeoTiffInfo {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Bands; the first one is read.
+    pub bands: u16,
+    /// Type of the stored samples.
+    pub sample: SampleType,
+    /// "none", "DEFLATE", "LZW", ...
+    pub compression: &'static str,
+    /// 1 none, 2 differences, 3 differences of float bytes.
+    pub predictor: u16,
+    /// Tiles, or else strips.
+    pub is_tiled: bool,
+    /// Columns and rows of a block (a tile or a strip).
+    pub block: [usize; 2],
+    /// Byte order of the file.
+    pub byte_order: ByteOrder,
+    /// Whether offsets have 64 bits.
+    pub is_big_tiff: bool,
+    /// The stored sample that means "no value" (before scale and offset).
+    pub nodata: Option<f64>,
+    /// Values are stored sample x scale + offset.
+    pub scale: f64,
+    /// See `scale`.
+    pub offset: f64,
+    /// Whether the file calls its coordinates those of cell centers; `transform` is that of corners
+    /// all the same.
+    pub is_point: bool,
+    /// From cell corners to coordinates, as in [`Frame`]; `None` without usable georeferencing.
+    pub transform: Option<[f64; 6]>,
+    /// Coordinate system, if the file states one.
+    pub crs: Option<Crs>,
+    /// Further images in the file with fewer cells, as columns and rows.
+    pub overviews: Vec<[u64; 2]>,
+    /// What a user should be told.
+    pub warnings: Vec<String>,
+}
+
+impl GeoTiffInfo {
+    /// "GeoTIFF, float32, 1 band, DEFLATE, predictor 3, tiles of 256 x 256"
+    pub fn description(&self) -> String {
+        let mut text = String::from(if self.is_big_tiff { "BigTIFF" } else { "GeoTIFF" });
+        if self.byte_order == ByteOrder::Big {
+            text += " (big-endian)";
+        }
+        let (bands, blocks) =
+            (if self.bands == 1 { "band" } else { "bands" }, if self.is_tiled { "tiles" } else { "strips" });
+        text += &format!(", {}, {} {bands}, compression {}", self.sample, self.bands, self.compression);
+        if self.predictor != 1 {
+            text += &format!(", predictor {}", self.predictor);
+        }
+        text + &format!(", {blocks} of {} x {}", self.block[0], self.block[1])
+    }
+}
+
+/// Smallest and largest value of a raster, and how many values there are.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Extremes {
+    /// Cells with a value.
+    pub valid: u64,
+    /// Smallest and largest value; `None` if there is none.
+    pub range: Option<[f64; 2]>,
+    /// The same as they are stored, before scale and offset.
+    pub stored_range: Option<[f64; 2]>,
+}
+
+/// A GeoTIFF whose header was read; values are decoded when they are asked for, on all cores.
+#[derive(Debug)]
+pub struct GeoTiffReader {
+    path: PathBuf,
+    bytes: Bytes,
+    layout: Layout,
+    nodata: Nodata,
+    info: GeoTiffInfo,
+}
+
+/// Opens a GeoTIFF and reads its header.
+///
+/// # Errors
+/// If the file is no TIFF, its header is damaged, or it uses something that is not supported; the
+/// message names it.
+pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
+    let path = path.as_ref();
+    read_header(path).map_err(|e| e.in_file(path))
+}
+
+fn read_header(path: &Path) -> Result<GeoTiffReader> {
+    let bytes = Bytes::open(path)?;
+    let directory = Directory::first(&bytes)?;
+    let layout = Layout::read(&bytes, &directory)?;
+    let mut warnings = Vec::new();
+    // Tags that only describe: a damaged one is told and left out.
+    let mut optional = |error: Error| warnings.push(error.to_string());
+
+    let nodata_text = directory.text(&bytes, tags::GDAL_NODATA).unwrap_or_else(|e| {
+        optional(e);
+        None
+    });
+    let metadata = directory.text(&bytes, tags::GDAL_METADATA).unwrap_or_else(|e| {
+        optional(e);
+        None
+    });
+    let mut floats = |tag| {
+        directory.floats(&bytes, tag).unwrap_or_else(|e| {
+            optional(e);
+            None
+        })
+    };
+    let mut model = ModelTags {
+        pixel_scale: floats(tags::MODEL_PIXEL_SCALE),
+        tiepoints: floats(tags::MODEL_TIEPOINT),
+        transformation: floats(tags::MODEL_TRANSFORMATION),
+        is_point: false,
+    };
+    let (keys, crs) = geo_keys(&bytes, &directory).unwrap_or_else(|e| {
+        optional(e);
+        (GeoKeys::default(), None)
+    });
+    model.is_point = raster_type(&keys) == Some(2);
+
+    let nodata = match nodata_text.as_deref().map(|text| (text, Nodata::parse(text))) {
+        Some((_, Some(nodata))) => nodata,
+        Some((text, None)) if !text.trim().is_empty() => {
+            warnings.push(format!("the nodata value {text:?} is no number and is ignored"));
+            Nodata::default()
+        }
+        _ => Nodata::default(),
+    };
+    if nodata.is_out_of_range(layout.sample) {
+        let value = nodata.value.unwrap_or_default();
+        warnings.push(format!("no {} sample can be the nodata value {value}", layout.sample));
+    }
+    let (scale, offset) = metadata.as_deref().map_or((None, None), scale_and_offset);
+    let (mut transform, told) = model.transform();
+    warnings.extend(told);
+    if transform.is_none()
+        && let Some(beside) = world_file::read_beside(path)
+    {
+        transform = Some(beside?);
+    }
+    if transform.is_none() {
+        warnings.push("no georeferencing: coordinates are columns and rows".into());
+    }
+    let missing = layout.missing_blocks();
+    if missing > 0 && nodata.value.is_none() {
+        let all = layout.block_count();
+        warnings.push(format!("{missing} of {all} blocks are not in the file and have no values"));
+    }
+    let overviews = further_images(&bytes, &directory, &mut warnings);
+    let info = GeoTiffInfo {
+        width: layout.width,
+        height: layout.height,
+        bands: layout.bands,
+        sample: layout.sample,
+        compression: tags::compression_name(layout.compression),
+        predictor: layout.predictor,
+        is_tiled: layout.is_tiled,
+        block: layout.block,
+        byte_order: layout.order,
+        is_big_tiff: directory.is_big,
+        nodata: nodata.value,
+        scale: scale.unwrap_or(1.0),
+        offset: offset.unwrap_or(0.0),
+        is_point: model.is_point,
+        transform,
+        crs,
+        overviews,
+        warnings,
+    };
+    Ok(GeoTiffReader { path: path.to_path_buf(), bytes, layout, nodata, info })
+}
+
+fn geo_keys(bytes: &Bytes, directory: &Directory) -> Result<(GeoKeys, Option<Crs>)> {
+    let Some(values) = directory.unsigned(bytes, tags::GEO_KEY_DIRECTORY)? else {
+        return Ok((GeoKeys::default(), None));
+    };
+    let keys = GeoKeys {
+        directory: values.iter().map(|&value| value as u16).collect(),
+        doubles: directory.floats(bytes, tags::GEO_DOUBLE_PARAMS)?.unwrap_or_default(),
+        ascii: directory.text(bytes, tags::GEO_ASCII_PARAMS)?.unwrap_or_default(),
+    };
+    let crs = keys.crs()?;
+    Ok((keys, crs))
+}
+
+/// PixelIsArea (1) or PixelIsPoint (2), if the keys say which.
+fn raster_type(keys: &GeoKeys) -> Option<u16> {
+    let entries = keys.directory.get(4..)?.chunks_exact(4);
+    entries.filter(|key| key[0] == tags::RASTER_TYPE_KEY && key[1] == 0).map(|key| key[3]).next()
+}
+
+/// Images after the first: overviews by size; a mask is told, for it is not applied.
+fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) -> Vec<[u64; 2]> {
+    const MOST: usize = 100;
+    let mut overviews = Vec::new();
+    let mut seen = BTreeSet::new();
+    let mut next = first.following(bytes);
+    let mut offset = first.next_offset();
+    while let Some(directory) = next {
+        let Ok(directory) = directory else {
+            warnings.push(format!("a further image at byte {offset} cannot be read and is ignored"));
+            break;
+        };
+        if !seen.insert(offset) || seen.len() > MOST {
+            warnings.push("the list of images in the file runs in a circle, or is longer than any use".into());
+            break;
+        }
+        let number = |tag| directory.number(bytes, tag).ok().flatten().unwrap_or(0);
+        let kind = number(tags::NEW_SUBFILE_TYPE);
+        if kind & 4 != 0 {
+            warnings.push("a mask inside the file is not applied".into());
+        } else if kind & 1 != 0 {
+            overviews.push([number(tags::IMAGE_WIDTH), number(tags::IMAGE_LENGTH)]);
+        }
+        offset = directory.next_offset();
+        next = directory.following(bytes);
+    }
+    overviews
+}
+
+impl GeoTiffReader {
+    /// What the header says.
+    pub fn info(&self) -> &GeoTiffInfo {
+        &self.info
+    }
+
+    /// Values of band 1 in a window, row by row; NaN where there is none.
+    ///
+    /// # Errors
+    /// If the window leaves the raster or passes [`MAX_CELLS`], or a block in it is damaged or not
+    /// in the file; the message names the block.
+    pub fn read_window(&self, window: Window) -> Result<Vec<f64>> {
+        let mut values = self.read_stored(window)?;
+        self.scale(&mut values);
+        Ok(values)
+    }
+
+    /// Like [`read_window`](Self::read_window), before scale and offset.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn read_stored(&self, window: Window) -> Result<Vec<f64>> {
+        self.stored(window).map_err(|e| e.in_file(&self.path))
+    }
+
+    /// The whole raster.
+    ///
+    /// # Errors
+    /// As [`read_window`](Self::read_window).
+    pub fn read_grid(&self) -> Result<Grid> {
+        let frame = self.frame();
+        let all = Window { column: 0, row: 0, width: frame.width, height: frame.height };
+        Ok(Grid { frame, crs: self.info.crs.clone(), values: self.read_window(all)? })
+    }
+
+    /// Reads all values once, in bounded memory, and tells their number and range.
+    ///
+    /// # Errors
+    /// If a block is damaged or not in the file.
+    pub fn extremes(&self) -> Result<Extremes> {
+        /// Cells looked at together, and most cells of a block that is looked at whole.
+        const CELLS: usize = 1 << 24;
+        const BLOCK_CELLS: usize = 1 << 26;
+        let Frame { width, height, .. } = self.frame();
+        // Whole blocks, so that none is decoded twice.
+        let [block_width, block_height] = self.info.block;
+        let block_height = block_height.min((BLOCK_CELLS / block_width).max(1));
+        let columns = width.min(block_width * (CELLS / (block_width * block_height)).max(1));
+        let rows = block_height * (CELLS / (columns * block_height)).max(1);
+        let mut found = Extremes::default();
+        for row in (0..height).step_by(rows) {
+            for column in (0..width).step_by(columns) {
+                let window = Window { column, row, width: columns.min(width - column), height: rows.min(height - row) };
+                for value in self.read_stored(window)?.into_iter().filter(|value| !value.is_nan()) {
+                    found.valid += 1;
+                    let [min, max] = found.stored_range.get_or_insert([value; 2]);
+                    *min = min.min(value);
+                    *max = max.max(value);
+                }
+            }
+        }
+        found.range = found.stored_range.map(|mut ends| {
+            self.scale(&mut ends);
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        });
+        Ok(found)
+    }
+
+    fn scale(&self, values: &mut [f64]) {
+        let GeoTiffInfo { scale, offset, .. } = self.info;
+        if scale != 1.0 || offset != 0.0 {
+            for value in values {
+                *value = *value * scale + offset;
+            }
+        }
+    }
+
+    fn stored(&self, window: Window) -> Result<Vec<f64>> {
+        let Window { column, row, width, height } = window;
+        let fits = |start: usize, length: usize, end| start.checked_add(length).is_some_and(|stop| stop <= end);
+        if !fits(column, width, self.info.width) || !fits(row, height, self.info.height) {
+            return Err(Error::usage(format!(
+                "{width} x {height} cells from column {column}, row {row} leave the raster of {} x {}",
+                self.info.width, self.info.height
+            )));
+        }
+        let cells = width.saturating_mul(height);
+        if cells > MAX_CELLS {
+            return Err(Error::limit(format!(
+                "{width} x {height} cells pass the limit of {MAX_CELLS} cells that are read at once"
+            ))
+            .cure("use a part of the raster (gdal_translate -projwin) or a coarser one (gdal_translate -tr)"));
+        }
+        if cells == 0 {
+            return Ok(Vec::new());
+        }
+        // Every block's place is checked before there is memory for what they would give.
+        let pieces = self.pieces(window)?;
+        let mut out = Vec::new();
+        out.try_reserve_exact(cells).map_err(|_| Error::limit(format!("no memory for {width} x {height} cells")))?;
+        out.resize(cells, f64::NAN);
+        /// Bytes of decoded blocks that may wait to be copied.
+        const WAITING: u64 = 1 << 28;
+        let batch = (WAITING / self.layout.piece_bytes().max(1)).clamp(1, 4 * rayon::current_num_threads() as u64);
+        for batch in pieces.chunks(batch as usize) {
+            let decode = |piece: &Piece| {
+                let part = overlap(piece, window);
+                block::values(&self.layout, &self.nodata, &self.bytes, piece, part).map(|values| (part, values))
+            };
+            let decoded: Vec<_> = batch.par_iter().map(decode).collect::<Result<_>>()?;
+            for (part, values) in decoded {
+                for (line, source) in values.chunks_exact(part.width).enumerate() {
+                    let start = (part.row + line - row) * width + part.column - column;
+                    out[start..start + part.width].copy_from_slice(source);
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// The stored pieces that a window touches.
+    fn pieces(&self, window: Window) -> Result<Vec<Piece>> {
+        let block_width = self.layout.block[0];
+        let columns = window.column / block_width..(window.column + window.width).div_ceil(block_width);
+        debug_assert!(columns.end <= self.layout.across());
+        let mut pieces = Vec::new();
+        let mut row = window.row;
+        while row < window.row + window.height {
+            let mut end = row + 1;
+            for across in columns.clone() {
+                let piece = self.layout.piece(across, row, &self.bytes)?;
+                end = piece.first_row + piece.rows;
+                if matches!(piece.stored, Stored::At { .. }) {
+                    pieces.push(piece);
+                }
+            }
+            row = end;
+        }
+        Ok(pieces)
+    }
+}
+
+/// The part of a piece that lies in a window that touches it.
+fn overlap(piece: &Piece, window: Window) -> Window {
+    let column = piece.first_column.max(window.column);
+    let row = piece.first_row.max(window.row);
+    let width = (piece.first_column + piece.width).min(window.column + window.width) - column;
+    let height = (piece.first_row + piece.rows).min(window.row + window.height) - row;
+    Window { column, row, width, height }
+}
+
+impl BlockSource for GeoTiffReader {
+    /// Without georeferencing, cell corners are their own coordinates.
+    fn frame(&self) -> Frame {
+        let transform = self.info.transform.unwrap_or([0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+        Frame { width: self.info.width, height: self.info.height, transform }
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.info.crs.as_ref()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        for (out, value) in out.iter_mut().zip(self.read_window(window)?) {
+            *out = value as f32;
+        }
+        Ok(())
+    }
+}

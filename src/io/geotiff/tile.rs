@@ -1,0 +1,98 @@
+//! One tile on its way out: samples, predictor, DEFLATE.
+
+use std::io::Write;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+
+use super::write::CellFormat;
+use crate::data::{BlockSource, Window};
+use crate::error::Result;
+
+/// Columns and rows of a tile.
+pub(super) const SIDE: usize = 256;
+
+/// Effort of DEFLATE. Measured on rasters of a TIN with predictor 3, one core (flate2 with
+/// miniz_oxide): level 1 packs 101 MB/s to 34 %, level 2 62 MB/s to 31 %, level 6 24 MB/s to 28 %.
+const EFFORT: u32 = 1;
+
+/// What a height that is not there is written as.
+pub(super) const NO_HEIGHT: f32 = -9999.0;
+
+/// A tile as it goes into the file.
+#[derive(Debug)]
+pub(super) struct Tile {
+    /// Compressed; empty if no cell has a value.
+    pub(super) bytes: Vec<u8>,
+    pub(super) valid: u64,
+    pub(super) min: f32,
+    pub(super) max: f32,
+}
+
+/// Buffers that a thread uses from tile to tile.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    cells: Vec<f32>,
+    row: Vec<f32>,
+    packed: Vec<u8>,
+}
+
+impl Scratch {
+    /// Asks the source for a tile's cells (those in the raster) and packs them.
+    pub(super) fn pack(&mut self, source: &dyn BlockSource, window: Window, format: CellFormat) -> Result<Tile> {
+        self.cells.clear();
+        self.cells.resize(window.width * window.height, f32::NAN);
+        source.fill(window, &mut self.cells)?;
+        let mut tile = Tile { bytes: Vec::new(), valid: 0, min: f32::INFINITY, max: f32::NEG_INFINITY };
+        for cell in &mut self.cells {
+            *cell = format.written(*cell);
+            if !cell.is_nan() {
+                tile.valid += 1;
+                tile.min = tile.min.min(*cell);
+                tile.max = tile.max.max(*cell);
+            }
+        }
+        if tile.valid > 0 {
+            self.predict(window, format);
+            let mut encoder = ZlibEncoder::new(Vec::with_capacity(self.packed.len() / 2), Compression::new(EFFORT));
+            encoder.write_all(&self.packed)?;
+            tile.bytes = encoder.finish()?;
+        }
+        Ok(tile)
+    }
+
+    /// Fills `packed` with the bytes before compression. The cells of a full tile that are not in
+    /// the raster repeat the last ones that are, which packs best.
+    fn predict(&mut self, window: Window, format: CellFormat) {
+        let size = format.bits() as usize / 8;
+        self.packed.clear();
+        self.packed.resize(SIDE * SIDE * size, 0);
+        for (y, line) in self.packed.chunks_exact_mut(SIDE * size).enumerate() {
+            let cells = &self.cells[y.min(window.height - 1) * window.width..][..window.width];
+            self.row.clear();
+            self.row.extend_from_slice(cells);
+            self.row.resize(SIDE, cells[window.width - 1]);
+            match format {
+                CellFormat::Heights => {
+                    // Predictor 3: the highest bytes of all cells, then the next, ...
+                    for (x, cell) in self.row.iter().enumerate() {
+                        let cell = if cell.is_nan() { NO_HEIGHT } else { *cell };
+                        for (plane, byte) in cell.to_be_bytes().into_iter().enumerate() {
+                            line[plane * SIDE + x] = byte;
+                        }
+                    }
+                }
+                CellFormat::Shades => {
+                    for (byte, cell) in line.iter_mut().zip(&self.row) {
+                        // NaN becomes 0, the nodata value.
+                        *byte = *cell as u8;
+                    }
+                }
+            }
+            // Both predictors end with the differences of neighboring bytes.
+            for x in (1..line.len()).rev() {
+                line[x] = line[x].wrapping_sub(line[x - 1]);
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! World files: the six numbers beside a picture that say where it lies.
+
+use std::path::Path;
+
+use crate::data::Frame;
+use crate::error::{Error, Result};
+
+/// The text of a world file: the steps of a column and a row, and the center of the first cell.
+pub(crate) fn text(frame: &Frame) -> String {
+    let t = &frame.transform;
+    let [x, y] = frame.centre(0, 0);
+    [t[1], t[4], t[2], t[5], x, y].iter().map(|value| format!("{value}\n")).collect()
+}
+
+/// Reads the text of a world file as a transform of cell corners.
+fn parse(text: &str) -> Option<[f64; 6]> {
+    let mut numbers = text.split_ascii_whitespace().map(|word| word.parse::<f64>().ok().filter(|v| v.is_finite()));
+    let mut next = || numbers.next().flatten();
+    let (x_column, y_column, x_row, y_row, x, y) = (next()?, next()?, next()?, next()?, next()?, next()?);
+    if x_column * y_row - x_row * y_column == 0.0 {
+        return None;
+    }
+    Some([x - (x_column + x_row) / 2.0, x_column, x_row, y - (y_column + y_row) / 2.0, y_column, y_row])
+}
+
+/// The transform in the world file beside a TIFF file; `None` if there is no world file.
+pub(crate) fn read_beside(path: &Path) -> Option<Result<[f64; 6]>> {
+    let names = ["tfw", "tifw", "tiffw", "wld", "TFW", "WLD"].map(|extension| path.with_extension(extension));
+    let beside = names.into_iter().find(|name| name.is_file())?;
+    // A world file has six lines; what is larger is something else.
+    let is_small = beside.metadata().is_ok_and(|metadata| metadata.len() < 4096);
+    let text = if is_small { std::fs::read_to_string(&beside) } else { Ok(String::new()) };
+    Some(match text {
+        Ok(text) => {
+            parse(&text).ok_or_else(|| Error::format("expected the six numbers of a world file").in_file(&beside))
+        }
+        Err(error) => Err(Error::from(error).in_file(&beside)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let frame = Frame { width: 3, height: 2, transform: [100.0, 2.0, 0.5, 50.0, 0.25, -2.0] };
+        assert_eq!(text(&frame), "2\n0.25\n0.5\n-2\n101.25\n49.125\n");
+        assert_eq!(parse(&text(&frame)), Some(frame.transform));
+    }
+
+    #[test]
+    fn what_is_no_world_file_is_refused() {
+        for text in ["", "1 0 0 -1 5", "1 0 0 x 5 5", "0 0 0 0 5 5", "1 0 0 nan 5 5"] {
+            assert_eq!(parse(text), None, "{text:?}");
+        }
+    }
+}
