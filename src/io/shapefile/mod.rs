@@ -37,6 +37,7 @@ mod table;
 mod walk;
 mod write;
 
+use std::collections::{BTreeMap, HashSet};
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -245,9 +246,9 @@ fn join(
 ) -> Vec<Shape> {
     // Where the index leaves out a record but lists another of the same number, an editor wrote
     // the new one behind the last and left the old one where it was.
-    let listed: std::collections::HashSet<i32> = match &rows {
-        Some(rows) => records.iter().zip(rows).filter(|(_, row)| row.is_some()).map(|(r, _)| r.number).collect(),
-        None => Default::default(),
+    let listed: HashSet<i32> = match &rows {
+        Some(rows) => records.iter().zip(rows).filter(|(_, row)| row.is_some()).filter_map(|(r, _)| r.number).collect(),
+        None => HashSet::new(),
     };
     let (mut stale, mut deleted) = (0, 0);
     let mut shapes = Vec::with_capacity(records.len());
@@ -256,7 +257,7 @@ fn join(
             Some(rows) => rows[place],
             None => Some(place),
         };
-        if row.is_none() && listed.contains(&record.number) {
+        if row.is_none() && record.number.is_some_and(|number| listed.contains(&number)) {
             stale += 1;
             continue;
         }
@@ -289,7 +290,7 @@ fn tell(warnings: &mut Vec<String>, mut messages: Vec<String>) {
     }
 }
 
-fn tell_types(warnings: &mut Vec<String>, header: i32, types: &std::collections::BTreeMap<i32, usize>) {
+fn tell_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, usize>) {
     if types.keys().all(|&code| code == header) {
         return;
     }

@@ -105,8 +105,9 @@ impl Table {
         while rows.deleted.len() < limit {
             let got = fill(&mut self.file, &mut row)?;
             // A last row that lacks its end still counts, as long as the field is there.
-            let needed = field.map_or(row.len().min(1), |field| field.at + field.width);
-            if got < needed || row[0] == END_OF_FILE {
+            let needed = field.map_or(1, |field| field.at + field.width);
+            let cut = got < row.len() && !matches!(row[0], b' ' | DELETED);
+            if got < needed || cut || row[0] == END_OF_FILE {
                 break;
             }
             rows.deleted.push(row[0] == DELETED);

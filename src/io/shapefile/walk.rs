@@ -14,8 +14,8 @@ use crate::error::{Error, Result};
 pub(super) struct Record {
     /// Of its header, in bytes.
     pub(super) offset: u64,
-    /// What its header calls it.
-    pub(super) number: i32,
+    /// What its header calls it; `None` if the header is damaged.
+    pub(super) number: Option<i32>,
     /// `None` if it is damaged.
     pub(super) shape: Option<Shape>,
 }
@@ -52,13 +52,13 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
             Ok(header) => header,
             Err(why) => {
                 walk.damage.push(format!("{place}: {why}"));
-                match resync(file, size, at, index)? {
-                    Some(next) => at = next,
-                    None => {
-                        walk.end = Some(at);
-                        break;
-                    }
-                }
+                let Some((skipped, next)) = resync(file, size, at, index)? else {
+                    walk.end = Some(at);
+                    break;
+                };
+                let lost = |offset| Record { offset, number: None, shape: None };
+                walk.records.extend([at].into_iter().chain(skipped).map(lost));
+                at = next;
                 continue;
             }
         };
@@ -82,7 +82,7 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
                     .cure("repair the record or take it out, then try again"));
             }
         };
-        walk.records.push(Record { offset: at, number: id, shape });
+        walk.records.push(Record { offset: at, number: Some(id), shape });
         at += 8 + length;
     }
     Ok(walk)
@@ -91,7 +91,7 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
 /// A record's number and the length of its content; or why it cannot be a record.
 fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u64), String>> {
     if left < 8 {
-        return Ok(Err(format!("{left} bytes are no record")));
+        return Ok(Err(format!("{left} bytes, too few for a record")));
     }
     let mut bytes = [0; 8];
     file.read_exact(&mut bytes)?;
@@ -106,15 +106,18 @@ fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u
     })
 }
 
-/// The next record that the index knows; the file then stands there.
-fn resync(file: &mut BufReader<File>, size: u64, from: u64, index: Option<&Index>) -> Result<Option<u64>> {
+/// The next record that the index knows, where the file then stands, and those before it that are
+/// listed, but are not there.
+fn resync(file: &mut BufReader<File>, size: u64, from: u64, index: Option<&Index>) -> Result<Option<(Vec<u64>, u64)>> {
+    let mut skipped = Vec::new();
     let mut at = from;
     while let Some((offset, length)) = index.and_then(|index| index.next_after(at)).filter(|next| next.0 < size) {
         file.seek(SeekFrom::Start(offset))?;
         if header(file, size - offset)?.is_ok_and(|found| found.1 == length) {
             file.seek(SeekFrom::Start(offset))?;
-            return Ok(Some(offset));
+            return Ok(Some((skipped, offset)));
         }
+        skipped.push(offset);
         at = offset;
     }
     Ok(None)

@@ -16,10 +16,13 @@ const MAX_BYTES: u64 = i32::MAX as u64;
 /// A height that is not there; below [`record::NO_DATA`](super::record::NO_DATA).
 const NO_HEIGHT: f64 = -1e40;
 
-/// Of a field for lengths and heights: what OGR takes for any real number. The text in it is the
-/// shortest that reads back as the same number, and always fits.
+/// Of a field for lengths and heights. The text in it is the shortest that reads back as the same
+/// number, and always fits.
 const NUMBER_WIDTH: u8 = 24;
-const NUMBER_DECIMALS: u8 = 15;
+
+/// What the header of the field states, and tables are shown with. Readers take the text as it
+/// is: a number that needs more decimals has them.
+const NUMBER_DECIMALS: u8 = 6;
 
 const ID_WIDTH: u8 = 10;
 
