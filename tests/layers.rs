@@ -332,6 +332,20 @@ fn reading_goes_on_at_the_next_record_of_the_index() {
 }
 
 #[test]
+fn the_first_damaged_records_are_told_the_rest_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("many.shp");
+    let shapes = (0..15).map(|i| Shape::Points(vec![[f64::from(i), 0.0, f64::NAN]])).collect();
+    shapefile::write_layer(&path, &Layer { shapes, ..Layer::default() }, &[]).unwrap();
+    // Every type code but the first one's.
+    change(&path, |bytes| (1..15).for_each(|i| bytes[100 + 28 * i + 8] = 99));
+    let layer = shapefile::read_layer(&path, None).unwrap();
+    assert_eq!((layer.shapes.len(), layer.warnings.len()), (1, 11));
+    assert_eq!(layer.warnings[0], "record 2 (byte 128): shape type 99 is not one of the format's");
+    assert_eq!(layer.warnings[10], "and 4 more places that could not be read");
+}
+
+#[test]
 fn deleted_rows_take_their_shapes_along() {
     let folder = tempfile::tempdir().unwrap();
     let path = three_lines(folder.path());

@@ -59,9 +59,6 @@ const FILE_CODE: u32 = 9994;
 /// Bytes before the first record.
 const HEADER: u64 = 100;
 
-/// Messages of one kind in a layer's warnings; more are counted.
-const MAX_TOLD: usize = 10;
-
 /// A `.prj` that is longer is something else.
 const MAX_PRJ: u64 = 1 << 20;
 
@@ -100,12 +97,15 @@ fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
         None => None,
     };
     let Walk { records, types, damage, end, mut odd } = walk::walk(&mut file, size, index.as_ref())?;
-    if let Some(first) = damage.first()
+    if let Some(first) = damage.told.first()
         && records.iter().all(|record| record.shape.is_none())
     {
         return Err(Error::format(format!("no record can be read: {first}")).cure("ask for the file again"));
     }
-    tell(&mut warnings, damage);
+    warnings.extend(damage.told);
+    if damage.more > 0 {
+        warnings.push(format!("and {} more places that could not be read", damage.more));
+    }
     tell_types(&mut warnings, header_type.code, &types);
     if z_field.is_some() {
         // Heights of the geometry do not matter then.
@@ -279,15 +279,6 @@ fn join(
         warnings.push(format!("{deleted} records are marked as deleted in the .dbf; left out"));
     }
     shapes
-}
-
-fn tell(warnings: &mut Vec<String>, mut messages: Vec<String>) {
-    let more = messages.len().saturating_sub(MAX_TOLD);
-    messages.truncate(MAX_TOLD);
-    warnings.append(&mut messages);
-    if more > 0 {
-        warnings.push(format!("and {more} more places that could not be read"));
-    }
 }
 
 fn tell_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, usize>) {

@@ -27,11 +27,30 @@ pub(super) struct Walk {
     pub(super) records: Vec<Record>,
     /// How many shapes there are of each type code, null shapes apart.
     pub(super) types: BTreeMap<i32, usize>,
-    /// One line for each place that could not be read.
-    pub(super) damage: Vec<String>,
+    /// Places that could not be read.
+    pub(super) damage: Damage,
     /// Where reading ended, if that was before the end of the file.
     pub(super) end: Option<u64>,
     pub(super) odd: Oddities,
+}
+
+/// Places that could not be read: a line for each of the first, and how many more there are.
+#[derive(Debug, Default)]
+pub(super) struct Damage {
+    pub(super) told: Vec<String>,
+    pub(super) more: usize,
+}
+
+impl Damage {
+    const MAX_TOLD: usize = 10;
+
+    fn add(&mut self, place: &str, why: &str) {
+        if self.told.len() < Self::MAX_TOLD {
+            self.told.push(format!("{place}: {why}"));
+        } else {
+            self.more += 1;
+        }
+    }
 }
 
 /// Reads the records behind the header. A damaged one is left out and told of. Behind a header
@@ -47,11 +66,11 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
     file.seek(SeekFrom::Start(at))?;
     while at < size {
         let number = walk.records.len() + 1;
-        let place = format!("record {number} (byte {at})");
+        let place = || format!("record {number} (byte {at})");
         let (id, length) = match header(file, size - at)? {
             Ok(header) => header,
             Err(why) => {
-                walk.damage.push(format!("{place}: {why}"));
+                walk.damage.add(&place(), &why);
                 let Some((skipped, next)) = resync(file, size, at, index)? else {
                     walk.end = Some(at);
                     break;
@@ -73,12 +92,12 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
                 Some(shape)
             }
             Err(Flaw::Damaged(why)) => {
-                walk.damage.push(format!("{place}: {why}"));
+                walk.damage.add(&place(), &why);
                 None
             }
             Err(Flaw::NotFinite { vertex, axis, value }) => {
                 return Err(Error::format(format!("{axis} of vertex {vertex} is {value}"))
-                    .at(place)
+                    .at(place())
                     .cure("repair the record or take it out, then try again"));
             }
         };
