@@ -36,7 +36,8 @@ where
     G: Coordinates<N>,
     C: Copy + Default,
 {
-    let place = |v: &VertexId| t.geometry().coordinates(t.point(*v)).as_ref().iter().map(|x| (x * 1024.0) as i64).collect();
+    let place =
+        |v: &VertexId| t.geometry().coordinates(t.point(*v)).as_ref().iter().map(|x| (x * 1024.0) as i64).collect();
     t.finite_cells()
         .map(|cell| {
             let mut corners: Vec<Vec<i64>> = t.tds().cell_vertices(cell).iter().map(place).collect();
