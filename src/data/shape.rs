@@ -55,6 +55,16 @@ impl Shape {
             Shape::Triangles(triangles) => Box::new(triangles.iter().flatten()),
         }
     }
+
+    /// Gives every vertex this height.
+    pub fn set_height(&mut self, z: f64) {
+        match self {
+            Shape::Null => {}
+            Shape::Points(points) => points.iter_mut().for_each(|p| p[2] = z),
+            Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter_mut().flatten().for_each(|p| p[2] = z),
+            Shape::Triangles(triangles) => triangles.iter_mut().flatten().for_each(|p| p[2] = z),
+        }
+    }
 }
 
 /// The shapes of a vector file.

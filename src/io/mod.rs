@@ -1,6 +1,11 @@
 //! Formats: bytes to [`data`](crate::data) and back. Knows no triangulation.
 
 pub mod las;
+pub mod contours;
+pub mod geojson;
+pub mod layer;
+pub mod shapefile;
+
 mod output;
 pub mod points;
 pub mod text;

@@ -1,0 +1,465 @@
+//! GeoJSON (RFC 7946, and the 2008 draft with its `crs` member).
+
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::Path;
+
+use serde_json::{Map, Value};
+
+use super::Output;
+use super::contours::ContourSummary;
+use super::layer::no_such_field;
+use super::shapefile::parse_number;
+use crate::crs::{Crs, CrsKind};
+use crate::data::{ContourLine, Layer, Shape};
+use crate::error::{Error, Result};
+
+/// Longitude and latitude on WGS 84, which GeoJSON means where it does not say.
+const WGS_84: u32 = 4326;
+
+type Object = Map<String, Value>;
+
+/// Reads a GeoJSON file: geometries, features and collections of them; the members of a
+/// GeometryCollection become shapes of their own.
+///
+/// With `z_field`, the name of a property in any case, the height of a feature's vertices is the
+/// number in it (or the number in its text), NaN where there is none.
+///
+/// Polygons get the orientation of [`Shape::Polygon`]: outer rings clockwise, holes the other way,
+/// as which is which would be lost otherwise.
+///
+/// The coordinate system is that of the `crs` member; without one it is EPSG:4326, unless a
+/// coordinate cannot be one of longitude and latitude: then it is unknown, with a warning.
+///
+/// # Errors
+/// If the file is no GeoJSON (the message names the feature, or line and column), or no feature
+/// has such a property.
+///
+/// # Complexity
+/// Linear. The file and all its values are in memory while it is read, many times what the shapes take.
+pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
+    let bytes = std::fs::read(path).map_err(|e| Error::from(e).in_file(path))?;
+    parse(&bytes, z_field).map_err(|e| e.in_file(path))
+}
+
+fn parse(bytes: &[u8], z_field: Option<&str>) -> Result<Layer> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let value: Value = serde_json::from_slice(bytes).map_err(|e| {
+        Error::format(format!("not JSON: {e}")).cure("GeoJSON that is cut short cannot be read in part")
+    })?;
+    let Value::Object(root) = value else {
+        return Err(Error::format("not GeoJSON: no object with a type"));
+    };
+    let mut reader = Reader { layer: Layer { format: "GeoJSON".to_owned(), ..Layer::default() }, ..Reader::default() };
+    match kind(&root)? {
+        "FeatureCollection" => {
+            for (i, feature) in array(&root, "features")?.iter().enumerate() {
+                reader.feature(feature, z_field).map_err(|e| e.at(format!("feature {}", i + 1)))?;
+            }
+        }
+        "Feature" => reader.feature_object(&root, z_field)?,
+        _ => reader.geometry(&root, None)?,
+    }
+    reader.finish(&root, z_field)
+}
+
+#[derive(Default)]
+struct Reader {
+    layer: Layer,
+    fields: BTreeSet<String>,
+    /// Features with the property for the height, and those where it is no number.
+    found: usize,
+    not_numbers: usize,
+    first_text: Option<String>,
+}
+
+impl Reader {
+    fn feature(&mut self, feature: &Value, z_field: Option<&str>) -> Result<()> {
+        match feature {
+            Value::Object(object) if kind(object)? == "Feature" => self.feature_object(object, z_field),
+            _ => Err(Error::format("not a Feature")),
+        }
+    }
+
+    fn feature_object(&mut self, feature: &Object, z_field: Option<&str>) -> Result<()> {
+        let none = Map::new();
+        let properties = match feature.get("properties") {
+            Some(Value::Object(properties)) => properties,
+            _ => &none,
+        };
+        for name in properties.keys() {
+            if !self.fields.contains(name) {
+                self.fields.insert(name.clone());
+            }
+        }
+        let height = z_field.map(|name| self.height(properties, name));
+        match feature.get("geometry") {
+            Some(Value::Object(geometry)) => self.geometry(geometry, height),
+            Some(Value::Null) | None => {
+                self.layer.shapes.push(Shape::Null);
+                Ok(())
+            }
+            Some(_) => Err(Error::format("its geometry is no object")),
+        }
+    }
+
+    fn height(&mut self, properties: &Object, name: &str) -> f64 {
+        let value = properties
+            .get(name)
+            .or_else(|| properties.iter().find(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value));
+        self.found += usize::from(value.is_some());
+        let text = match value {
+            None | Some(Value::Null) => return f64::NAN,
+            Some(Value::Number(number)) => return number.as_f64().unwrap_or(f64::NAN),
+            Some(Value::String(text)) => match parse_number(text.trim()) {
+                Ok(z) => return z,
+                Err(text) => text,
+            },
+            Some(other) => other.to_string(),
+        };
+        self.not_numbers += 1;
+        self.first_text.get_or_insert(text);
+        f64::NAN
+    }
+
+    /// Adds a geometry; `height` replaces its heights.
+    fn geometry(&mut self, geometry: &Object, height: Option<f64>) -> Result<()> {
+        let kind = kind(geometry)?;
+        if kind == "GeometryCollection" {
+            for member in array(geometry, "geometries")? {
+                let Value::Object(member) = member else {
+                    return Err(Error::format("a GeometryCollection holds no object"));
+                };
+                self.geometry(member, height)?;
+            }
+            return Ok(());
+        }
+        let coordinates = || array(geometry, "coordinates");
+        let mut shape = match kind {
+            "Point" => {
+                let position = coordinates()?;
+                match position.is_empty() {
+                    true => Shape::Null,
+                    false => Shape::Points(vec![vertex(position)?]),
+                }
+            }
+            "MultiPoint" => Shape::Points(line(coordinates()?)?),
+            "LineString" => Shape::Lines(vec![line(coordinates()?)?]),
+            "MultiLineString" => Shape::Lines(lines(coordinates()?)?),
+            "Polygon" => Shape::Polygon(rings(coordinates()?)?),
+            "MultiPolygon" => {
+                let polygons = coordinates()?.iter().map(|polygon| rings(list(polygon)?));
+                Shape::Polygon(polygons.collect::<Result<Vec<_>>>()?.concat())
+            }
+            other => return Err(Error::format(format!("type {other} is none of GeoJSON's"))),
+        };
+        if let Some(z) = height {
+            shape.set_height(z);
+        }
+        self.layer.shapes.push(shape);
+        Ok(())
+    }
+
+    fn finish(self, root: &Object, z_field: Option<&str>) -> Result<Layer> {
+        let Reader { mut layer, fields, found, not_numbers, first_text } = self;
+        if let Some(name) = z_field {
+            if found == 0 && !layer.shapes.is_empty() {
+                return Err(no_such_field(name, fields.iter().map(String::as_str)));
+            }
+            match first_text {
+                Some(text) if not_numbers == found => {
+                    return Err(Error::usage(format!("property {name} holds no numbers; the first value is {text}")));
+                }
+                Some(text) => layer.warnings.push(format!(
+                    "property {name}: no number in {not_numbers} features (the first: {text}); their shapes have no height"
+                )),
+                None => {}
+            }
+        }
+        layer.fields = fields.into_iter().collect();
+        layer.crs = match root.get("crs") {
+            Some(Value::Null) => None,
+            Some(crs) => named_crs(crs).map_err(|e| layer.warnings.push(format!("crs not used: {e}"))).ok(),
+            None if layer
+                .shapes
+                .iter()
+                .flat_map(Shape::vertices)
+                .all(|v| v[0].abs() <= 180.0 && v[1].abs() <= 90.0) =>
+            {
+                Crs::from_epsg(WGS_84).map_err(|e| layer.warnings.push(format!("crs not used: {e}"))).ok()
+            }
+            None => {
+                layer.warnings.push("no crs member, and its coordinates are not longitude and latitude".to_owned());
+                None
+            }
+        };
+        Ok(layer)
+    }
+}
+
+/// `{"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}`
+fn named_crs(member: &Value) -> Result<Crs> {
+    let name =
+        member["properties"]["name"].as_str().ok_or_else(|| Error::unsupported("a crs that is not given by name"))?;
+    if name.ends_with("CRS84") {
+        return Crs::from_epsg(WGS_84);
+    }
+    match name.rsplit(':').next().map(str::parse) {
+        Some(Ok(code)) if name.to_ascii_uppercase().contains("EPSG") => Crs::from_epsg(code),
+        _ => Crs::from_user(name),
+    }
+}
+
+fn kind(object: &Object) -> Result<&str> {
+    object.get("type").and_then(Value::as_str).ok_or_else(|| Error::format("not GeoJSON: an object without a type"))
+}
+
+fn array<'a>(object: &'a Object, name: &str) -> Result<&'a [Value]> {
+    object
+        .get(name)
+        .and_then(Value::as_array)
+        .map(Vec::as_slice)
+        .ok_or_else(|| Error::format(format!("no array {name}")))
+}
+
+fn list(value: &Value) -> Result<&[Value]> {
+    value.as_array().map(Vec::as_slice).ok_or_else(|| Error::format(format!("{value} where an array should be")))
+}
+
+fn vertex(position: &[Value]) -> Result<[f64; 3]> {
+    let number = |value: &Value| value.as_f64().ok_or_else(|| Error::format(format!("coordinate {value}")));
+    match position {
+        [x, y] => Ok([number(x)?, number(y)?, f64::NAN]),
+        // A null for the height is not allowed, but it is written.
+        [x, y, Value::Null, ..] => Ok([number(x)?, number(y)?, f64::NAN]),
+        [x, y, z, ..] => Ok([number(x)?, number(y)?, number(z)?]),
+        _ => Err(Error::format(format!("a position of {} numbers", position.len()))),
+    }
+}
+
+fn line(positions: &[Value]) -> Result<Vec<[f64; 3]>> {
+    positions.iter().map(|position| vertex(list(position)?)).collect()
+}
+
+fn lines(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
+    parts.iter().map(|part| line(list(part)?)).collect()
+}
+
+/// The rings of one polygon, the first of which is its outer one.
+fn rings(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
+    let mut rings = lines(parts)?;
+    for (i, ring) in rings.iter_mut().enumerate() {
+        if let (Some(&first), Some(&last)) = (ring.first(), ring.last())
+            && first[..2] != last[..2]
+        {
+            ring.push(first);
+        }
+        let clockwise = twice_area(ring) < 0.0;
+        if clockwise != (i == 0) {
+            ring.reverse();
+        }
+    }
+    Ok(rings)
+}
+
+/// Positive for rings that run counter-clockwise.
+fn twice_area(ring: &[[f64; 3]]) -> f64 {
+    let Some(o) = ring.first() else { return 0.0 };
+    // From the first vertex, so that large coordinates do not swallow small rings.
+    ring.windows(2).map(|w| (w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1])).sum()
+}
+
+/// Writes contours as a FeatureCollection of LineStrings with the properties `ID` (from 1) and
+/// `ELEV`, every vertex with the height of its line's level, one feature a line. Numbers read back
+/// as the same numbers. Systems other than EPSG:4326 are named by a `crs` member, which RFC 7946
+/// dropped, but which programs go by.
+///
+/// Lines are written as they come; nothing is kept of them. Lines of fewer than two vertices are
+/// left out.
+///
+/// # Errors
+/// If the file cannot be written; the old one, if any, is then untouched.
+pub fn write_contours(
+    target: &Path,
+    lines: &mut dyn Iterator<Item = ContourLine>,
+    crs: Option<&Crs>,
+) -> Result<ContourSummary> {
+    let mut output = Output::create(target)?;
+    let summary = write(&mut output, lines, crs).map_err(|e| Error::from(e).in_file(target))?;
+    output.commit()?;
+    Ok(summary)
+}
+
+fn write(
+    out: &mut impl Write,
+    lines: &mut dyn Iterator<Item = ContourLine>,
+    crs: Option<&Crs>,
+) -> std::io::Result<ContourSummary> {
+    let mut summary = ContourSummary::default();
+    out.write_all(b"{\"type\":\"FeatureCollection\",")?;
+    match crs.map(|crs| (crs, crs.epsg)) {
+        Some((crs, Some(WGS_84))) if crs.kind == CrsKind::Geographic => {}
+        Some((_, Some(code))) => {
+            let name = format!("urn:ogc:def:crs:EPSG::{code}");
+            write!(out, "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{name}\"}}}},")?;
+        }
+        Some((crs, None)) => summary.warnings.push(format!("GeoJSON cannot name a system without a code: {crs}")),
+        None => {}
+    }
+    out.write_all(b"\"features\":[")?;
+    for line in lines {
+        if line.points.len() < 2 {
+            continue;
+        }
+        let comma = if summary.lines == 0 { "" } else { "," };
+        summary.add(&line);
+        // Negative zero is zero.
+        let level = line.level + 0.0;
+        write!(out, "{comma}\n{{\"type\":\"Feature\",\"properties\":{{\"ID\":{},\"ELEV\":{level}}},", summary.lines)?;
+        out.write_all(b"\"geometry\":{\"type\":\"LineString\",\"coordinates\":[")?;
+        for (i, [x, y]) in line.points.iter().enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            write!(out, "{comma}[{x},{y},{level}]")?;
+        }
+        out.write_all(b"]}}")?;
+    }
+    out.write_all(b"\n]}\n")?;
+    Ok(summary)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Layer> {
+        parse(text.as_bytes(), None)
+    }
+
+    fn features(list: &[&str]) -> String {
+        let list: Vec<String> = list
+            .iter()
+            .enumerate()
+            .map(|(i, geometry)| {
+                format!(r#"{{"type":"Feature","properties":{{"Z":{i}.5,"name":"n"}},"geometry":{geometry}}}"#)
+            })
+            .collect();
+        format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, list.join(","))
+    }
+
+    const LINE: &str = r#"{"type":"LineString","coordinates":[[0,0,1],[2,2,2]]}"#;
+
+    #[test]
+    fn every_geometry() {
+        let text = features(&[
+            r#"{"type":"Point","coordinates":[1,2,3]}"#,
+            r#"{"type":"MultiPoint","coordinates":[[1,2,3],[4,5,6,7]]}"#,
+            LINE,
+            r#"{"type":"MultiLineString","coordinates":[[[0,0,1],[2,2,2]],[]]}"#,
+            "null",
+            r#"{"type":"GeometryCollection","geometries":[{"type":"Point","coordinates":[]},{"type":"Point","coordinates":[1,2,3]}]}"#,
+        ]);
+        let layer = read(&text).unwrap();
+        let line = vec![[0., 0., 1.], [2., 2., 2.]];
+        let point = Shape::Points(vec![[1., 2., 3.]]);
+        assert_eq!(
+            layer.shapes,
+            [
+                point.clone(),
+                Shape::Points(vec![[1., 2., 3.], [4., 5., 6.]]),
+                Shape::Lines(vec![line.clone()]),
+                Shape::Lines(vec![line, vec![]]),
+                Shape::Null,
+                Shape::Null,
+                point,
+            ]
+        );
+        assert_eq!(layer.fields, ["Z", "name"]);
+        let flat = read(r#"{"type":"Point","coordinates":[1,2]}"#).unwrap();
+        assert!(flat.shapes[0].vertices().next().unwrap()[2].is_nan());
+    }
+
+    #[test]
+    fn rings_get_the_order_of_shapefiles() {
+        let [ccw, cw] = ["[[0,0,0],[9,0,0],[9,9,0],[0,0,0]]", "[[1,1,0],[9,9,0],[9,1,0]]"];
+        for [outer, inner] in [[ccw, cw], [cw, ccw], [ccw, ccw], [cw, cw]] {
+            let text = format!(r#"{{"type":"MultiPolygon","coordinates":[[{outer},{inner}],[{outer}]]}}"#);
+            let Shape::Polygon(rings) = read(&text).unwrap().shapes.remove(0) else { panic!() };
+            let signs: Vec<bool> = rings.iter().map(|ring| twice_area(ring) < 0.0).collect();
+            assert_eq!(signs, [true, false, true]);
+            assert!(rings.iter().all(|ring| ring.len() == 4 && ring[0] == ring[3]));
+        }
+    }
+
+    #[test]
+    fn heights_from_a_property() {
+        let text = features(&[LINE, "null", LINE]).replace("2.5", "\"12,5\"");
+        let layer = parse(text.as_bytes(), Some("z")).unwrap();
+        let heights: Vec<f64> = layer.shapes.iter().flat_map(Shape::vertices).map(|v| v[2]).collect();
+        assert_eq!(heights, [0.5, 0.5, 12.5, 12.5]);
+        let error = parse(text.as_bytes(), Some("ELEV")).unwrap_err();
+        assert_eq!(
+            (error.to_string().as_str(), error.cure_text()),
+            ("there is no field ELEV", Some("name one of Z, name"))
+        );
+        let error = parse(text.as_bytes(), Some("name")).unwrap_err();
+        assert_eq!(error.to_string(), "property name holds no numbers; the first value is n");
+        let text = features(&[LINE, LINE]).replace("1.5", "\"high\"");
+        let layer = parse(text.as_bytes(), Some("Z")).unwrap();
+        assert!(layer.warnings[0].contains("no number in 1 features (the first: high)"));
+        let text = features(&[LINE, LINE]).replace("1.5", "null");
+        let layer = parse(text.as_bytes(), Some("Z")).unwrap();
+        assert!(layer.shapes[1].vertices().all(|v| v[2].is_nan()));
+    }
+
+    #[test]
+    fn errors_name_the_place() {
+        for (text, message) in [
+            ("", "not JSON: EOF while parsing a value at line 1 column 0"),
+            ("[]", "not GeoJSON: no object with a type"),
+            ("{}", "not GeoJSON: an object without a type"),
+            (r#"{"type":"Topology"}"#, "type Topology is none of GeoJSON's"),
+            (r#"{"type":"FeatureCollection"}"#, "no array features"),
+            (&features(&[LINE, r#"{"type":"Point","coordinates":[1]}"#]), "feature 2: a position of 1 numbers"),
+            (&features(&[r#"{"type":"Point","coordinates":[1,"a"]}"#]), "feature 1: coordinate \"a\""),
+            (&features(&[r#"{"type":"LineString","coordinates":[1,2]}"#]), "feature 1: 1 where an array should be"),
+            (&features(&["7"]), "feature 1: its geometry is no object"),
+        ] {
+            assert_eq!(read(text).unwrap_err().to_string(), message);
+        }
+        assert!(read(&"[".repeat(100_000)).is_err());
+        let good = features(&[LINE]);
+        assert!((0..good.len()).all(|cut| read(&good[..cut]).is_err()));
+    }
+
+    #[test]
+    fn systems_that_are_not_stated() {
+        let far = read(r#"{"type":"Point","coordinates":[500000,2]}"#).unwrap();
+        assert!(far.crs.is_none() && far.warnings[0].contains("not longitude and latitude"));
+        let unknown = read(r#"{"type":"Point","coordinates":[1,2],"crs":null}"#).unwrap();
+        assert!(unknown.crs.is_none() && unknown.warnings.is_empty());
+        let linked = read(r#"{"type":"Point","coordinates":[1,2],"crs":{"type":"link"}}"#).unwrap();
+        assert!(linked.warnings[0].contains("not given by name"));
+    }
+
+    #[test]
+    fn contours_come_back() {
+        let lines = vec![
+            ContourLine { level: 0.1 + 0.2, points: vec![[1e-9, -0.1], [500_000.123_456_789, 5e6]] },
+            ContourLine { level: -0.0, points: vec![[0., 0.]] },
+            ContourLine { level: -0.0, points: vec![[0., 0.], [1., 0.], [1., 1.], [0., 0.]] },
+        ];
+        let mut bytes = Vec::new();
+        let summary = write(&mut bytes, &mut lines.clone().into_iter(), None).unwrap();
+        assert_eq!((summary.lines, summary.vertices, summary.closed), (2, 6, 1));
+        let layer = parse(&bytes, Some("ELEV")).unwrap();
+        assert_eq!(layer.fields, ["ELEV", "ID"]);
+        for (shape, line) in layer.shapes.iter().zip([&lines[0], &lines[2]]) {
+            let vertices: Vec<[f64; 3]> = line.points.iter().map(|p| [p[0], p[1], line.level]).collect();
+            assert_eq!(*shape, Shape::Lines(vec![vertices]));
+        }
+        assert_eq!(parse(&bytes, None).unwrap().shapes, layer.shapes);
+        let mut bytes = Vec::new();
+        write(&mut bytes, &mut std::iter::empty(), None).unwrap();
+        assert!(parse(&bytes, None).unwrap().shapes.is_empty());
+    }
+}

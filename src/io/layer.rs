@@ -1,0 +1,135 @@
+//! Vector layers of any format.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::{geojson, shapefile};
+use crate::data::Layer;
+use crate::error::{Error, Result};
+
+/// Reads `FILE` or `FILE:FIELD`, by extension and, where that says nothing, by its first bytes.
+/// `FIELD` names the attribute that holds the heights; see [`shapefile::read_layer`] and
+/// [`geojson::read_layer`].
+///
+/// # Errors
+/// If the file is not there or is of another format.
+pub fn read(spec: &str) -> Result<Layer> {
+    let (path, field) = split(spec);
+    if field == Some("") {
+        return Err(Error::usage(format!("{spec}: no field behind the colon")).cure("write FILE or FILE:FIELD"));
+    }
+    match format(&path)? {
+        Format::Shapefile => shapefile::read_layer(&path, field),
+        Format::GeoJson => geojson::read_layer(&path, field),
+        Format::Other => read_other(&path, field),
+    }
+}
+
+/// Takes `FILE:FIELD` apart. A file of the whole name comes first; the colon behind a drive letter
+/// and colons before the last separator belong to the path.
+pub fn split(spec: &str) -> (PathBuf, Option<&str>) {
+    let whole = (PathBuf::from(spec), None);
+    if Path::new(spec).exists() {
+        return whole;
+    }
+    match spec.rsplit_once(':') {
+        Some((path, field)) if path.len() > 1 && !field.contains(['/', '\\']) => (PathBuf::from(path), Some(field)),
+        _ => whole,
+    }
+}
+
+enum Format {
+    Shapefile,
+    GeoJson,
+    Other,
+}
+
+fn format(path: &Path) -> Result<Format> {
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    Ok(match extension.as_deref() {
+        Some("shp") => Format::Shapefile,
+        Some("geojson" | "json") => Format::GeoJson,
+        // Named by a part that holds no shapes.
+        Some(part @ ("shx" | "dbf" | "prj" | "cpg")) => {
+            return Err(Error::usage(format!("a .{part} is a part of a shapefile"))
+                .in_file(path)
+                .cure(format!("name its .shp: {}", path.with_extension("shp").display())));
+        }
+        _ => {
+            let mut first = [0; 4];
+            let read =
+                File::open(path).and_then(|mut file| file.read(&mut first)).map_err(|e| Error::from(e).in_file(path));
+            match read? {
+                4 if first == [0, 0, 0x27, 0x0A] => Format::Shapefile,
+                _ => Format::Other,
+            }
+        }
+    })
+}
+
+/// Formats that GDAL reads; what follows the colon then names a layer, not a field.
+fn read_other(path: &Path, _layer: Option<&str>) -> Result<Layer> {
+    Err(Error::unsupported("not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)")
+        .in_file(path)
+        .cure("build with `--features gdal` to read what GDAL reads"))
+}
+
+/// The error for an attribute that is not there.
+pub(super) fn no_such_field<'a>(name: &str, fields: impl Iterator<Item = &'a str>) -> Error {
+    let fields: Vec<&str> = fields.collect();
+    let error = Error::usage(format!("there is no field {name}"));
+    match fields[..] {
+        [] => error.cure("the file has no fields; heights can only come from its geometry"),
+        _ => error.cure(format!("name one of {}", fields.join(", "))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn specs() {
+        for (spec, path, field) in [
+            ("a.shp", "a.shp", None),
+            ("a.shp:Z", "a.shp", Some("Z")),
+            ("dir/a.shp:RecupZ", "dir/a.shp", Some("RecupZ")),
+            ("C:a.shp", "C:a.shp", None),
+            (r"C:\dir\a.shp", r"C:\dir\a.shp", None),
+            (r"C:\dir\a.shp:Z", r"C:\dir\a.shp", Some("Z")),
+            ("C:/dir/a.shp", "C:/dir/a.shp", None),
+            ("10:30/a.shp", "10:30/a.shp", None),
+            ("10:30/a.shp:Z", "10:30/a.shp", Some("Z")),
+            ("a.shp:", "a.shp", Some("")),
+        ] {
+            assert_eq!(split(spec), (PathBuf::from(path), field), "{spec}");
+        }
+    }
+
+    #[test]
+    fn an_existing_path_wins() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a:Z");
+        std::fs::write(&path, "").unwrap();
+        let spec = path.to_str().unwrap();
+        assert_eq!(split(spec), (path.clone(), None));
+        assert_eq!(split(&format!("{spec}:F")), (path, Some("F")));
+    }
+
+    #[test]
+    fn other_formats_are_refused_with_the_cure() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gpkg");
+        std::fs::write(&path, "SQLite format 3").unwrap();
+        let error = read(&format!("{}:roads", path.display())).unwrap_err();
+        assert!(error.to_string().ends_with(
+            "a.gpkg: not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)"
+        ));
+        assert!(error.cure_text().unwrap().contains("--features gdal"));
+        assert!(read(&format!("{}.shp:", path.display())).unwrap_err().to_string().contains("no field"));
+        assert!(read("nowhere/a.gpkg").unwrap_err().to_string().starts_with("nowhere/a.gpkg: "));
+        let error = read("nowhere/a.dbf").unwrap_err();
+        assert_eq!(error.cure_text(), Some("name its .shp: nowhere/a.shp"));
+    }
+}

@@ -1,0 +1,305 @@
+//! Shapefiles (ESRI Shapefile Technical Description, 1998).
+//!
+//! [`read_layer`] reads what real deliveries hold. The records of the `.shp`, from first to last,
+//! are the truth; every other file may be missing or damaged:
+//!
+//! | | taken from it | missing | damaged |
+//! |---|---|---|---|
+//! | `.shp` | shapes | error | what is whole is read, a warning names each place; an error if nothing is |
+//! | `.shx` | which attribute row a record has; where to go on behind a damaged record | order of the `.shp` | not used, a warning |
+//! | `.dbf` | names, heights if asked for, deleted rows | no fields | a warning; an error if heights are asked for |
+//! | `.prj` | coordinate system | unknown | unknown, a warning |
+//! | `.cpg` | encoding of the names | guessed | guessed |
+//!
+//! Within the `.shp`:
+//!
+//! | found | done |
+//! |---|---|
+//! | counts, part indices or a type that make no sense, in a record of a sane length | that record is left out, a warning |
+//! | a record header that makes no sense, a record that passes the end of the file | reading goes on at the next record of the `.shx`, or ends; a warning |
+//! | x or y not a finite number | an error: the record is well formed, so the value was wrong before it was written |
+//! | z not finite or "no data" (below -1e38) | no height (NaN), a warning with the count |
+//! | null shapes, also with a body; no parts, no points | read as they are |
+//! | a ring that is not closed | closed, a warning |
+//! | types that differ from the header's, or mixed | read, a warning |
+//! | an older copy of a record that the `.shx` lists elsewhere | left out, a warning |
+//!
+//! [`write_contours`] and [`write_layer`] write `.shp`, `.shx`, `.dbf`, `.prj` and `.cpg`, all of
+//! them or none.
+//!
+//! The crate `shapefile` is not used here: it takes counts from the file on trust and stops at the
+//! first damage, its writer puts the day's date into the `.dbf` and drops the errors of closing.
+
+mod index;
+mod patch;
+mod record;
+mod table;
+mod walk;
+mod write;
+
+use std::collections::{BTreeMap, HashSet};
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use crate::crs::Crs;
+use crate::data::{Layer, Shape};
+use crate::error::{Error, Result};
+use index::Index;
+use record::type_name;
+pub(in crate::io) use table::parse_number;
+use table::{Rows, Table};
+use walk::{Record, Walk};
+pub use write::{Column, write_contours, write_layer};
+
+/// First four bytes of a `.shp` and a `.shx`, big-endian.
+const FILE_CODE: u32 = 9994;
+
+/// Bytes before the first record.
+const HEADER: u64 = 100;
+
+/// A `.prj` that is longer is something else.
+const MAX_PRJ: u64 = 1 << 20;
+
+/// Reads a shapefile; `path` names its `.shp`. The files beside it are found in any case of their
+/// extensions.
+///
+/// With `z_field`, the name of an attribute in any case, the height of a shape's vertices is the
+/// number in that field, NaN where there is none; heights of the geometry are not used then. Text
+/// that holds numbers will do, also with a decimal comma.
+///
+/// What is read of damaged files, and what they are refused for, is in the tables of this module.
+///
+/// # Errors
+/// If the file cannot be read, is no shapefile, holds records but none that is whole, or a plan
+/// coordinate that is not finite; if there is no such field.
+///
+/// # Complexity
+/// Linear; the memory of the shapes and of one record.
+pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
+    read(path, z_field).map_err(|e| e.in_file(path))
+}
+
+fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    let mut file = BufReader::with_capacity(1 << 16, file);
+    let header_type = read_header(&mut file, size)?;
+    let mut warnings = header_type.warnings;
+
+    let index = match sibling(path, "shx").map(|path| Index::read(&path)) {
+        Some(Ok(index)) => Some(index),
+        Some(Err(e)) => {
+            warnings.push(format!(".shx not used: {e}"));
+            None
+        }
+        None => None,
+    };
+    let Walk { records, types, damage, end, mut odd } = walk::walk(&mut file, size, index.as_ref())?;
+    if let Some(first) = damage.told.first()
+        && records.iter().all(|record| record.shape.is_none())
+    {
+        return Err(Error::format(format!("no record can be read: {first}")).cure("ask for the file again"));
+    }
+    warnings.extend(damage.told);
+    if damage.more > 0 {
+        warnings.push(format!("and {} more places that could not be read", damage.more));
+    }
+    tell_types(&mut warnings, header_type.code, &types);
+    if z_field.is_some() {
+        // Heights of the geometry do not matter then.
+        odd.no_height = 0;
+    }
+    tell_oddities(&mut warnings, &odd);
+
+    let rows = index.and_then(|index| {
+        let starts: Vec<u64> = records.iter().map(|record| record.offset).collect();
+        index.rows(&starts, end).map_err(|e| warnings.push(format!(".shx not used: {e}"))).ok()
+    });
+    let mut layer = Layer {
+        format: format!("shapefile {}", type_name(header_type.code).unwrap_or("of unknown type")),
+        crs: read_prj(path, &mut warnings)?,
+        ..Layer::default()
+    };
+    let attributes = read_table(path, z_field, records.len(), &mut layer.fields, &mut warnings)?;
+    layer.shapes = join(records, rows, &attributes, &mut warnings);
+    layer.warnings = warnings;
+    Ok(layer)
+}
+
+struct Header {
+    code: i32,
+    warnings: Vec<String>,
+}
+
+fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
+    let mut bytes = [0; HEADER as usize];
+    file.read_exact(&mut bytes)
+        .map_err(|_| Error::format(format!("{size} bytes, the header of a shapefile has {HEADER}")))?;
+    let word = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
+    if u32::from_be_bytes(word(0)) != FILE_CODE {
+        return Err(Error::format(format!(
+            "not a shapefile: it begins with {}, not {FILE_CODE}",
+            u32::from_be_bytes(word(0))
+        )));
+    }
+    let stated = u64::from(u32::from_be_bytes(word(24))) * 2;
+    let mut warnings = Vec::new();
+    // A file that is longer than it says shows in its records, if it matters.
+    if stated > size {
+        warnings.push(format!("its header says {stated} bytes, the file has {size}"));
+    }
+    Ok(Header { code: i32::from_le_bytes(word(32)), warnings })
+}
+
+/// The file beside `path` with this extension, in lower, upper or any mixed case.
+fn sibling(path: &Path, extension: &str) -> Option<PathBuf> {
+    let lower = path.with_extension(extension);
+    if lower.exists() {
+        return Some(lower);
+    }
+    let wanted = lower.file_name()?.to_str()?.to_owned();
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    // Sorted, so that the choice does not depend on the file system.
+    let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.eq_ignore_ascii_case(&wanted)))
+        .collect();
+    found.sort();
+    found.into_iter().next()
+}
+
+fn read_prj(path: &Path, warnings: &mut Vec<String>) -> Result<Option<Crs>> {
+    let Some(path) = sibling(path, "prj") else { return Ok(None) };
+    let mut bytes = Vec::new();
+    File::open(&path)?.take(MAX_PRJ).read_to_end(&mut bytes).map_err(|e| Error::from(e).in_file(&path))?;
+    let text = String::from_utf8_lossy(&bytes);
+    let text = text.trim_start_matches('\u{feff}').trim();
+    if text.is_empty() {
+        return Ok(None);
+    }
+    Ok(Crs::from_wkt(text).map_err(|e| warnings.push(format!(".prj not used: {e}"))).ok())
+}
+
+fn read_table(
+    path: &Path,
+    z_field: Option<&str>,
+    records: usize,
+    fields: &mut Vec<String>,
+    warnings: &mut Vec<String>,
+) -> Result<Rows> {
+    let Some(dbf) = sibling(path, "dbf") else {
+        return match z_field {
+            None => Ok(Rows::default()),
+            Some(name) => Err(Error::usage(format!("there is no .dbf beside it to take field {name} from"))),
+        };
+    };
+    let code_page = sibling(path, "cpg").and_then(|path| std::fs::read_to_string(path).ok());
+    let mut table = match Table::open(&dbf, code_page.as_deref()) {
+        Ok(table) => table,
+        Err(e) if z_field.is_none() => {
+            warnings.push(format!(".dbf not used: {e}"));
+            return Ok(Rows::default());
+        }
+        Err(e) => return Err(e.in_file(dbf)),
+    };
+    *fields = table.fields.iter().map(|field| field.name.clone()).collect();
+    let field = z_field.map(|name| table.find(name)).transpose().map_err(|e| e.in_file(&dbf))?;
+    let room = table.room()?;
+    let rows = table.rows(field.as_ref(), records.saturating_add(1)).map_err(|e| e.in_file(&dbf))?;
+    if table.stated > room {
+        warnings.push(format!(".dbf: its header says {} rows, it has {room}", table.stated));
+    }
+    // One row more was asked for than there are records, to see whether there is one.
+    match rows.deleted.len() {
+        there if there < records => warnings.push(format!(".dbf: {there} rows for {records} records")),
+        there if there > records => {
+            warnings.push(format!(".dbf: {} rows for {records} records", table.stated.max(there as u64)));
+        }
+        _ => {}
+    }
+    if let (Some(field), Some(text)) = (&field, &rows.first_text) {
+        if rows.values.iter().all(|value| value.is_nan()) {
+            return Err(
+                Error::usage(format!("field {} holds no numbers; the first text is '{text}'", field.name)).in_file(dbf)
+            );
+        }
+        warnings.push(format!(
+            "field {}: {} rows hold no number (the first: '{text}'); their shapes have no height",
+            field.name, rows.not_numbers
+        ));
+    }
+    Ok(rows)
+}
+
+/// Gives each record its row: drops what is damaged, stale or deleted, and sets heights.
+fn join(
+    records: Vec<Record>,
+    rows: Option<Vec<Option<usize>>>,
+    attributes: &Rows,
+    warnings: &mut Vec<String>,
+) -> Vec<Shape> {
+    // Where the index leaves out a record but lists another of the same number, an editor wrote
+    // the new one behind the last and left the old one where it was.
+    let listed: HashSet<i32> = match &rows {
+        Some(rows) => records.iter().zip(rows).filter(|(_, row)| row.is_some()).filter_map(|(r, _)| r.number).collect(),
+        None => HashSet::new(),
+    };
+    let (mut stale, mut deleted) = (0, 0);
+    let mut shapes = Vec::with_capacity(records.len());
+    for (place, record) in records.into_iter().enumerate() {
+        let row = match &rows {
+            Some(rows) => rows[place],
+            None => Some(place),
+        };
+        if row.is_none() && record.number.is_some_and(|number| listed.contains(&number)) {
+            stale += 1;
+            continue;
+        }
+        if row.is_some_and(|row| attributes.deleted.get(row) == Some(&true)) {
+            deleted += 1;
+            continue;
+        }
+        let Some(mut shape) = record.shape else { continue };
+        if !attributes.values.is_empty() {
+            let z = row.and_then(|row| attributes.values.get(row)).copied().unwrap_or(f64::NAN);
+            shape.set_height(z);
+        }
+        shapes.push(shape);
+    }
+    if stale > 0 {
+        warnings.push(format!("{stale} records are older copies of others (the .shx does not list them); left out"));
+    }
+    if deleted > 0 {
+        warnings.push(format!("{deleted} records are marked as deleted in the .dbf; left out"));
+    }
+    shapes
+}
+
+fn tell_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, usize>) {
+    if types.keys().all(|&code| code == header) {
+        return;
+    }
+    let name = |code: i32| type_name(code).map_or_else(|| format!("type {code}"), str::to_owned);
+    let list: Vec<String> = types.iter().map(|(&code, count)| format!("{count} {}", name(code))).collect();
+    warnings.push(format!("the header says {}, the records are {}", name(header), list.join(", ")));
+}
+
+fn tell_oddities(warnings: &mut Vec<String>, odd: &record::Oddities) {
+    for (count, what) in [
+        (odd.unclosed, "rings did not end where they began; closed"),
+        (odd.empty_parts, "parts without points; left out"),
+        (odd.loose, "points belong to no part; left out"),
+        (odd.no_height, "points have no height (not a number, or \"no data\")"),
+        (odd.unfilled, "parts of multipatches give no triangles; left out"),
+    ] {
+        if count > 0 {
+            warnings.push(format!("{count} {what}"));
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! The `.dbf` file: names of the attributes, and the numbers of one of them.
+//!
+//! Real tables are sloppy: no terminator behind the field list, row counts that are wrong, a file
+//! that ends early. What can be placed beyond doubt is read; what cannot is an error here, and a
+//! warning to readers that need no attribute.
+
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use crate::error::{Error, Result};
+
+const END_OF_FIELDS: u8 = 0x0D;
+const END_OF_FILE: u8 = 0x1A;
+const DELETED: u8 = b'*';
+
+/// A column.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Field {
+    pub(super) name: String,
+    /// The type letter.
+    kind: u8,
+    /// Place in the row.
+    at: usize,
+    width: usize,
+}
+
+/// An open `.dbf`.
+#[derive(Debug)]
+pub(super) struct Table {
+    file: BufReader<File>,
+    /// In the order of the file.
+    pub(super) fields: Vec<Field>,
+    /// Bytes of a row, with its deletion flag.
+    row: usize,
+    /// What the header says.
+    pub(super) stated: u64,
+}
+
+/// What [`Table::rows`] found.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Rows {
+    /// Whether each row is marked as deleted.
+    pub(super) deleted: Vec<bool>,
+    /// The number in each row, NaN where there is none; empty if no field was asked for.
+    pub(super) values: Vec<f64>,
+    /// Texts that are no numbers.
+    pub(super) not_numbers: usize,
+    /// The first of them.
+    pub(super) first_text: Option<String>,
+}
+
+impl Table {
+    /// Reads the header. `code_page` is the text of the `.cpg` file.
+    ///
+    /// # Errors
+    /// If the rows cannot be told apart.
+    pub(super) fn open(path: &Path, code_page: Option<&str>) -> Result<Self> {
+        let mut file = BufReader::new(File::open(path)?);
+        let mut head = [0; 32];
+        file.read_exact(&mut head).map_err(|_| Error::format("shorter than the 32 bytes of a header"))?;
+        let stated = u32::from_le_bytes([head[4], head[5], head[6], head[7]]);
+        let header = usize::from(u16::from_le_bytes([head[8], head[9]]));
+        let row = usize::from(u16::from_le_bytes([head[10], head[11]]));
+        if head[0] & 7 == 4 {
+            return Err(Error::unsupported("a table of dBase level 7"));
+        }
+        if header < 32 || row == 0 {
+            return Err(Error::format(format!("header of {header} bytes and rows of {row}")));
+        }
+        let mut list = vec![0; header - 32];
+        file.read_exact(&mut list).map_err(|_| Error::format(format!("shorter than its header of {header} bytes")))?;
+        let fields = fields(&list, row, code_page)?;
+        Ok(Table { file, fields, row, stated: u64::from(stated) })
+    }
+
+    /// The field with this name: as written, else in any case.
+    ///
+    /// # Errors
+    /// If there is none, or its type has no numbers; says which fields there are.
+    pub(super) fn find(&self, name: &str) -> Result<Field> {
+        let field = self
+            .fields
+            .iter()
+            .find(|field| field.name == name)
+            .or_else(|| self.fields.iter().find(|field| field.name.eq_ignore_ascii_case(name)))
+            .ok_or_else(|| crate::io::layer::no_such_field(name, self.fields.iter().map(|f| f.name.as_str())))?;
+        match (field.kind, field.width) {
+            (b'N' | b'F' | b'C', _) | (b'I' | b'+', 4) | (b'B' | b'O' | b'Y', 8) => Ok(field.clone()),
+            (kind, width) => Err(Error::usage(format!(
+                "field {} holds no numbers (its type is '{}', {width} bytes)",
+                field.name,
+                kind.escape_ascii()
+            ))),
+        }
+    }
+
+    /// Reads the rows that are there, whatever their stated count, but not more than `limit`.
+    ///
+    /// # Errors
+    /// If reading fails.
+    pub(super) fn rows(&mut self, field: Option<&Field>, limit: usize) -> Result<Rows> {
+        let mut rows = Rows::default();
+        let mut row = vec![0; self.row];
+        while rows.deleted.len() < limit {
+            let got = fill(&mut self.file, &mut row)?;
+            // A last row that lacks its end still counts, as long as the field is there.
+            let needed = field.map_or(1, |field| field.at + field.width);
+            let cut = got < row.len() && !matches!(row[0], b' ' | DELETED);
+            if got < needed || cut || row[0] == END_OF_FILE {
+                break;
+            }
+            rows.deleted.push(row[0] == DELETED);
+            if let Some(field) = field {
+                let cell = &row[field.at..field.at + field.width];
+                let value = number(field.kind, cell).unwrap_or_else(|text| {
+                    rows.not_numbers += 1;
+                    rows.first_text.get_or_insert(text);
+                    f64::NAN
+                });
+                rows.values.push(value);
+            }
+        }
+        Ok(rows)
+    }
+
+    /// How many whole rows the file has room for.
+    pub(super) fn room(&mut self) -> Result<u64> {
+        let here = self.file.stream_position()?;
+        let end = self.file.seek(SeekFrom::End(0))?;
+        self.file.seek(SeekFrom::Start(here))?;
+        Ok(end.saturating_sub(here) / self.row as u64)
+    }
+}
+
+/// The fields of the descriptors in `list`, which ends at its terminator or, as in sloppy files,
+/// without one.
+fn fields(list: &[u8], row: usize, code_page: Option<&str>) -> Result<Vec<Field>> {
+    let descriptors: Vec<&[u8; 32]> =
+        list.as_chunks::<32>().0.iter().take_while(|bytes| bytes[0] != END_OF_FIELDS && bytes[0] != 0).collect();
+    let plain = |bytes: &[u8; 32]| usize::from(bytes[16]);
+    // Clipper keeps the high byte of a long text's width where numbers have their decimals.
+    let long = |bytes: &[u8; 32]| plain(bytes) + if bytes[11] == b'C' { usize::from(bytes[17]) << 8 } else { 0 };
+    let sum = |width: &dyn Fn(&[u8; 32]) -> usize| 1 + descriptors.iter().map(|bytes| width(bytes)).sum::<usize>();
+    let width: &dyn Fn(&[u8; 32]) -> usize = match row {
+        _ if sum(&plain) == row => &plain,
+        _ if sum(&long) == row => &long,
+        _ => {
+            return Err(Error::format(format!("its fields take {} bytes of a row, its rows have {row}", sum(&plain))));
+        }
+    };
+    let mut at = 1;
+    Ok(descriptors
+        .iter()
+        .map(|bytes| {
+            let name = bytes[..11].split(|&b| b == 0).next().unwrap_or_default();
+            let field = Field { name: decode(name, code_page), kind: bytes[11], at, width: width(bytes) };
+            at += field.width;
+            field
+        })
+        .collect())
+}
+
+/// Text in the encoding of the `.cpg` file; without one, UTF-8 if it is that, else Windows-1252.
+fn decode(bytes: &[u8], code_page: Option<&str>) -> String {
+    let utf8 =
+        code_page.is_some_and(|page| matches!(page.trim().to_ascii_uppercase().as_str(), "UTF-8" | "UTF8" | "65001"));
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) if utf8 => String::from_utf8_lossy(bytes).into_owned(),
+        Err(_) => bytes.iter().map(|&byte| windows_1252(byte)).collect(),
+    };
+    text.trim().to_owned()
+}
+
+fn windows_1252(byte: u8) -> char {
+    // 0x80 to 0x9F; the five unused codes stay what Latin-1 makes of them.
+    const HIGH: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
+    match byte {
+        0x80..=0x9F => HIGH.chars().nth(usize::from(byte) - 0x80).unwrap_or(char::from(byte)),
+        _ => char::from(byte),
+    }
+}
+
+/// The number in a cell: NaN if it is empty (also: filled with stars, as where a number did not
+/// fit), the text itself if it is something else.
+fn number(kind: u8, cell: &[u8]) -> std::result::Result<f64, String> {
+    if let (b'I' | b'+', Ok(bytes)) = (kind, cell.try_into()) {
+        return Ok(f64::from(i32::from_le_bytes(bytes)));
+    }
+    if let (b'B' | b'O' | b'Y', Ok(bytes)) = (kind, cell.try_into()) {
+        return Ok(match kind {
+            b'Y' => i64::from_le_bytes(bytes) as f64 / 10_000.0,
+            _ => f64::from_le_bytes(bytes),
+        });
+    }
+    let text = String::from_utf8_lossy(cell);
+    parse_number(text.trim_matches(|c: char| c.is_whitespace() || c == '\0'))
+}
+
+/// A number as people write it into tables: with a point or a comma before its decimals. NaN for
+/// nothing, and for stars.
+pub(in crate::io) fn parse_number(text: &str) -> std::result::Result<f64, String> {
+    if text.chars().all(|c| c == '*') {
+        return Ok(f64::NAN);
+    }
+    match text.replacen(',', ".", 1).parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Ok(f64::NAN),
+        Err(_) => Err(text.to_owned()),
+    }
+}
+
+/// Reads until the buffer is full or the file ends; says how far.
+fn fill(file: &mut impl Read, buffer: &mut [u8]) -> Result<usize> {
+    let mut got = 0;
+    while got < buffer.len() {
+        match file.read(&mut buffer[got..]) {
+            Ok(0) => break,
+            Ok(n) => got += n,
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(e.into()),
+        }
+    }
+    Ok(got)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    fn table(fields: &[(&str, u8, u8)], terminator: &[u8], rows: &[&str], stated: u32) -> tempfile::NamedTempFile {
+        let row: usize = 1 + fields.iter().map(|f| usize::from(f.2)).sum::<usize>();
+        let mut bytes = vec![3, 70, 1, 1];
+        bytes.extend(stated.to_le_bytes());
+        bytes.extend(((32 + 32 * fields.len() + terminator.len()) as u16).to_le_bytes());
+        bytes.extend((row as u16).to_le_bytes());
+        bytes.resize(32, 0);
+        for (name, kind, width) in fields {
+            let from = bytes.len();
+            bytes.extend(name.bytes());
+            bytes.resize(from + 11, 0);
+            bytes.push(*kind);
+            bytes.resize(from + 16, 0);
+            bytes.push(*width);
+            bytes.resize(from + 32, 0);
+        }
+        bytes.extend(terminator);
+        rows.iter().for_each(|row| bytes.extend(row.bytes()));
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(&bytes).unwrap();
+        file
+    }
+
+    fn values(file: &tempfile::NamedTempFile, name: &str) -> Rows {
+        let mut table = Table::open(file.path(), None).unwrap();
+        let field = table.find(name).unwrap();
+        table.rows(Some(&field), 100).unwrap()
+    }
+
+    #[test]
+    fn numbers_in_all_dresses() {
+        let rows = ["   12.5   ab", " -3,25  1e2 ", " ******     ", "*1      no  ", "        7\0\0\0"];
+        let file = table(&[("ELEV", b'N', 7), ("TEXT", b'C', 4)], b"\r", &rows, 5);
+        let found = values(&file, "elev");
+        assert_eq!(found.values[..2], [12.5, -3.25]);
+        assert!(found.values[2].is_nan() && found.values[4].is_nan());
+        assert_eq!(found.deleted, [false, false, false, true, false]);
+        let texts = values(&file, "Text");
+        assert_eq!((texts.not_numbers, texts.first_text.as_deref()), (2, Some("ab")));
+        assert_eq!((texts.values[1], texts.values[4]), (100.0, 7.0));
+    }
+
+    #[test]
+    fn sloppy_headers_and_counts() {
+        for terminator in [&b"\r"[..], b"\n", b"", b"\r\0"] {
+            for stated in [0, 2, 99] {
+                let file = table(&[("Z", b'N', 3)], terminator, &["   1", "   2", "\u{1a}"], stated);
+                assert_eq!(values(&file, "z").values, [1.0, 2.0], "{terminator:?} {stated}");
+            }
+        }
+        // The last row is cut, behind the field and in it.
+        let file = table(&[("Z", b'N', 2), ("T", b'C', 3)], b"\r", &[" 10abc", " 20a"], 2);
+        assert_eq!((values(&file, "Z").values.len(), values(&file, "T").values.len()), (2, 1));
+        assert_eq!(Table::open(file.path(), None).unwrap().room().unwrap(), 1);
+    }
+
+    #[test]
+    fn rows_that_cannot_be_placed_are_refused() {
+        let file = table(&[("Z", b'N', 3)], b"\r", &["   1"], 1);
+        let mut bytes = std::fs::read(file.path()).unwrap();
+        bytes[10] = 7;
+        let mut bad = tempfile::NamedTempFile::new().unwrap();
+        bad.write_all(&bytes).unwrap();
+        let text = Table::open(bad.path(), None).unwrap_err().to_string();
+        assert_eq!(text, "its fields take 4 bytes of a row, its rows have 7");
+        for cut in 0..65 {
+            let mut bad = tempfile::NamedTempFile::new().unwrap();
+            bad.write_all(&bytes[..cut]).unwrap();
+            assert!(Table::open(bad.path(), None).is_err(), "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn unknown_fields_and_types() {
+        let file = table(&[("Z", b'N', 3), ("DAY", b'D', 8)], b"\r", &[], 0);
+        let table = Table::open(file.path(), None).unwrap();
+        let error = table.find("ELEV").unwrap_err();
+        assert_eq!(error.to_string(), "there is no field ELEV");
+        assert_eq!(error.cure_text(), Some("name one of Z, DAY"));
+        assert_eq!(table.find("day").unwrap_err().to_string(), "field DAY holds no numbers (its type is 'D', 8 bytes)");
+    }
+
+    #[test]
+    fn names_in_their_encoding() {
+        assert_eq!(decode(b"H\xf6he", None), "Höhe");
+        assert_eq!(decode("Höhe".as_bytes(), None), "Höhe");
+        assert_eq!(decode(b"\x80", Some("1252")), "€");
+        assert_eq!(decode(b"H\xf6he", Some("utf-8")), "H\u{fffd}he");
+    }
+}

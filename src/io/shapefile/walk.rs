@@ -1,0 +1,143 @@
+//! From record to record through a `.shp` file.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+
+use super::index::Index;
+use super::record::{self, Flaw, Oddities, Parsed};
+use crate::data::Shape;
+use crate::error::{Error, Result};
+
+/// A record that was found, readable or not.
+#[derive(Debug)]
+pub(super) struct Record {
+    /// Of its header, in bytes.
+    pub(super) offset: u64,
+    /// What its header calls it; `None` if the header is damaged.
+    pub(super) number: Option<i32>,
+    /// `None` if it is damaged.
+    pub(super) shape: Option<Shape>,
+}
+
+/// All that a `.shp` has.
+#[derive(Debug, Default)]
+pub(super) struct Walk {
+    /// In the order of the file.
+    pub(super) records: Vec<Record>,
+    /// How many shapes there are of each type code, null shapes apart.
+    pub(super) types: BTreeMap<i32, usize>,
+    /// Places that could not be read.
+    pub(super) damage: Damage,
+    /// Where reading ended, if that was before the end of the file.
+    pub(super) end: Option<u64>,
+    pub(super) odd: Oddities,
+}
+
+/// Places that could not be read: a line for each of the first, and how many more there are.
+#[derive(Debug, Default)]
+pub(super) struct Damage {
+    pub(super) told: Vec<String>,
+    pub(super) more: usize,
+}
+
+impl Damage {
+    const MAX_TOLD: usize = 10;
+
+    fn add(&mut self, place: &str, why: &str) {
+        if self.told.len() < Self::MAX_TOLD {
+            self.told.push(format!("{place}: {why}"));
+        } else {
+            self.more += 1;
+        }
+    }
+}
+
+/// Reads the records behind the header. A damaged one is left out and told of. Behind a header
+/// that makes no sense the next record that `index` lists and whose length agrees is sought;
+/// without one the walk ends there.
+///
+/// # Errors
+/// If reading fails, or a coordinate is not a number.
+pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>) -> Result<Walk> {
+    let mut walk = Walk::default();
+    let mut content = Vec::new();
+    let mut at = super::HEADER;
+    file.seek(SeekFrom::Start(at))?;
+    while at < size {
+        let number = walk.records.len() + 1;
+        let place = || format!("record {number} (byte {at})");
+        let (id, length) = match header(file, size - at)? {
+            Ok(header) => header,
+            Err(why) => {
+                walk.damage.add(&place(), &why);
+                let Some((skipped, next)) = resync(file, size, at, index)? else {
+                    walk.end = Some(at);
+                    break;
+                };
+                let lost = |offset| Record { offset, number: None, shape: None };
+                walk.records.extend([at].into_iter().chain(skipped).map(lost));
+                at = next;
+                continue;
+            }
+        };
+        content.clear();
+        // Not `vec![0; length]`: what is not there is not allocated.
+        file.by_ref().take(length).read_to_end(&mut content)?;
+        let shape = match record::parse(&content, &mut walk.odd) {
+            Ok(Parsed { code, shape }) => {
+                if code != 0 {
+                    *walk.types.entry(code).or_default() += 1;
+                }
+                Some(shape)
+            }
+            Err(Flaw::Damaged(why)) => {
+                walk.damage.add(&place(), &why);
+                None
+            }
+            Err(Flaw::NotFinite { vertex, axis, value }) => {
+                return Err(Error::format(format!("{axis} of vertex {vertex} is {value}"))
+                    .at(place())
+                    .cure("repair the record or take it out, then try again"));
+            }
+        };
+        walk.records.push(Record { offset: at, number: Some(id), shape });
+        at += 8 + length;
+    }
+    Ok(walk)
+}
+
+/// A record's number and the length of its content; or why it cannot be a record.
+fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u64), String>> {
+    if left < 8 {
+        return Ok(Err(format!("{left} bytes, too few for a record")));
+    }
+    let mut bytes = [0; 8];
+    file.read_exact(&mut bytes)?;
+    let [a, b, c, d, e, f, g, h] = bytes;
+    let length = 2 * i64::from(i32::from_be_bytes([e, f, g, h]));
+    Ok(match u64::try_from(length) {
+        Ok(length) if length > left - 8 => {
+            Err(format!("content of {length} bytes passes the end of the file, which has {} more", left - 8))
+        }
+        Ok(length) if length >= 4 => Ok((i32::from_be_bytes([a, b, c, d]), length)),
+        _ => Err(format!("content of {length} bytes")),
+    })
+}
+
+/// The next record that the index knows, where the file then stands, and those before it that are
+/// listed, but are not there.
+fn resync(file: &mut BufReader<File>, size: u64, from: u64, index: Option<&Index>) -> Result<Option<(Vec<u64>, u64)>> {
+    let mut skipped = Vec::new();
+    let mut at = from;
+    while let Some((offset, length)) = index.and_then(|index| index.next_after(at)).filter(|next| next.0 < size) {
+        file.seek(SeekFrom::Start(offset))?;
+        if header(file, size - offset)?.is_ok_and(|found| found.1 == length) {
+            file.seek(SeekFrom::Start(offset))?;
+            return Ok(Some((skipped, offset)));
+        }
+        skipped.push(offset);
+        at = offset;
+    }
+    Ok(None)
+}
