@@ -202,6 +202,16 @@ impl ToPixels {
         [self.columns[0] * x + self.columns[1] * y, self.rows[0] * x + self.rows[1] * y]
     }
 
+    /// What one unit of the map along x changes in column and row.
+    pub fn along_x(&self) -> [f64; 2] {
+        [self.columns[0], self.rows[0]]
+    }
+
+    /// What one unit of the map along y changes in column and row.
+    pub fn along_y(&self) -> [f64; 2] {
+        [self.columns[1], self.rows[1]]
+    }
+
     /// The gradient per unit of the map of what changes by `(per_column, per_row)`.
     pub fn gradient(&self, per_column: f64, per_row: f64) -> [f64; 2] {
         [per_column * self.columns[0] + per_row * self.rows[0], per_column * self.columns[1] + per_row * self.rows[1]]

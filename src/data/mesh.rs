@@ -227,7 +227,7 @@ fn folded(one: HalfEdge, other: HalfEdge, faces: &[[u32; 3]]) -> Error {
 }
 
 /// Twice the signed area in plan: its sign is exact.
-fn orientation([a, b, c]: [[f64; 3]; 3]) -> f64 {
+pub(crate) fn orientation([a, b, c]: [[f64; 3]; 3]) -> f64 {
     let left = (a[0] - c[0]) * (b[1] - c[1]);
     let right = (a[1] - c[1]) * (b[0] - c[0]);
     let det = left - right;

@@ -19,6 +19,7 @@ pub use contour_line::ContourLine;
 pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
 pub use grid::{BlockSource, Grid};
 pub use mesh::Mesh;
+pub(crate) use mesh::orientation;
 pub use points::{PointBatch, PointFlags, PointInfo, PointSource};
 pub use shape::{Layer, Shape, ShapeKind};
 pub use surface::Surface;
