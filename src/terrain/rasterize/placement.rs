@@ -90,11 +90,12 @@ impl Axis {
     pub(super) fn cells(&self, low: f64, high: f64) -> std::ops::Range<usize> {
         // `Frame::checked` keeps a center within 2^-13 of a cell of its place.
         const SLACK: f64 = 1e-3;
-        let first = ((low - self.origin) * self.per_step - (0.5 + SLACK)).ceil();
-        let last = ((high - self.origin) * self.per_step - (0.5 - SLACK)).floor();
-        // Casts saturate: negative numbers become 0, and NaN too.
-        let end = if last < 0.0 { 0 } else { (last as usize).saturating_add(1).min(self.count) };
-        (first as usize).min(end)..end
+        let first = (low - self.origin) * self.per_step - (0.5 + SLACK);
+        let end = (high - self.origin) * self.per_step + (0.5 + SLACK);
+        let whole = truncated(first);
+        let first = whole + usize::from((whole as f64) < first);
+        let end = truncated(end).min(self.count);
+        first.min(end)..end
     }
 }
 
@@ -145,7 +146,16 @@ impl Centers {
     /// Right but for one cell where rounding shows: the walks above are short.
     #[inline]
     fn guess(&self, value: f64) -> usize {
-        let cell = ((value - self.axis.origin) * self.axis.per_step - 0.5 - self.first as f64).ceil();
-        (cell as usize).min(self.values.len())
+        let cell = (value - self.axis.origin) * self.axis.per_step + 0.5 - self.first as f64;
+        truncated(cell).min(self.values.len())
     }
+}
+
+/// Rounds down to a cell; 0 for what is negative, and for NaN.
+///
+/// PERF: one instruction on the baseline x86-64, where `floor` is a call into the C library and a
+/// cast to `usize` takes five. `MAX_SIDE` fits.
+#[inline]
+fn truncated(value: f64) -> usize {
+    (value as i32).max(0) as usize
 }
