@@ -1,7 +1,7 @@
 //! The raster of a surface: what its cells hold, and that nothing else matters.
 
 use breakline::data::{BlockSource, Frame, Grid, Mesh, Surface, Window};
-use breakline::terrain::Dem;
+use breakline::terrain::{Dem, Hillshade, Light};
 use rayon::prelude::*;
 
 /// SplitMix64 from a fixed seed.
@@ -311,4 +311,68 @@ fn refuses_frames_and_windows_that_make_no_sense() {
     let mut block = vec![0.0; 4];
     let error = dem.fill(Window { column: 5, row: 0, width: 2, height: 2 }, &mut block).unwrap_err();
     assert_eq!(error.to_string(), "a window of 2 x 2 cells at column 5 and row 0 of a raster of 6 x 6");
+}
+
+/// Writes an Arc/Info ASCII grid, which needs nothing of ours.
+fn ascii_grid(grid: &Grid) -> String {
+    let Frame { width, height, transform: t } = grid.frame;
+    let bottom = t[3] + height as f64 * t[5];
+    let mut text =
+        format!("ncols {width}\nnrows {height}\nxllcorner {}\nyllcorner {bottom}\ncellsize {}\n", t[0], t[1]);
+    text.push_str("NODATA_value -9999\n");
+    for row in grid.values.chunks(width) {
+        let row: Vec<String> = row.iter().map(|v| if v.is_nan() { "-9999".into() } else { v.to_string() }).collect();
+        text.push_str(&row.join(" "));
+        text.push('\n');
+    }
+    text
+}
+
+#[test]
+fn hillshades_are_those_of_gdaldem() {
+    let frame = Frame::north_up(500_000.0, 5_400_000.0, 2.5, 90, 70);
+    let values = (0..90 * 70)
+        .map(|i| {
+            let (x, y) = (f64::from(i % 90), f64::from(i / 90));
+            let hole = (x - 40.0).hypot(y - 30.0) < 6.0;
+            if hole { f64::NAN } else { f64::from((40.0 * (x / 9.0).sin() * (y / 7.0).cos() + x - y) as f32) }
+        })
+        .collect();
+    let grid = Grid { frame, crs: None, values };
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("dem.asc"), folder.path().join("shade.asc"));
+    std::fs::write(&input, ascii_grid(&grid)).unwrap();
+    for (options, light) in [
+        (&[][..], Light::default()),
+        (&["-az", "100", "-alt", "25", "-z", "0.4"], Light { azimuth: 100.0, altitude: 25.0, z_factor: 0.4 }),
+    ] {
+        let run = std::process::Command::new("gdaldem")
+            .args(["hillshade", "-q", "-of", "AAIGrid"])
+            .args([&input, &output])
+            .args(options)
+            .output();
+        let Ok(run) = run else {
+            eprintln!("skipped: gdaldem is not here");
+            return;
+        };
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let text = std::fs::read_to_string(&output).unwrap();
+        let numbers: Vec<f64> = text
+            .lines()
+            .filter(|line| !line.starts_with(|c: char| c.is_alphabetic()))
+            .flat_map(str::split_whitespace)
+            .map(|word| word.parse().unwrap())
+            .collect();
+        let ours = Grid::collect(&Hillshade::new(&grid, light).unwrap()).unwrap().values;
+        assert_eq!(numbers.len(), ours.len());
+        let mut compared = 0;
+        for (i, (theirs, ours)) in numbers.iter().zip(&ours).enumerate() {
+            // gdaldem leaves out the border of the data.
+            if *theirs != 0.0 {
+                assert!((theirs - ours).abs() <= 1.0, "{ours} in cell {i}, gdaldem says {theirs}");
+                compared += 1;
+            }
+        }
+        assert!(compared > 5500, "{compared}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Formats: bytes to [`data`](crate::data) and back. Knows no triangulation.
 
+pub mod mesh;
 mod output;
 
 pub use output::Output;
