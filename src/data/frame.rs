@@ -1,3 +1,13 @@
+use super::Bounds;
+use crate::error::{Error, Result};
+
+/// The most columns or rows of a frame: what GDAL can count.
+pub const MAX_SIDE: usize = i32::MAX as usize;
+
+/// Pixels are at least this much wider than the distance of neighboring numbers at their
+/// coordinates: cell centers then stay within 2^-13 of a cell of where they should be.
+const MIN_PIXEL: f64 = (1u64 << 13) as f64;
+
 /// The size and place of a raster.
 ///
 /// `transform` is in GDAL's order and meaning: the outer corner of the first pixel is at
@@ -33,14 +43,116 @@ impl Frame {
         Frame { width, height, transform: [left, resolution, 0.0, top, 0.0, -resolution] }
     }
 
-    /// The coordinates of a place given in pixels (`column + 0.5` is a cell's centre).
+    /// The smallest north-up frame around `bounds` whose lines are multiples of `resolution`.
+    ///
+    /// Frames of neighboring tiles share their grid. The multiples are those that decimals give:
+    /// 0.1 x 3 is 0.3.
+    ///
+    /// # Errors
+    /// If the resolution is not a positive number or too fine for the coordinates, the bounds are
+    /// empty or not finite, or a side passes [`MAX_SIDE`].
+    pub fn snapped(bounds: &Bounds, resolution: f64) -> Result<Self> {
+        check_extent(bounds, resolution)?;
+        let left = whole_below(bounds.min[0] / resolution);
+        let right = whole_above(bounds.max[0] / resolution).max(left + 1.0);
+        let bottom = whole_below(bounds.min[1] / resolution);
+        let top = whole_above(bounds.max[1] / resolution).max(bottom + 1.0);
+        let (width, height) = size(right - left, top - bottom)?;
+        let corner = (multiple(left, resolution), multiple(top, resolution));
+        Frame::north_up(corner.0, corner.1, resolution, width, height).checked()
+    }
+
+    /// A north-up frame with its outer top left corner at that of `bounds`, and as many whole cells
+    /// as it takes to cover them.
+    ///
+    /// # Errors
+    /// As [`snapped`](Frame::snapped).
+    pub fn covering(bounds: &Bounds, resolution: f64) -> Result<Self> {
+        check_extent(bounds, resolution)?;
+        let cells = |axis: usize| whole_above((bounds.max[axis] - bounds.min[axis]) / resolution).max(1.0);
+        let (width, height) = size(cells(0), cells(1))?;
+        Frame::north_up(bounds.min[0], bounds.max[1], resolution, width, height).checked()
+    }
+
+    /// The smallest frame around `bounds` on the grid of `other`, continued beyond its edges.
+    ///
+    /// # Errors
+    /// If the bounds are empty or not finite, `other` cannot be inverted, or a side passes
+    /// [`MAX_SIDE`].
+    pub fn aligned_to(other: &Frame, bounds: &Bounds) -> Result<Self> {
+        check_bounds(bounds)?;
+        let to_pixels = other.checked()?.inverse();
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for (x, y) in [
+            (bounds.min[0], bounds.min[1]),
+            (bounds.max[0], bounds.min[1]),
+            (bounds.min[0], bounds.max[1]),
+            (bounds.max[0], bounds.max[1]),
+        ] {
+            for (i, value) in to_pixels.apply(x, y).into_iter().enumerate() {
+                low[i] = low[i].min(value);
+                high[i] = high[i].max(value);
+            }
+        }
+        let low = low.map(whole_below);
+        let cells = |i: usize| whole_above(high[i]).max(low[i] + 1.0) - low[i];
+        let (width, height) = size(cells(0), cells(1))?;
+        let mut transform = other.transform;
+        [transform[0], transform[3]] = other.to_map(low[0], low[1]);
+        Frame { width, height, transform }.checked()
+    }
+
+    /// The frame itself, if it can be worked with.
+    ///
+    /// # Errors
+    /// If it has no cell, a side passes [`MAX_SIDE`], the transform is not finite or has no
+    /// inverse, or the pixels are too small for numbers to tell their centers apart.
+    pub fn checked(self) -> Result<Self> {
+        let (width, height) = (self.width, self.height);
+        if width == 0 || height == 0 {
+            return Err(Error::usage(format!("a raster of {width} x {height} cells")));
+        }
+        if width > MAX_SIDE || height > MAX_SIDE {
+            return Err(too_large(width as f64, height as f64));
+        }
+        let t = &self.transform;
+        if t.iter().any(|v| !v.is_finite()) {
+            return Err(Error::format(format!("the geotransform {t:?} is not finite")));
+        }
+        let determinant = t[1] * t[5] - t[2] * t[4];
+        let pixel = determinant.abs() / t[1].hypot(t[4]).max(t[2].hypot(t[5]));
+        if pixel.is_nan() || pixel <= 0.0 {
+            return Err(Error::format(format!("the geotransform {t:?} has no inverse")));
+        }
+        let end = self.to_map(width as f64, height as f64);
+        let largest = [t[0], t[3], end[0], end[1]].into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let finest = largest * f64::EPSILON * MIN_PIXEL;
+        if pixel < finest {
+            return Err(Error::usage(format!("cells of {pixel:.3e} are too small for coordinates of {largest}"))
+                .cure(format!("take a resolution above {finest:.3e}")));
+        }
+        Ok(self)
+    }
+
+    /// The coordinates of a place given in pixels (`column + 0.5` is a cell's center).
     pub fn to_map(&self, column: f64, row: f64) -> [f64; 2] {
         let t = &self.transform;
         [t[0] + column * t[1] + row * t[2], t[3] + column * t[4] + row * t[5]]
     }
 
-    /// The centre of a cell.
-    pub fn centre(&self, column: usize, row: usize) -> [f64; 2] {
+    /// The way back from coordinates to pixels.
+    pub fn inverse(&self) -> ToPixels {
+        let t = &self.transform;
+        let determinant = t[1] * t[5] - t[2] * t[4];
+        ToPixels {
+            corner: [t[0], t[3]],
+            columns: [t[5] / determinant, -t[2] / determinant],
+            rows: [-t[4] / determinant, t[1] / determinant],
+        }
+    }
+
+    /// The center of a cell.
+    pub fn center(&self, column: usize, row: usize) -> [f64; 2] {
         self.to_map(column as f64 + 0.5, row as f64 + 0.5)
     }
 
@@ -48,5 +160,184 @@ impl Frame {
     pub fn is_north_up(&self) -> bool {
         let t = &self.transform;
         t[2] == 0.0 && t[4] == 0.0 && t[1] > 0.0 && t[5] < 0.0
+    }
+
+    /// The whole raster as a window.
+    pub fn window(&self) -> Window {
+        Window { column: 0, row: 0, width: self.width, height: self.height }
+    }
+
+    /// Whether `window` lies inside and has `cells` cells.
+    ///
+    /// # Errors
+    /// If not; the message says which.
+    pub fn check_window(&self, window: Window, cells: usize) -> Result<()> {
+        let Window { column, row, width, height } = window;
+        let inside = |first: usize, count: usize, limit: usize| first <= limit && count <= limit - first;
+        if !inside(column, width, self.width) || !inside(row, height, self.height) {
+            return Err(Error::usage(format!(
+                "a window of {width} x {height} cells at column {column} and row {row} of a raster of {} x {}",
+                self.width, self.height
+            )));
+        }
+        if width.checked_mul(height) != Some(cells) {
+            return Err(Error::usage(format!("a block of {cells} values for {width} x {height} cells")));
+        }
+        Ok(())
+    }
+}
+
+/// From coordinates to pixels: the inverse of a frame's transform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToPixels {
+    corner: [f64; 2],
+    columns: [f64; 2],
+    rows: [f64; 2],
+}
+
+impl ToPixels {
+    /// Column and row of a place; the center of the first cell is `[0.5, 0.5]`.
+    pub fn apply(&self, x: f64, y: f64) -> [f64; 2] {
+        let (x, y) = (x - self.corner[0], y - self.corner[1]);
+        [self.columns[0] * x + self.columns[1] * y, self.rows[0] * x + self.rows[1] * y]
+    }
+
+    /// What one unit of the map along x changes in column and row.
+    pub fn along_x(&self) -> [f64; 2] {
+        [self.columns[0], self.rows[0]]
+    }
+
+    /// What one unit of the map along y changes in column and row.
+    pub fn along_y(&self) -> [f64; 2] {
+        [self.columns[1], self.rows[1]]
+    }
+
+    /// The gradient per unit of the map of what changes by `(per_column, per_row)`.
+    pub fn gradient(&self, per_column: f64, per_row: f64) -> [f64; 2] {
+        [per_column * self.columns[0] + per_row * self.rows[0], per_column * self.columns[1] + per_row * self.rows[1]]
+    }
+}
+
+/// A bound counts as lying on a grid line when it is off by less than this part of a cell: bounds in
+/// decimals rarely are exact multiples of a resolution in decimals.
+fn slack(cells: f64) -> f64 {
+    (4.0 * f64::EPSILON * cells.abs()).max(1e-9)
+}
+
+fn whole_below(cells: f64) -> f64 {
+    (cells + slack(cells)).floor()
+}
+
+fn whole_above(cells: f64) -> f64 {
+    (cells - slack(cells)).ceil()
+}
+
+/// `count * resolution` as decimals have it: by division where the resolution is one part of a
+/// whole number, because 1/10 has no exact form and 10 has.
+fn multiple(count: f64, resolution: f64) -> f64 {
+    let parts = (1.0 / resolution).round();
+    if parts >= 1.0 && 1.0 / parts == resolution { count / parts } else { count * resolution }
+}
+
+fn check_bounds(bounds: &Bounds) -> Result<()> {
+    let plan = [bounds.min[0], bounds.min[1], bounds.max[0], bounds.max[1]];
+    if bounds.is_empty() || plan.iter().any(|v| !v.is_finite()) {
+        let [xmin, ymin, xmax, ymax] = plan;
+        return Err(Error::usage(format!("the bounds {xmin} {ymin} {xmax} {ymax} are empty or not finite"))
+            .cure("give them as xmin ymin xmax ymax"));
+    }
+    Ok(())
+}
+
+fn check_extent(bounds: &Bounds, resolution: f64) -> Result<()> {
+    if !(resolution > 0.0 && resolution.is_finite()) {
+        return Err(Error::usage(format!("the resolution is {resolution}, expected a positive number")));
+    }
+    check_bounds(bounds)
+}
+
+fn size(width: f64, height: f64) -> Result<(usize, usize)> {
+    if width > MAX_SIDE as f64 || height > MAX_SIDE as f64 {
+        return Err(too_large(width, height));
+    }
+    Ok((width as usize, height as usize))
+}
+
+#[cold]
+fn too_large(width: f64, height: f64) -> Error {
+    Error::limit(format!("a raster of {width} x {height} cells; a side has at most {MAX_SIDE}"))
+        .cure("take a coarser resolution or smaller bounds")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounds(xmin: f64, ymin: f64, xmax: f64, ymax: f64) -> Bounds {
+        Bounds { min: [xmin, ymin, 0.0], max: [xmax, ymax, 0.0] }
+    }
+
+    #[test]
+    fn snapped_frames_lie_on_multiples_and_cover_the_bounds() {
+        let frame = Frame::snapped(&bounds(885024.09, 629400.0, 885217.09, 629699.99), 1.0).unwrap();
+        assert_eq!(frame, Frame::north_up(885024.0, 629700.0, 1.0, 194, 300));
+        let frame = Frame::snapped(&bounds(-0.3, -7.0, 0.1, 0.3), 0.1).unwrap();
+        assert_eq!(frame, Frame::north_up(-0.3, 0.3, 0.1, 4, 73));
+        let frame = Frame::snapped(&bounds(500000.3, 5400000.7, 500001.1, 5400001.7), 0.1).unwrap();
+        assert_eq!(frame, Frame::north_up(500000.3, 5400001.7, 0.1, 8, 10));
+        let frame = Frame::snapped(&bounds(10.0, 10.0, 10.0, 10.0), 5.0).unwrap();
+        assert_eq!(frame, Frame::north_up(10.0, 15.0, 5.0, 1, 1));
+    }
+
+    #[test]
+    fn covering_frames_begin_at_the_corner() {
+        let frame = Frame::covering(&bounds(0.25, 0.25, 10.25, 5.35), 0.1).unwrap();
+        assert_eq!(frame, Frame::north_up(0.25, 5.35, 0.1, 100, 51));
+    }
+
+    #[test]
+    fn aligned_frames_share_the_grid() {
+        let north_up = Frame::north_up(0.25, 100.5, 2.0, 7, 9);
+        let frame = Frame::aligned_to(&north_up, &bounds(-3.0, 90.0, 4.25, 110.5)).unwrap();
+        assert_eq!(frame, Frame::north_up(-3.75, 110.5, 2.0, 4, 11));
+        let south_up = Frame { transform: [0.0, 1.0, 0.0, 0.0, 0.0, 1.0], ..north_up };
+        let frame = Frame::aligned_to(&south_up, &bounds(1.5, 2.5, 3.5, 3.5)).unwrap();
+        assert_eq!(frame, Frame { width: 3, height: 2, transform: [1.0, 1.0, 0.0, 2.0, 0.0, 1.0] });
+        let rotated = Frame { transform: [10.0, 0.6, -0.8, 20.0, 0.8, 0.6], ..north_up };
+        let inside = bounds(11.0, 21.0, 17.0, 29.0);
+        let frame = Frame::aligned_to(&rotated, &inside).unwrap();
+        for (x, y) in [(11.0, 21.0), (17.0, 21.0), (11.0, 29.0), (17.0, 29.0)] {
+            let [column, row] = frame.inverse().apply(x, y);
+            assert!(column > -1e-9 && column < frame.width as f64 + 1e-9);
+            assert!(row > -1e-9 && row < frame.height as f64 + 1e-9);
+        }
+        let [column, row] = rotated.inverse().apply(frame.transform[0], frame.transform[3]);
+        assert!((column - column.round()).abs() < 1e-12 && (row - row.round()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn pixels_and_back() {
+        let frame = Frame { width: 4, height: 5, transform: [5e5, 0.6, -0.8, 5.4e6, -0.8, -0.6] };
+        let [x, y] = frame.center(3, 2);
+        let [column, row] = frame.inverse().apply(x, y);
+        assert!((column - 3.5).abs() < 1e-8 && (row - 2.5).abs() < 1e-8);
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        let message = |result: Result<Frame>| result.unwrap_err().to_string();
+        let unit = bounds(0.0, 0.0, 1.0, 1.0);
+        assert_eq!(message(Frame::snapped(&unit, 0.0)), "the resolution is 0, expected a positive number");
+        assert_eq!(message(Frame::snapped(&unit, f64::NAN)), "the resolution is NaN, expected a positive number");
+        let empty = message(Frame::snapped(&Bounds::default(), 1.0));
+        assert_eq!(empty, "the bounds inf inf -inf -inf are empty or not finite");
+        let large = message(Frame::snapped(&bounds(0.0, 0.0, 3e6, 1.0), 0.001));
+        assert_eq!(large, "a raster of 3000000000 x 1000 cells; a side has at most 2147483647");
+        let fine = message(Frame::snapped(&bounds(5e6, 5e6, 5e6, 5e6), 1e-7));
+        assert_eq!(fine, "cells of 1.000e-7 are too small for coordinates of 5000000.0000001");
+        let singular = Frame { width: 1, height: 1, transform: [0.0, 1.0, 1.0, 0.0, 1.0, 1.0] };
+        assert_eq!(message(singular.checked()), "the geotransform [0.0, 1.0, 1.0, 0.0, 1.0, 1.0] has no inverse");
+        let window = Window { column: 1, row: 0, width: usize::MAX, height: 1 };
+        assert!(Frame::north_up(0.0, 0.0, 1.0, 4, 4).check_window(window, 4).is_err());
     }
 }

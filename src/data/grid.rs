@@ -1,6 +1,11 @@
+use rayon::prelude::*;
+
 use super::{Frame, Window};
 use crate::crs::Crs;
-use crate::error::Result;
+use crate::error::{Error, Result};
+
+/// Rows of a raster that are asked for at once when all of it is.
+const ROWS: usize = 64;
 
 /// A raster of heights in memory. A cell without a value is NaN.
 #[derive(Debug, Clone)]
@@ -14,6 +19,30 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// All cells of a source, by all cores.
+    ///
+    /// # Errors
+    /// If the raster is larger than memory can be, or the source fails.
+    pub fn collect(source: &dyn BlockSource) -> Result<Self> {
+        let frame = source.frame();
+        let count = frame.width.saturating_mul(frame.height);
+        let mut values = Vec::new();
+        if values.try_reserve_exact(count).is_err() {
+            return Err(Error::limit(format!("{} x {} cells do not fit into memory", frame.width, frame.height)));
+        }
+        values.resize(count, f64::NAN);
+        values.par_chunks_mut((frame.width * ROWS).max(1)).enumerate().try_for_each(|(i, strip)| {
+            let window = Window { row: i * ROWS, height: strip.len() / frame.width, ..frame.window() };
+            let mut block = vec![0.0; strip.len()];
+            source.fill(window, &mut block)?;
+            for (to, from) in strip.iter_mut().zip(block) {
+                *to = f64::from(from);
+            }
+            Ok::<(), Error>(())
+        })?;
+        Ok(Grid { frame, crs: source.crs().cloned(), values })
+    }
+
     /// The value of a cell.
     pub fn value(&self, column: usize, row: usize) -> f64 {
         self.values[row * self.frame.width + column]
@@ -36,4 +65,47 @@ pub trait BlockSource: Sync {
     /// # Errors
     /// Only if the source reads from somewhere that can fail.
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()>;
+}
+
+impl BlockSource for Grid {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.crs.as_ref()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.frame.check_window(window, out.len())?;
+        if out.is_empty() {
+            return Ok(());
+        }
+        for (i, row) in out.chunks_exact_mut(window.width).enumerate() {
+            let first = (window.row + i) * self.frame.width + window.column;
+            for (to, &from) in row.iter_mut().zip(&self.values[first..]) {
+                *to = from as f32;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_gives_its_blocks_and_is_collected_from_them() {
+        let (width, height) = (37, 150);
+        let values: Vec<f64> = (0..width * height).map(|i| f64::from(i as u32) / 2.0).collect();
+        let grid = Grid { frame: Frame::north_up(0.0, 0.0, 1.0, width, height), crs: None, values };
+        let mut block = vec![0.0; 6];
+        grid.fill(Window { column: 35, row: 148, width: 2, height: 2 }, &mut block[..4]).unwrap();
+        assert_eq!(&block[..2], [(148 * 37 + 35) as f32 / 2.0, (148 * 37 + 36) as f32 / 2.0]);
+        assert_eq!(block[3], (150 * 37 - 1) as f32 / 2.0);
+        assert_eq!(Grid::collect(&grid).unwrap().values, grid.values);
+        let beyond = Window { column: 35, row: 148, width: 3, height: 2 };
+        assert!(grid.fill(beyond, &mut block).is_err());
+    }
 }

@@ -16,9 +16,10 @@ mod surface;
 
 pub use bounds::Bounds;
 pub use contour_line::ContourLine;
-pub use frame::{Frame, Window};
+pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
 pub use grid::{BlockSource, Grid};
 pub use mesh::Mesh;
+pub(crate) use mesh::orientation;
 pub use points::{PointBatch, PointFlags, PointInfo, PointSource};
 pub use shape::{Layer, Shape, ShapeKind};
 pub use surface::Surface;

@@ -6,6 +6,7 @@ pub mod geojson;
 pub mod layer;
 pub mod shapefile;
 
+pub mod mesh;
 mod output;
 pub mod points;
 pub mod text;

@@ -1,0 +1,125 @@
+//! Triangle meshes: PLY, OBJ and STL.
+//!
+//! | format | coordinates | breaklines, coordinate system | read |
+//! |---|---|---|---|
+//! | PLY | doubles | yes | yes |
+//! | OBJ | decimals that give the same doubles back | coordinate system, as a comment | yes |
+//! | STL | 32-bit floats from a local origin | no | no |
+//!
+//! The bytes of a file depend on the surface alone, not on how its vertices and faces are numbered:
+//! vertices come in ascending order of x, y and z, faces in that of their corners. Vertices without
+//! a face are not written.
+//!
+//! # What PLY files hold
+//! `format binary_little_endian 1.0`, then the elements
+//! - `vertex`: `double x`, `double y`, `double z`;
+//! - `face`: `list uchar int vertex_indices`, three each, counter-clockwise in plan;
+//! - `constrained_edge`: `int vertex1`, `int vertex2`, the ends of each edge on a breakline, smaller
+//!   number first. Left out when there is none. Programs skip elements that they do not know.
+//!
+//! The coordinate system stands in the header, in lines `comment crs TEXT`: WKT, or a code as in
+//! `EPSG:25832`. Some readers take no line over 1024 bytes, so that the text is cut into
+//! lines of at most 200; it is what follows `crs ` in all of them, joined. The OBJ comments are alike,
+//! with `# crs `.
+
+mod canonical;
+mod crs_text;
+mod obj;
+mod ply;
+mod polygon;
+mod stl;
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use canonical::Canonical;
+
+use crate::data::{Mesh, Surface};
+use crate::error::{Error, Result};
+
+/// A mesh format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Polygon file format, `.ply`.
+    Ply,
+    /// Wavefront, `.obj`.
+    Obj,
+    /// Stereolithography, `.stl`.
+    Stl,
+}
+
+impl Format {
+    /// The format that a file's extension names.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
+            "ply" => Some(Format::Ply),
+            "obj" => Some(Format::Obj),
+            "stl" => Some(Format::Stl),
+            _ => None,
+        }
+    }
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshSummary {
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles.
+    pub faces: usize,
+    /// Edges on breaklines (also where the format cannot hold them).
+    pub constrained_edges: usize,
+    /// What was subtracted from all coordinates, and the file beside the mesh that says so.
+    pub origin: Option<([f64; 3], PathBuf)>,
+}
+
+/// Writes a surface, in the format that the extension of `target` names.
+///
+/// # Errors
+/// If the extension names no mesh format, the surface is too large for the format, or the file cannot
+/// be written.
+pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
+    let format = Format::of(target).ok_or_else(|| unknown(target))?;
+    let mesh = Canonical::new(surface);
+    let origin = match format {
+        Format::Ply => ply::write(target, &mesh, surface.crs()).map(|()| None),
+        Format::Obj => obj::write(target, &mesh, surface.crs()).map(|()| None),
+        Format::Stl => stl::write(target, &mesh).map(Some),
+    };
+    Ok(MeshSummary {
+        vertices: mesh.vertices.len(),
+        faces: mesh.faces.len(),
+        constrained_edges: mesh.constrained_edges.len(),
+        origin: origin.map_err(|e| e.in_file(target))?,
+    })
+}
+
+/// Reads a PLY or OBJ file, own or foreign. Polygons are divided into triangles.
+///
+/// The file is held in memory while it is read.
+///
+/// # Errors
+/// If the file is damaged, is no surface ([`Mesh::new`] says what is none), has no faces or polygons
+/// that are not convex, or the format is not one that is read.
+pub fn read(path: &Path) -> Result<Mesh> {
+    let read = || {
+        let format = Format::of(path).ok_or_else(|| unknown(path))?;
+        if format == Format::Stl {
+            return Err(Error::unsupported("STL meshes are not read: they have no exact coordinates")
+                .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
+        }
+        let mut bytes = Vec::new();
+        std::fs::File::open(path)?.read_to_end(&mut bytes)?;
+        match format {
+            Format::Ply => ply::read(&bytes),
+            _ => obj::read(&bytes),
+        }
+    };
+    read().map_err(|e: Error| e.in_file(path))
+}
+
+#[cold]
+fn unknown(path: &Path) -> Error {
+    Error::usage("the file's extension names no mesh format").in_file(path).cure("use .ply, .obj or .stl")
+}

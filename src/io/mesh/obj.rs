@@ -1,0 +1,129 @@
+//! Wavefront OBJ: vertices and faces as text.
+
+use std::io::Write;
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::canonical::Canonical;
+use super::{crs_text, polygon};
+use crate::crs::Crs;
+use crate::data::Mesh;
+use crate::error::{Error, Result};
+use crate::io::Output;
+
+/// Lines that one task writes; as many tasks as there are cores run at a time.
+const LINES: usize = 1 << 14;
+
+/// Writes `v x y z` and `f a b c`, numbered from 1. The decimals are the fewest that give the same
+/// double back.
+pub(super) fn write(target: &Path, mesh: &Canonical, crs: Option<&Crs>) -> Result<()> {
+    let mut output = Output::create(target)?;
+    writeln!(output, "# breakline")?;
+    for line in crs_text::lines(crs) {
+        writeln!(output, "# crs {line}")?;
+    }
+    write_lines(&mut output, &mesh.vertices, |text, [x, y, z]| writeln!(text, "v {x} {y} {z}"))?;
+    write_lines(&mut output, &mesh.faces, |text, face| {
+        // As wide as the largest number and one more.
+        let [a, b, c] = face.map(|v| u64::from(v) + 1);
+        writeln!(text, "f {a} {b} {c}")
+    })?;
+    output.commit()
+}
+
+fn write_lines<T: Copy + Sync>(
+    output: &mut Output,
+    items: &[T],
+    line: impl Fn(&mut Vec<u8>, T) -> std::io::Result<()> + Sync,
+) -> Result<()> {
+    for batch in items.chunks(LINES * rayon::current_num_threads()) {
+        let texts: Vec<std::io::Result<Vec<u8>>> = batch
+            .par_chunks(LINES)
+            .map(|chunk| {
+                let mut text = Vec::with_capacity(chunk.len() * 40);
+                chunk.iter().try_for_each(|&item| line(&mut text, item))?;
+                Ok(text)
+            })
+            .collect();
+        for text in texts {
+            output.write_all(&text?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Reads `v` and `f` lines (with texture and normal numbers, and numbers from the end), and comments
+/// that begin with `crs`. Everything else is passed over.
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh> {
+    let mut vertices = Vec::new();
+    // Faces may come before their vertices, and are put together at the end.
+    let mut corners = Vec::new();
+    let mut polygons = Vec::new();
+    let mut crs = String::new();
+    for (number, line) in logical_lines(bytes) {
+        let place = |e: Error| e.at(format!("line {number}"));
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => vertices.push(vertex(words).map_err(place)?),
+            Some("f") => {
+                let first = corners.len();
+                for word in words {
+                    corners.push(corner(word, vertices.len()).map_err(place)?);
+                }
+                polygons.push((number, first..corners.len()));
+            }
+            Some("#") => crs.push_str(line.strip_prefix("# crs ").unwrap_or("")),
+            _ => (),
+        }
+    }
+    if polygons.is_empty() {
+        return Err(Error::format("there are no faces ('f a b c' lines)"));
+    }
+    let mut faces = Vec::with_capacity(polygons.len());
+    for (number, range) in polygons {
+        let place = |e: Error| e.at(format!("line {number}"));
+        polygon::add_polygon(&vertices, &corners[range], &mut faces).map_err(place)?;
+    }
+    Mesh::new(vertices, faces, &[], crs_text::parse(&crs)?)
+}
+
+/// Lines that end in a backslash are continued by the next. Numbered from 1, by the first line of each.
+fn logical_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, String)> {
+    let mut lines = bytes.split(|&b| b == b'\n').enumerate();
+    std::iter::from_fn(move || {
+        let (first, line) = lines.next()?;
+        let mut text = String::from_utf8_lossy(line).trim_end_matches('\r').to_owned();
+        while text.ends_with('\\') {
+            text.pop();
+            text.push(' ');
+            match lines.next() {
+                Some((_, line)) => text.push_str(String::from_utf8_lossy(line).trim_end_matches('\r')),
+                None => break,
+            }
+        }
+        Some((first + 1, text))
+    })
+}
+
+fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
+    let mut p = [0.0; 3];
+    for (value, axis) in p.iter_mut().zip(["x", "y", "z"]) {
+        let word = words.next().ok_or_else(|| Error::format(format!("a vertex without {axis}")))?;
+        *value = word.parse().map_err(|_| Error::format(format!("'{}' is no number for {axis}", shortened(word))))?;
+    }
+    Ok(p)
+}
+
+/// A corner as `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative numbers count back from the last vertex.
+fn corner(word: &str, vertices_so_far: usize) -> Result<u32> {
+    let number: Option<i64> = word.split('/').next().and_then(|number| number.parse().ok());
+    number
+        .and_then(|n| if n < 0 { n.checked_add(vertices_so_far as i64) } else { n.checked_sub(1) })
+        .and_then(|index| u32::try_from(index).ok())
+        .ok_or_else(|| Error::format(format!("'{}' names no vertex (the first is 1)", shortened(word))))
+}
+
+fn shortened(word: &str) -> String {
+    word.chars().take(40).collect()
+}

@@ -1,0 +1,157 @@
+use crate::error::{Error, Result};
+
+/// How values are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+/// The type of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn named(name: &str) -> Result<Self> {
+        Ok(match name {
+            "char" | "int8" => Scalar::I8,
+            "uchar" | "uint8" => Scalar::U8,
+            "short" | "int16" => Scalar::I16,
+            "ushort" | "uint16" => Scalar::U16,
+            "int" | "int32" => Scalar::I32,
+            "uint" | "uint32" => Scalar::U32,
+            "float" | "float32" => Scalar::F32,
+            "double" | "float64" => Scalar::F64,
+            _ => return Err(Error::format(format!("'{name}' is no type of a property"))),
+        })
+    }
+
+    /// Bytes of a value.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Scalar::I8 | Scalar::U8 => 1,
+            Scalar::I16 | Scalar::U16 => 2,
+            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
+            Scalar::F64 => 8,
+        }
+    }
+}
+
+/// A named value, or a list of values, of each row of an element.
+#[derive(Debug)]
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) kind: Scalar,
+    /// The type of a list's length.
+    pub(super) length: Option<Scalar>,
+}
+
+/// A table: vertices, faces, or anything else.
+#[derive(Debug)]
+pub(super) struct Element {
+    pub(super) name: String,
+    /// As stated: not to be trusted before [`Body::check_room`](super::Body::check_room).
+    pub(super) count: usize,
+    pub(super) properties: Vec<Property>,
+}
+
+/// What stands before the values.
+#[derive(Debug)]
+pub(super) struct Header {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element>,
+    /// What the `comment crs` lines hold, joined.
+    pub(super) crs: String,
+    /// Bytes up to the values.
+    pub(super) length: usize,
+}
+
+impl Header {
+    pub(super) fn read(bytes: &[u8]) -> Result<Self> {
+        let mut encoding = None;
+        let mut elements: Vec<Element> = Vec::new();
+        let mut crs = String::new();
+        let mut at = 0;
+        for number in 1.. {
+            let place = |e: Error| e.at(format!("line {number}"));
+            let (line, length) = line(&bytes[at..]).ok_or_else(|| {
+                let message = if number == 1 { "the file does not begin with 'ply'" } else { "the header has no end" };
+                Error::format(message)
+            })?;
+            at += length;
+            if number == 1 {
+                if line.trim_end() != "ply" {
+                    return Err(Error::format("the file does not begin with 'ply'"));
+                }
+                continue;
+            }
+            let words: Vec<&str> = line.split_ascii_whitespace().collect();
+            match words[..] {
+                ["format", name, "1.0"] => encoding = Some(named_encoding(name).map_err(place)?),
+                ["element", name, count] => {
+                    let count = count.parse().map_err(|_| place(Error::format(format!("'{count}' is no count"))))?;
+                    elements.push(Element { name: name.into(), count, properties: Vec::new() });
+                }
+                ["property", ..] => {
+                    let property = property(&words).map_err(place)?;
+                    let element = elements.last_mut();
+                    let element = element.ok_or_else(|| place(Error::format("a property before any element")))?;
+                    element.properties.push(property);
+                }
+                ["comment" | "obj_info", "crs", ..] => crs.push_str(after_two_words(&line)),
+                ["comment" | "obj_info", ..] | [] => (),
+                ["end_header"] => break,
+                _ => {
+                    let line: String = line.chars().take(80).collect();
+                    return Err(place(Error::format(format!("'{line}' is no line of a PLY 1.0 header"))));
+                }
+            }
+        }
+        let encoding = encoding.ok_or_else(|| Error::format("the header has no 'format' line"))?;
+        Ok(Header { encoding, elements, crs, length: at })
+    }
+}
+
+/// A line without its end, and its bytes with it.
+fn line(bytes: &[u8]) -> Option<(String, usize)> {
+    /// A longer line is no header.
+    const LONGEST: usize = 1 << 16;
+    let length = bytes.iter().take(LONGEST).position(|&b| b == b'\n')?;
+    let line = String::from_utf8_lossy(&bytes[..length]);
+    Some((line.strip_suffix('\r').unwrap_or(&line).to_owned(), length + 1))
+}
+
+fn named_encoding(name: &str) -> Result<Encoding> {
+    match name {
+        "ascii" => Ok(Encoding::Ascii),
+        "binary_little_endian" => Ok(Encoding::LittleEndian),
+        "binary_big_endian" => Ok(Encoding::BigEndian),
+        _ => Err(Error::format(format!("'{name}' is no PLY encoding"))),
+    }
+}
+
+fn property(words: &[&str]) -> Result<Property> {
+    match *words {
+        [_, "list", length, kind, name] => {
+            let length = Scalar::named(length)?;
+            Ok(Property { name: name.into(), kind: Scalar::named(kind)?, length: Some(length) })
+        }
+        [_, kind, name] => Ok(Property { name: name.into(), kind: Scalar::named(kind)?, length: None }),
+        _ => Err(Error::format(format!("'{}' describes no property", words.join(" ")))),
+    }
+}
+
+/// The rest of `comment crs REST`, with the blanks in it: they may be a part of the text.
+fn after_two_words(line: &str) -> &str {
+    line.splitn(3, ' ').nth(2).unwrap_or("")
+}

@@ -1,0 +1,60 @@
+use crate::data::orientation;
+use crate::error::{Error, Result};
+
+/// Divides a polygon into triangles by a fan from one of its corners, and adds them to `faces`.
+///
+/// Which corner matters: where three corners lie in line, a fan from the wrong one has a triangle
+/// without area. Triangles are taken as they are; [`Mesh::new`](crate::data::Mesh::new) judges them.
+///
+/// # Errors
+/// If there are fewer than three corners, a corner is no vertex, or no fan fits, which in plan is so
+/// for polygons that are not convex.
+pub(super) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Vec<[u32; 3]>) -> Result<()> {
+    let count = corners.len();
+    if count < 3 {
+        return Err(Error::format(format!("a face has {count} corners, expected 3 or more")));
+    }
+    if let Some(v) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
+        return Err(Error::format(format!("a face names vertex {v}, but there are {} vertices", vertices.len())));
+    }
+    if let &[a, b, c] = corners {
+        faces.push([a, b, c]);
+        return Ok(());
+    }
+    if count > MOST_CORNERS {
+        return Err(Error::limit(format!("a face has {count} corners; at most {MOST_CORNERS} are divided")));
+    }
+    let fan = |start: usize| (1..count - 1).map(move |i| [start, start + i, start + i + 1].map(|k| corners[k % count]));
+    let turns =
+        |start: usize, sign: f64| fan(start).all(|face| orientation(face.map(|v| vertices[v as usize])) * sign > 0.0);
+    let start = (0..count).find(|&start| turns(start, 1.0) || turns(start, -1.0)).ok_or_else(|| {
+        Error::unsupported(format!("a face of {count} corners is not convex in plan"))
+            .cure("divide the polygons of the mesh into triangles")
+    })?;
+    faces.extend(fan(start));
+    Ok(())
+}
+
+/// Trying all fans of a polygon takes the square of its corners.
+const MOST_CORNERS: usize = 1000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fans_avoid_triangles_without_area() {
+        let p = |x: f64, y: f64| [x, y, 0.0];
+        let vertices = [p(0.0, 0.0), p(1.0, 0.0), p(2.0, 0.0), p(2.0, 2.0), p(0.0, 2.0), p(1.0, 1.0)];
+        let divided = |corners: &[u32]| {
+            let mut faces = Vec::new();
+            add_polygon(&vertices, corners, &mut faces).map(|()| faces).map_err(|e| e.to_string())
+        };
+        assert_eq!(divided(&[0, 2, 3, 4]), Ok(vec![[0, 2, 3], [0, 3, 4]]));
+        assert_eq!(divided(&[0, 1, 2, 3, 4]), Ok(vec![[1, 2, 3], [1, 3, 4], [1, 4, 0]]));
+        assert_eq!(divided(&[4, 3, 2, 1, 0]), Ok(vec![[4, 3, 2], [4, 2, 1], [4, 1, 0]]));
+        assert_eq!(divided(&[0, 2, 3, 5]), Err("a face of 4 corners is not convex in plan".into()));
+        assert_eq!(divided(&[0, 1]), Err("a face has 2 corners, expected 3 or more".into()));
+        assert_eq!(divided(&[0, 1, 2, 9]), Err("a face names vertex 9, but there are 6 vertices".into()));
+    }
+}

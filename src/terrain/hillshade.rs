@@ -1,0 +1,282 @@
+use crate::crs::{Crs, CrsKind};
+use crate::data::{BlockSource, Frame, ToPixels, Window};
+use crate::error::{Error, Result};
+
+/// Metres in one radian of a great circle on the mean earth (6 371 008.8 m, Moritz 2000).
+const EARTH_RADIUS: f64 = 6_371_008.8;
+
+/// Where the light comes from, and how heights compare with lengths.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Direction of the light in degrees, clockwise from north.
+    pub azimuth: f64,
+    /// Its height above the horizon in degrees.
+    pub altitude: f64,
+    /// Heights are multiplied by this: units of x and y in a unit of z, times any exaggeration.
+    pub z_factor: f64,
+}
+
+impl Default for Light {
+    /// From the north-west, at half height, as maps have it.
+    fn default() -> Self {
+        Light { azimuth: 315.0, altitude: 45.0, z_factor: 1.0 }
+    }
+}
+
+impl Light {
+    /// The default light with the z factor that the units of a coordinate system ask for.
+    ///
+    /// A vertical unit that is not stated is that of x and y, or the metre where those are angles.
+    /// A degree counts as long in the east as in the north, so that slopes far from the equator come
+    /// out too gentle in one direction.
+    pub fn for_crs(crs: Option<&Crs>) -> Self {
+        let z_factor = crs.map_or(1.0, |crs| {
+            let vertical = crs.vertical_unit.as_ref().map(|unit| unit.factor);
+            match crs.kind {
+                CrsKind::Geographic => vertical.unwrap_or(1.0) / (crs.unit.factor * EARTH_RADIUS),
+                _ => vertical.unwrap_or(crs.unit.factor) / crs.unit.factor,
+            }
+        });
+        Light { z_factor, ..Light::default() }
+    }
+}
+
+/// The shade of a raster of heights: whole numbers from 1 (dark) to 255 (facing the light), NaN
+/// where there is no height.
+///
+/// Slopes are those of Horn (1981), "Hill shading and the reflectance map": weighted differences
+/// over the 3 x 3 cells around each, as in `gdaldem hillshade`. At the edge of the data the
+/// surface is continued in straight lines, so that a plane is shaded alike up to its edge. Any frame will do: the light stays where it is when the raster is rotated.
+pub struct Hillshade<'a> {
+    source: &'a dyn BlockSource,
+    frame: Frame,
+    to_pixels: ToPixels,
+    /// Towards the light: east, north, up.
+    light: [f64; 3],
+    z_factor: f64,
+}
+
+impl<'a> Hillshade<'a> {
+    /// Shades the heights of `source`.
+    ///
+    /// # Errors
+    /// If a number of `light` is not finite, or the frame of the source has no inverse.
+    pub fn new(source: &'a dyn BlockSource, light: Light) -> Result<Self> {
+        let Light { azimuth, altitude, z_factor } = light;
+        for (name, value) in [("azimuth", azimuth), ("altitude", altitude), ("z factor", z_factor)] {
+            if !value.is_finite() {
+                return Err(Error::usage(format!("the {name} of the light is {value}, expected a number")));
+            }
+        }
+        let frame = source.frame().checked()?;
+        let (east, north) = azimuth.to_radians().sin_cos();
+        let (up, flat) = altitude.to_radians().sin_cos();
+        let light = [east * flat, north * flat, up];
+        Ok(Hillshade { source, frame, to_pixels: frame.inverse(), light, z_factor })
+    }
+
+    /// The shade of the middle one of 3 x 3 heights, given row by row.
+    fn shade(&self, mut heights: [f64; 9]) -> f32 {
+        let center = heights[4];
+        if center.is_nan() {
+            return f32::NAN;
+        }
+        if heights.iter().any(|z| z.is_nan()) {
+            continue_straight(&mut heights);
+        }
+        let [nw, n, ne, w, _, e, sw, s, se] = heights;
+        let per_column = ((ne + 2.0 * e + se) - (nw + 2.0 * w + sw)) / 8.0;
+        let per_row = ((sw + 2.0 * s + se) - (nw + 2.0 * n + ne)) / 8.0;
+        let [dx, dy] = self.to_pixels.gradient(per_column * self.z_factor, per_row * self.z_factor);
+        let [east, north, up] = self.light;
+        let lit = (up - dx * east - dy * north) / (1.0 + dx * dx + dy * dy).sqrt();
+        (1.0 + 254.0 * lit.max(0.0)).round() as f32
+    }
+}
+
+impl BlockSource for Hillshade<'_> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.source.crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.frame.check_window(window, out.len())?;
+        if out.is_empty() {
+            return Ok(());
+        }
+        let around = Around::new(self.source, &self.frame, window)?;
+        for (row, line) in out.chunks_exact_mut(window.width).enumerate() {
+            let lines = [0, 1, 2].map(|i| around.line(row + i));
+            for (column, cell) in line.iter_mut().enumerate() {
+                let height = |i: usize| f64::from(lines[i / 3][column + i % 3]);
+                *cell = self.shade(std::array::from_fn(height));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for Hillshade<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Hillshade").field("frame", &self.frame).field("light", &self.light).finish_non_exhaustive()
+    }
+}
+
+/// Gives heights to the cells without one around the middle of 3 x 3: beside it from the opposite cell
+/// through the center, at the corners from the two cells beside them.
+fn continue_straight(heights: &mut [f64; 9]) {
+    let known = *heights;
+    let center = known[4];
+    for i in [1, 3, 5, 7] {
+        if known[i].is_nan() {
+            let opposite = known[8 - i];
+            heights[i] = if opposite.is_nan() { center } else { 2.0 * center - opposite };
+        }
+    }
+    for (corner, beside) in [(0, [1, 3]), (2, [1, 5]), (6, [3, 7]), (8, [5, 7])] {
+        if known[corner].is_nan() {
+            heights[corner] = heights[beside[0]] + heights[beside[1]] - center;
+        }
+    }
+}
+
+/// A window of heights and one cell more on each side, NaN beyond the raster.
+struct Around {
+    width: usize,
+    heights: Vec<f32>,
+}
+
+impl Around {
+    fn new(source: &dyn BlockSource, frame: &Frame, window: Window) -> Result<Self> {
+        // Cells that the raster has before and after the window: none or one.
+        let before = [window.column.min(1), window.row.min(1)];
+        let after =
+            [(frame.width - window.column - window.width).min(1), (frame.height - window.row - window.height).min(1)];
+        let grown = Window {
+            column: window.column - before[0],
+            row: window.row - before[1],
+            width: window.width + before[0] + after[0],
+            height: window.height + before[1] + after[1],
+        };
+        let mut block = vec![0.0; grown.width * grown.height];
+        source.fill(grown, &mut block)?;
+        let width = window.width + 2;
+        let mut heights = vec![f32::NAN; width * (window.height + 2)];
+        for (row, line) in block.chunks_exact(grown.width).enumerate() {
+            let first = (row + 1 - before[1]) * width + (1 - before[0]);
+            heights[first..first + grown.width].copy_from_slice(line);
+        }
+        Ok(Around { width, heights })
+    }
+
+    fn line(&self, row: usize) -> &[f32] {
+        &self.heights[row * self.width..][..self.width]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crs::Unit;
+    use crate::data::Grid;
+
+    fn grid(frame: Frame, height: impl Fn(f64, f64) -> f64) -> Grid {
+        let values = (0..frame.width * frame.height)
+            .map(|i| {
+                let [x, y] = frame.center(i % frame.width, i / frame.width);
+                height(x, y)
+            })
+            .collect();
+        Grid { frame, crs: None, values }
+    }
+
+    fn shades(grid: &Grid, light: Light) -> Vec<f64> {
+        Grid::collect(&Hillshade::new(grid, light).unwrap()).unwrap().values
+    }
+
+    #[test]
+    fn nine_cells_by_hand() {
+        // dz/dx = ((3 + 2*6 + 9.5) - (1 + 2*4 + 7)) / (8 * 2) = 0.53125
+        // dz/dy = ((1 + 2*2 + 3) - (7 + 2*8 + 9.5)) / (8 * 2) = -1.53125
+        // lit = (0.70711 + 0.5 * 0.53125 - 0.5 * -1.53125) / sqrt(1 + 0.28223 + 2.34473)
+        //     = 1.73836 / 1.90446 = 0.91279, and 1 + 254 * that = 232.85
+        let values = vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.5];
+        let grid = Grid { frame: Frame::north_up(0.0, 0.0, 2.0, 3, 3), crs: None, values };
+        assert_eq!(shades(&grid, Light::default())[4], 233.0);
+        // A tenth of the height: (0.70711 + 0.02656 + 0.07656) / sqrt(1 + 0.00282 + 0.02345) = 0.79980
+        let gentle = Light { z_factor: 0.1, ..Light::default() };
+        assert_eq!(shades(&grid, gentle)[4], 204.0);
+    }
+
+    #[test]
+    fn a_plane_has_one_shade_however_its_raster_lies() {
+        let plane = |x: f64, y: f64| 0.3 * x - 0.4 * y;
+        // It rises to the east and falls to the north, so it faces the light in the north-west.
+        let lit = (0.5f64.sqrt() + 0.5 * 0.3 + 0.5 * 0.4) / 1.25f64.sqrt();
+        let expected = (1.0 + 254.0 * lit).round();
+        for t in [[1.0, 0.0, 0.0, -1.0], [1.0, 0.0, 0.0, 1.0], [-2.0, 0.0, 0.0, 0.5], [0.6, 0.8, 0.8, -0.6]] {
+            let transform = [10.0, t[0], t[1], 20.0, t[2], t[3]];
+            let mut grid = grid(Frame { width: 9, height: 7, transform }, plane);
+            grid.values[30] = f64::NAN;
+            for (i, shade) in shades(&grid, Light::default()).into_iter().enumerate() {
+                assert!(if i == 30 { shade.is_nan() } else { shade == expected }, "{shade}, not {expected}, at {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn level_ground_is_lit_from_above_and_slopes_away_from_the_light_are_dark() {
+        let frame = Frame::north_up(0.0, 0.0, 1.0, 4, 4);
+        assert!(shades(&grid(frame, |_, _| 7.0), Light::default()).iter().all(|&v| v == 181.0));
+        let cliff = grid(frame, |x, y| 100.0 * (y - x));
+        assert!(shades(&cliff, Light::default()).iter().all(|&v| v == 1.0));
+        let overhead = Light { altitude: 90.0, ..Light::default() };
+        assert!(shades(&grid(frame, |_, _| 7.0), overhead).iter().all(|&v| v == 255.0));
+    }
+
+    #[test]
+    fn blocks_do_not_show() {
+        let grid = grid(Frame::north_up(0.0, 0.0, 1.0, 30, 20), |x, y| (x * 1.7).sin() * 3.0 + (y * x / 9.0).cos());
+        let whole = shades(&grid, Light::default());
+        let source = Hillshade::new(&grid, Light::default()).unwrap();
+        for (column, row, width, height) in [(0, 0, 1, 1), (29, 19, 1, 1), (3, 0, 20, 4), (0, 5, 30, 15), (7, 7, 5, 5)]
+        {
+            let mut block = vec![0.0; width * height];
+            source.fill(Window { column, row, width, height }, &mut block).unwrap();
+            for (i, value) in block.iter().enumerate() {
+                assert_eq!(f64::from(*value), whole[(row + i / width) * 30 + column + i % width]);
+            }
+        }
+    }
+
+    #[test]
+    fn units_make_the_z_factor() {
+        let unit = |factor| Unit { name: String::new(), factor };
+        let mut crs = Crs {
+            name: String::new(),
+            epsg: None,
+            vertical_epsg: None,
+            kind: CrsKind::Projected,
+            unit: unit(0.3048),
+            vertical_unit: None,
+            wkt: None,
+        };
+        assert_eq!(Light::for_crs(Some(&crs)).z_factor, 1.0);
+        crs.vertical_unit = Some(unit(1.0));
+        assert_eq!(Light::for_crs(Some(&crs)).z_factor, 1.0 / 0.3048);
+        crs.kind = CrsKind::Geographic;
+        crs.unit = unit(1f64.to_radians());
+        assert!((1.0 / Light::for_crs(Some(&crs)).z_factor - 111_195.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn refuses_light_that_is_no_number() {
+        let grid = grid(Frame::north_up(0.0, 0.0, 1.0, 4, 4), |_, _| 0.0);
+        let error = Hillshade::new(&grid, Light { altitude: f64::NAN, ..Light::default() }).unwrap_err();
+        assert_eq!(error.to_string(), "the altitude of the light is NaN, expected a number");
+    }
+}

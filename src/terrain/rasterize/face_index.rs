@@ -1,0 +1,147 @@
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::placement::Placement;
+use crate::data::Surface;
+
+/// Which faces a rectangle of cells has to look at.
+///
+/// The raster is divided into square bins; a face is listed in each bin where it may hold the
+/// center of a cell, and nowhere if it holds none: most faces of a surface finer than the raster.
+#[derive(Debug)]
+pub(super) struct FaceIndex {
+    /// Cells along a side of a bin.
+    side: usize,
+    columns: usize,
+    rows: usize,
+    /// Where the faces of each bin begin, bins row by row; one more entry than bins.
+    first: Vec<usize>,
+    faces: Vec<u32>,
+}
+
+/// Faces in a bin, on average. Large bins are wasted work for a window that cuts them, small ones
+/// list more faces twice: at 64, half of them.
+const FACES_PER_BIN: f64 = 64.0;
+const SMALLEST_BIN: f64 = 16.0;
+/// Faces that one task looks at.
+const CHUNK: u32 = 1 << 15;
+
+impl FaceIndex {
+    /// # Complexity
+    /// Linear in the faces and in the bins they meet. Takes 4 bytes for each face in each bin, and 12
+    /// while it is made.
+    pub(super) fn new<S: Surface + ?Sized>(surface: &S, placement: &Placement) -> Self {
+        let face_count = surface.face_count() as u32;
+        let (width, height) = (placement.columns.count, placement.rows.count);
+        let bins = (f64::from(face_count) / FACES_PER_BIN).max(1.0);
+        let side = (width as f64 * height as f64 / bins).sqrt().max(SMALLEST_BIN).ceil() as usize;
+        let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
+        let empty = FaceIndex { side, columns, rows, first: Vec::new(), faces: Vec::new() };
+
+        let chunks: Vec<Vec<(u32, u32)>> = (0..face_count.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut found = Vec::new();
+                for face in chunk * CHUNK..(chunk + 1).saturating_mul(CHUNK).min(face_count) {
+                    let Some(corners) = surface.face(face) else { continue };
+                    let corners = corners.map(|v| placement.place(surface.position(v)));
+                    empty.bins_of(&corners, placement, |bin| found.push((bin, face)));
+                }
+                found
+            })
+            .collect();
+
+        let mut first = vec![0; columns * rows + 1];
+        for (bin, _) in chunks.iter().flatten() {
+            first[*bin as usize + 1] += 1;
+        }
+        for bin in 0..columns * rows {
+            first[bin + 1] += first[bin];
+        }
+        let mut faces = vec![0; first[columns * rows]];
+        let mut next = first.clone();
+        for chunk in chunks {
+            for (bin, face) in chunk {
+                let slot = &mut next[bin as usize];
+                faces[*slot] = face;
+                *slot += 1;
+            }
+        }
+        FaceIndex { first, faces, ..empty }
+    }
+
+    /// The bins where a face may hold a center: for each row of bins, those between the leftmost and
+    /// the rightmost place of the face in it.
+    fn bins_of(&self, corners: &[[f64; 3]; 3], placement: &Placement, mut each: impl FnMut(u32)) {
+        let [a, b, c] = corners;
+        let rows = placement.rows.cells(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
+        let columns = placement.columns.cells(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
+        if rows.is_empty() || columns.is_empty() {
+            return;
+        }
+        let bins = |cells: &Range<usize>| cells.start / self.side..=(cells.end - 1) / self.side;
+        let number = |row: usize, column: usize| (row * self.columns + column) as u32;
+        let (bin_rows, bin_columns) = (bins(&rows), bins(&columns));
+        if bin_rows.start() == bin_rows.end() || bin_columns.start() == bin_columns.end() {
+            for row in bin_rows {
+                bin_columns.clone().for_each(|column| each(number(row, column)));
+            }
+            return;
+        }
+        for row in bin_rows {
+            // One cell more on both sides than the centers of the bin, against rounding.
+            let below = placement.rows.center((row * self.side).max(1) - 1);
+            let above = placement.rows.center((row + 1) * self.side);
+            let Some((left, right)) = extent_between(corners, below, above) else { continue };
+            let step = placement.columns.center(1) - placement.columns.center(0);
+            let cells = placement.columns.cells(left - step, right + step);
+            if !cells.is_empty() {
+                bins(&cells).for_each(|column| each(number(row, column)));
+            }
+        }
+    }
+
+    /// The faces of each bin that meets a window (as rows and columns of cells), and what the bin
+    /// and the window have in common.
+    pub(super) fn bins_in(
+        &self,
+        rows: Range<usize>,
+        columns: Range<usize>,
+    ) -> impl Iterator<Item = (&[u32], Range<usize>, Range<usize>)> {
+        let common = |bin: usize, cells: &Range<usize>| {
+            (bin * self.side).max(cells.start)..((bin + 1) * self.side).min(cells.end)
+        };
+        let bin_rows = rows.start / self.side..rows.end.div_ceil(self.side).min(self.rows);
+        let bin_columns = columns.start / self.side..columns.end.div_ceil(self.side).min(self.columns);
+        bin_rows.flat_map(move |row| {
+            let (rows, columns) = (common(row, &rows), columns.clone());
+            bin_columns.clone().map(move |column| {
+                let bin = row * self.columns + column;
+                let faces = &self.faces[self.first[bin]..self.first[bin + 1]];
+                (faces, rows.clone(), common(column, &columns))
+            })
+        })
+    }
+}
+
+/// The smallest and the largest x of a triangle in the band `low..=high` of y.
+fn extent_between(corners: &[[f64; 3]; 3], low: f64, high: f64) -> Option<(f64, f64)> {
+    let mut extent: Option<(f64, f64)> = None;
+    let mut add = |x: f64| {
+        let (left, right) = extent.unwrap_or((x, x));
+        extent = Some((left.min(x), right.max(x)));
+    };
+    for i in 0..3 {
+        let (p, q) = (&corners[i], &corners[(i + 1) % 3]);
+        if (low..=high).contains(&p[1]) {
+            add(p[0]);
+        }
+        for y in [low, high] {
+            if (p[1] < y) != (q[1] < y) {
+                add(p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]));
+            }
+        }
+    }
+    extent
+}

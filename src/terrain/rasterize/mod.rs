@@ -1,0 +1,73 @@
+mod face_index;
+mod placement;
+mod scan;
+
+use face_index::FaceIndex;
+use placement::{Centers, Placement};
+use scan::Scan;
+
+use crate::crs::Crs;
+use crate::data::{BlockSource, Frame, Surface, Window};
+use crate::error::Result;
+
+/// The heights of a surface as a raster: linear on each triangle, sampled at the centers of the
+/// cells, NaN where there is no surface.
+///
+/// Cells whose center lies on the edge of the surface belong to it. A cell at a vertex has the
+/// vertex's height, one on a breakline the breakline's. What a cell holds depends on the surface
+/// alone: not on the block it is asked in, nor on the numbering of vertices and faces (as long as
+/// faces do not overlap).
+///
+/// Any frame will do: south-up, rotated, larger than the surface or a part of it.
+#[derive(Debug)]
+pub struct Dem<'a, S: ?Sized> {
+    surface: &'a S,
+    frame: Frame,
+    placement: Placement,
+    index: FaceIndex,
+}
+
+impl<'a, S: Surface + ?Sized> Dem<'a, S> {
+    /// Prepares the raster: lists the faces by where they are. No cell is computed yet.
+    ///
+    /// # Errors
+    /// If [`Frame::checked`] refuses the frame.
+    ///
+    /// # Complexity
+    /// Linear in the faces; keeps up to some 6 bytes for each.
+    pub fn new(surface: &'a S, frame: Frame) -> Result<Self> {
+        let frame = frame.checked()?;
+        let placement = Placement::new(&frame);
+        let index = FaceIndex::new(surface, &placement);
+        Ok(Dem { surface, frame, placement, index })
+    }
+}
+
+impl<S: Surface + ?Sized> BlockSource for Dem<'_, S> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.surface.crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.frame.check_window(window, out.len())?;
+        let Window { column, row, width, height } = window;
+        out.fill(f32::NAN);
+        let columns = Centers::new(self.placement.columns, column, width);
+        let rows = Centers::new(self.placement.rows, row, height);
+        let mut scan = Scan { columns: &columns, rows: &rows, cells: out };
+        for (faces, rows, columns) in self.index.bins_in(row..row + height, column..column + width) {
+            let rows = rows.start - row..rows.end - row;
+            let columns = columns.start - column..columns.end - column;
+            for &face in faces {
+                let Some(corners) = self.surface.face(face) else { continue };
+                let corners = corners.map(|v| self.placement.place(self.surface.position(v)));
+                scan.draw(corners, &rows, &columns);
+            }
+        }
+        Ok(())
+    }
+}

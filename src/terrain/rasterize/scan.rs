@@ -1,0 +1,141 @@
+//! One face into a block of cells.
+//!
+//! What a cell holds is a function of its center and of the surface, whichever face comes first:
+//! - the center at a vertex: the height of the vertex;
+//! - on an edge: the height on the edge, computed from its lower left end, so that both faces agree;
+//! - inside a face: the height on the line between the two places where the row cuts the face.
+//!
+//! Which of these holds is decided by exact orientation tests. Few cells need them: a cut is computed
+//! with a known error, and a center farther than that from both cuts of its row is inside.
+
+use std::ops::Range;
+
+use super::placement::Centers;
+use crate::data::orientation;
+
+/// A block of cells that faces are drawn into.
+pub(super) struct Scan<'a> {
+    pub(super) columns: &'a Centers,
+    pub(super) rows: &'a Centers,
+    /// Row by row, as many columns and rows as there are centers.
+    pub(super) cells: &'a mut [f32],
+}
+
+impl Scan<'_> {
+    /// Writes the cells of `rows` and `columns` (counted in the block) whose centers lie in the
+    /// triangle or on its border. Corners may come in any order.
+    pub(super) fn draw(&mut self, corners: [[f64; 3]; 3], rows: &Range<usize>, columns: &Range<usize>) {
+        let face = Face::new(corners);
+        let [low, middle, high] = &face.corners;
+        let first = self.rows.at_or_after(low[1]).max(rows.start);
+        let end = self.rows.after(high[1]).min(rows.end);
+        if first >= end {
+            return;
+        }
+        let (columns_of_block, rows_of_block) = (self.columns, self.rows);
+        let centers = columns_of_block.values();
+        for row in first..end {
+            let y = rows_of_block.values()[row];
+            let mut left = cut(low, high, y);
+            let mut right = if y < middle[1] { cut(low, middle, y) } else { cut(middle, high, y) };
+            if right.0 < left.0 {
+                std::mem::swap(&mut left, &mut right);
+            }
+            let from = columns_of_block.at_or_after(left.0 - face.error).max(columns.start);
+            let to = columns_of_block.after(right.0 + face.error).min(columns.end);
+            if from >= to {
+                continue;
+            }
+            let line = &mut self.cells[row * centers.len()..][..centers.len()];
+            let mut inside = from..to;
+            while !inside.is_empty() && centers[inside.start] <= left.0 + face.error {
+                face.judge(centers[inside.start], y, [left, right], &mut line[inside.start]);
+                inside.start += 1;
+            }
+            while !inside.is_empty() && centers[inside.end - 1] >= right.0 - face.error {
+                inside.end -= 1;
+                face.judge(centers[inside.end], y, [left, right], &mut line[inside.end]);
+            }
+            let slope = (right.1 - left.1) / (right.0 - left.0);
+            for (cell, x) in line[inside.clone()].iter_mut().zip(&centers[inside]) {
+                *cell = (left.1 + (x - left.0) * slope) as f32;
+            }
+        }
+    }
+}
+
+/// A triangle in the plane of the scan.
+struct Face {
+    /// In the order of y, then x: the same whatever the numbering.
+    corners: [[f64; 3]; 3],
+    /// How far rounding can move a cut.
+    error: f64,
+}
+
+impl Face {
+    #[inline]
+    fn new(mut corners: [[f64; 3]; 3]) -> Self {
+        for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+            if (corners[j][1], corners[j][0]) < (corners[i][1], corners[i][0]) {
+                corners.swap(i, j);
+            }
+        }
+        // The sum of what the roundings in `cut` can do, with u = EPSILON / 2: 5 u of an extent in x
+        // of at most 2 M, and u of the result; 16 u M is more than that.
+        let largest = corners.iter().fold(0.0, |most: f64, p| most.max(p[0].abs()));
+        Face { corners, error: 8.0 * f64::EPSILON * largest }
+    }
+
+    /// Writes a cell whose center is close to the border of the face, if it is not outside.
+    #[cold]
+    fn judge(&self, x: f64, y: f64, [left, right]: [(f64, f64); 2], cell: &mut f32) {
+        let [a, b, c] = &self.corners;
+        if let Some(corner) = self.corners.iter().find(|p| p[0] == x && p[1] == y) {
+            *cell = corner[2] as f32;
+            return;
+        }
+        let center = [x, y, 0.0];
+        let turn = orientation([*a, *b, *c]);
+        let mut edge = None;
+        for (p, q, sense) in [(a, b, 1.0), (b, c, 1.0), (a, c, -1.0)] {
+            let side = orientation([*p, *q, center]);
+            if side == 0.0 {
+                edge = Some((p, q));
+            } else if side * turn.signum() * sense < 0.0 {
+                return;
+            }
+        }
+        let z = match edge {
+            // A face without area covers nothing that its neighbors do not cover.
+            _ if turn == 0.0 => return,
+            Some((p, q)) => height_on_edge(p, q, x, y),
+            None if right.0 > left.0 => between(left.1, right.1, (x - left.0) / (right.0 - left.0)),
+            None => left.1,
+        };
+        *cell = z as f32;
+    }
+}
+
+/// Where the edge from `p` up to `q` meets the line of cells at `y`, and its height there.
+#[inline]
+fn cut(p: &[f64; 3], q: &[f64; 3], y: f64) -> (f64, f64) {
+    if y == q[1] && (p[1] != q[1]) {
+        return (q[0], q[2]);
+    }
+    if y == p[1] {
+        return (p[0], p[2]);
+    }
+    let part = (y - p[1]) / (q[1] - p[1]);
+    (p[0] + part * (q[0] - p[0]), p[2] + part * (q[2] - p[2]))
+}
+
+/// The height at a place on the edge from `p` to `q`, measured along its longer extent.
+fn height_on_edge(p: &[f64; 3], q: &[f64; 3], x: f64, y: f64) -> f64 {
+    let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+    let part = if dx.abs() > dy.abs() { (x - p[0]) / dx } else { (y - p[1]) / dy };
+    between(p[2], q[2], part)
+}
+
+fn between(from: f64, to: f64, part: f64) -> f64 {
+    from + part.clamp(0.0, 1.0) * (to - from)
+}

@@ -1,0 +1,267 @@
+//! Mesh files: written, read back, foreign, damaged.
+
+use std::path::{Path, PathBuf};
+
+use breakline::data::{Mesh, Surface};
+use breakline::io::mesh;
+
+/// A bumpy field of `n` x `n` vertices at map coordinates, with a breakline through it.
+fn field(n: u32) -> Mesh {
+    let vertices = (0..n * n)
+        .map(|i| {
+            let (x, y) = (f64::from(i % n), f64::from(i / n));
+            [512_000.1 + 1.3 * x, 5_403_000.7 + y / 3.0, 250.0 + (x * y / 7.0).sin()]
+        })
+        .collect();
+    let mut faces = Vec::new();
+    for i in (0..n * (n - 1)).filter(|i| i % n < n - 1) {
+        faces.push([i, i + 1, i + n + 1]);
+        faces.push([i, i + n + 1, i + n]);
+    }
+    let breakline: Vec<[u32; 2]> = (0..n - 1).map(|i| [i * (n + 1), (i + 1) * (n + 1)]).collect();
+    Mesh::new(vertices, faces, &breakline, None).unwrap()
+}
+
+/// Each face by the places of its corners and whether its edges are constrained, in an order of its own.
+fn content(surface: &impl Surface) -> Vec<[([u64; 3], bool); 3]> {
+    let mut faces: Vec<_> = (0..surface.face_count() as u32)
+        .filter_map(|f| {
+            let corners = surface.face(f)?;
+            let mut sides =
+                [0, 1, 2].map(|i| (surface.position(corners[i]).map(f64::to_bits), surface.is_constrained(f, i)));
+            let first = (0..3).min_by_key(|&i| sides[i]).unwrap();
+            sides.rotate_left(first);
+            Some(sides)
+        })
+        .collect();
+    faces.sort_unstable();
+    faces
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn written(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+#[test]
+fn ply_keeps_everything() {
+    let folder = folder();
+    let path = folder.path().join("field.ply");
+    let field = field(40);
+    let summary = mesh::write(&path, &field).unwrap();
+    assert_eq!((summary.vertices, summary.faces, summary.constrained_edges), (1600, 3042, 39));
+    let back = mesh::read(&path).unwrap();
+    assert_eq!(content(&back), content(&field));
+    let again = folder.path().join("again.PLY");
+    mesh::write(&again, &back).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), std::fs::read(&again).unwrap());
+}
+
+#[test]
+fn obj_gives_the_same_doubles_back() {
+    let folder = folder();
+    let path = folder.path().join("field.obj");
+    let field = field(150);
+    mesh::write(&path, &field).unwrap();
+    let back = mesh::read(&path).unwrap();
+    let without = Mesh::new(
+        (0..field.vertex_count() as u32).map(|v| field.position(v)).collect(),
+        (0..field.face_count() as u32).map(|f| field.face(f).unwrap()).collect(),
+        &[],
+        None,
+    );
+    assert_eq!(content(&back), content(&without.unwrap()));
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("\nv 512000.1 5403000.7 250\n"));
+}
+
+#[test]
+fn stl_counts_from_an_origin_that_stands_beside_it() {
+    let folder = folder();
+    let path = folder.path().join("field.stl");
+    let field = field(10);
+    let summary = mesh::write(&path, &field).unwrap();
+    let (origin, beside) = summary.origin.unwrap();
+    assert_eq!(origin, [512_000.0, 5_403_000.0, 249.0]);
+    assert_eq!(std::fs::read_to_string(&beside).unwrap(), "512000 5403000 249\n");
+    assert_eq!(beside, folder.path().join("field.stl.origin.txt"));
+    let bytes = std::fs::read(&path).unwrap();
+    assert_eq!(bytes.len(), 84 + 50 * 162);
+    assert!(!bytes.starts_with(b"solid"));
+    assert_eq!(u32::from_le_bytes(bytes[80..84].try_into().unwrap()), 162);
+    let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+    for facet in (84..bytes.len()).step_by(50) {
+        let numbers: Vec<f32> = (0..12).map(|i| float(facet + 4 * i)).collect();
+        assert!(numbers[2] > 0.0, "a normal that points down");
+        let length: f32 = numbers[..3].iter().map(|n| n * n).sum();
+        assert!((length - 1.0).abs() < 1e-5);
+        assert!((0.0..12.0).contains(&numbers[3]) && (0.0..4.0).contains(&numbers[4]));
+    }
+    // The first vertex, to a tenth of a millimetre.
+    assert!((float(84 + 12) - 0.1).abs() < 1e-4 && (float(84 + 16) - 0.7).abs() < 1e-4);
+}
+
+/// Two triangles over a unit square, as others write them.
+const FOREIGN: [&str; 6] = [
+    "ply\r\nformat ascii 1.0\r\ncomment VCGLIB generated\r\nelement vertex 4\r\nproperty float x\r\nproperty float y\r\n\
+     property float z\r\nproperty uchar red\r\nelement face 2\r\nproperty list uchar int vertex_indices\r\n\
+     end_header\r\n0 0 1 255\r\n1 0 2 255\r\n1 1 3 0\r\n0 1 4 0\r\n3 0 1 2\r\n3 0 2 3\r\n",
+    // Face first, clockwise, with more lists; no line end at the end.
+    "ply\nformat ascii 1.0\nelement face 2\nproperty list uint8 float32 texcoord\nproperty list uint8 uint32 vertex_index\n\
+     property int flags\nelement vertex 4\nproperty double z\nproperty double x\nproperty double y\nend_header\n\
+     6 0 0 0 0 0 0 3 2 1 0 7 0 3 3 2 0 9\n1e0 0 0 2 1 0 3 1 1 4 0 1",
+    // One quad, and elements between.
+    "ply\nformat ascii 1.0\nobj_info x\nelement camera 1\nproperty float view\nelement vertex 4\nproperty double x\n\
+     property double y\nproperty double z\nelement nothing 0\nelement face 1\nproperty list uchar int vertex_indices\n\
+     element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n0.5\n0 0 1\n1 0 2\n1 1 3\n0 1 4\n\
+     4 0 1 2 3\n0 1\n",
+    "# Blender\nmtllib a.mtl\no Plane\nv 0 0 1\nv 1.0 0 2.0 1.0\nv 1 1 3 0.5 0.5 0.5\nv 0 1 4\nvn 0 0 1\nvt 0 0\ns off\n\
+     f 1/1/1 2/1/1 3/1/1\nf 1//1 3//1 4//1\n",
+    "f -9999999999 1 2\n",
+    "f 1 2 3 \\\n4\nv 0 0 1\r\nv 1 0 2\r\nv 1 1 3\r\nv 0 1 4",
+];
+
+#[test]
+fn foreign_files_are_read() {
+    let folder = folder();
+    let square = |text: &str, name: &str| mesh::read(&written(folder.path(), name, text));
+    let expected = content(&square(FOREIGN[0], "a.ply").unwrap());
+    assert_eq!(expected.len(), 2);
+    assert_eq!(content(&square(FOREIGN[1], "b.ply").unwrap()), expected);
+    assert_eq!(content(&square(FOREIGN[2], "c.ply").unwrap()), expected);
+    assert_eq!(content(&square(FOREIGN[3], "d.obj").unwrap()), expected);
+    assert_eq!(content(&square(FOREIGN[5], "f.obj").unwrap()), expected);
+    let back = "v 0 0 1\nv 1 0 2\nv 1 1 3\nv 0 1 4\nf -4 -3 -2\nf -4/5 -2/5 -1/5\n";
+    assert_eq!(content(&square(back, "g.obj").unwrap()), expected);
+    let error = square(FOREIGN[4], "e.obj").unwrap_err().to_string();
+    assert!(error.ends_with("e.obj: line 1: '-9999999999' names no vertex (the first is 1)"), "{error}");
+}
+
+#[test]
+fn binary_of_both_orders_and_all_types() {
+    let folder = folder();
+    let header = |order: &str| {
+        format!(
+            "ply\nformat binary_{order}_endian 1.0\nelement vertex 4\nproperty short x\nproperty ushort y\nproperty float z\n\
+             property list ushort char extra\nelement face 2\nproperty list int uint vertex_indices\nproperty char f\nend_header\n"
+        )
+        .into_bytes()
+    };
+    let (mut little, mut big) = (header("little"), header("big"));
+    fn put<const N: usize>(files: [&mut Vec<u8>; 2], le: [u8; N], be: [u8; N]) {
+        let [little, big] = files;
+        little.extend(le);
+        big.extend(be);
+    }
+    macro_rules! put {
+        ($value:expr) => {
+            put([&mut little, &mut big], $value.to_le_bytes(), $value.to_be_bytes())
+        };
+    }
+    for (i, [x, y]) in [[0i16, 0], [1, 0], [1, 1], [0, 1]].into_iter().enumerate() {
+        put!(x);
+        put!(y as u16);
+        put!((i as f32 + 1.0));
+        put!(2u16);
+        put!(-7i8);
+        put!(9i8);
+    }
+    for face in [[0u32, 1, 2], [0, 2, 3]] {
+        put!(3i32);
+        for v in face {
+            put!(v);
+        }
+        put!(0i8);
+    }
+    let ascii = mesh::read(&written(folder.path(), "a.ply", FOREIGN[0])).unwrap();
+    for (name, bytes) in [("little.ply", little), ("big.ply", big)] {
+        let mesh = mesh::read(&written(folder.path(), name, bytes)).unwrap();
+        assert_eq!(content(&mesh), content(&ascii));
+    }
+}
+
+#[test]
+fn no_prefix_and_no_flipped_byte_does_harm() {
+    let folder = folder();
+    let path = folder.path().join("field.ply");
+    mesh::write(&path, &field(4)).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    let ascii = FOREIGN[1].as_bytes();
+    for bytes in [&whole, ascii] {
+        for length in 0..bytes.len() - 1 {
+            let error = mesh::read(&written(folder.path(), "cut.ply", &bytes[..length])).unwrap_err();
+            assert!(error.path().is_some(), "{error}");
+        }
+        for i in 0..bytes.len() {
+            for flip in [0x01, 0x10, 0x80, 0xff] {
+                let mut odd = bytes.to_vec();
+                odd[i] ^= flip;
+                // An error or a mesh, but no panic, and nothing large.
+                if let Err(error) = mesh::read(&written(folder.path(), "odd.ply", odd)) {
+                    assert!(error.path().is_some());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_name_the_value_and_the_place() {
+    let folder = folder();
+    let message = |name: &str, bytes: &[u8]| {
+        let path = written(folder.path(), name, bytes);
+        let text = mesh::read(&path).unwrap_err().to_string();
+        text.strip_prefix(&format!("{}: ", path.display())).unwrap().to_owned()
+    };
+    let ply = |vertices: &str, faces: &str, body: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty double x\nproperty double y\nproperty double z\n\
+             element face {faces}\nproperty list uchar int vertex_indices\nend_header\n{body}"
+        )
+    };
+    let square = "0 0 0 1 0 0 1 1 0 0 1 0 ";
+    for (file, expected) in [
+        (ply("4", "1", &format!("{square} 3 0 1 4")), "face 0: a face names vertex 4, but there are 4 vertices"),
+        (ply("4", "1", &format!("{square} 3 0 1 -1")), "face 0: -1 is no number of a vertex"),
+        (ply("4", "1", &format!("{square} 3 0 1 1.5")), "face 0: 1.5 is no number of a vertex"),
+        (ply("4", "1", &format!("{square} 2 0 1 1")), "face 0: a face has 2 corners, expected 3 or more"),
+        (ply("4", "1", &format!("{square} 99 0 1 1")), "face 0: a list of 99 values, with 6 bytes left"),
+        (ply("4", "1", &format!("{square} 3 0 nul 1")), "face 0: 'nul' is no number"),
+        (ply("4", "1", &format!("{square} 3 0 0 1")), "face 0 names one vertex twice: 0 0 1"),
+        (ply("4", "0", square), "there are no faces: the file is a point cloud"),
+        (
+            ply("9999999999999", "1", square),
+            "the header says 9999999999999 of 'vertex', but there is room for 4 in the 24 bytes left",
+        ),
+        (ply("18446744073709551616", "1", square), "line 3: '18446744073709551616' is no count"),
+        ("solid x\n".into(), "the file does not begin with 'ply'"),
+        ("ply\nformat ascii 1.0\n".into(), "the header has no end"),
+        ("ply\nformat ascii 2.0\nend_header\n".into(), "line 2: 'format ascii 2.0' is no line of a PLY 1.0 header"),
+        ("ply\nproperty float x\n".into(), "line 2: a property before any element"),
+        (
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n".into(),
+            "line 4: 'half' is no type of a property",
+        ),
+        (
+            "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n".into(),
+            "the faces are triangle strips ('tristrips')",
+        ),
+    ] {
+        assert_eq!(message("odd.ply", file.as_bytes()), expected);
+    }
+    assert_eq!(message("odd.obj", b"v 0 0\n"), "line 1: a vertex without z");
+    assert_eq!(message("odd.obj", b"v 0 0 z\n"), "line 1: 'z' is no number for z");
+    assert_eq!(message("odd.obj", b"v 0 0 0\n"), "there are no faces ('f a b c' lines)");
+    let beyond = message("odd.obj", b"v 0 0 0\nf 1 2 3\n");
+    assert_eq!(beyond, "line 2: a face names vertex 1, but there are 1 vertices");
+    assert_eq!(message("odd.stl", b""), "STL meshes are not read: they have no exact coordinates");
+    assert_eq!(message("odd.dxf", b""), "the file's extension names no mesh format");
+    assert!(mesh::read(Path::new("nowhere.ply")).unwrap_err().to_string().starts_with("nowhere.ply: "));
+    let error = mesh::write(&folder.path().join("none/x.ply"), &field(3)).unwrap_err();
+    assert!(error.path().is_some());
+}
