@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 /// that bilinear interpolation has there. (One diagonal in all quads draws valleys that run along it
 /// smooth and the others ragged; a diagonal chosen by the heights jumps where they change a little.)
 ///
-/// A quad with one cell missing (NaN) is one triangle, with two or more missing there is none. Faces
+/// A quad with one cell missing (NaN, or infinite) is one triangle, with two or more missing there is none. Faces
 /// are computed when asked for: the surface takes no memory beside the raster.
 ///
 /// Vertices are numbered by cell, row by row, then by quad; faces by quad, four numbers each.
@@ -74,13 +74,11 @@ impl<'a> GridSurface<'a> {
 
     /// Column and row of a face's quad, and which of its four faces it is.
     fn quad_of(&self, face: u32) -> ([usize; 2], usize) {
-        let quad = face as usize / 4;
-        // Asked only for faces that exist, so that there are quads.
-        ([quad % self.quads[0], quad / self.quads[0]], face as usize % 4)
+        (place(face / 4, self.quads[0]), face as usize % 4)
     }
 
     fn quad(&self, [column, row]: [usize; 2]) -> Quad {
-        let missing = |i: usize| self.grid.value(column + self.corners[i][0], row + self.corners[i][1]).is_nan();
+        let missing = |i: usize| !self.grid.value(column + self.corners[i][0], row + self.corners[i][1]).is_finite();
         let mut found = (0..4).filter(|&i| missing(i));
         match (found.next(), found.next()) {
             (None, _) => Quad::Whole,
@@ -110,19 +108,27 @@ impl<'a> GridSurface<'a> {
     }
 }
 
+/// Column and row of what is numbered row by row. All numbers fit in 32 bits, which divide faster.
+fn place(number: u32, width: usize) -> [usize; 2] {
+    // Asked only for what exists, so that the width is not 0.
+    let width = width as u32;
+    [(number % width) as usize, (number / width) as usize]
+}
+
 impl Surface for GridSurface<'_> {
     fn vertex_count(&self) -> usize {
         self.grid.values.len() + self.quads[0] * self.quads[1]
     }
 
     fn position(&self, vertex: u32) -> [f64; 3] {
-        let (vertex, frame) = (vertex as usize, &self.grid.frame);
-        let cells = self.grid.values.len();
+        let frame = &self.grid.frame;
+        let cells = self.grid.values.len() as u32;
         if vertex < cells {
-            let [x, y] = frame.to_map((vertex % frame.width) as f64 + 0.5, (vertex / frame.width) as f64 + 0.5);
-            return [x, y, self.grid.values[vertex]];
+            let [column, row] = place(vertex, frame.width);
+            let [x, y] = frame.to_map(column as f64 + 0.5, row as f64 + 0.5);
+            return [x, y, self.grid.value(column, row)];
         }
-        let (column, row) = ((vertex - cells) % self.quads[0], (vertex - cells) / self.quads[0]);
+        let [column, row] = place(vertex - cells, self.quads[0]);
         let [x, y] = frame.to_map(column as f64 + 1.0, row as f64 + 1.0);
         let quarter = |right: usize, down: usize| 0.25 * self.grid.value(column + right, row + down);
         // By diagonals: the sum is the same however the raster is turned.

@@ -60,17 +60,29 @@ impl Piece {
 
 impl<'a, S: Surface + ?Sized> Cut<'a, S> {
     pub(super) fn face(&self, id: u32) -> Option<Face> {
-        let (vertices, at) = corners(self.surface, id)?;
+        let vertices = self.surface.face(id)?;
+        let at = vertices.map(|v| self.surface.position(v));
+        Some(Face { id, vertices, at, side: at.map(|p| self.side(p)) })
+    }
+
+    fn side(&self, at: [f64; 3]) -> Ordering {
         // Heights are finite.
-        let side = at.map(|p| p[2].partial_cmp(&self.level).unwrap_or(Less));
-        Some(Face { id, vertices, at, side })
+        at[2].partial_cmp(&self.level).unwrap_or(Less)
     }
 
     /// The face on the other side of the edge opposite corner `i`, and its corner opposite the edge.
     pub(super) fn across(&self, face: &Face, i: usize) -> Option<(Face, usize)> {
-        let other = self.face(self.surface.neighbor(face.id, i)?)?;
-        let edge = [face.vertices[(i + 2) % 3], face.vertices[(i + 1) % 3]];
-        (0..3).find(|&j| [other.vertices[(j + 1) % 3], other.vertices[(j + 2) % 3]] == edge).map(|j| (other, j))
+        let id = self.surface.neighbor(face.id, i)?;
+        let vertices = self.surface.face(id)?;
+        let edge = [(i + 2) % 3, (i + 1) % 3];
+        let j = (0..3).find(|&j| [1, 2].map(|k| vertices[(j + k) % 3]) == edge.map(|k| face.vertices[k]))?;
+        let new = self.surface.position(vertices[j]);
+        let mut other = Face { id, vertices, at: [new; 3], side: [self.side(new); 3] };
+        for (k, old) in [1, 2].into_iter().zip(edge) {
+            other.at[(j + k) % 3] = face.at[old];
+            other.side[(j + k) % 3] = face.side[old];
+        }
+        Some((other, j))
     }
 
     /// The pieces along the edges of a face of which it is the high side.
@@ -190,13 +202,6 @@ impl<S: Surface + ?Sized> Iterator for Fan<'_, '_, S> {
             }
         }
     }
-}
-
-/// The corners of a face; none if the face is unused or not finite.
-pub(super) fn corners<S: Surface + ?Sized>(surface: &S, face: u32) -> Option<([u32; 3], [[f64; 3]; 3])> {
-    let vertices = surface.face(face)?;
-    let at = vertices.map(|v| surface.position(v));
-    at.iter().flatten().all(|c| c.is_finite()).then_some((vertices, at))
 }
 
 /// Where an edge meets a level that lies between its ends.

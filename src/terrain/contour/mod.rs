@@ -73,7 +73,7 @@ mod trace;
 use super::Levels;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
-use cut::{Cut, Piece, corners};
+use cut::{Cut, Piece};
 use index::LevelIndex;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -81,7 +81,7 @@ use trace::Done;
 
 /// Draws the contours of a surface: lines by level and then by their points, high ground on the
 /// right, each closed or ending at the edge of the data. The exact rule, which covers vertices,
-/// edges and triangles on a level, is told in [the module](self).
+/// edges and triangles on a level, is told in [the module](self). Vertices must be finite.
 ///
 /// # Errors
 /// If the levels within the heights of the surface are more than [`MAX_LEVELS`](super::MAX_LEVELS).
@@ -92,11 +92,9 @@ use trace::Done;
 /// level; one bit a face for each thread.
 pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Result<Contours<'a, S>> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (_, at) in faces(surface) {
-        for p in at {
-            low = low.min(p[2]);
-            high = high.max(p[2]);
-        }
+    for (_, [a, b, c]) in heights(surface) {
+        low = low.min(a).min(b).min(c);
+        high = high.max(a).max(b).max(c);
     }
     let index = LevelIndex::new(levels.within(low, high)?);
     let mut counts = vec![0; index.levels().len()];
@@ -180,26 +178,25 @@ fn draw_level<S: Surface + ?Sized>(surface: &S, level: f64, pieces: &[Piece], do
     lines
 }
 
-fn faces<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = (u32, [[f64; 3]; 3])> {
+/// The heights of the corners of all faces.
+fn heights<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = (u32, [f64; 3])> {
     // As many faces as numbers have room for.
     let count = u32::try_from(surface.face_count()).unwrap_or(u32::MAX);
-    (0..count).filter_map(|face| corners(surface, face).map(|(_, at)| (face, at)))
+    (0..count).filter_map(|face| Some((face, surface.face(face)?.map(|v| surface.position(v)[2]))))
 }
 
 /// Calls `found` with each piece and its level, the pieces of a level in the order of the faces.
 fn pieces<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, mut found: impl FnMut(usize, Piece)) {
-    for (face, at) in faces(surface) {
-        let heights = at.map(|p| p[2]);
-        let low = heights[0].min(heights[1]).min(heights[2]);
-        let high = heights[0].max(heights[1]).max(heights[2]);
-        let first = index.first_from(low);
-        for (i, &level) in index.levels().iter().enumerate().skip(first) {
+    for (face, [a, b, c]) in heights(surface) {
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        for i in index.first_from(low)..index.levels().len() {
+            let level = index.levels()[i];
             if level > high {
                 break;
             }
             if low < level && level < high {
                 found(i, Piece::Across(face));
-            } else if level == low && heights.iter().filter(|&&h| h == level).count() > 1 {
+            } else if level == low && [a, b, c].into_iter().filter(|&h| h == level).count() > 1 {
                 let cut = Cut { surface, level };
                 cut.face(face).into_iter().flat_map(|face| cut.pieces_along(face)).for_each(|piece| found(i, piece));
             }
