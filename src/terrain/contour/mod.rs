@@ -1,0 +1,205 @@
+//! Contour lines, cut straight from the triangles.
+//!
+//! # The rule
+//!
+//! Heights rounded to centimetres lie on a level all the time: corners, edges, whole triangles and
+//! saddles. One rule covers them all. Let *H* be the closure of the interior of the set where the
+//! surface is at the level or above. **The contour is the boundary of *H***, without what lies on
+//! the edge of the data, directed so that *H* is on its right.
+//!
+//! *H* is a union of one polygon per face. By the heights of the corners, `+` above, `0` on and `-`
+//! below the level:
+//!
+//! | corners | in *H* | pieces of contour |
+//! |---|---|---|
+//! | `+++` `++0` `+00` `000` | all of the face | none inside |
+//! | `---` `--0` `-00` | nothing: a corner or an edge has no interior | none inside |
+//! | `++-` `+--` | the part above the crossings | from crossing to crossing |
+//! | `+0-` | the part above | from the corner to the crossing |
+//!
+//! What remains are the edges of faces. Along an edge `++`, `+0` or the upper part of `+-` both
+//! faces belong to *H*, along `--` and `0-` neither: their pieces cancel, or there are none. Along an
+//! edge `00` each face counts by its third corner, so:
+//!
+//! | third corners of the faces at an edge `00` | piece |
+//! |---|---|
+//! | `+` or `0` in one, `-` in the other | the edge |
+//! | both `+` or `0`; both `-` | none |
+//! | only one face: the edge of the data | none |
+//!
+//! So a ridge that just reaches the level, a summit on it, and the inside of a lake on it give
+//! nothing, the shore of the lake gives one line, and no piece comes twice.
+//!
+//! # Why every line closes or ends at the edge of the data
+//!
+//! Pieces meet at *nodes*: the crossing of an edge `+-`, or a vertex `0`. Each face at an edge `+-` has
+//! exactly one piece that ends there, and one of the two faces sees it begin and the other end,
+//! because they see the edge in opposite directions. Around a vertex `0`, the sectors of the faces
+//! belong to *H* or do not; going around counter-clockwise, a piece leaves the vertex where *H* ends
+//! and arrives where it begins. Around an inner vertex the changes alternate and come out even: as
+//! many arrive as leave. At the edge of the data the faces around a vertex form one or more *fans*;
+//! within a fan the changes alternate, and one may be left over: the line ends there.
+//!
+//! # The turn rule
+//!
+//! At a vertex where more than one line passes (a saddle on the level), **an arriving piece goes on
+//! with the first leaving piece counter-clockwise from it** that is not itself taken by a piece
+//! arriving in between, as brackets are paired. That is the sharpest turn to the right, around one
+//! sector of high ground: high ground that meets only at a vertex stays apart. Pairs of neighbors in
+//! the circle never cross. At the edge of the data the circle goes on over the gap, so that a line
+//! ends there only if there is nothing left to join it with.
+//!
+//! # Points
+//!
+//! Nodes are joined by the links between faces, never by comparing coordinates. The crossing of an edge
+//! is computed from its smaller end, in `f64`, and lies in the box of the edge: both faces, and any
+//! numbering of the vertices, give the same bits. Where ground is narrower than the steps of an
+//! `f64`, points fall together; pieces that lose their length, and a way forth and back over the same
+//! points, are left out, and so are lines of which nothing is left. (What is narrower than that can
+//! also make two lines touch, or cross by the last bit.)
+//!
+//! # The order
+//!
+//! Lines come by level and then by their points, a closed line from its smallest point. So the result
+//! depends on the set of triangles alone: not on numbers, order or threads. Contours of a part of the
+//! faces are those of the whole, cut to the pieces inside those faces and between two of them.
+
+mod cut;
+mod index;
+mod join;
+mod line;
+mod trace;
+
+use super::Levels;
+use crate::data::{ContourLine, Surface};
+use crate::error::Result;
+use cut::{Cut, Piece};
+use index::LevelIndex;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use trace::Done;
+
+/// Draws the contours of a surface: lines by level and then by their points, high ground on the
+/// right, each closed or ending at the edge of the data. The exact rule, which covers vertices,
+/// edges and triangles on a level, is told in [the module](self). Vertices must be finite.
+///
+/// # Errors
+/// If the levels within the heights of the surface are more than [`MAX_LEVELS`](super::MAX_LEVELS).
+///
+/// # Complexity
+/// Linear in faces and pieces of contour, and some passes over the faces: one for each two million
+/// pieces. Memory: 24 bytes for each piece of these, or of one level where that has more; 16 bytes a
+/// level; one bit a face for each thread.
+pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Result<Contours<'a, S>> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (_, [a, b, c]) in heights(surface) {
+        low = low.min(a).min(b).min(c);
+        high = high.max(a).max(b).max(c);
+    }
+    let index = LevelIndex::new(levels.within(low, high)?);
+    let mut counts = vec![0; index.levels().len()];
+    pieces(surface, &index, |level, _| counts[level] += 1);
+    Ok(Contours { surface, index, counts, next_level: 0, ready: Vec::new().into_iter() })
+}
+
+/// The contours of a surface, one after the other; made by [`contours`].
+pub struct Contours<'a, S: ?Sized> {
+    surface: &'a S,
+    index: LevelIndex,
+    /// Pieces of each level.
+    counts: Vec<usize>,
+    next_level: usize,
+    ready: std::vec::IntoIter<ContourLine>,
+}
+
+/// Levels are drawn together up to so many pieces.
+const BAND: usize = 1 << 21;
+
+impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
+    type Item = ContourLine;
+
+    fn next(&mut self) -> Option<ContourLine> {
+        loop {
+            if let Some(line) = self.ready.next() {
+                return Some(line);
+            }
+            if self.next_level == self.counts.len() {
+                return None;
+            }
+            self.ready = self.draw_band().into_iter();
+        }
+    }
+}
+
+impl<S: Surface + ?Sized> Contours<'_, S> {
+    /// Draws the next levels, at least one, and at most [`BAND`] pieces if they are more.
+    fn draw_band(&mut self) -> Vec<ContourLine> {
+        // Pieces are sorted by level, by counting.
+        let first = self.next_level;
+        let mut starts = vec![0];
+        let mut sum = 0;
+        for &count in &self.counts[first..] {
+            if sum > 0 && sum + count > BAND {
+                break;
+            }
+            sum += count;
+            starts.push(sum);
+        }
+        let band = first..first + starts.len() - 1;
+        self.next_level = band.end;
+        let mut sorted = vec![Piece::Across(0); sum];
+        let mut free = starts.clone();
+        pieces(self.surface, &self.index, |level, piece| {
+            if band.contains(&level) {
+                let slot = &mut free[level - first];
+                sorted[*slot] = piece;
+                *slot += 1;
+            }
+        });
+        let drawn: Vec<Vec<ContourLine>> = band
+            .into_par_iter()
+            .map_init(
+                || Done::new(self.surface.face_count()),
+                |done, level| {
+                    let range = starts[level - first]..starts[level - first + 1];
+                    draw_level(self.surface, self.index.levels()[level], &sorted[range], done)
+                },
+            )
+            .collect();
+        drawn.into_iter().flatten().collect()
+    }
+}
+
+fn draw_level<S: Surface + ?Sized>(surface: &S, level: f64, pieces: &[Piece], done: &mut Done) -> Vec<ContourLine> {
+    let traces = trace::trace(&Cut { surface, level }, pieces, done);
+    let joined = join::join(surface, traces);
+    let mut lines: Vec<ContourLine> = joined.into_iter().filter_map(|line| line::finish(level, line)).collect();
+    lines.sort_by(|a, b| a.points.partial_cmp(&b.points).unwrap_or(Ordering::Equal));
+    lines
+}
+
+/// The heights of the corners of all faces.
+fn heights<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = (u32, [f64; 3])> {
+    // As many faces as numbers have room for.
+    let count = u32::try_from(surface.face_count()).unwrap_or(u32::MAX);
+    (0..count).filter_map(|face| Some((face, surface.face(face)?.map(|v| surface.position(v)[2]))))
+}
+
+/// Calls `found` with each piece and its level, the pieces of a level in the order of the faces.
+fn pieces<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, mut found: impl FnMut(usize, Piece)) {
+    for (face, [a, b, c]) in heights(surface) {
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        for i in index.first_from(low)..index.levels().len() {
+            let level = index.levels()[i];
+            if level > high {
+                break;
+            }
+            if low < level && level < high {
+                found(i, Piece::Across(face));
+            } else if level == low && [a, b, c].into_iter().filter(|&h| h == level).count() > 1 {
+                let cut = Cut { surface, level };
+                cut.face(face).into_iter().flat_map(|face| cut.pieces_along(face)).for_each(|piece| found(i, piece));
+            }
+        }
+    }
+}

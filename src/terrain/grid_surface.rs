@@ -1,0 +1,188 @@
+use crate::crs::Crs;
+use crate::data::{Grid, Surface};
+use crate::error::{Error, Result};
+
+/// The surface over the centers of a raster's cells, for contours of a DEM.
+///
+/// Four neighboring cells are the corners of a quad, and a fifth vertex in its middle, at the mean of
+/// their heights, divides it into four triangles. No diagonal is preferred then: turned or mirrored
+/// rasters give turned or mirrored surfaces, and a saddle has its pass in the middle, at the height
+/// that bilinear interpolation has there. (One diagonal in all quads draws valleys that run along it
+/// smooth and the others ragged; a diagonal chosen by the heights jumps where they change a little.)
+///
+/// A quad with one cell missing (NaN, or infinite) is one triangle, with two or more missing there is none. Faces
+/// are computed when asked for: the surface takes no memory beside the raster.
+///
+/// Vertices are numbered by cell, row by row, then by quad; faces by quad, four numbers each.
+#[derive(Debug, Clone, Copy)]
+pub struct GridSurface<'a> {
+    grid: &'a Grid,
+    /// Quads in a row and rows of quads.
+    quads: [usize; 2],
+    /// The corners of a quad counter-clockwise in plan, as steps of column and row.
+    corners: [[usize; 2]; 4],
+}
+
+/// Which corners of a quad have values.
+enum Quad {
+    Whole,
+    /// All but this one.
+    Without(usize),
+    Nothing,
+}
+
+impl<'a> GridSurface<'a> {
+    /// The surface over a raster.
+    ///
+    /// # Errors
+    /// If the raster has more quads than faces can be numbered (about a thousand million), or its
+    /// transform is singular.
+    pub fn new(grid: &'a Grid) -> Result<Self> {
+        let frame = &grid.frame;
+        let quads = [frame.width.saturating_sub(1), frame.height.saturating_sub(1)];
+        let cells = frame.width.checked_mul(frame.height);
+        if cells != Some(grid.values.len()) {
+            return Err(Error::usage(format!(
+                "raster of {} x {} cells has {} values",
+                frame.width,
+                frame.height,
+                grid.values.len()
+            )));
+        }
+        // Faces are more than vertices, but for single rows.
+        let largest = (4 * (quads[0] as u128) * (quads[1] as u128)).max(2 * grid.values.len() as u128);
+        if largest > u128::from(u32::MAX) {
+            return Err(Error::limit(format!(
+                "raster of {} x {} cells is too large for contours, at most {} cells can be drawn at a time",
+                frame.width,
+                frame.height,
+                u32::MAX / 4
+            ))
+            .cure("draw a part of it, or make it coarser"));
+        }
+        let t = &frame.transform;
+        let area = t[1] * t[5] - t[2] * t[4];
+        if !(area != 0.0 && area.is_finite()) {
+            return Err(Error::format(format!("raster transform {t:?} has cells without area")));
+        }
+        let mut corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
+        if area < 0.0 {
+            corners.reverse();
+        }
+        Ok(GridSurface { grid, quads, corners })
+    }
+
+    /// Column and row of a face's quad, and which of its four faces it is.
+    fn quad_of(&self, face: u32) -> ([usize; 2], usize) {
+        (place(face / 4, self.quads[0]), face as usize % 4)
+    }
+
+    fn quad(&self, [column, row]: [usize; 2]) -> Quad {
+        let missing = |i: usize| !self.grid.value(column + self.corners[i][0], row + self.corners[i][1]).is_finite();
+        let mut found = (0..4).filter(|&i| missing(i));
+        match (found.next(), found.next()) {
+            (None, _) => Quad::Whole,
+            (Some(i), None) => Quad::Without(i),
+            _ => Quad::Nothing,
+        }
+    }
+
+    fn corner(&self, [column, row]: [usize; 2], i: usize) -> u32 {
+        let [right, down] = self.corners[i % 4];
+        ((row + down) * self.grid.frame.width + column + right) as u32
+    }
+
+    fn face_at(&self, [column, row]: [usize; 2], which: usize) -> u32 {
+        (4 * (row * self.quads[0] + column) + which) as u32
+    }
+
+    /// The quad across side `i`, which runs from corner `i` to the next.
+    fn quad_across(&self, [column, row]: [usize; 2], i: usize) -> Option<[usize; 2]> {
+        let (a, b) = (self.corners[i % 4], self.corners[(i + 1) % 4]);
+        let step = |at: usize, a: usize, b: usize, count: usize| match (a, b) {
+            (0, 0) => at.checked_sub(1),
+            (1, 1) => Some(at + 1).filter(|&at| at < count),
+            _ => Some(at),
+        };
+        Some([step(column, a[0], b[0], self.quads[0])?, step(row, a[1], b[1], self.quads[1])?])
+    }
+}
+
+/// Column and row of what is numbered row by row. All numbers fit in 32 bits, which divide faster.
+fn place(number: u32, width: usize) -> [usize; 2] {
+    // Asked only for what exists, so that the width is not 0.
+    let width = width as u32;
+    [(number % width) as usize, (number / width) as usize]
+}
+
+impl Surface for GridSurface<'_> {
+    fn vertex_count(&self) -> usize {
+        self.grid.values.len() + self.quads[0] * self.quads[1]
+    }
+
+    fn position(&self, vertex: u32) -> [f64; 3] {
+        let frame = &self.grid.frame;
+        let cells = self.grid.values.len() as u32;
+        if vertex < cells {
+            let [column, row] = place(vertex, frame.width);
+            let [x, y] = frame.to_map(column as f64 + 0.5, row as f64 + 0.5);
+            return [x, y, self.grid.value(column, row)];
+        }
+        let [column, row] = place(vertex - cells, self.quads[0]);
+        let [x, y] = frame.to_map(column as f64 + 1.0, row as f64 + 1.0);
+        let quarter = |right: usize, down: usize| 0.25 * self.grid.value(column + right, row + down);
+        // By diagonals: the sum is the same however the raster is turned.
+        [x, y, (quarter(0, 0) + quarter(1, 1)) + (quarter(0, 1) + quarter(1, 0))]
+    }
+
+    fn face_count(&self) -> usize {
+        4 * self.quads[0] * self.quads[1]
+    }
+
+    fn face(&self, face: u32) -> Option<[u32; 3]> {
+        if face as usize >= self.face_count() {
+            return None;
+        }
+        let (at, which) = self.quad_of(face);
+        match self.quad(at) {
+            Quad::Whole => {
+                let center = (self.grid.values.len() + face as usize / 4) as u32;
+                Some([self.corner(at, which), self.corner(at, which + 1), center])
+            }
+            // Corner 1 of the face is opposite the missing one.
+            Quad::Without(i) if which == 0 => Some([1, 2, 3].map(|step| self.corner(at, i + step))),
+            _ => None,
+        }
+    }
+
+    fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
+        let (at, which) = self.quad_of(face);
+        let side = match self.quad(at) {
+            Quad::Whole => match i {
+                0 => return Some(self.face_at(at, (which + 1) % 4)),
+                1 => return Some(self.face_at(at, (which + 3) % 4)),
+                _ => which,
+            },
+            Quad::Without(missing) => match i {
+                0 => missing + 2,
+                2 => missing + 1,
+                _ => return None,
+            },
+            Quad::Nothing => return None,
+        };
+        let beyond = self.quad_across(at, side)?;
+        match self.quad(beyond) {
+            Quad::Whole => Some(self.face_at(beyond, (side + 2) % 4)),
+            Quad::Without(_) => Some(self.face_at(beyond, 0)),
+            Quad::Nothing => None,
+        }
+    }
+
+    fn is_constrained(&self, _face: u32, _i: usize) -> bool {
+        false
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.grid.crs.as_ref()
+    }
+}

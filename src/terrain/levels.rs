@@ -1,0 +1,204 @@
+use crate::error::{Error, Result};
+
+/// Most levels that one run may ask for: far more than any map shows, few enough to be held.
+pub const MAX_LEVELS: usize = 1_000_000;
+
+/// The heights at which contours are wanted, in the units of the data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Levels(Choice);
+
+#[derive(Debug, Clone, PartialEq)]
+enum Choice {
+    Every { interval: f64, base: f64 },
+    Listed(Vec<f64>),
+}
+
+impl Levels {
+    /// The levels `base + k * interval` for every whole `k`.
+    ///
+    /// Each is computed on its own, so that nothing adds up. Where interval and base have at most
+    /// nine decimals, a level is the number nearest to the decimal: the third level of interval 0.1
+    /// is the number that is read from "0.3", and not `3.0 * 0.1`, which lies above it.
+    ///
+    /// # Errors
+    /// If the interval is not positive and finite, or the base is not finite.
+    pub fn every(interval: f64, base: f64) -> Result<Self> {
+        if !(interval > 0.0 && interval.is_finite()) {
+            return Err(Error::usage(format!("contour interval is {interval}, expected a positive number")));
+        }
+        if !base.is_finite() {
+            return Err(Error::usage(format!("contour base is {base}, expected a finite number")));
+        }
+        Ok(Levels(Choice::Every { interval, base }))
+    }
+
+    /// These levels, in any order; a level given twice counts once.
+    ///
+    /// # Errors
+    /// If one is not finite, or there are more than [`MAX_LEVELS`].
+    pub fn listed(levels: &[f64]) -> Result<Self> {
+        if let Some(level) = levels.iter().find(|level| !level.is_finite()) {
+            return Err(Error::usage(format!("contour level is {level}, expected a finite number")));
+        }
+        let mut levels: Vec<f64> = levels.iter().map(|&level| plain_zero(level)).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        if levels.len() > MAX_LEVELS {
+            return Err(Error::limit(format!(
+                "{} contour levels are given, at most {MAX_LEVELS} can be",
+                levels.len()
+            )));
+        }
+        Ok(Levels(Choice::Listed(levels)))
+    }
+
+    /// The levels from `low` to `high`, both included, ascending; none if `low > high`.
+    ///
+    /// # Errors
+    /// If they are more than [`MAX_LEVELS`], or so far from the base that they cannot be told apart.
+    pub fn within(&self, low: f64, high: f64) -> Result<Vec<f64>> {
+        match &self.0 {
+            _ if low > high || low.is_nan() || high.is_nan() => Ok(Vec::new()),
+            Choice::Every { interval, base } => every_within(*interval, *base, low, high),
+            Choice::Listed(levels) => {
+                Ok(levels.iter().copied().filter(|&level| low <= level && level <= high).collect())
+            }
+        }
+    }
+}
+
+/// Whole numbers up to here are exact in an `f64`.
+const EXACT: f64 = (1_u64 << 53) as f64;
+
+fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64>> {
+    // One more on each side: the quotients are rounded.
+    let first = ((low - base) / interval).floor() - 1.0;
+    let last = ((high - base) / interval).ceil() + 1.0;
+    let steps = last - first;
+    if steps > MAX_LEVELS as f64 + 4.0 {
+        return Err(Error::limit(format!(
+            "contour interval {interval} gives {} levels between {low} and {high}, at most {MAX_LEVELS} are drawn",
+            (steps - 3.0).max(0.0)
+        ))
+        .cure("give a larger interval, or levels one by one"));
+    }
+    if !(first.abs() < EXACT && last.abs() < EXACT) {
+        return Err(Error::usage(format!(
+            "contour base {base} is too far from the heights ({low} to {high}) for interval {interval}"
+        )));
+    }
+    let progression = Progression::new(interval, base);
+    let mut levels: Vec<f64> = (first as i64..=last as i64).map(|k| progression.level(k)).collect();
+    levels.retain(|&level| low <= level && level <= high);
+    levels.dedup();
+    if levels.len() > MAX_LEVELS {
+        return Err(Error::limit(format!(
+            "contour interval {interval} gives {} levels between {low} and {high}, at most {MAX_LEVELS} are drawn",
+            levels.len()
+        ))
+        .cure("give a larger interval, or levels one by one"));
+    }
+    Ok(levels)
+}
+
+/// How `base + k * interval` is computed.
+enum Progression {
+    /// In whole units of `1 / unit`, which is a power of ten.
+    Decimal {
+        interval: i64,
+        base: i64,
+        unit: f64,
+    },
+    Binary {
+        interval: f64,
+        base: f64,
+    },
+}
+
+impl Progression {
+    fn new(interval: f64, base: f64) -> Self {
+        let decimal = (0..=9).map(|decimals| 10_f64.powi(decimals)).find_map(|unit| {
+            let whole = |value: f64| {
+                let count = (value * unit).round();
+                (count.abs() < EXACT && count / unit == value).then_some(count as i64)
+            };
+            Some(Progression::Decimal { interval: whole(interval)?, base: whole(base)?, unit })
+        });
+        decimal.unwrap_or(Progression::Binary { interval, base })
+    }
+
+    fn level(&self, k: i64) -> f64 {
+        plain_zero(match *self {
+            Progression::Decimal { interval, base, unit } => {
+                // Below 2^107, and rounded only where it passes 2^53.
+                (i128::from(k) * i128::from(interval) + i128::from(base)) as f64 / unit
+            }
+            Progression::Binary { interval, base } => (k as f64).mul_add(interval, base),
+        })
+    }
+}
+
+/// Turns -0 into 0, so that equal levels are written alike.
+fn plain_zero(value: f64) -> f64 {
+    value + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+
+    fn within(interval: f64, base: f64, low: f64, high: f64) -> Vec<f64> {
+        Levels::every(interval, base).unwrap().within(low, high).unwrap()
+    }
+
+    #[test]
+    fn both_ends_are_included() {
+        assert_eq!(within(1.0, 0.0, 2.0, 5.0), [2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(within(5.0, 2.0, -9.0, 8.0), [-8.0, -3.0, 2.0, 7.0]);
+        assert_eq!(within(1.0, 0.0, 2.25, 2.75), []);
+        assert_eq!(within(1.0, 0.0, 3.0, 3.0), [3.0]);
+        assert_eq!(within(1.0, 0.0, f64::INFINITY, f64::NEG_INFINITY), []);
+    }
+
+    #[test]
+    fn decimal_levels_are_those_that_one_types() {
+        for (interval, decimals) in [(0.1, 1), (0.05, 2), (0.3048, 4), (0.7, 1)] {
+            for (i, level) in within(interval, 0.0, 0.0, 100.0 * interval).iter().enumerate() {
+                let typed: f64 = format!("{:.decimals$}", i as f64 * interval).parse().unwrap();
+                assert_eq!(level.to_bits(), typed.to_bits(), "{i} times {interval}");
+            }
+        }
+    }
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert!(within(1.0, -0.0, -1.0, 1.0)[1].is_sign_positive());
+        assert!(Levels::listed(&[-0.0]).unwrap().within(-1.0, 1.0).unwrap()[0].is_sign_positive());
+    }
+
+    #[test]
+    fn a_list_is_sorted_and_each_level_counts_once() {
+        let levels = Levels::listed(&[3.0, 1.0, 0.0, 3.0, -0.0, 9.0]).unwrap();
+        assert_eq!(levels.within(0.0, 3.0).unwrap(), [0.0, 1.0, 3.0]);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for interval in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Levels::every(interval, 0.0).unwrap_err().kind(), Kind::Usage);
+        }
+        assert_eq!(Levels::every(1.0, f64::NAN).unwrap_err().kind(), Kind::Usage);
+        assert_eq!(Levels::listed(&[1.0, f64::NAN]).unwrap_err().kind(), Kind::Usage);
+        assert_eq!(Levels::every(1.0, 1e300).unwrap().within(0.0, 9.0).unwrap_err().kind(), Kind::Usage);
+    }
+
+    #[test]
+    fn too_many_levels_are_counted_and_refused() {
+        let error = Levels::every(1e-4, 0.0).unwrap().within(0.0, 1000.0).unwrap_err();
+        assert_eq!(error.kind(), Kind::Limit);
+        assert!(error.to_string().contains("0.0001") && error.to_string().contains("1000000"), "{error}");
+        assert_eq!(Levels::every(f64::MIN_POSITIVE, 0.0).unwrap().within(0.0, 1.0).unwrap_err().kind(), Kind::Limit);
+        assert_eq!(within(1.0, 0.0, 1.0, 1_000_000.0).len(), MAX_LEVELS);
+    }
+}

@@ -1,0 +1,135 @@
+//! Contours of a raster: the surface over its cells.
+
+use super::surface::Faces;
+use super::{draw, signed_area};
+use breakline::data::{ContourLine, Frame, Grid, Surface};
+use breakline::terrain::GridSurface;
+use proptest::prelude::*;
+
+const X: f64 = f64::NAN;
+
+fn raster(width: usize, values: &[f64], transform: [f64; 6]) -> Grid {
+    let frame = Frame { width, height: values.len() / width, transform };
+    Grid { frame, crs: None, values: values.to_vec() }
+}
+
+/// As a list of faces, with the links found by the test; checks those of the grid.
+fn copied(surface: &GridSurface<'_>) -> Faces {
+    let vertices = (0..surface.vertex_count()).map(|v| surface.position(v as u32)).collect();
+    let used: Vec<u32> = (0..surface.face_count() as u32).filter(|&f| surface.face(f).is_some()).collect();
+    let faces = Faces::new(vertices, used.iter().map(|&f| surface.face(f).unwrap()).collect());
+    for (i, &face) in used.iter().enumerate() {
+        let [a, b, c] = surface.face(face).unwrap().map(|v| surface.position(v));
+        assert!((b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0]), "face {face} is not counter-clockwise");
+        for side in 0..3 {
+            let expected = faces.neighbor(i as u32, side).map(|n| used[n as usize]);
+            assert_eq!(surface.neighbor(face, side), expected, "across side {side} of face {face}");
+        }
+    }
+    faces
+}
+
+const NORTH_UP: [f64; 6] = [100.0, 2.0, 0.0, 200.0, 0.0, -2.0];
+
+fn cell() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => (0..4).prop_map(f64::from), 1 => Just(X)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+    #[test]
+    fn faces_are_linked_and_turned(values in prop::collection::vec(cell(), 20), turn in 0..8) {
+        let [a, b, c, d] = [[2, 1, -1, 2], [2, 1, 1, -2], [-3, 0, 0, -3], [0, 1, 1, 0], [0, 1, -1, 0],
+            [1, 0, 0, 1], [1, 0, 0, -1], [-1, 3, 2, 1]][turn as usize].map(f64::from);
+        for width in [1, 4, 5, 20] {
+            copied(&GridSurface::new(&raster(width, &values, [10.0, a, b, 20.0, c, d])).unwrap());
+        }
+    }
+
+    /// South-up, mirrored and transposed rasters of the same ground give the same lines.
+    #[test]
+    fn storage_does_not_matter(values in prop::collection::vec(cell(), 24)) {
+        let (width, height) = (6, 4);
+        let at = |column: usize, row: usize| values[row * width + column];
+        let stored = |width: usize, at: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+            (0..24).map(|i| at(i % width, i / width)).collect()
+        };
+        let (left, right, top, bottom) = (100.0, 112.0, 200.0, 192.0);
+        let all = [
+            raster(6, &values, NORTH_UP),
+            raster(6, &stored(6, &|c, r| at(c, height - 1 - r)), [left, 2.0, 0.0, bottom, 0.0, 2.0]),
+            raster(6, &stored(6, &|c, r| at(width - 1 - c, r)), [right, -2.0, 0.0, top, 0.0, -2.0]),
+            raster(4, &stored(4, &|c, r| at(r, c)), [left, 0.0, 2.0, top, -2.0, 0.0]),
+        ];
+        let drawn = all.each_ref().map(|grid| draw(&GridSurface::new(grid).unwrap(), &[0.5, 1.0, 1.75, 2.0, 2.2]));
+        for other in &drawn[1..] {
+            prop_assert_eq!(&drawn[0], other);
+        }
+    }
+}
+
+#[test]
+fn three_cells_make_a_triangle() {
+    let grid = raster(2, &[0.0, X, 2.0, 2.0], NORTH_UP);
+    let lines = draw(&GridSurface::new(&grid).unwrap(), &[1.0]);
+    // Cell centers are at 101 and 103, 199 and 197. High ground, the south, is on the right.
+    let expected = ContourLine { level: 1.0, points: vec![[101.0, 198.0], [102.0, 198.0]] };
+    assert_eq!(lines, [expected]);
+    assert!(draw(&GridSurface::new(&raster(2, &[0.0, X, X, 2.0], NORTH_UP)).unwrap(), &[1.0]).is_empty());
+}
+
+#[test]
+fn a_missing_cell_is_an_edge_of_the_data() {
+    #[rustfmt::skip]
+    let grid = raster(4, &[
+        0.0, 0.0, 0.0, 0.0,
+        0.0, 4.0, 0.0, 0.0,
+        0.0, 0.0, 0.0, X,
+        0.0, 0.0, 0.0, X,
+    ], NORTH_UP);
+    let lines = draw(&GridSurface::new(&grid).unwrap(), &[2.0]);
+    assert_eq!(lines.len(), 1);
+    assert!(lines[0].is_closed() && signed_area(&lines[0]) < 0.0);
+    // The four crossings on the edges to the neighbors: half way.
+    for p in [[102.0, 197.0], [104.0, 197.0], [103.0, 196.0], [103.0, 198.0]] {
+        assert!(lines[0].points.contains(&p), "{p:?} in {lines:?}");
+    }
+}
+
+#[test]
+fn a_cone_gives_circles() {
+    let (size, step) = (201, 0.5);
+    let center = step * f64::from(size) / 2.0;
+    let frame = Frame::north_up(0.0, step * f64::from(size), step, size as usize, size as usize);
+    let height = |i: i32| {
+        let [x, y] = frame.to_map(f64::from(i % size) + 0.5, f64::from(i / size) + 0.5);
+        -(x - center).hypot(y - center)
+    };
+    let grid = Grid { frame, crs: None, values: (0..size * size).map(height).collect() };
+    for level in 5..45 {
+        let radius = f64::from(level);
+        let lines = draw(&GridSurface::new(&grid).unwrap(), &[-radius]);
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].is_closed());
+        for p in &lines[0].points {
+            // Linear interpolation over a diagonal of a cell: off by its square over 8 radii, at most.
+            let off = (p[0] - center).hypot(p[1] - center) - radius;
+            assert!(off.abs() < 2.0 * step * step / (8.0 * (radius - step)) + 1e-9, "{off} at radius {radius}");
+        }
+        let circle = -std::f64::consts::PI * radius * radius;
+        assert!((signed_area(&lines[0]) / circle - 1.0).abs() < 3e-3);
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let skewed = raster(2, &[0.0; 4], [0.0, 1.0, 1.0, 0.0, 2.0, 2.0]);
+    assert!(GridSurface::new(&skewed).unwrap_err().to_string().contains("without area"));
+    let mut short = raster(2, &[0.0; 4], NORTH_UP);
+    short.frame.height = 3;
+    assert!(GridSurface::new(&short).unwrap_err().to_string().contains("2 x 3"));
+    short.frame.width = usize::MAX;
+    assert!(GridSurface::new(&short).is_err());
+    assert_eq!(GridSurface::new(&raster(1, &[0.0; 0], NORTH_UP)).unwrap().face_count(), 0);
+}
