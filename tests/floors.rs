@@ -54,6 +54,7 @@ fn the_rule_can_fail() {
     assert!(!check("num", "use crate::{error::Error, kernel};"), "upward, a whole room");
     assert!(!check("geometry", "use crate::Tin;"), "a re-export hides its floor");
     assert!(!check("geometry", "use crate::attic::Box;"), "a room that has no floor");
+    assert!(!check("tds", "use super::super::geometry::Plane;"), "up the back stairs");
 }
 
 fn may_use(user: &str, used: &str) -> bool {
@@ -62,7 +63,7 @@ fn may_use(user: &str, used: &str) -> bool {
     low < high || user == used || NEIGHBORS.contains(&(user, used))
 }
 
-/// The first names of all paths that start at the crate.
+/// The first names of all paths that start at the crate, and of those that climb to it by `super`.
 fn used_rooms(text: &str) -> Vec<String> {
     let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
     let name = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
@@ -85,6 +86,9 @@ fn used_rooms(text: &str) -> Vec<String> {
             }
         }
     }
+    let climbs: Vec<_> = code.split("super::").collect();
+    let back_stairs = climbs.windows(2).filter(|pair| pair[0].is_empty()).map(|pair| name(pair[1]));
+    rooms.extend(back_stairs.filter(|room| FLOORS.concat().contains(&room.as_str())));
     rooms
 }
 
