@@ -1,0 +1,112 @@
+//! The floors of the house: a file uses lower floors and its own folder, nothing else.
+//!
+//! `docs/architecture.md` says why. What is read is the source text, so a path has to be written out
+//! (`crate::data::Grid`) or imported with `use crate::...`, also inside braces.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Rooms from the ground up. Rooms on one floor do not know each other, except as [`NEIGHBORS`] says.
+const FLOORS: [&[&str]; 6] = [
+    &["error", "num"],
+    &["kernel", "crs", "data"],
+    &["geometry", "tds"],
+    &["triangulation"],
+    &["terrain", "io"],
+    &["cli"],
+];
+
+/// `(user, used)` on the same floor: records carry the coordinate system that they are in.
+const NEIGHBORS: [(&str, &str); 1] = [("data", "crs")];
+
+/// More lines than this are more than one idea.
+const LONGEST: usize = 800;
+
+#[test]
+fn files_use_lower_floors_only() {
+    let mut faults = Vec::new();
+    for (path, text) in sources() {
+        let room = path.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs");
+        // The two roots see everything.
+        if room != "lib" && room != "main" {
+            let wrong = used_rooms(&text).into_iter().filter(|used| !may_use(room, used));
+            faults.extend(wrong.map(|used| format!("src/{}: {room} must not use {used}", path.display())));
+        }
+        let lines = text.lines().count();
+        if lines > LONGEST {
+            faults.push(format!("src/{}: {lines} lines, {LONGEST} at most", path.display()));
+        }
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn the_rule_can_fail() {
+    let check = |room, text: &str| used_rooms(text).iter().all(|used| may_use(room, used));
+    assert!(check("terrain", "use crate::{data::Grid, error::Result};\nlet a = crate::tds::Id;"));
+    assert!(check("data", "use crate::crs::Crs;"));
+    assert!(check("tds", "// use crate::geometry::Plane;\n/// [`io`](crate::io)"), "comments are not imports");
+    assert!(!check("terrain", "use crate::io::Output;"), "sideways");
+    assert!(!check("io", "fn f(tin: &crate::terrain::Tin)"), "a path in the text");
+    assert!(!check("tds", "use crate::geometry::Plane;"), "sideways");
+    assert!(!check("crs", "use crate::data::Grid;"), "neighbors, the other way round");
+    assert!(!check("kernel", "use crate::{\n    num::Sign,\n    triangulation::Delaunay,\n};"), "upward, in braces");
+    assert!(!check("num", "use crate::{error::Error, kernel};"), "upward, a whole room");
+    assert!(!check("geometry", "use crate::Tin;"), "a re-export hides its floor");
+    assert!(!check("geometry", "use crate::attic::Box;"), "a room that has no floor");
+    assert!(!check("tds", "use super::super::geometry::Plane;"), "up the back stairs");
+}
+
+fn may_use(user: &str, used: &str) -> bool {
+    let floor = |room| FLOORS.iter().position(|rooms| rooms.contains(&room));
+    let (Some(high), Some(low)) = (floor(user), floor(used)) else { return false };
+    low < high || user == used || NEIGHBORS.contains(&(user, used))
+}
+
+/// The first names of all paths that start at the crate, and of those that climb to it by `super`.
+fn used_rooms(text: &str) -> Vec<String> {
+    let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let name = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut rooms = Vec::new();
+    for path in code.split("crate::").skip(1) {
+        let Some(group) = path.strip_prefix('{') else {
+            rooms.push(name(path));
+            continue;
+        };
+        // What stands at depth 0 of the braces, after their start or a comma.
+        let mut depth = 0;
+        for item in group.split_inclusive(['{', '}', ',']) {
+            let first = name(item.trim_start());
+            if depth == 0 && !first.is_empty() {
+                rooms.push(first);
+            }
+            depth += i32::from(item.ends_with('{')) - i32::from(item.ends_with('}'));
+            if depth < 0 {
+                break;
+            }
+        }
+    }
+    let climbs: Vec<_> = code.split("super::").collect();
+    let back_stairs = climbs.windows(2).filter(|pair| pair[0].is_empty()).map(|pair| name(pair[1]));
+    rooms.extend(back_stairs.filter(|room| FLOORS.concat().contains(&room.as_str())));
+    rooms
+}
+
+/// Every source file with its path below `src`.
+fn sources() -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut folders = vec![root.clone()];
+    let mut files = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                files.push((path.strip_prefix(&root).unwrap().to_path_buf(), fs::read_to_string(&path).unwrap()));
+            }
+        }
+    }
+    assert!(files.len() > 10, "found only {} files", files.len());
+    files
+}
