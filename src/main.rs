@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    breakline::cli::run()
+    breakline::cli::run(std::env::args_os()).into()
 }

@@ -1,8 +1,108 @@
 //! The command line: one file per verb.
+//!
+//! What is typed ([`args`]) and what it means ([`plan`], [`outputs`], [`systems`]) are kept apart.
+//! [`gather`] makes a surface of files, a verb makes something of the surface, and [`open`] is the
+//! one place that names readers, writers and verbs of the library. Data goes to files or stdout, talk
+//! ([`talk`]) to stderr.
 
+mod args;
+mod check;
+mod contour;
+mod dem;
+mod demo;
+mod gather;
+mod hillshade;
+mod info;
+mod inputs;
+mod lines;
+mod open;
+mod outputs;
+mod plan;
+mod raster;
+mod relabeled;
+mod summary;
+mod systems;
+mod talk;
+mod tin;
+mod units;
+
+use std::ffi::OsString;
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
+use std::time::Instant;
 
-/// Runs the program.
-pub fn run() -> ExitCode {
-    ExitCode::SUCCESS
+use clap::Parser;
+
+use self::args::{Cli, Verb};
+use self::talk::Talk;
+use crate::error::{Kind, Result};
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exit {
+    /// All is done.
+    Done = 0,
+    /// Something failed, or a check found flaws.
+    Failed = 1,
+    /// What was asked for makes no sense.
+    Usage = 2,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        ExitCode::from(exit as u8)
+    }
+}
+
+/// Runs the program with these arguments, the first of which is its name.
+pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help goes to stdout and is no failure; a closed pipe is none either.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Usage } else { Exit::Done };
+        }
+    };
+    let talk = Talk::new(&cli.talk);
+    if let Some(threads) = cli.talk.threads {
+        // Refused when there is a pool already: the demo runs several commands in one process.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+    }
+    let start = Instant::now();
+    match dispatch(&cli.verb, &talk) {
+        Ok(exit) => {
+            if !matches!(cli.verb, Verb::Info(_)) {
+                summary::tell_cost(start, &talk);
+            }
+            exit
+        }
+        Err(error) => {
+            talk.error(&error);
+            match error.kind() {
+                Kind::Usage => Exit::Usage,
+                Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io => Exit::Failed,
+            }
+        }
+    }
+}
+
+fn dispatch(verb: &Verb, talk: &Talk) -> Result<Exit> {
+    match verb {
+        Verb::Info(args) => info::run(args, talk),
+        Verb::Tin(args) => tin::run(args, talk),
+        Verb::Dem(args) => dem::run(args, talk),
+        Verb::Contour(args) => contour::run(args, talk),
+        Verb::Hillshade(args) => hillshade::run(args, talk),
+        Verb::Check(args) => check::run(args, talk),
+        Verb::Demo(args) => demo::run(args, talk),
+    }
+}
+
+/// Writes data to stdout. A reader that went away (`| head`) wants no more of it.
+fn print(text: &str) -> Result<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
 }

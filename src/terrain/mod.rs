@@ -25,4 +25,9 @@ pub use builder::{DuplicateRule, TinBuilder, TinReport};
 pub use contour::{Contours, contours};
 pub use grid_surface::GridSurface;
 pub use levels::{Levels, MAX_LEVELS};
+mod selection;
+mod tin;
+
+pub use builder::{DuplicateRule, TinBuilder, TinReport};
+pub use selection::{Classes, Columns, Selection, SelectionReport};
 pub use tin::Tin;

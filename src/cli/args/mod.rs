@@ -1,0 +1,80 @@
+//! What is typed. What it means is worked out elsewhere ([`super::plan`], [`super::outputs`], ...).
+
+mod parse;
+mod surface;
+mod verbs;
+
+use std::num::NonZeroUsize;
+
+use clap::{Args, Parser, Subcommand};
+
+pub(super) use parse::{Corners, EdgeLength};
+pub(super) use surface::{DuplicatesArg, SurfaceArgs};
+pub(super) use verbs::{
+    CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs, TinArgs,
+};
+
+/// Lidar and breaklines to TIN, DEM, contours and mesh
+///
+/// Reads lidar (LAS, LAZ, COPC), text and shapefile points, builds a TIN in which every breakline
+/// holds, and writes meshes, rasters and contours of it. Lengths are in the units of the coordinate
+/// system and printed with them. Data goes to files (`info`: to stdout), talk to stderr.
+///
+/// Exit codes: 0 done, 1 failed, 2 wrong usage.
+#[derive(Debug, Parser)]
+#[command(name = "breakline", version, max_term_width = 100, after_long_help = EXAMPLES)]
+pub(super) struct Cli {
+    #[command(flatten)]
+    pub(super) talk: TalkArgs,
+    #[command(subcommand)]
+    pub(super) verb: Verb,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  breakline info tile.laz
+  breakline tin tiles/*.laz --breaklines edges.shp -o ground.ply
+  breakline dem ground.ply --resolution 0.5 -o dem.tif
+  breakline contour ground.ply --interval 1 -o contours.shp
+  breakline demo
+
+`breakline VERB --help` tells defaults, interplay and an example of each verb.";
+
+/// How much is said, and how many cores work.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "General")]
+pub(super) struct TalkArgs {
+    /// Print warnings and errors only
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(super) quiet: bool,
+    /// Print what is found and done on the way
+    #[arg(short, long, global = true)]
+    pub(super) verbose: bool,
+    /// Threads to work with [default: one a core]
+    ///
+    /// The results do not depend on it.
+    #[arg(long, global = true, value_name = "N")]
+    pub(super) threads: Option<NonZeroUsize>,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(super) enum Verb {
+    Info(InfoArgs),
+    Tin(TinArgs),
+    Dem(DemArgs),
+    Contour(ContourArgs),
+    Hillshade(HillshadeArgs),
+    Check(CheckArgs),
+    Demo(DemoArgs),
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_holds_together() {
+        super::Cli::command().debug_assert();
+    }
+}

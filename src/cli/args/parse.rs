@@ -1,0 +1,105 @@
+//! Values of options that are more than a number or a name.
+
+use std::str::FromStr;
+
+use crate::data::Bounds;
+
+/// `xmin,ymin,xmax,ymax`
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::cli) struct Corners {
+    pub(in crate::cli) min: [f64; 2],
+    pub(in crate::cli) max: [f64; 2],
+}
+
+impl FromStr for Corners {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let values: Vec<f64> = text
+            .split(',')
+            .map(|part| finite(part).map_err(|e| format!("{e}; expected xmin,ymin,xmax,ymax")))
+            .collect::<Result<_, _>>()?;
+        let &[x0, y0, x1, y1] = values.as_slice() else {
+            return Err(format!("expected four numbers xmin,ymin,xmax,ymax, found {}", values.len()));
+        };
+        if x0 < x1 && y0 < y1 {
+            Ok(Corners { min: [x0, y0], max: [x1, y1] })
+        } else {
+            Err("expected xmin < xmax and ymin < ymax".to_owned())
+        }
+    }
+}
+
+impl Corners {
+    /// The box, as tall as can be, grown on all sides.
+    pub(in crate::cli) fn grown(self, by: f64) -> Bounds {
+        Bounds {
+            min: [self.min[0] - by, self.min[1] - by, f64::NEG_INFINITY],
+            max: [self.max[0] + by, self.max[1] + by, f64::INFINITY],
+        }
+    }
+}
+
+/// A length, or `none`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::cli) enum EdgeLength {
+    Length(f64),
+    None,
+}
+
+impl FromStr for EdgeLength {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.eq_ignore_ascii_case("none") {
+            return Ok(EdgeLength::None);
+        }
+        positive(text).map(EdgeLength::Length).map_err(|e| format!("{e}; expected a length or `none`"))
+    }
+}
+
+/// A finite number.
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("`{}` is not a finite number", text.trim())),
+    }
+}
+
+/// A finite number above zero.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value > 0.0 => Ok(value),
+        value => Err(format!("{value} is not above zero")),
+    }
+}
+
+/// An angle from the horizon to the zenith.
+pub(super) fn altitude(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if (0.0..=90.0).contains(&value) => Ok(value),
+        value => Err(format!("{value} is not between 0 (the horizon) and 90 (overhead)")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_are_four_numbers_in_order() {
+        assert_eq!("-1, 2,3,4.5".parse(), Ok(Corners { min: [-1.0, 2.0], max: [3.0, 4.5] }));
+        for wrong in ["", "1,2,3", "1,2,3,4,5", "3,2,1,4", "1,2,1,4", "1,2,inf,4", "1,2,nan,4", "a,b,c,d"] {
+            assert!(wrong.parse::<Corners>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn an_edge_length_is_positive_or_none() {
+        assert_eq!("12.5".parse(), Ok(EdgeLength::Length(12.5)));
+        assert_eq!("None".parse(), Ok(EdgeLength::None));
+        for wrong in ["0", "-1", "inf", "nan", "all", ""] {
+            assert!(wrong.parse::<EdgeLength>().is_err(), "{wrong}");
+        }
+    }
+}

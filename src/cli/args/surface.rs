@@ -1,0 +1,102 @@
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::parse::{Corners, EdgeLength};
+
+/// What the surface is made of.
+#[derive(Debug, Clone, Args)]
+pub(in crate::cli) struct SurfaceArgs {
+    /// Files, globs, `@list.txt` or `-` (stdin)
+    ///
+    /// Points from LAS, LAZ, COPC, text (x y z) and shapefiles (`FILE:FIELD` takes the height from
+    /// an attribute); or one TIN as this program writes it (.ply), which then comes with its
+    /// breaklines. `@list.txt` names one file a line (`#` starts a comment), relative to the list.
+    /// The order of the files makes no difference, except to `--duplicates first` and `last`.
+    #[arg(required = true, value_name = "IN")]
+    pub(in crate::cli) inputs: Vec<PathBuf>,
+
+    /// Breaklines that hold in the surface (repeatable)
+    ///
+    /// Lines with heights; polygons give their rings. `FILE:FIELD` takes the height of each record
+    /// from an attribute. Where a vertex and a point share a place, the breakline's height wins.
+    /// Lines without heights are refused.
+    #[arg(long, value_name = "FILE[:FIELD]", help_heading = "Surface")]
+    pub(in crate::cli) breaklines: Vec<PathBuf>,
+
+    /// Polygons that the surface is clipped to (repeatable)
+    ///
+    /// What is inside of any polygon stays. Heights on the boundary are those of the surface.
+    #[arg(long, value_name = "FILE", help_heading = "Surface")]
+    pub(in crate::cli) boundary: Vec<PathBuf>,
+
+    /// Clip to a rectangle
+    ///
+    /// Points in a buffer around it (as wide as the longest edge allowed, or 100 metres) are used
+    /// too, so that the surface does not depend on the cut; then it is clipped. In the units of the
+    /// coordinate system of the result.
+    #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Surface")]
+    pub(in crate::cli) bounds: Option<Corners>,
+
+    /// Longest edge at the rim, or `none` [default: 100 metres]
+    ///
+    /// Triangles that can be reached from outside over longer edges are left out: the convex hull
+    /// of real data has long slivers that nothing was measured in. Breaklines stop it. In the units
+    /// of the coordinate system (100 metres are 328.08 feet); without one, 100 units.
+    #[arg(long, value_name = "LENGTH|none", help_heading = "Surface")]
+    pub(in crate::cli) max_edge: Option<EdgeLength>,
+
+    /// Classes to use, as `2,8` [default: 2 if any point has it, else all]
+    ///
+    /// Points marked as withheld are never used, points of formats without classes always.
+    #[arg(long, value_name = "N,..", value_delimiter = ',', help_heading = "Surface")]
+    pub(in crate::cli) class: Vec<u8>,
+
+    /// Which height stands where points share a place
+    ///
+    /// `first` and `last` mean the order of the input; all others do not depend on it.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "RULE",
+        default_value_t,
+        hide_possible_values = false,
+        help_heading = "Surface"
+    )]
+    pub(in crate::cli) duplicates: DuplicatesArg,
+
+    /// Coordinate system to assign to the input, as `EPSG:25832`
+    ///
+    /// Takes the place of what the files say. Nothing is reprojected. Without it, a file that names
+    /// no system takes that of the others, and two different systems are an error.
+    #[arg(long, value_name = "CRS", help_heading = "Coordinate system")]
+    pub(in crate::cli) a_srs: Option<String>,
+
+    /// Coordinate system to reproject points and lines to
+    ///
+    /// Needs a build with PROJ (`--features proj`).
+    #[arg(long, value_name = "CRS", help_heading = "Coordinate system")]
+    pub(in crate::cli) t_srs: Option<String>,
+
+    /// Go on although the coordinates are in degrees
+    ///
+    /// A degree is not a length: triangles, slopes and edge lengths are then those of the numbers.
+    #[arg(long, help_heading = "Coordinate system")]
+    pub(in crate::cli) force_degrees: bool,
+}
+
+/// Which height stands where points share a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(in crate::cli) enum DuplicatesArg {
+    /// The lowest
+    #[default]
+    Lowest,
+    /// The highest
+    Highest,
+    /// The mean
+    Mean,
+    /// The first in the order of the input
+    First,
+    /// The last in the order of the input
+    Last,
+}

@@ -1,0 +1,193 @@
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::SurfaceArgs;
+use super::parse::{Corners, altitude, finite, positive};
+
+/// Where the result goes.
+#[derive(Debug, Clone, Args)]
+pub(in crate::cli) struct OutputArgs {
+    /// File to write, format by extension (repeatable)
+    #[arg(short, long, required = true, value_name = "OUT")]
+    pub(in crate::cli) output: Vec<PathBuf>,
+
+    /// Replace files that exist
+    #[arg(long)]
+    pub(in crate::cli) overwrite: bool,
+}
+
+/// Size and place of a raster.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Raster")]
+pub(in crate::cli) struct FrameArgs {
+    /// Size of a cell [default: 1]
+    ///
+    /// In the units of the coordinate system. Cells start at multiples of it, so that neighboring
+    /// rasters fit together.
+    #[arg(long, value_name = "LENGTH", value_parser = positive)]
+    pub(in crate::cli) resolution: Option<f64>,
+
+    /// Extent of the raster [default: that of the surface]
+    ///
+    /// Grown outward to whole cells.
+    #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true)]
+    pub(in crate::cli) te: Option<Corners>,
+
+    /// Raster whose cells are to be matched exactly
+    ///
+    /// Same size, place and resolution as that file.
+    #[arg(long, value_name = "RASTER", conflicts_with_all = ["resolution", "te"])]
+    pub(in crate::cli) align_to: Option<PathBuf>,
+}
+
+/// Tell what is in files: counts, bounds, classes, coordinate system, defects
+///
+/// Points, vector layers, rasters and meshes, each read to its end. A file that cannot be read is
+/// reported, the others are shown all the same, and the exit code is 1.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline info tile.laz edges.shp dem.tif
+  breakline info --json tiles/*.laz | jq '.[].count'")]
+pub(in crate::cli) struct InfoArgs {
+    /// Files, globs, `@list.txt` or `-`
+    #[arg(required = true, value_name = "FILE")]
+    pub(in crate::cli) files: Vec<PathBuf>,
+
+    /// Print a JSON array, one object a file, with exact numbers
+    #[arg(long)]
+    pub(in crate::cli) json: bool,
+}
+
+/// Build a TIN of points and breaklines
+///
+/// Every breakline is there, edge by edge; between them the triangulation is Delaunay, and the same
+/// whatever the order of the input. Formats: .ply (binary, with breaklines and coordinate system;
+/// what `dem`, `contour`, `hillshade`, `check` and `info` read back), .obj, .stl (from a local
+/// origin, which is printed and written beside it).
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline tin tiles/*.laz --breaklines edges.shp --boundary site.shp -o ground.ply")]
+pub(in crate::cli) struct TinArgs {
+    #[command(flatten)]
+    pub(in crate::cli) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(in crate::cli) output: OutputArgs,
+}
+
+/// Write a DEM: heights of the TIN at the centers of cells
+///
+/// Linear on the triangles; nodata (-9999) where there is none. GeoTIFF, Float32, tiled, DEFLATE.
+/// Written block by block by all cores, so that its size is not limited by memory.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline dem tile.laz --breaklines edges.shp --resolution 0.5 -o dem.tif
+  breakline dem ground.ply --align-to ortho.tif -o dem.tif")]
+pub(in crate::cli) struct DemArgs {
+    #[command(flatten)]
+    pub(in crate::cli) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(in crate::cli) output: OutputArgs,
+    #[command(flatten)]
+    pub(in crate::cli) frame: FrameArgs,
+}
+
+/// Draw contours of a TIN or of a DEM
+///
+/// Straight from the triangles (of a DEM: between the centers of its cells), joined as long as they
+/// go, high ground on the right. .shp (PolyLineZ with field ELEV) or .geojson.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline contour tile.laz --breaklines edges.shp --interval 0.5 -o contours.shp
+  breakline contour dem.tif --levels 100,105.5,120 -o contours.geojson")]
+pub(in crate::cli) struct ContourArgs {
+    #[command(flatten)]
+    pub(in crate::cli) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(in crate::cli) output: OutputArgs,
+
+    /// Height between contours [default: 1]
+    ///
+    /// In the units of the heights.
+    #[arg(long, value_name = "HEIGHT", value_parser = positive, help_heading = "Levels")]
+    pub(in crate::cli) interval: Option<f64>,
+
+    /// A height that contours are counted from
+    #[arg(long, value_name = "HEIGHT", value_parser = finite, default_value = "0", allow_hyphen_values = true, help_heading = "Levels")]
+    pub(in crate::cli) base: f64,
+
+    /// These heights instead of an interval, as `100,105.5`
+    #[arg(
+        long,
+        value_name = "HEIGHT,..",
+        value_parser = finite,
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        conflicts_with_all = ["interval", "base"],
+        help_heading = "Levels"
+    )]
+    pub(in crate::cli) levels: Vec<f64>,
+}
+
+/// Shade a TIN or a DEM as the sun would
+///
+/// Brightness 1 to 255, 0 where there is no surface. GeoTIFF (.tif) or .png. A DEM keeps its cells:
+/// `--resolution`, `--te` and `--align-to` are for TINs.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline hillshade ground.ply --resolution 0.5 -o shade.png
+  breakline hillshade dem.tif --azimuth 300 --z-factor 2 -o shade.tif")]
+pub(in crate::cli) struct HillshadeArgs {
+    #[command(flatten)]
+    pub(in crate::cli) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(in crate::cli) output: OutputArgs,
+    #[command(flatten)]
+    pub(in crate::cli) frame: FrameArgs,
+
+    /// Where the light comes from, in degrees clockwise from north
+    #[arg(long, value_name = "DEGREES", value_parser = finite, default_value = "315", allow_hyphen_values = true, help_heading = "Light")]
+    pub(in crate::cli) azimuth: f64,
+
+    /// How high the light stands above the horizon, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = altitude, default_value = "45", help_heading = "Light")]
+    pub(in crate::cli) altitude: f64,
+
+    /// What heights are multiplied by [default: 1, or what brings them to the units of the plan]
+    ///
+    /// Heights in feet over a plan in metres count 0.3048 unless this says otherwise.
+    #[arg(long, value_name = "FACTOR", value_parser = positive, help_heading = "Light")]
+    pub(in crate::cli) z_factor: Option<f64>,
+}
+
+/// Prove a TIN right, or list its flaws
+///
+/// Looks at a mesh from a file, or at the TIN of points and breaklines: links, manifold and Euler's
+/// formula, orientation, Delaunay between breaklines. Exit code 1 when there is any flaw.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline check ground.ply")]
+pub(in crate::cli) struct CheckArgs {
+    #[command(flatten)]
+    pub(in crate::cli) surface: SurfaceArgs,
+}
+
+/// Try everything on a small valley that comes with the program
+///
+/// Writes the data into a folder, then runs `info`, `tin`, `dem`, `hillshade`, `contour` and `check`
+/// on it and prints each command. What is there is replaced.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline demo valley")]
+pub(in crate::cli) struct DemoArgs {
+    /// Folder to write to
+    #[arg(value_name = "DIR", default_value = "breakline-demo")]
+    pub(in crate::cli) folder: PathBuf,
+}

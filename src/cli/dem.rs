@@ -1,0 +1,30 @@
+use super::args::DemArgs;
+use super::outputs::{self, Format};
+use super::plan::SurfacePlan;
+use super::raster::{self, Watched};
+use super::summary::SurfaceFacts;
+use super::talk::Talk;
+use super::{Exit, gather, open};
+use crate::error::Result;
+
+const FORMATS: &[Format<()>] =
+    &[Format { extension: "tif", kind: (), companions: &[] }, Format { extension: "tiff", kind: (), companions: &[] }];
+
+/// Writes heights of a TIN as a raster.
+pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
+    let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+    plan.inputs.extend(args.frame.align_to.clone());
+    let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
+    let gathered = gather::surface(&mut plan, talk)?;
+    let surface = gathered.surface.as_ref();
+    let frame = raster::frame(&args.frame, SurfaceFacts::of(surface).extent, surface.crs(), talk)?;
+    let dem = open::dem(surface, frame);
+    for target in &targets {
+        let watched = Watched::new(dem.as_ref(), "writing cells", talk);
+        open::write_heights(&target.path, &watched).map_err(|e| e.in_file(&target.path))?;
+    }
+    gathered.made.tell(surface, talk);
+    talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
+    outputs::tell(&targets, talk);
+    Ok(Exit::Done)
+}

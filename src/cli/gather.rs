@@ -1,0 +1,347 @@
+//! From files to a surface.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::args::{Corners, EdgeLength};
+use super::lines::{self, Rings};
+use super::open;
+use super::plan::{From, PointPlan, SurfacePlan};
+use super::relabeled::Relabeled;
+use super::summary::Made;
+use super::systems::{self, Stated, Systems, Wish};
+use super::talk::Talk;
+use super::units::Units;
+use crate::crs::{Crs, Transform};
+use crate::data::{Grid, Layer, PointBatch, PointSource, Surface};
+use crate::error::{Error, Result};
+use crate::terrain::{Classes, Columns, Selection, SelectionReport, TinBuilder};
+
+/// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
+const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
+
+/// More files than this are opened a second time rather than kept open.
+const FILES_KEPT_OPEN: usize = 100;
+
+/// Points between two looks at the progress bar: enough to keep all cores at reprojecting.
+const REPROJECTED_AT_ONCE: usize = 4096;
+
+/// What the verbs work on.
+pub(super) enum Ground {
+    Surface(Gathered),
+    Raster(Grid),
+}
+
+/// A surface, and what is to be told of how it was made.
+pub(super) struct Gathered {
+    pub(super) surface: Box<dyn Surface>,
+    pub(super) made: Made,
+}
+
+/// Reads what the plan names; builds the TIN where there is none yet.
+///
+/// # Errors
+/// If anything cannot be read or is refused.
+pub(super) fn ground(plan: &mut SurfacePlan, talk: &Talk) -> Result<Ground> {
+    match &mut plan.from {
+        From::Points(points) => build(points, &plan.wish, talk).map(Ground::Surface),
+        From::Mesh(path) => {
+            let mesh = open::mesh(path)?;
+            let crs = one_system(path, mesh.crs(), &plan.wish, talk)?;
+            let surface = Box::new(Relabeled { surface: mesh, crs });
+            Ok(Ground::Surface(Gathered { surface, made: Made::default() }))
+        }
+        From::Raster(path) => {
+            let mut grid = open::raster(path)?;
+            grid.crs = one_system(path, grid.crs.as_ref(), &plan.wish, talk)?;
+            Ok(Ground::Raster(grid))
+        }
+    }
+}
+
+/// The same for verbs that need triangles.
+///
+/// # Errors
+/// Also if the input is a raster.
+pub(super) fn surface(plan: &mut SurfacePlan, talk: &Talk) -> Result<Gathered> {
+    if let From::Raster(path) = &plan.from {
+        return Err(Error::usage("the input is a raster; points or a .ply are needed")
+            .in_file(path)
+            .cure("`contour` and `hillshade` take rasters"));
+    }
+    match ground(plan, talk)? {
+        Ground::Surface(gathered) => Ok(gathered),
+        Ground::Raster(_) => Err(Error::usage("points or a .ply are needed")),
+    }
+}
+
+fn one_system(path: &Path, crs: Option<&Crs>, wish: &Wish, talk: &Talk) -> Result<Option<Crs>> {
+    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned() }];
+    Ok(systems::reconcile(&stated, wish, talk)?.crs)
+}
+
+fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
+    let mut files = open_all(&plan.files, talk)?;
+    let breaklines = layers(&plan.breaklines, talk)?;
+    let boundary = layers(&plan.boundary, talk)?;
+
+    let mut stated: Vec<Stated> = files.iter().map(|file| file.stated.clone()).collect();
+    stated.extend(
+        breaklines.iter().chain(&boundary).map(|(path, layer)| Stated { path: path.clone(), crs: layer.crs.clone() }),
+    );
+    let Systems { from, crs } = systems::reconcile(&stated, wish, talk)?;
+    let roads = Roads::new(&from, crs.as_ref(), talk)?;
+    let (point_roads, layer_roads) = roads.by_file.split_at(files.len());
+    let (line_roads, boundary_roads) = layer_roads.split_at(breaklines.len());
+
+    let units = Units::of(crs.as_ref());
+    let mut builder = TinBuilder::default();
+    let rim = Rim::new(plan, &units, talk);
+    builder.duplicates = plan.duplicates;
+    builder.max_edge = rim.max_edge;
+    builder.crs = crs;
+
+    // Lines first: they are few, and what is wrong with them is known before the points are read.
+    let mut made = Made::default();
+    for ((path, layer), road) in breaklines.iter().zip(line_roads) {
+        for mut line in lines::breaklines(layer, path)? {
+            roads.take(*road, &mut line).map_err(|e| e.in_file(path))?;
+            made.breaklines += 1;
+            match plan.bounds {
+                Some(bounds) => {
+                    let window = bounds.grown(rim.buffer);
+                    lines::near(&line, &window).into_iter().for_each(|run| builder.add_breakline(run));
+                }
+                None => builder.add_breakline(&line),
+            }
+        }
+    }
+    let clip = clip_rings(&boundary, boundary_roads, &roads, plan.bounds)?;
+    clip.iter().for_each(|rings| builder.add_boundary(rings));
+
+    let window = plan.bounds.map(|bounds| bounds.grown(rim.buffer));
+    let selection = Selection::new(plan.classes.clone(), window);
+    let (columns, report) = read_points(&mut files, point_roads, &roads, selection, talk)?;
+    tell_classes(&report, &plan.classes, talk);
+    if columns.x.is_empty() && made.breaklines == 0 {
+        return Err(nothing_left(&report));
+    }
+    builder.add_points(&columns.x, &columns.y, &columns.z);
+    drop(columns);
+
+    let tin = builder.build()?;
+    made.files = plan.files.len();
+    made.points = Some(report);
+    made.tin = Some(tin.report().clone());
+    made.duplicates = plan.duplicates;
+    Ok(Gathered { surface: Box::new(tin), made })
+}
+
+/// How far the surface may reach where nothing was measured.
+struct Rim {
+    max_edge: Option<f64>,
+    buffer: f64,
+}
+
+impl Rim {
+    fn new(plan: &PointPlan, units: &Units, talk: &Talk) -> Self {
+        let default = units.of_metres(DEFAULT_MAX_EDGE_METRES);
+        let max_edge = match plan.max_edge {
+            Some(EdgeLength::None) => None,
+            Some(EdgeLength::Length(length)) => Some(length),
+            None => Some(default),
+        };
+        match max_edge {
+            Some(length) => talk.note(format_args!(
+                "triangles at the rim with edges over {} are left out (--max-edge)",
+                units.length(length)
+            )),
+            None => talk.note("the whole convex hull is kept (--max-edge none)"),
+        }
+        let buffer = max_edge.unwrap_or(default);
+        if plan.bounds.is_some() {
+            talk.note(format_args!(
+                "points up to {} outside of the bounds are used, then the surface is clipped to them",
+                units.length(buffer)
+            ));
+        }
+        Rim { max_edge, buffer }
+    }
+}
+
+/// A file of points.
+struct PointFile {
+    stated: Stated,
+    source: Option<Box<dyn PointSource + Send>>,
+    count: Option<u64>,
+}
+
+fn open_all(paths: &[PathBuf], talk: &Talk) -> Result<Vec<PointFile>> {
+    let mut files = Vec::with_capacity(paths.len());
+    for path in paths {
+        let source = open::points(path).map_err(|e| e.in_file(path))?;
+        let info = source.info();
+        talk.detail(format_args!("{}: {}", path.display(), info.format));
+        info.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
+        if !info.has_classes && paths.len() > 1 {
+            talk.detail(format_args!("{}: no classes, all points are used", path.display()));
+        }
+        let stated = Stated { path: path.clone(), crs: info.crs.clone() };
+        let count = info.count;
+        let keep = paths.len() <= FILES_KEPT_OPEN || path.as_os_str() == super::inputs::STDIN;
+        files.push(PointFile { stated, count, source: Some(source).filter(|_| keep) });
+    }
+    Ok(files)
+}
+
+fn layers(paths: &[PathBuf], talk: &Talk) -> Result<Vec<(PathBuf, Layer)>> {
+    let mut layers = Vec::with_capacity(paths.len());
+    for path in paths {
+        let layer = open::layer(path).map_err(|e| e.in_file(path))?;
+        talk.detail(format_args!("{}: {}, {} records", path.display(), layer.format, layer.shapes.len()));
+        layer.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
+        layers.push((path.clone(), layer));
+    }
+    Ok(layers)
+}
+
+/// The transforms in use, and which file takes which.
+struct Roads {
+    transforms: Vec<Box<dyn Transform>>,
+    by_file: Vec<Option<usize>>,
+}
+
+impl Roads {
+    fn new(from: &[Option<Crs>], to: Option<&Crs>, talk: &Talk) -> Result<Self> {
+        let mut known: Vec<&Crs> = Vec::new();
+        let mut roads = Roads { transforms: Vec::new(), by_file: Vec::with_capacity(from.len()) };
+        for from in from {
+            let road = match (from, to) {
+                (Some(from), Some(to)) => Some(match known.iter().position(|crs| *crs == from) {
+                    Some(road) => road,
+                    None => {
+                        let transform = open::transform(from, to)?;
+                        talk.note(format_args!("reprojecting from {from} to {to}"));
+                        transform.warnings().iter().for_each(|text| talk.warning(text));
+                        known.push(from);
+                        roads.transforms.push(transform);
+                        known.len() - 1
+                    }
+                }),
+                _ => None,
+            };
+            roads.by_file.push(road);
+        }
+        Ok(roads)
+    }
+
+    fn take(&self, road: Option<usize>, points: &mut [[f64; 3]]) -> Result<()> {
+        match road {
+            Some(road) => {
+                let transform = &self.transforms[road];
+                points.par_chunks_mut(REPROJECTED_AT_ONCE).try_for_each(|chunk| transform.transform(chunk))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn take_batch(&self, road: Option<usize>, batch: &mut PointBatch) -> Result<()> {
+        if road.is_none() {
+            return Ok(());
+        }
+        let mut points: Vec<[f64; 3]> =
+            batch.x.iter().zip(&batch.y).zip(&batch.z).map(|((&x, &y), &z)| [x, y, z]).collect();
+        self.take(road, &mut points)?;
+        for (i, [x, y, z]) in points.into_iter().enumerate() {
+            (batch.x[i], batch.y[i], batch.z[i]) = (x, y, z);
+        }
+        Ok(())
+    }
+}
+
+fn read_points(
+    files: &mut [PointFile],
+    by_file: &[Option<usize>],
+    roads: &Roads,
+    mut selection: Selection,
+    talk: &Talk,
+) -> Result<(Columns, SelectionReport)> {
+    let length = files.iter().map(|file| file.count).sum::<Option<u64>>();
+    let bar = talk.bar("reading points", length);
+    let mut batch = PointBatch::default();
+    for (file, road) in files.iter_mut().zip(by_file) {
+        let path = &file.stated.path;
+        let mut source = match file.source.take() {
+            Some(source) => source,
+            None => open::points(path).map_err(|e| e.in_file(path))?,
+        };
+        selection.next_source();
+        loop {
+            source.read(&mut batch).map_err(|e| e.in_file(path))?;
+            if batch.is_empty() {
+                break;
+            }
+            roads.take_batch(*road, &mut batch).map_err(|e| e.in_file(path))?;
+            selection.add(&batch).map_err(|e| e.in_file(path))?;
+            bar.inc(batch.len() as u64);
+        }
+        source.warnings().iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
+    }
+    bar.finish_and_clear();
+    Ok(selection.finish())
+}
+
+fn tell_classes(report: &SelectionReport, wanted: &Classes, talk: &Talk) {
+    if let Classes::Only(classes) = wanted {
+        for class in classes.iter().filter(|class| !report.by_class.contains_key(class)) {
+            talk.warning(format_args!("no point is of class {class}"));
+        }
+    } else if report.classes.is_some() {
+        talk.note("class 2 (ground) is used");
+    } else if !report.by_class.is_empty() {
+        talk.note("no point is of class 2 (ground): all classes are used");
+    }
+}
+
+#[cold]
+fn nothing_left(report: &SelectionReport) -> Error {
+    let SelectionReport { read, withheld, other_class, outside, .. } = report;
+    let error = Error::format(format!(
+        "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
+    ));
+    if *other_class > 0 {
+        let classes: Vec<String> = report.by_class.keys().map(u8::to_string).collect();
+        return error.cure(format!("the points are of class {}: choose with --class", classes.join(", ")));
+    }
+    error
+}
+
+/// What the surface is clipped to: the boundary, the bounds, or what both have in common.
+fn clip_rings(
+    boundary: &[(PathBuf, Layer)],
+    by_file: &[Option<usize>],
+    roads: &Roads,
+    bounds: Option<Corners>,
+) -> Result<Vec<Rings>> {
+    let mut polygons = Vec::new();
+    for ((path, layer), road) in boundary.iter().zip(by_file) {
+        for mut rings in lines::polygons(layer, path)? {
+            for ring in &mut rings {
+                let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
+                roads.take(*road, &mut points).map_err(|e| e.in_file(path))?;
+                *ring = points.into_iter().map(|p| [p[0], p[1]]).collect();
+            }
+            polygons.push(rings);
+        }
+    }
+    let Some(bounds) = bounds else { return Ok(polygons) };
+    if boundary.is_empty() {
+        return Ok(vec![vec![lines::rectangle(bounds)]]);
+    }
+    let clipped: Vec<Rings> = polygons.iter().map(|rings| lines::clipped(rings, bounds)).collect();
+    if clipped.iter().all(Vec::is_empty) {
+        return Err(Error::usage("the boundary lies outside of --bounds"));
+    }
+    Ok(clipped)
+}

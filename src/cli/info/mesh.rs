@@ -1,0 +1,21 @@
+use std::path::Path;
+
+use super::Sheet;
+use crate::cli::open;
+use crate::cli::summary::SurfaceFacts;
+use crate::data::Surface;
+use crate::error::Result;
+
+pub(super) fn sheet(path: &Path) -> Result<Sheet> {
+    let mesh = open::mesh(path)?;
+    let facts = SurfaceFacts::of(&mesh);
+    let mut sheet = Sheet::default();
+    sheet.silent("kind", "mesh");
+    sheet.plain("format", "TIN (PLY)");
+    sheet.plain("vertices", facts.vertices);
+    sheet.plain("triangles", facts.triangles);
+    sheet.row("breaklines", format!("{} edges", facts.constrained), facts.constrained);
+    sheet.bounds(facts.extent);
+    sheet.crs(mesh.crs());
+    Ok(sheet)
+}

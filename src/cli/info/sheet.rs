@@ -1,0 +1,122 @@
+use std::fmt::Write;
+
+use serde_json::{Map, Value, json};
+
+use crate::crs::{Crs, CrsKind};
+use crate::data::Bounds;
+
+/// What is known of a file: every fact is stated once, for people and for programs.
+#[derive(Debug, Default)]
+pub(super) struct Sheet {
+    rows: Vec<Row>,
+    pub(super) warnings: Vec<String>,
+}
+
+#[derive(Debug)]
+struct Row {
+    key: &'static str,
+    /// `None` where only programs want to know.
+    text: Option<String>,
+    value: Value,
+}
+
+impl Sheet {
+    /// No fact yet.
+    pub(super) fn with_warnings(warnings: Vec<String>) -> Self {
+        Sheet { rows: Vec::new(), warnings }
+    }
+
+    /// A fact in words and as a value.
+    pub(super) fn row(&mut self, key: &'static str, text: impl Into<String>, value: impl Into<Value>) {
+        self.rows.push(Row { key, text: Some(text.into()), value: value.into() });
+    }
+
+    /// A fact that reads the same for both.
+    pub(super) fn plain(&mut self, key: &'static str, value: impl Into<Value>) {
+        let value = value.into();
+        let text = match &value {
+            Value::String(text) => text.clone(),
+            other => other.to_string(),
+        };
+        self.rows.push(Row { key, text: Some(text), value });
+    }
+
+    /// A fact that only programs want to know.
+    pub(super) fn silent(&mut self, key: &'static str, value: impl Into<Value>) {
+        self.rows.push(Row { key, text: None, value: value.into() });
+    }
+
+    /// The extent, or that there is none.
+    pub(super) fn bounds(&mut self, bounds: Bounds) {
+        if bounds.is_empty() {
+            return self.row("bounds", "none", Value::Null);
+        }
+        let axis = |i: usize, name: &str| format!("{name} {} .. {}", bounds.min[i], bounds.max[i]);
+        let mut text = format!("{}, {}", axis(0, "x"), axis(1, "y"));
+        // Without a single height the box is inside out.
+        if bounds.min[2] <= bounds.max[2] {
+            text += &format!(", {}", axis(2, "z"));
+        }
+        self.row("bounds", text, json!({ "min": finite(bounds.min), "max": finite(bounds.max) }));
+    }
+
+    /// The coordinate system, or that there is none.
+    pub(super) fn crs(&mut self, crs: Option<&Crs>) {
+        let Some(crs) = crs else { return self.row("crs", "not stated", Value::Null) };
+        let mut text = match crs.kind {
+            CrsKind::Projected | CrsKind::Local => format!("{crs}, in units of the {}", crs.unit.name),
+            CrsKind::Geographic => format!("{crs}, geographic, in units of the {}", crs.unit.name),
+            CrsKind::Geocentric => format!("{crs}, geocentric, in units of the {}", crs.unit.name),
+        };
+        if let Some(unit) = crs.vertical_unit.as_ref().filter(|unit| **unit != crs.unit) {
+            text += &format!(", heights in units of the {}", unit.name);
+        }
+        if let Some(code) = crs.vertical_epsg {
+            text += &format!(", vertical EPSG:{code}");
+        }
+        let kind = match crs.kind {
+            CrsKind::Projected => "projected",
+            CrsKind::Geographic => "geographic",
+            CrsKind::Geocentric => "geocentric",
+            CrsKind::Local => "local",
+        };
+        let value = json!({
+            "name": crs.name,
+            "epsg": crs.epsg,
+            "vertical_epsg": crs.vertical_epsg,
+            "kind": kind,
+            "unit": { "name": crs.unit.name, "factor": crs.unit.factor },
+            "vertical_unit": crs.vertical_unit.as_ref().map(|unit| json!({ "name": unit.name, "factor": unit.factor })),
+            "wkt": crs.wkt,
+        });
+        self.row("crs", text, value);
+    }
+
+    /// For people; warnings are said elsewhere.
+    pub(super) fn to_text(&self, name: &str) -> String {
+        let mut text = format!("{name}\n");
+        for row in &self.rows {
+            if let Some(words) = &row.text {
+                // Writing to a string cannot fail.
+                let _ = writeln!(text, "  {:<10} {words}", row.key.replace('_', " "));
+            }
+        }
+        text
+    }
+
+    /// For programs.
+    pub(super) fn to_json(&self, name: &str) -> Value {
+        let mut object = Map::new();
+        object.insert("file".to_owned(), json!(name));
+        for row in &self.rows {
+            object.insert(row.key.to_owned(), row.value.clone());
+        }
+        object.insert("warnings".to_owned(), json!(self.warnings));
+        Value::Object(object)
+    }
+}
+
+/// Numbers that JSON can hold; null where there is none.
+fn finite(values: [f64; 3]) -> [Option<f64>; 3] {
+    values.map(|value| Some(value).filter(|value| value.is_finite()))
+}

@@ -1,0 +1,114 @@
+//! From what is typed as input to a list of files.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use super::talk::Talk;
+use crate::error::{Error, Result};
+
+/// The name that stands for standard input.
+pub(super) const STDIN: &str = "-";
+
+/// Expands globs and lists, in order. A file that is named twice is used once, with a note.
+///
+/// # Errors
+/// If a glob matches nothing, a list cannot be read or a file does not exist.
+pub(super) fn expand(typed: &[PathBuf], talk: &Talk) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for path in typed {
+        match path.to_str().and_then(|text| text.strip_prefix('@')) {
+            Some(list) if !path.exists() => read_list(Path::new(list), &mut found)?,
+            _ => expand_one(path, &mut found)?,
+        }
+    }
+    let mut seen = HashSet::new();
+    found.retain(|path| {
+        let is_new = seen.insert(identity(path));
+        if !is_new {
+            talk.note(format_args!("{} is named twice and used once", path.display()));
+        }
+        is_new
+    });
+    if found.is_empty() {
+        return Err(Error::usage("the input names no file"));
+    }
+    Ok(found)
+}
+
+/// What tells two names of one file from two files.
+pub(super) fn identity(path: &Path) -> PathBuf {
+    let file = file_of(path).unwrap_or(path);
+    file.canonicalize().unwrap_or_else(|_| file.to_path_buf())
+}
+
+/// The file that is there, whether a field or a layer follows its name (`FILE:FIELD`) or not.
+fn file_of(path: &Path) -> Option<&Path> {
+    if path.exists() {
+        return Some(path);
+    }
+    let (file, _) = path.to_str()?.rsplit_once(':')?;
+    Some(Path::new(file)).filter(|file| file.exists())
+}
+
+/// Makes sure that files named by options are there before the work starts.
+///
+/// # Errors
+/// If one is not.
+pub(super) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+    match paths.into_iter().find(|path| file_of(path).is_none()) {
+        Some(path) => Err(no_such_file(path)),
+        None => Ok(()),
+    }
+}
+
+#[cold]
+fn no_such_file(path: &Path) -> Error {
+    Error::from(std::io::Error::new(std::io::ErrorKind::NotFound, "no such file")).in_file(path)
+}
+
+fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
+    let text = std::fs::read_to_string(list).map_err(|e| Error::from(e).in_file(list))?;
+    let folder = list.parent().unwrap_or(Path::new(""));
+    for (number, line) in (1..).zip(text.lines()) {
+        let entry = line.split(" #").next().unwrap_or_default().trim();
+        if entry.is_empty() || entry.starts_with('#') {
+            continue;
+        }
+        expand_one(&folder.join(entry), found).map_err(|e| match e.path() {
+            // The file that is missing says more than the list that names it.
+            Some(_) => e,
+            None => e.in_file(list).at(format!("line {number}")),
+        })?;
+    }
+    Ok(())
+}
+
+fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
+    if path.as_os_str() == STDIN || file_of(path).is_some() {
+        found.push(path.to_path_buf());
+        return Ok(());
+    }
+    match path.to_str() {
+        Some(pattern) if pattern.contains(['*', '?', '[']) => expand_glob(pattern, found),
+        _ => Err(no_such_file(path)),
+    }
+}
+
+fn expand_glob(pattern: &str, found: &mut Vec<PathBuf>) -> Result<()> {
+    let matches = glob::glob(pattern).map_err(|e| Error::usage(format!("`{pattern}` is no valid glob: {}", e.msg)))?;
+    let before = found.len();
+    for path in matches {
+        let path = path.map_err(|e| {
+            let path = e.path().to_path_buf();
+            Error::from(std::io::Error::from(e)).in_file(path)
+        })?;
+        if path.is_file() {
+            found.push(path);
+        }
+    }
+    if found.len() == before {
+        let missing = std::io::Error::new(std::io::ErrorKind::NotFound, format!("no file matches `{pattern}`"));
+        return Err(Error::from(missing));
+    }
+    Ok(())
+}

@@ -1,0 +1,210 @@
+//! Breaklines and boundaries out of vector layers.
+
+use std::path::Path;
+
+use geo::{BooleanOps, LineString, MultiPolygon, Polygon};
+
+use super::args::Corners;
+use crate::data::{Bounds, Layer, Shape};
+use crate::error::{Error, Result};
+
+/// A polygon in plan: its rings.
+pub(super) type Rings = Vec<Vec<[f64; 2]>>;
+
+/// The lines of a layer, and the rings of its polygons, each with a height at every vertex.
+///
+/// # Errors
+/// If there are none, a vertex has no height or a coordinate is not finite; the error names the
+/// record and the vertex, counted from 1.
+pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Vec<[f64; 3]>>> {
+    let mut lines = Vec::new();
+    for (record, shape) in (1..).zip(&layer.shapes) {
+        let parts = match shape {
+            Shape::Lines(parts) | Shape::Polygon(parts) => parts,
+            Shape::Null | Shape::Points(_) | Shape::Triangles(_) => continue,
+        };
+        check_heights(parts, layer).map_err(|e| at_record(e, path, record))?;
+        lines.extend(parts.iter().filter(|part| part.len() > 1).cloned());
+    }
+    if lines.is_empty() {
+        return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer))).in_file(path));
+    }
+    Ok(lines)
+}
+
+/// The polygons of a layer.
+///
+/// # Errors
+/// If there are none, or a coordinate is not finite.
+pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
+    let mut polygons = Vec::new();
+    for (record, shape) in (1..).zip(&layer.shapes) {
+        let Shape::Polygon(rings) = shape else { continue };
+        let mut flat = Vec::with_capacity(rings.len());
+        for ring in rings {
+            if let Some(vertex) = ring.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+                return Err(at_record(not_finite(ring, vertex), path, record));
+            }
+            flat.push(ring.iter().map(|p| [p[0], p[1]]).collect());
+        }
+        polygons.push(flat);
+    }
+    if polygons.is_empty() {
+        return Err(Error::format(format!("{} holds no polygons", kind_of(layer)))
+            .in_file(path)
+            .cure("a boundary is made of polygons; lines are given with --breaklines"));
+    }
+    Ok(polygons)
+}
+
+fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer) -> Result<()> {
+    let mut vertices = parts.iter().flatten().peekable();
+    if vertices.peek().is_some() && vertices.all(|p| p[2].is_nan()) {
+        return Err(Error::format("the breakline has no heights").cure(cure(layer)));
+    }
+    for part in parts {
+        if let Some(vertex) = part.iter().position(|p| !p.iter().all(|value| value.is_finite())) {
+            return Err(not_finite(part, vertex));
+        }
+    }
+    Ok(())
+}
+
+fn cure(layer: &Layer) -> String {
+    let cure = "name the attribute that holds them: --breaklines FILE:FIELD";
+    match layer.fields.as_slice() {
+        [] => format!("{cure} (this layer has no attributes)"),
+        fields => format!("{cure} (the attributes are {})", fields.join(", ")),
+    }
+}
+
+#[cold]
+fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
+    let [x, y, z] = part[vertex];
+    let number = vertex + 1;
+    if z.is_nan() && x.is_finite() && y.is_finite() {
+        return Error::format(format!("vertex {number} at {x} {y} has no height, though others have"));
+    }
+    Error::format(format!("vertex {number} at {x} {y} {z}: expected finite coordinates"))
+}
+
+fn at_record(error: Error, path: &Path, record: usize) -> Error {
+    error.in_file(path).at(format!("record {record}"))
+}
+
+fn kind_of(layer: &Layer) -> &str {
+    match layer.format.as_str() {
+        "" => "the layer",
+        format => format,
+    }
+}
+
+/// The runs of pieces of a line that have to do with a window: whole pieces, never cut.
+pub(super) fn near<'a>(line: &'a [[f64; 3]], window: &Bounds) -> Vec<&'a [[f64; 3]]> {
+    let touches = |piece: &[[f64; 3]]| {
+        (0..2).all(|axis| {
+            let (a, b) = (piece[0][axis], piece[1][axis]);
+            a.min(b) <= window.max[axis] && a.max(b) >= window.min[axis]
+        })
+    };
+    let mut runs = Vec::new();
+    let mut start = None;
+    for (i, piece) in line.windows(2).enumerate() {
+        match (touches(piece), start) {
+            (true, None) => start = Some(i),
+            (false, Some(from)) => {
+                runs.push(&line[from..=i]);
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    if let Some(from) = start {
+        runs.push(&line[from..]);
+    }
+    runs
+}
+
+/// The ring around a rectangle.
+pub(super) fn rectangle(bounds: Corners) -> Vec<[f64; 2]> {
+    let ([x0, y0], [x1, y1]) = (bounds.min, bounds.max);
+    vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]]
+}
+
+/// What a polygon and a rectangle have in common, which may be nothing.
+pub(super) fn clipped(rings: &Rings, bounds: Corners) -> Rings {
+    let line = |ring: &Vec<[f64; 2]>| LineString::from(ring.clone());
+    let rectangle = Polygon::new(line(&rectangle(bounds)), Vec::new());
+    // The rings as they are: which of them are holes comes out of the even-odd rule.
+    let polygon = MultiPolygon::new(rings.iter().map(|ring| Polygon::new(line(ring), Vec::new())).collect());
+    let rings_of = |polygon: Polygon| {
+        let (outer, inner) = polygon.into_inner();
+        std::iter::once(outer).chain(inner)
+    };
+    let common = polygon.intersection(&rectangle);
+    common.into_iter().flat_map(rings_of).map(|ring| ring.into_iter().map(|p| [p.x, p.y]).collect()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layer(shapes: Vec<Shape>) -> Layer {
+        Layer { shapes, fields: vec!["ELEV".to_owned()], ..Layer::default() }
+    }
+
+    #[test]
+    fn polygons_give_their_rings_and_null_shapes_nothing() {
+        let ring = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]];
+        let line = vec![[5.0, 5.0, 1.0], [6.0, 5.0, 2.0]];
+        let shapes = vec![Shape::Polygon(vec![ring.clone()]), Shape::Null, Shape::Lines(vec![line.clone()])];
+        assert_eq!(breaklines(&layer(shapes), Path::new("l")).unwrap(), [ring, line]);
+    }
+
+    #[test]
+    fn lines_without_heights_are_refused_with_the_cure() {
+        let flat = vec![[0.0, 0.0, f64::NAN], [1.0, 0.0, f64::NAN]];
+        let error = breaklines(&layer(vec![Shape::Null, Shape::Lines(vec![flat])]), Path::new("l.shp")).unwrap_err();
+        assert_eq!(error.to_string(), "l.shp: record 2: the breakline has no heights");
+        let cure = error.cure_text().unwrap();
+        assert!(cure.contains("FILE:FIELD") && cure.contains("ELEV"), "{cure}");
+    }
+
+    #[test]
+    fn one_missing_height_is_refused_by_record_and_vertex() {
+        let line = vec![[0.0, 0.0, 1.0], [1.0, 0.0, f64::NAN]];
+        let error = breaklines(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp")).unwrap_err();
+        assert_eq!(error.to_string(), "l.shp: record 1: vertex 2 at 1 0 has no height, though others have");
+    }
+
+    #[test]
+    fn a_layer_of_the_wrong_kind_is_refused() {
+        let points = layer(vec![Shape::Points(vec![[0.0; 3]])]);
+        assert!(breaklines(&points, Path::new("p")).is_err());
+        assert!(polygons(&points, Path::new("p")).is_err());
+    }
+
+    #[test]
+    fn a_polygon_with_a_hole_is_clipped_to_a_rectangle() {
+        let square = |a: f64, b: f64| vec![[a, a], [b, a], [b, b], [a, b], [a, a]];
+        let bounds = Corners { min: [5.0, -5.0], max: [50.0, 50.0] };
+        let rings = clipped(&vec![square(0.0, 10.0), square(4.0, 6.0)], bounds);
+        let area: f64 = rings
+            .iter()
+            .flat_map(|ring| ring.windows(2))
+            .map(|pair| (pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1]) / 2.0)
+            .sum();
+        assert!((area.abs() - 48.0).abs() < 1e-6, "{area}: {rings:?}");
+        assert!(clipped(&vec![square(60.0, 70.0)], bounds).is_empty());
+    }
+
+    #[test]
+    fn a_line_leaves_and_enters_a_window() {
+        let window = Bounds { min: [0.0, 0.0, 0.0], max: [10.0, 10.0, 0.0] };
+        let at = |x: f64, y: f64| [x, y, 0.0];
+        let line =
+            [at(5.0, 5.0), at(15.0, 5.0), at(15.0, 20.0), at(20.0, 20.0), at(12.0, 5.0), at(5.0, 6.0), at(4.0, 6.0)];
+        assert_eq!(near(&line, &window), [&line[0..2], &line[4..7]]);
+        assert_eq!(near(&line[2..4], &window), Vec::<&[[f64; 3]]>::new());
+    }
+}

@@ -1,0 +1,90 @@
+//! Where results go, checked before the work starts.
+
+use std::path::{Path, PathBuf};
+
+use super::args::OutputArgs;
+use super::inputs::identity;
+use super::talk::Talk;
+use crate::error::{Error, Result};
+
+/// A file format that a verb can write.
+#[derive(Debug)]
+pub(super) struct Format<F: 'static> {
+    pub(super) extension: &'static str,
+    pub(super) kind: F,
+    /// Extensions of the files that are written beside it.
+    pub(super) companions: &'static [&'static str],
+}
+
+/// A file to write.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Target<F> {
+    pub(super) path: PathBuf,
+    pub(super) kind: F,
+}
+
+/// Sorts the outputs by format and makes sure that nothing is lost that should stay.
+///
+/// # Errors
+/// If an extension is not among the formats, an output is an input or named twice, its folder does
+/// not exist, or it exists and may not be replaced.
+pub(super) fn resolve<F: Copy>(
+    args: &OutputArgs,
+    formats: &'static [Format<F>],
+    inputs: &[PathBuf],
+) -> Result<Vec<Target<F>>> {
+    let inputs: Vec<PathBuf> = inputs.iter().map(|path| identity(path)).collect();
+    let mut targets: Vec<Target<F>> = Vec::new();
+    for path in &args.output {
+        let format = find(path, formats)?;
+        if targets.iter().any(|target| target.path == *path) {
+            return Err(Error::usage("the output is named twice").in_file(path));
+        }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !folder.is_dir() {
+            let missing = std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
+            return Err(Error::from(missing).in_file(path).cure(format!("mkdir -p {}", folder.display())));
+        }
+        for file in files_of(path, format) {
+            if inputs.contains(&identity(&file)) {
+                return Err(Error::usage("the output is one of the inputs")
+                    .in_file(&file)
+                    .cure("give it another name"));
+            }
+            if file.exists() && !args.overwrite {
+                let exists = std::io::Error::new(std::io::ErrorKind::AlreadyExists, "the file exists");
+                return Err(Error::from(exists).in_file(&file).cure("give it another name, or add --overwrite"));
+            }
+        }
+        targets.push(Target { path: path.clone(), kind: format.kind });
+    }
+    Ok(targets)
+}
+
+fn files_of<F>(path: &Path, format: &Format<F>) -> Vec<PathBuf> {
+    let beside = format.companions.iter().map(|extension| path.with_extension(extension));
+    std::iter::once(path.to_path_buf()).chain(beside).collect()
+}
+
+fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    formats.iter().find(|format| format.extension.eq_ignore_ascii_case(extension)).ok_or_else(|| {
+        let known: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension)).collect();
+        let found = match extension {
+            "" => "the output has no extension to tell its format by".to_owned(),
+            _ => format!("`.{extension}` is no format that can be written here"),
+        };
+        Error::usage(found).in_file(path).cure(format!("use one of {}", known.join(", ")))
+    })
+}
+
+/// Says what was written.
+pub(super) fn tell<F>(targets: &[Target<F>], talk: &Talk) {
+    for target in targets {
+        let path = target.path.display();
+        match std::fs::metadata(&target.path) {
+            Ok(data) => talk.line(format_args!("written     {path} ({} kB)", data.len().div_ceil(1000))),
+            Err(_) => talk.line(format_args!("written     {path}")),
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The summary that a run ends with.
+
+use std::time::{Duration, Instant};
+
+use super::talk::Talk;
+use super::units::number;
+use crate::crs::Crs;
+use crate::data::{Bounds, Surface};
+use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
+
+/// How a surface was made.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Made {
+    pub(super) files: usize,
+    pub(super) points: Option<SelectionReport>,
+    /// Lines read (parts and rings count one each).
+    pub(super) breaklines: usize,
+    pub(super) tin: Option<TinReport>,
+    pub(super) duplicates: DuplicateRule,
+}
+
+impl Made {
+    /// Says what went in, what was dropped and what came out.
+    pub(super) fn tell(&self, surface: &dyn Surface, talk: &Talk) {
+        if let Some(points) = &self.points {
+            talk.line(format_args!("points      {}", points_line(points, self.files)));
+        }
+        if let Some(tin) = &self.tin {
+            self.tell_tin(tin, talk);
+        }
+        let facts = SurfaceFacts::of(surface);
+        if self.tin.is_none() {
+            talk.line(format_args!("vertices    {}", facts.vertices));
+        }
+        talk.line(format_args!("triangles   {}{}", facts.triangles, self.left_out()));
+        tell_place(facts.extent, surface.crs(), talk);
+    }
+
+    fn tell_tin(&self, tin: &TinReport, talk: &Talk) {
+        if tin.duplicates > 0 {
+            let rule = match self.duplicates {
+                DuplicateRule::Lowest => "the lowest is kept",
+                DuplicateRule::Highest => "the highest is kept",
+                DuplicateRule::Mean => "their mean is taken",
+                DuplicateRule::First => "the first is kept",
+                DuplicateRule::Last => "the last is kept",
+            };
+            talk.line(format_args!("            {} at the place of another point ({rule})", tin.duplicates));
+        }
+        if tin.points_on_breaklines > 0 {
+            let count = tin.points_on_breaklines;
+            talk.line(format_args!("            {count} at a breakline's vertex (whose height is taken)"));
+        }
+        if self.breaklines > 0 {
+            let crossings = match tin.crossings {
+                0 => String::new(),
+                n => format!(", {n} crossings between vertices"),
+            };
+            let (lines, edges) = (self.breaklines, tin.constrained_edges);
+            talk.line(format_args!("breaklines  {lines} in, {edges} edges out{crossings}"));
+        }
+        talk.line(format_args!("vertices    {}", tin.vertices));
+    }
+
+    fn left_out(&self) -> String {
+        let Some(tin) = &self.tin else { return String::new() };
+        let mut parts = Vec::new();
+        if tin.faces_beyond_max_edge > 0 {
+            parts.push(format!("{} with long edges at the rim left out", tin.faces_beyond_max_edge));
+        }
+        if tin.faces_clipped > 0 {
+            parts.push(format!("{} clipped", tin.faces_clipped));
+        }
+        if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
+    }
+}
+
+/// Where something is, and in which coordinate system.
+pub(super) fn tell_place(extent: Bounds, crs: Option<&Crs>, talk: &Talk) {
+    if !extent.is_empty() {
+        let axis = |i: usize| format!("{} .. {}", extent.min[i], extent.max[i]);
+        talk.line(format_args!("extent      x {}, y {}, z {}", axis(0), axis(1), axis(2)));
+    }
+    match crs {
+        Some(crs) => talk.line(format_args!("CRS         {crs}, in units of the {}", crs.unit.name)),
+        None => talk.line("CRS         not known"),
+    }
+}
+
+fn points_line(report: &SelectionReport, files: usize) -> String {
+    let mut text = format!("{} read", report.read);
+    if files > 1 {
+        text += &format!(" from {files} files");
+    }
+    text += &format!(", {} used", report.used);
+    let mut dropped = Vec::new();
+    if report.other_class > 0 {
+        let is_used = |class| report.classes.as_ref().is_none_or(|used| used.contains(class));
+        let classes: Vec<String> = report
+            .by_class
+            .iter()
+            .filter(|(class, _)| !is_used(class))
+            .map(|(class, count)| format!("{class}: {count}"))
+            .collect();
+        dropped.push(format!("{} of other classes ({})", report.other_class, classes.join(", ")));
+    }
+    if report.withheld > 0 {
+        dropped.push(format!("{} withheld", report.withheld));
+    }
+    if report.outside > 0 {
+        dropped.push(format!("{} outside of the bounds and their buffer", report.outside));
+    }
+    if !dropped.is_empty() {
+        text += &format!("; dropped: {}", dropped.join(", "));
+    }
+    text
+}
+
+/// Counts and extent of what is really part of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SurfaceFacts {
+    /// Vertices that a face uses.
+    pub(super) vertices: usize,
+    pub(super) triangles: usize,
+    /// Constrained edges.
+    pub(super) constrained: usize,
+    pub(super) extent: Bounds,
+}
+
+impl SurfaceFacts {
+    /// Goes over all faces once.
+    pub(super) fn of(surface: &dyn Surface) -> Self {
+        let mut is_used = vec![false; surface.vertex_count()];
+        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, constrained: 0, extent: Bounds::default() };
+        for face in (0u32..).take(surface.face_count()) {
+            let Some(corners) = surface.face(face) else { continue };
+            facts.triangles += 1;
+            for (i, vertex) in corners.into_iter().enumerate() {
+                if !std::mem::replace(&mut is_used[vertex as usize], true) {
+                    facts.vertices += 1;
+                    facts.extent.add(surface.position(vertex));
+                }
+                // An edge inside is met from both sides.
+                let is_ours = surface.neighbor(face, i).is_none_or(|other| face < other);
+                facts.constrained += usize::from(is_ours && surface.is_constrained(face, i));
+            }
+        }
+        facts
+    }
+}
+
+/// Says how long it took and how much memory it took.
+pub(super) fn tell_cost(start: Instant, talk: &Talk) {
+    let time = seconds(start.elapsed());
+    match peak_memory() {
+        Some(bytes) => talk.line(format_args!("done in {time}, peak memory {} MB", number(bytes as f64 / 1e6))),
+        None => talk.line(format_args!("done in {time}")),
+    }
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{} s", number(time.as_secs_f64()))
+}
+
+/// The most memory that this process held, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024)
+}

@@ -1,0 +1,111 @@
+//! What is said on stderr: errors, warnings, notes, the summary, and progress on a terminal.
+
+use std::collections::HashSet;
+use std::fmt::Display;
+use std::io::Write;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::args::TalkArgs;
+use crate::error::Error;
+
+/// How much is said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Quiet,
+    Normal,
+    Verbose,
+}
+
+/// The voice of a run. Notes and warnings are said once each.
+#[derive(Debug)]
+pub(super) struct Talk {
+    level: Level,
+    bars: MultiProgress,
+    said: Mutex<HashSet<String>>,
+}
+
+impl Talk {
+    pub(super) fn new(args: &TalkArgs) -> Self {
+        let level = match (args.quiet, args.verbose) {
+            (true, _) => Level::Quiet,
+            (_, true) => Level::Verbose,
+            _ => Level::Normal,
+        };
+        let target = match level {
+            Level::Quiet => ProgressDrawTarget::hidden(),
+            // Hides itself where stderr is no terminal.
+            _ => ProgressDrawTarget::stderr(),
+        };
+        Talk { level, bars: MultiProgress::with_draw_target(target), said: Mutex::default() }
+    }
+
+    /// The error, and its cure on a line of its own.
+    pub(super) fn error(&self, error: &Error) {
+        self.print(&format!("error: {error}"));
+        if let Some(cure) = error.cure_text() {
+            self.print(&format!("hint: {cure}"));
+        }
+    }
+
+    /// Something that is probably not as it should be.
+    pub(super) fn warning(&self, text: impl Display) {
+        self.once(format!("warning: {text}"));
+    }
+
+    /// A choice that was made, or something worth knowing.
+    pub(super) fn note(&self, text: impl Display) {
+        if self.level > Level::Quiet {
+            self.once(format!("note: {text}"));
+        }
+    }
+
+    /// What only some want to know.
+    pub(super) fn detail(&self, text: impl Display) {
+        if self.level == Level::Verbose {
+            self.print(&text.to_string());
+        }
+    }
+
+    /// A line of the summary.
+    pub(super) fn line(&self, text: impl Display) {
+        if self.level > Level::Quiet {
+            self.print(&text.to_string());
+        }
+    }
+
+    /// A bar for work of known or unknown size, seen on a terminal only.
+    pub(super) fn bar(&self, what: &'static str, length: Option<u64>) -> ProgressBar {
+        let template = match length {
+            Some(_) => "{msg} [{bar:30}] {human_pos} of {human_len}, {eta} left",
+            None => "{msg} {spinner} {human_pos}",
+        };
+        let bar = match length {
+            Some(length) => ProgressBar::new(length),
+            None => ProgressBar::no_length(),
+        };
+        let bar = self.bars.add(bar);
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.set_message(what);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        bar
+    }
+
+    fn once(&self, text: String) {
+        let is_new = self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.clone());
+        if is_new {
+            self.print(&text);
+        }
+    }
+
+    /// A closed stderr is no reason to stop.
+    fn print(&self, text: &str) {
+        self.bars.suspend(|| {
+            let _ = writeln!(std::io::stderr(), "{text}");
+        });
+    }
+}

@@ -1,0 +1,147 @@
+//! Lengths and heights with their units.
+
+use crate::crs::{Crs, CrsKind, Unit};
+
+/// Metres in a degree along a meridian, about: good enough to choose defaults with.
+const METRES_PER_DEGREE: f64 = 111_320.0;
+
+/// The units of a surface: of the plan, and of the heights.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Units {
+    plan: Option<Unit>,
+    height: Option<Unit>,
+    is_angular: bool,
+}
+
+impl Units {
+    pub(super) fn of(crs: Option<&Crs>) -> Self {
+        let is_angular = crs.is_some_and(|crs| crs.kind == CrsKind::Geographic);
+        let plan = crs.map(|crs| crs.unit.clone());
+        // Heights over degrees are in metres unless the definition says otherwise.
+        let height = match crs.and_then(|crs| crs.vertical_unit.clone()) {
+            Some(unit) => Some(unit),
+            None if is_angular => Some(Unit { name: "metre".to_owned(), factor: 1.0 }),
+            None => plan.clone(),
+        };
+        Units { plan, height, is_angular }
+    }
+
+    /// `100 m`
+    pub(super) fn length(&self, value: f64) -> String {
+        with_unit(value, self.plan.as_ref())
+    }
+
+    /// `1 ftUS`
+    pub(super) fn height(&self, value: f64) -> String {
+        with_unit(value, self.height.as_ref())
+    }
+
+    /// So many metres in units of the plan; the number itself where the unit is not known.
+    pub(super) fn of_metres(&self, metres: f64) -> f64 {
+        match &self.plan {
+            Some(_) if self.is_angular => metres / METRES_PER_DEGREE,
+            Some(unit) if unit.factor > 0.0 => metres / unit.factor,
+            _ => metres,
+        }
+    }
+
+    /// Whether the plan is in angles.
+    pub(super) fn is_angular(&self) -> bool {
+        self.is_angular
+    }
+
+    /// What heights are multiplied by to be in the units of the plan.
+    pub(super) fn height_in_plan(&self) -> f64 {
+        match (&self.plan, &self.height) {
+            (Some(_), Some(height)) if self.is_angular => height.factor / METRES_PER_DEGREE,
+            (Some(plan), Some(height)) if plan.factor > 0.0 => height.factor / plan.factor,
+            _ => 1.0,
+        }
+    }
+
+    /// The two names, where lengths of the plan and heights are in different units.
+    pub(super) fn disagreement(&self) -> Option<(&str, &str)> {
+        match (&self.plan, &self.height) {
+            (Some(plan), Some(height)) if self.is_angular || plan.factor != height.factor => {
+                Some((&plan.name, &height.name))
+            }
+            _ => None,
+        }
+    }
+}
+
+fn with_unit(value: f64, unit: Option<&Unit>) -> String {
+    let value = number(value);
+    match unit.map(|unit| unit.name.as_str()) {
+        None => format!("{value} units"),
+        Some("metre" | "meter") => format!("{value} m"),
+        Some("foot") => format!("{value} ft"),
+        Some("US survey foot") => format!("{value} ftUS"),
+        Some("degree") => format!("{value} degrees"),
+        Some(name) => format!("{value} {name}"),
+    }
+}
+
+/// Two decimals for what is a measure of land, all that there are for what is small.
+pub(super) fn number(value: f64) -> String {
+    if value.abs() >= 1.0 || value == 0.0 {
+        let text = format!("{value:.2}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        let digits = 2 - value.abs().log10().floor() as i32;
+        let scale = 10f64.powi(digits);
+        format!("{}", (value * scale).round() / scale)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crs(kind: CrsKind, unit: (&str, f64), vertical: Option<(&str, f64)>) -> Crs {
+        let unit_of = |(name, factor): (&str, f64)| Unit { name: name.to_owned(), factor };
+        Crs {
+            name: "test".to_owned(),
+            epsg: None,
+            vertical_epsg: None,
+            kind,
+            unit: unit_of(unit),
+            vertical_unit: vertical.map(unit_of),
+            wkt: None,
+        }
+    }
+
+    #[test]
+    fn a_hundred_metres_are_328_feet() {
+        let feet = Units::of(Some(&crs(CrsKind::Projected, ("foot", 0.3048), None)));
+        assert_eq!(feet.length(feet.of_metres(100.0)), "328.08 ft");
+        assert_eq!(feet.disagreement(), None);
+        let unknown = Units::of(None);
+        assert_eq!(unknown.length(unknown.of_metres(100.0)), "100 units");
+    }
+
+    #[test]
+    fn feet_over_metres_are_told_and_scaled() {
+        let mixed =
+            Units::of(Some(&crs(CrsKind::Projected, ("metre", 1.0), Some(("US survey foot", 1200.0 / 3937.0)))));
+        assert_eq!(mixed.disagreement(), Some(("metre", "US survey foot")));
+        assert_eq!(mixed.height_in_plan(), 1200.0 / 3937.0);
+        assert_eq!(mixed.height(2.5), "2.5 ftUS");
+    }
+
+    #[test]
+    fn degrees_have_heights_in_metres() {
+        let degrees = Units::of(Some(&crs(CrsKind::Geographic, ("degree", 0.0174), None)));
+        assert_eq!(degrees.disagreement(), Some(("degree", "metre")));
+        assert_eq!(degrees.length(degrees.of_metres(100.0)), "0.000898 degrees");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let cases =
+            [(0.0, "0"), (1.0, "1"), (-12.345, "-12.35"), (100.0, "100"), (0.25, "0.25"), (0.001234, "0.00123")];
+        for (value, text) in cases {
+            assert_eq!(number(value), text);
+        }
+    }
+}

@@ -1,0 +1,360 @@
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::data::{Bounds, PointBatch};
+use crate::error::{Error, Result};
+
+/// The class of ground points in LAS.
+const GROUND: u8 = 2;
+
+/// Which classes are used. Points of formats without classes are always used.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Classes {
+    /// Class 2 (ground) when any point has it, otherwise all.
+    #[default]
+    GroundOrAll,
+    /// These and no others.
+    Only(Vec<u8>),
+}
+
+/// What a [`Selection`] saw and kept. Does not depend on the order of the points.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SelectionReport {
+    /// Points seen.
+    pub read: u64,
+    /// Points kept.
+    pub used: u64,
+    /// Dropped: marked as deleted in their file.
+    pub withheld: u64,
+    /// Dropped: of a class that is not used.
+    pub other_class: u64,
+    /// Dropped: of a class in use, but outside of the window.
+    pub outside: u64,
+    /// The points that are not withheld, by class.
+    pub by_class: BTreeMap<u8, u64>,
+    /// The points that are not withheld and come from a format without classes.
+    pub without_class: u64,
+    /// The classes that are used; `None` where all are.
+    pub classes: Option<Vec<u8>>,
+}
+
+/// Points as columns of equal length: 24 bytes a point.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Columns {
+    /// Eastings.
+    pub x: Vec<f64>,
+    /// Northings.
+    pub y: Vec<f64>,
+    /// Heights.
+    pub z: Vec<f64>,
+}
+
+/// Chooses the points that a surface is made of, and keeps nothing but their coordinates.
+///
+/// Withheld points are dropped, coordinates that are not finite refused. While no ground point was
+/// seen, the points of other classes are kept, since they may be all there is; with the first
+/// ground point they are let go. The result is in the order of the input, and as a set does not
+/// depend on it.
+#[derive(Debug)]
+pub struct Selection {
+    classes: Classes,
+    window: Option<Bounds>,
+    kept: Columns,
+    /// Which of `kept` are there only until the first ground point comes.
+    spare: Vec<Range<usize>>,
+    has_ground: bool,
+    read: u64,
+    read_before_source: u64,
+    withheld: u64,
+    /// One for every class.
+    by_class: [Tally; 256],
+    without_class: Tally,
+}
+
+/// Points of one class, by place.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    inside: u64,
+    outside: u64,
+}
+
+/// What is to be done with the points of a class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Use {
+    Yes,
+    No,
+    /// Unless a ground point comes.
+    Maybe,
+}
+
+impl Tally {
+    fn all(self) -> u64 {
+        self.inside + self.outside
+    }
+}
+
+impl Selection {
+    /// Selects by class and, where a window is given, by place in plan (its border included).
+    pub fn new(classes: Classes, window: Option<Bounds>) -> Self {
+        Selection {
+            classes,
+            window,
+            kept: Columns::default(),
+            spare: Vec::new(),
+            has_ground: false,
+            read: 0,
+            read_before_source: 0,
+            withheld: 0,
+            by_class: [Tally::default(); 256],
+            without_class: Tally::default(),
+        }
+    }
+
+    /// Says that what follows comes from another file: errors count points from here.
+    pub fn next_source(&mut self) {
+        self.read_before_source = self.read;
+    }
+
+    /// Takes the points of a batch that are to be used.
+    ///
+    /// # Errors
+    /// If a point that is not withheld has a coordinate that is not finite; the error names its
+    /// number in its file, counted from 1.
+    pub fn add(&mut self, batch: &PointBatch) -> Result<()> {
+        for i in 0..batch.len() {
+            self.read += 1;
+            if batch.flags.get(i).is_some_and(|flags| flags.is_withheld()) {
+                self.withheld += 1;
+                continue;
+            }
+            let p = [batch.x[i], batch.y[i], batch.z[i]];
+            if !p.iter().all(|value| value.is_finite()) {
+                return Err(self.not_finite(p));
+            }
+            self.take(p, batch.class.get(i).copied());
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, [x, y, z]: [f64; 3], class: Option<u8>) {
+        if class == Some(GROUND) && !self.has_ground {
+            self.has_ground = true;
+            if self.classes == Classes::GroundOrAll {
+                self.drop_spare();
+            }
+        }
+        let tally = match class {
+            Some(class) => &mut self.by_class[usize::from(class)],
+            None => &mut self.without_class,
+        };
+        if self.window.is_some_and(|window| !window.holds(x, y)) {
+            tally.outside += 1;
+            return;
+        }
+        tally.inside += 1;
+        let fate = self.fate(class);
+        if fate == Use::No {
+            return;
+        }
+        let at = self.kept.x.len();
+        self.kept.x.push(x);
+        self.kept.y.push(y);
+        self.kept.z.push(z);
+        if fate == Use::Maybe {
+            match self.spare.last_mut() {
+                Some(last) if last.end == at => last.end += 1,
+                _ => self.spare.push(at..at + 1),
+            }
+        }
+    }
+
+    fn fate(&self, class: Option<u8>) -> Use {
+        match (class, &self.classes) {
+            (None, _) => Use::Yes,
+            (Some(class), Classes::Only(classes)) if classes.contains(&class) => Use::Yes,
+            (Some(_), Classes::Only(_)) => Use::No,
+            (Some(GROUND), Classes::GroundOrAll) => Use::Yes,
+            (Some(_), Classes::GroundOrAll) if self.has_ground => Use::No,
+            (Some(_), Classes::GroundOrAll) => Use::Maybe,
+        }
+    }
+
+    /// Forgets the points that were kept for the case that there is no ground point.
+    fn drop_spare(&mut self) {
+        let spare = std::mem::take(&mut self.spare);
+        for column in [&mut self.kept.x, &mut self.kept.y, &mut self.kept.z] {
+            let mut end = 0;
+            let mut from = 0;
+            for range in &spare {
+                column.copy_within(from..range.start, end);
+                end += range.start - from;
+                from = range.end;
+            }
+            let length = column.len();
+            column.copy_within(from..length, end);
+            column.truncate(end + length - from);
+            column.shrink_to_fit();
+        }
+    }
+
+    #[cold]
+    fn not_finite(&self, p: [f64; 3]) -> Error {
+        let number = self.read - self.read_before_source;
+        let error = if p[2].is_nan() && p[0].is_finite() && p[1].is_finite() {
+            Error::format("the point has no height").cure("name the attribute that holds the height: FILE:FIELD")
+        } else {
+            Error::format(format!("the coordinates {} {} {} are not all finite", p[0], p[1], p[2]))
+        };
+        error.at(format!("point {number}"))
+    }
+
+    /// What was seen and kept so far.
+    pub fn report(&self) -> SelectionReport {
+        let mut report = SelectionReport {
+            read: self.read,
+            withheld: self.withheld,
+            without_class: self.without_class.all(),
+            used: self.without_class.inside,
+            outside: self.without_class.outside,
+            classes: match &self.classes {
+                Classes::Only(classes) => Some(classes.clone()),
+                Classes::GroundOrAll if self.has_ground => Some(vec![GROUND]),
+                Classes::GroundOrAll => None,
+            },
+            ..SelectionReport::default()
+        };
+        for (class, tally) in (0u8..=255).zip(self.by_class).filter(|(_, tally)| tally.all() > 0) {
+            report.by_class.insert(class, tally.all());
+            if self.fate(Some(class)) == Use::No {
+                report.other_class += tally.all();
+            } else {
+                report.used += tally.inside;
+                report.outside += tally.outside;
+            }
+        }
+        report
+    }
+
+    /// The points, in the order of the input, and what became of the others.
+    pub fn finish(self) -> (Columns, SelectionReport) {
+        let report = self.report();
+        (self.kept, report)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::PointFlags;
+
+    /// `(class, x)`; y is 0 and z is x.
+    fn batch(points: &[(u8, f64)]) -> PointBatch {
+        PointBatch {
+            x: points.iter().map(|p| p.1).collect(),
+            y: vec![0.0; points.len()],
+            z: points.iter().map(|p| p.1).collect(),
+            class: points.iter().map(|p| p.0).collect(),
+            ..PointBatch::default()
+        }
+    }
+
+    fn classless(xs: &[f64]) -> PointBatch {
+        PointBatch { x: xs.to_vec(), y: vec![0.0; xs.len()], z: xs.to_vec(), ..PointBatch::default() }
+    }
+
+    fn select(classes: Classes, window: Option<Bounds>, batches: &[PointBatch]) -> (Vec<f64>, SelectionReport) {
+        let mut selection = Selection::new(classes, window);
+        for batch in batches {
+            selection.next_source();
+            selection.add(batch).unwrap();
+        }
+        let (columns, report) = selection.finish();
+        assert_eq!(columns.x, columns.z);
+        assert_eq!(columns.x.len() as u64, report.used);
+        assert_eq!(report.read, report.used + report.withheld + report.other_class + report.outside);
+        (columns.x, report)
+    }
+
+    #[test]
+    fn ground_displaces_what_came_before_it() {
+        let batches = [batch(&[(1, 1.0), (1, 2.0)]), classless(&[3.0]), batch(&[(5, 4.0), (2, 5.0), (1, 6.0)])];
+        let (kept, report) = select(Classes::GroundOrAll, None, &batches);
+        assert_eq!(kept, [3.0, 5.0]);
+        assert_eq!(report.classes, Some(vec![2]));
+        assert_eq!(report.other_class, 4);
+        assert_eq!(report.by_class, BTreeMap::from([(1, 3), (2, 1), (5, 1)]));
+    }
+
+    #[test]
+    fn without_ground_all_are_kept_in_order() {
+        let batches = [batch(&[(1, 1.0)]), classless(&[2.0]), batch(&[(5, 3.0), (7, 4.0)])];
+        let (kept, report) = select(Classes::GroundOrAll, None, &batches);
+        assert_eq!(kept, [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(report.classes, None);
+    }
+
+    #[test]
+    fn named_classes_are_used_and_no_others() {
+        let (kept, report) = select(
+            Classes::Only(vec![2, 8]),
+            None,
+            &[batch(&[(8, 1.0), (2, 2.0), (1, 3.0)]), batch(&[(1, 4.0), (8, 5.0)])],
+        );
+        assert_eq!(kept, [1.0, 2.0, 5.0]);
+        assert_eq!(report.other_class, 2);
+    }
+
+    #[test]
+    fn ground_outside_of_the_window_still_means_that_there_is_ground() {
+        let mut window = Bounds::default();
+        window.add([0.0, 0.0, 0.0]);
+        window.add([10.0, 10.0, 0.0]);
+        let (kept, report) =
+            select(Classes::GroundOrAll, Some(window), &[batch(&[(1, 5.0), (2, 20.0), (2, 10.0), (1, 30.0)])]);
+        assert_eq!(kept, [10.0]);
+        assert_eq!((report.outside, report.other_class), (1, 2));
+    }
+
+    #[test]
+    fn every_order_of_the_files_gives_the_same_set_and_report() {
+        let files = [batch(&[(1, 1.0), (1, 20.0)]), classless(&[2.0, 30.0]), batch(&[(2, 4.0)]), batch(&[(9, 5.0)])];
+        let mut window = Bounds::default();
+        window.add([0.0, 0.0, 0.0]);
+        window.add([10.0, 10.0, 0.0]);
+        let expected = select(Classes::GroundOrAll, Some(window), &files).1;
+        for shift in 0..files.len() {
+            for swap in 0..files.len() {
+                let mut order: Vec<_> = files.to_vec();
+                order.rotate_left(shift);
+                order.swap(0, swap);
+                let (mut kept, report) = select(Classes::GroundOrAll, Some(window), &order);
+                kept.sort_by(f64::total_cmp);
+                assert_eq!(kept, [2.0, 4.0]);
+                assert_eq!(report, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn withheld_points_are_dropped_before_anything_else_is_asked() {
+        let mut points = batch(&[(2, 1.0), (1, 2.0)]);
+        points.x[0] = f64::NAN;
+        points.flags = vec![PointFlags(PointFlags::WITHHELD), PointFlags(PointFlags::OVERLAP)];
+        let (kept, report) = select(Classes::GroundOrAll, None, &[points]);
+        assert_eq!(kept, [2.0]);
+        assert_eq!((report.withheld, report.classes), (1, None));
+    }
+
+    #[test]
+    fn a_coordinate_that_is_not_finite_is_refused_by_its_number_in_its_file() {
+        let mut selection = Selection::new(Classes::default(), None);
+        selection.add(&classless(&[1.0, 2.0])).unwrap();
+        selection.next_source();
+        let error = selection.add(&classless(&[1.0, f64::INFINITY])).unwrap_err();
+        assert_eq!(error.to_string(), "point 2: the coordinates inf 0 inf are not all finite");
+        let mut flat = classless(&[1.0]);
+        flat.z[0] = f64::NAN;
+        selection.next_source();
+        assert_eq!(selection.add(&flat).unwrap_err().to_string(), "point 1: the point has no height");
+    }
+}
