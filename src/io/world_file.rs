@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 /// The text of a world file: the steps of a column and a row, and the center of the first cell.
 pub(crate) fn text(frame: &Frame) -> String {
     let t = &frame.transform;
-    let [x, y] = frame.centre(0, 0);
+    let [x, y] = frame.center(0, 0);
     [t[1], t[4], t[2], t[5], x, y].iter().map(|value| format!("{value}\n")).collect()
 }
 

@@ -156,9 +156,9 @@ mod tests {
     fn both_ends_are_included() {
         assert_eq!(within(1.0, 0.0, 2.0, 5.0), [2.0, 3.0, 4.0, 5.0]);
         assert_eq!(within(5.0, 2.0, -9.0, 8.0), [-8.0, -3.0, 2.0, 7.0]);
-        assert_eq!(within(1.0, 0.0, 2.25, 2.75), []);
+        assert_eq!(within(1.0, 0.0, 2.25, 2.75), [0.0; 0]);
         assert_eq!(within(1.0, 0.0, 3.0, 3.0), [3.0]);
-        assert_eq!(within(1.0, 0.0, f64::INFINITY, f64::NEG_INFINITY), []);
+        assert_eq!(within(1.0, 0.0, f64::INFINITY, f64::NEG_INFINITY), [0.0; 0]);
     }
 
     #[test]

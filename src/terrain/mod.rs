@@ -2,32 +2,23 @@
 
 mod builder;
 mod clip;
+pub mod contour;
 mod duplicates;
+mod grid_surface;
+mod hillshade;
+mod levels;
+mod rasterize;
+mod selection;
 mod soundness;
 mod tin;
 
 pub use builder::{TinBuilder, TinReport};
-pub use duplicates::DuplicateRule;
-pub use soundness::{SurfaceFlaw, surface_flaws};
-mod hillshade;
-mod rasterize;
-mod tin;
-
-pub use builder::{DuplicateRule, TinBuilder, TinReport};
-pub use hillshade::{Hillshade, Light};
-pub use rasterize::Dem;
-pub mod contour;
-mod grid_surface;
-mod levels;
-mod tin;
-
-pub use builder::{DuplicateRule, TinBuilder, TinReport};
 pub use contour::{Contours, contours};
+pub use duplicates::DuplicateRule;
 pub use grid_surface::GridSurface;
+pub use hillshade::{Hillshade, Light};
 pub use levels::{Levels, MAX_LEVELS};
-mod selection;
-mod tin;
-
-pub use builder::{DuplicateRule, TinBuilder, TinReport};
+pub use rasterize::Dem;
 pub use selection::{Classes, Columns, Selection, SelectionReport};
+pub use soundness::{SurfaceFlaw, surface_flaws};
 pub use tin::Tin;
