@@ -143,9 +143,9 @@ impl Other {
     }
 }
 
-/// SEAM: to be `from_layer(super::shapefile::read_layer(path, None)?)` as soon as that is here.
 fn shapefile(path: &Path) -> Result<Box<dyn PointSource + Send>> {
-    Err(Error::unsupported("points of a shapefile").in_file(path))
+    let layer = super::shapefile::read_layer(path, None)?;
+    Ok(Box::new(from_layer(layer).map_err(|e| e.in_file(path))?))
 }
 
 /// The points of a vector layer; shapes of other kinds are left out with a warning.
