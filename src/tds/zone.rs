@@ -60,26 +60,28 @@ impl Zone {
         tds: &Tds<N, V, C>,
         mut takes: impl FnMut(CellId, usize, CellId) -> bool,
     ) {
-        let width = (tds.dimension() + 1) as usize;
         let mut next = 0;
         while next < self.cells.len() {
             let cell = self.cells[next];
             next += 1;
-            for i in 0..width {
-                let beyond = tds.neighbor(cell, i);
-                if self.holds(beyond) {
+            for (i, &beyond) in tds.cell_neighbors(cell).iter().enumerate() {
+                if self.marked[beyond.index()] {
                     continue;
                 }
                 if takes(cell, i, beyond) {
-                    self.add(beyond);
+                    self.marked[beyond.index()] = true;
+                    self.cells.push(beyond);
                 } else {
                     self.border.push((cell, i as u8));
                 }
             }
         }
-        // A cell refused across one facet may have been taken across another.
-        let marked = &self.marked;
-        self.border.retain(|&(cell, i)| !marked[tds.neighbor(cell, i as usize).index()]);
+        // A cell refused across one facet may have been taken across another. In a ball of triangles
+        // there are two facets more on the border than cells, in any other case it is worth a look.
+        if tds.dimension() != 2 || self.border.len() != self.cells.len() + 2 {
+            let marked = &self.marked;
+            self.border.retain(|&(cell, i)| !marked[tds.neighbor(cell, i as usize).index()]);
+        }
     }
 }
 
@@ -135,15 +137,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 }
             }
         }
-        for index in 0..zone.star.len() {
-            let new = zone.star[index];
-            for slot in 0..width {
-                let vertex = self.links[new.index()].vertices[slot];
-                self.set_cell_of(vertex, new);
-            }
+        for &new in &zone.star {
+            let vertices = self.links[new.index()].vertices;
+            vertices[..width].iter().for_each(|&vertex| self.set_cell_of(vertex, new));
         }
-        for index in 0..zone.cells.len() {
-            self.remove_cell(zone.cells[index]);
+        for &cell in &zone.cells {
+            self.remove_cell(cell);
         }
         zone.finish();
         zone.star.last().copied().unwrap_or(CellId::NONE)
