@@ -106,6 +106,16 @@ fn check_facts(name: &str, path: &Path, facts: &Value) {
     let found: Vec<u64> = info.overviews.iter().map(|o| (info.width as f64 / o[0] as f64).round() as u64).collect();
     assert_eq!(found, factors, "{name}");
 
+    // FACTS has a number where one EPSG code says it all, else WKT, and nothing for control points.
+    let crs = &facts["crs"];
+    if let Some(code) = crs.as_u64() {
+        assert_eq!(info.crs.as_ref().and_then(|crs| crs.epsg).map(u64::from), Some(code), "{name}");
+    } else if let Some(wkt) = crs.as_str().filter(|wkt| !wkt.starts_with("LOCAL_CS[\"unnamed\"")) {
+        assert!(info.crs.is_some(), "{name}: {wkt}");
+    } else if facts["gcps"].is_null() {
+        assert_eq!(info.crs, None, "{name}");
+    }
+
     let nodata = &facts["nodata"];
     match info.nodata {
         None => assert!(nodata.is_null(), "{name}"),

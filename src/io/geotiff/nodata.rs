@@ -38,7 +38,12 @@ impl Nodata {
     /// Whether a half precision sample is the value, brought to half precision by rounding or, as
     /// GDAL does, by cutting off.
     pub(super) fn is_half(&self, sample: f64) -> bool {
-        self.value.is_some_and(|value| value == sample || (value - sample).abs() < sample.abs() / 1024.0)
+        self.value.is_some_and(|value| {
+            let exponent = (value.to_bits() >> 52 & 0x7ff) as i32 - 1023;
+            // From one half precision number to the next: 10 bits behind the first, none below 2^-24.
+            let step = 2f64.powi(exponent.max(-14) - 10);
+            value == sample || (value - sample).abs() < step
+        })
     }
 
     /// Whether no sample of this type can be the value.
