@@ -8,6 +8,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use breakline::crs::Crs;
 use breakline::data::{Bounds, ContourLine, Layer, Shape};
 use breakline::error::Result;
 use breakline::io::{contours, layer, shapefile};
@@ -515,6 +516,69 @@ fn ogrinfo_reads_the_contours() {
         .chain(elevation)
         {
             assert!(text.contains(wanted), "{name}: {wanted:?} is not in\n{text}");
+        }
+    }
+}
+
+/// Every file with a `.prj`, by folder.
+const SYSTEMS: &[(&str, &[&str], u32)] = &[
+    ("dem/hintereisferner", &["Hintereisferner"], 4326),
+    ("dem/hintereisferner", &["Hintereisferner_UTM"], 32632),
+    ("dem/lux", &["lux"], 4326),
+    ("dem/qgis_3d", &["buildings", "points_with_z"], 27700),
+    ("lidar/delft_ahn3_bgt", &["breaklines_z_derived"], 28992),
+    (
+        "lidar/delft_ahn3_bgt/bgt_shp",
+        &["bgt_begroeidterreindeel", "bgt_kunstwerkdeel", "bgt_onbegroeidterreindeel"],
+        28992,
+    ),
+    ("lidar/delft_ahn3_bgt/bgt_shp", &["bgt_overbruggingsdeel", "bgt_pand", "bgt_scheiding"], 28992),
+    ("lidar/delft_ahn3_bgt/bgt_shp", &["bgt_waterdeel", "bgt_wegdeel"], 28992),
+    ("lidar/ign_0292_6833", &["Lignes_3d_0292_6833"], 2154),
+    ("lidar/quebec_lidR", &["efi_plot", "lake_polygons_UTM17"], 26917),
+    ("shp/geotools", &["archsites", "bugsites", "roads", "rstrct", "streams"], 26713),
+];
+
+#[test]
+fn every_prj_names_its_system() {
+    let Some(facts) = facts() else { return };
+    let mut seen = 0;
+    for (folder, names, code) in SYSTEMS {
+        for name in *names {
+            let layer = read(&common::shared(&format!("{folder}/{name}.shp")).unwrap()).unwrap();
+            assert_eq!(layer.crs.and_then(|crs| crs.epsg), Some(*code), "{folder}/{name}");
+            seen += 1;
+        }
+    }
+    let with_prj = |fact: &Value| fact["sidecars"].as_array().is_some_and(|list| list.contains(&"prj".into()));
+    assert_eq!(seen, facts.values().filter(|fact| with_prj(fact)).count());
+    for name in ["Lignes_2d", "Lignes_3d", "Points_virtuels"] {
+        let path = common::shared(&format!("lidar/ign_0292_6833/{name}_0292_6833.geojson")).unwrap();
+        assert_eq!(read(&path).unwrap().crs.and_then(|crs| crs.epsg), Some(2154), "{name}");
+    }
+}
+
+#[test]
+fn contours_keep_their_system() {
+    let folder = tempfile::tempdir().unwrap();
+    for code in [25832, 2154, 2263, 26917, 28992, 4326] {
+        let crs = Crs::from_epsg(code).unwrap();
+        for name in ["c.shp", "c.geojson"] {
+            let target = folder.path().join(name);
+            // Where degrees can be, so that GeoJSON without a `crs` member means EPSG:4326.
+            let line = ContourLine { level: 5.0, points: vec![[1.0, 2.0], [3.0, 4.0]] };
+            let summary = contours::write(&target, &mut [line].into_iter(), Some(&crs)).unwrap();
+            assert_eq!(summary.warnings, [] as [&str; 0]);
+            let layer = read(&target).unwrap();
+            assert_eq!(layer.warnings, [] as [&str; 0], "{name} in EPSG:{code}");
+            assert!(layer.crs.is_some_and(|found| found.is_same(&crs)), "{name} in EPSG:{code}");
+            if let Ok(output) = Command::new("ogrinfo").args(["-al", "-so", "-ro"]).arg(&target).output() {
+                let text = String::from_utf8_lossy(&output.stdout);
+                // GDAL makes WGS 84 with heights of GeoJSON that names no system.
+                let shown = if name == "c.geojson" && code == 4326 { 4979 } else { code };
+                let last = text.lines().rfind(|line| line.contains("ID[\"EPSG\""));
+                assert_eq!(last.map(str::trim), Some(format!("ID[\"EPSG\",{shown}]]").as_str()), "{name}:\n{text}");
+            }
         }
     }
 }
