@@ -1,5 +1,72 @@
-//! breakline: lidar and breaklines to TIN, DEM, contours and mesh.
+//! Lidar and breaklines in; TIN, DEM, contours and mesh out. And, underneath, triangulations that
+//! never fail.
+//!
+//! # From a LAZ file to contours
+//!
+//! ```
+//! use breakline::{Result, data::Surface, io, terrain};
+//!
+//! # fn main() -> Result<()> {
+//! # let folder = tempfile::tempdir()?;
+//! # let out = folder.path().join("contours.shp");
+//! let mut points = io::points::open("fixtures/valley.laz")?;
+//! let mut ground = terrain::Selection::default(); // class 2 if there is any, never withheld points
+//! ground.add_source(&mut *points)?;
+//!
+//! let mut builder = terrain::TinBuilder { crs: points.info().crs.clone(), ..Default::default() };
+//! let (kept, _) = ground.finish();
+//! builder.add_points(&kept.x, &kept.y, &kept.z);
+//! for line in io::layer::read("fixtures/breaklines.shp")?.lines() {
+//!     builder.add_breakline(line);
+//! }
+//! let tin = builder.build()?;
+//!
+//! let every_metre = terrain::Levels::every(1.0, 0.0)?;
+//! io::contours::write(&out, &mut terrain::contours(&tin, &every_metre)?, tin.crs())?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The command line does the same: `breakline contour valley.laz --breaklines breaklines.shp
+//! --interval 1 -o contours.shp`.
+//!
+//! # Triangulations
+//!
+//! ```
+//! use breakline::geometry::Plane;
+//! use breakline::triangulation::{Delaunay, Level};
+//!
+//! let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+//! let (delaunay, vertices) = Delaunay::from_points(Plane::default(), &points)?;
+//! assert_eq!(delaunay.finite_cells().count(), 2);
+//! assert_eq!(*delaunay.point(vertices[2]), [1.0, 1.0]);
+//! assert!(delaunay.check(Level::Law).is_empty());
+//! # let _: &Delaunay<Plane, 3> = &delaunay;
+//! # Ok::<(), breakline::triangulation::Refused>(())
+//! ```
+//!
+//! What a point is, how exactly its predicates are computed and which law the triangulation obeys are
+//! three choices that do not depend on each other: a [`geometry`], a [`kernel`], a kind of
+//! [`triangulation`].
+//!
+//! # The floors
+//!
+//! Each module uses only those above it in this list.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`num`] | numbers that can tell their sign |
+//! | [`kernel`] | predicates: formula times number |
+//! | [`crs`] | coordinate systems: names, codes, units |
+//! | [`data`] | plain records between formats and algorithms |
+//! | [`geometry`] | what a triangulation asks of points |
+//! | [`tds`] | combinatorics, without coordinates |
+//! | [`triangulation`] | location, insertion, kinds, checks |
+//! | [`terrain`] | TIN, contours, DEM, hillshade |
+//! | [`io`] | formats: LAS, GeoTIFF, shapefile, PLY and others |
+//! | [`cli`] | the command line |
 
+pub mod cli;
 pub mod crs;
 pub mod data;
 pub mod error;
@@ -10,7 +77,5 @@ pub mod num;
 pub mod tds;
 pub mod terrain;
 pub mod triangulation;
-
-pub mod cli;
 
 pub use error::{Error, Result};

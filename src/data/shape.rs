@@ -81,3 +81,13 @@ pub struct Layer {
     /// What a user should be told.
     pub warnings: Vec<String>,
 }
+
+impl Layer {
+    /// The parts of all lines and the rings of all polygons.
+    pub fn lines(&self) -> impl Iterator<Item = &[[f64; 3]]> + '_ {
+        self.shapes.iter().flat_map(|shape| match shape {
+            Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter().map(Vec::as_slice),
+            _ => [].iter().map(Vec::as_slice),
+        })
+    }
+}

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::data::{Bounds, PointBatch};
+use crate::data::{Bounds, PointBatch, PointSource};
 use crate::error::{Error, Result};
 
 /// The class of ground points in LAS.
@@ -93,6 +93,13 @@ impl Tally {
     }
 }
 
+impl Default for Selection {
+    /// Ground, or all where there is none, everywhere.
+    fn default() -> Self {
+        Self::new(Classes::default(), None)
+    }
+}
+
 impl Selection {
     /// Selects by class and, where a window is given, by place in plan (its border included).
     pub fn new(classes: Classes, window: Option<Bounds>) -> Self {
@@ -113,6 +120,22 @@ impl Selection {
     /// Says that what follows comes from another file: errors count points from here.
     pub fn next_source(&mut self) {
         self.read_before_source = self.read;
+    }
+
+    /// Takes the points of a whole source that are to be used.
+    ///
+    /// # Errors
+    /// If the source cannot be read, or see [`add`](Self::add).
+    pub fn add_source(&mut self, source: &mut dyn PointSource) -> Result<()> {
+        self.next_source();
+        let mut batch = PointBatch::default();
+        loop {
+            source.read(&mut batch)?;
+            if batch.is_empty() {
+                return Ok(());
+            }
+            self.add(&batch)?;
+        }
     }
 
     /// Takes the points of a batch that are to be used.
