@@ -13,7 +13,8 @@
 //! let mut ground = terrain::Selection::default(); // class 2 if there is any, never withheld points
 //! ground.add_source(&mut *points)?;
 //!
-//! let mut builder = terrain::TinBuilder { crs: points.info().crs.clone(), ..Default::default() };
+//! let mut builder = terrain::TinBuilder::default();
+//! builder.crs = points.info().crs.clone();
 //! let (kept, _) = ground.finish();
 //! builder.add_points(&kept.x, &kept.y, &kept.z);
 //! for line in io::layer::read("fixtures/breaklines.shp")?.lines() {
