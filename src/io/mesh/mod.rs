@@ -101,7 +101,7 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
 ///
 /// # Errors
 /// If the file is damaged, is no surface ([`Mesh::new`] says what is none), has no faces or polygons
-/// that are not convex, or the format is not one that is read.
+/// that are far from convex, or the format is not one that is read.
 pub fn read(path: &Path) -> Result<Mesh> {
     let read = || {
         let format = Format::of(path).ok_or_else(|| unknown(path))?;
