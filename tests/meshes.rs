@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use breakline::crs::Crs;
 use breakline::data::{Mesh, Surface};
 use breakline::io::mesh;
 
@@ -104,6 +105,31 @@ fn stl_counts_from_an_origin_that_stands_beside_it() {
     }
     // The first vertex, to a tenth of a millimetre.
     assert!((float(84 + 12) - 0.1).abs() < 1e-4 && (float(84 + 16) - 0.7).abs() < 1e-4);
+}
+
+#[test]
+fn the_coordinate_system_comes_along() {
+    let folder = folder();
+    let text = format!("LOCAL_CS[\"{}  site\",UNIT[\"metre\",1]]", "long ".repeat(90));
+    for system in [Crs::from_epsg(25832).unwrap(), Crs::from_wkt(&text).unwrap()] {
+        let plain = field(3);
+        let vertices = (0..9).map(|v| plain.position(v)).collect();
+        let faces = (0..8).map(|f| plain.face(f).unwrap()).collect();
+        let with = Mesh::new(vertices, faces, &[], Some(system.clone())).unwrap();
+        for name in ["a.ply", "a.obj"] {
+            let path = folder.path().join(name);
+            mesh::write(&path, &with).unwrap();
+            let back = mesh::read(&path).unwrap();
+            let back = back.crs().expect("a coordinate system");
+            assert!(back.is_same(&system), "{back:?} is not {system:?}");
+            assert_eq!((&back.name, back.epsg), (&system.name, system.epsg));
+            let bytes = std::fs::read(&path).unwrap();
+            assert!(bytes.split(|&b| b == b'\n').take(6).all(|line| line.len() < 256));
+        }
+    }
+    let odd = FOREIGN[0].replace("comment VCGLIB generated", "comment crs nonsense");
+    let error = mesh::read(&written(folder.path(), "odd.ply", odd)).unwrap_err().to_string();
+    assert!(error.contains("odd.ply: coordinate system in the comments: "), "{error}");
 }
 
 /// Two triangles over a unit square, as others write them.
