@@ -16,8 +16,9 @@ const FLOORS: [&[&str]; 6] = [
     &["cli"],
 ];
 
-/// `(user, used)` on the same floor: records carry the coordinate system that they are in.
-const NEIGHBORS: [(&str, &str); 1] = [("data", "crs")];
+/// `(user, used)` on the same floor: records carry the coordinate system that they are in, and a mesh
+/// asks which way its faces turn.
+const NEIGHBORS: [(&str, &str); 2] = [("data", "crs"), ("data", "kernel")];
 
 /// More lines than this are more than one idea.
 const LONGEST: usize = 800;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use breakline::crs::Crs;
 use breakline::data::{Mesh, Surface};
 use breakline::io::mesh;
 
@@ -106,6 +107,31 @@ fn stl_counts_from_an_origin_that_stands_beside_it() {
     assert!((float(84 + 12) - 0.1).abs() < 1e-4 && (float(84 + 16) - 0.7).abs() < 1e-4);
 }
 
+#[test]
+fn the_coordinate_system_comes_along() {
+    let folder = folder();
+    let text = format!("LOCAL_CS[\"{}  site\",UNIT[\"metre\",1]]", "long ".repeat(90));
+    for system in [Crs::from_epsg(25832).unwrap(), Crs::from_wkt(&text).unwrap()] {
+        let plain = field(3);
+        let vertices = (0..9).map(|v| plain.position(v)).collect();
+        let faces = (0..8).map(|f| plain.face(f).unwrap()).collect();
+        let with = Mesh::new(vertices, faces, &[], Some(system.clone())).unwrap();
+        for name in ["a.ply", "a.obj"] {
+            let path = folder.path().join(name);
+            mesh::write(&path, &with).unwrap();
+            let back = mesh::read(&path).unwrap();
+            let back = back.crs().expect("a coordinate system");
+            assert!(back.is_same(&system), "{back:?} is not {system:?}");
+            assert_eq!((&back.name, back.epsg), (&system.name, system.epsg));
+            let bytes = std::fs::read(&path).unwrap();
+            assert!(bytes.split(|&b| b == b'\n').take(6).all(|line| line.len() < 256));
+        }
+    }
+    let odd = FOREIGN[0].replace("comment VCGLIB generated", "comment crs nonsense");
+    let error = mesh::read(&written(folder.path(), "odd.ply", odd)).unwrap_err().to_string();
+    assert!(error.contains("odd.ply: coordinate system in the comments: "), "{error}");
+}
+
 /// Two triangles over a unit square, as others write them.
 const FOREIGN: [&str; 6] = [
     "ply\r\nformat ascii 1.0\r\ncomment VCGLIB generated\r\nelement vertex 4\r\nproperty float x\r\nproperty float y\r\n\
@@ -192,9 +218,16 @@ fn no_prefix_and_no_flipped_byte_does_harm() {
     mesh::write(&path, &field(4)).unwrap();
     let whole = std::fs::read(&path).unwrap();
     let ascii = FOREIGN[1].as_bytes();
+    // A new file each time: ext4 waits for the disk when one is written over.
+    let read = |bytes: &[u8]| {
+        let path = written(folder.path(), "odd.ply", bytes);
+        let result = mesh::read(&path);
+        std::fs::remove_file(path).unwrap();
+        result
+    };
     for bytes in [&whole, ascii] {
         for length in 0..bytes.len() - 1 {
-            let error = mesh::read(&written(folder.path(), "cut.ply", &bytes[..length])).unwrap_err();
+            let error = read(&bytes[..length]).unwrap_err();
             assert!(error.path().is_some(), "{error}");
         }
         for i in 0..bytes.len() {
@@ -202,7 +235,7 @@ fn no_prefix_and_no_flipped_byte_does_harm() {
                 let mut odd = bytes.to_vec();
                 odd[i] ^= flip;
                 // An error or a mesh, but no panic, and nothing large.
-                if let Err(error) = mesh::read(&written(folder.path(), "odd.ply", odd)) {
+                if let Err(error) = read(&odd) {
                     assert!(error.path().is_some());
                 }
             }

@@ -67,6 +67,20 @@ pub trait BlockSource: Sync {
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()>;
 }
 
+impl<S: BlockSource + ?Sized> BlockSource for &S {
+    fn frame(&self) -> Frame {
+        (**self).frame()
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        (**self).crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        (**self).fill(window, out)
+    }
+}
+
 impl BlockSource for Grid {
     fn frame(&self) -> Frame {
         self.frame

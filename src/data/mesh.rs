@@ -1,6 +1,8 @@
 use super::Surface;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
+use crate::kernel::{Adaptive, Exact, Kernel, Orientation2};
+use crate::num::Sign;
 
 /// Triangles as lists: what a mesh file holds.
 #[derive(Debug, Clone, Default)]
@@ -112,13 +114,14 @@ fn check_numbers(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
 
 fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]]) -> Result<()> {
     for (i, face) in faces.iter_mut().enumerate() {
-        let sign = orientation(face.map(|v| vertices[v as usize]));
-        if sign < 0.0 {
-            face.swap(1, 2);
-        } else if sign == 0.0 {
-            let [a, b, c] = *face;
-            return Err(Error::format(format!("face {i} ({a} {b} {c}) has no area in plan"))
-                .cure("a surface has one height per place: remove vertical and collapsed faces"));
+        match orientation(face.map(|v| vertices[v as usize])) {
+            Sign::Positive => (),
+            Sign::Negative => face.swap(1, 2),
+            Sign::Zero => {
+                let [a, b, c] = *face;
+                return Err(Error::format(format!("face {i} ({a} {b} {c}) has no area in plan"))
+                    .cure("a surface has one height per place: remove vertical and collapsed faces"));
+            }
         }
     }
     Ok(())
@@ -226,36 +229,12 @@ fn folded(one: HalfEdge, other: HalfEdge, faces: &[[u32; 3]]) -> Error {
         .cure("a surface has one height per place: remove overhangs and repeated faces")
 }
 
-/// Twice the signed area in plan: its sign is exact.
-pub(crate) fn orientation([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    let left = (a[0] - c[0]) * (b[1] - c[1]);
-    let right = (a[1] - c[1]) * (b[0] - c[0]);
-    let det = left - right;
-    // Shewchuk 1997, bound A of orient2d: (3 + 16 u) u with u = 2^-53.
-    if det.abs() > 3.330_669_073_875_472e-16 * (left.abs() + right.abs()) {
-        return det;
-    }
-    let mut sum = Vec::with_capacity(12);
-    for (p, q) in [(a, b), (b, c), (c, a)] {
-        for (x, y) in [(p[0], q[1]), (-q[0], p[1])] {
-            let product = x * y;
-            grow(&mut sum, x.mul_add(y, -product));
-            grow(&mut sum, product);
-        }
-    }
-    sum.iter().rev().copied().find(|&part| part != 0.0).unwrap_or(0.0)
-}
-
-/// Adds a number to an expansion, exactly (Shewchuk 1997, figure 6).
-fn grow(expansion: &mut Vec<f64>, number: f64) {
-    let mut carry = number;
-    for part in expansion.iter_mut() {
-        let sum = carry + *part;
-        let virtual_part = sum - carry;
-        *part = (carry - (sum - virtual_part)) + (*part - virtual_part);
-        carry = sum;
-    }
-    expansion.push(carry);
+/// Positive if three places turn counter-clockwise in plan, zero if they are in line. Exact for all
+/// finite coordinates.
+pub(crate) fn orientation(places: [[f64; 3]; 3]) -> Sign {
+    let turn = Orientation2(places.map(|[x, y, _]| [x, y]));
+    let is_ordinary = turn.0.as_flattened().iter().all(|&c| Adaptive::RANGE.admits(c));
+    if is_ordinary { Adaptive::sign(&turn) } else { Exact::sign(&turn) }
 }
 
 #[cfg(test)]
@@ -277,7 +256,7 @@ mod tests {
             assert_eq!(mesh.neighbor(1, i), Some(0));
             assert!(mesh.is_constrained(0, 1) && mesh.is_constrained(1, i));
             assert!(!mesh.is_constrained(0, 0) && !mesh.is_constrained(0, 2));
-            assert!(orientation(corners.map(|v| mesh.position(v))) > 0.0);
+            assert_eq!(orientation(corners.map(|v| mesh.position(v))), Sign::Positive);
         }
     }
 
@@ -337,10 +316,13 @@ mod tests {
     #[test]
     fn tells_the_smallest_slivers_from_flat_faces() {
         let p = |x: f64, y: f64| [x, y, 0.0];
-        let (a, b) = (p(0.1, 0.1), p(0.7, 0.7));
-        assert_eq!(orientation([a, b, p(0.3, 0.3)]), 0.0);
-        assert!(orientation([a, b, p(0.3, 0.3f64.next_up())]) > 0.0);
-        assert!(orientation([a, b, p(0.3, 0.3f64.next_down())]) < 0.0);
-        assert!(orientation([b, a, p(0.3, 0.3f64.next_up())]) < 0.0);
+        for scale in [1.0, 1e-300, 1e300] {
+            let (a, b) = (p(0.1 * scale, 0.1 * scale), p(0.7 * scale, 0.7 * scale));
+            let c = 0.3 * scale;
+            assert_eq!(orientation([a, b, p(c, c)]), Sign::Zero);
+            assert_eq!(orientation([a, b, p(c, c.next_up())]), Sign::Positive);
+            assert_eq!(orientation([a, b, p(c, c.next_down())]), Sign::Negative);
+            assert_eq!(orientation([b, a, p(c, c.next_up())]), Sign::Negative);
+        }
     }
 }

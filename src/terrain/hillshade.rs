@@ -47,8 +47,8 @@ impl Light {
 /// Slopes are those of Horn (1981), "Hill shading and the reflectance map": weighted differences
 /// over the 3 x 3 cells around each, as in `gdaldem hillshade`. At the edge of the data the
 /// surface is continued in straight lines, so that a plane is shaded alike up to its edge. Any frame will do: the light stays where it is when the raster is rotated.
-pub struct Hillshade<'a> {
-    source: &'a dyn BlockSource,
+pub struct Hillshade<S> {
+    source: S,
     frame: Frame,
     to_pixels: ToPixels,
     /// Towards the light: east, north, up.
@@ -56,12 +56,12 @@ pub struct Hillshade<'a> {
     z_factor: f64,
 }
 
-impl<'a> Hillshade<'a> {
-    /// Shades the heights of `source`.
+impl<S: BlockSource> Hillshade<S> {
+    /// Shades the heights of `source`: a DEM, a grid, or a reference to one.
     ///
     /// # Errors
     /// If a number of `light` is not finite, or the frame of the source has no inverse.
-    pub fn new(source: &'a dyn BlockSource, light: Light) -> Result<Self> {
+    pub fn new(source: S, light: Light) -> Result<Self> {
         let Light { azimuth, altitude, z_factor } = light;
         for (name, value) in [("azimuth", azimuth), ("altitude", altitude), ("z factor", z_factor)] {
             if !value.is_finite() {
@@ -94,7 +94,7 @@ impl<'a> Hillshade<'a> {
     }
 }
 
-impl BlockSource for Hillshade<'_> {
+impl<S: BlockSource> BlockSource for Hillshade<S> {
     fn frame(&self) -> Frame {
         self.frame
     }
@@ -108,7 +108,7 @@ impl BlockSource for Hillshade<'_> {
         if out.is_empty() {
             return Ok(());
         }
-        let around = Around::new(self.source, &self.frame, window)?;
+        let around = Around::new(&self.source, &self.frame, window)?;
         for (row, line) in out.chunks_exact_mut(window.width).enumerate() {
             let lines = [0, 1, 2].map(|i| around.line(row + i));
             for (column, cell) in line.iter_mut().enumerate() {
@@ -120,7 +120,7 @@ impl BlockSource for Hillshade<'_> {
     }
 }
 
-impl std::fmt::Debug for Hillshade<'_> {
+impl<S> std::fmt::Debug for Hillshade<S> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Hillshade").field("frame", &self.frame).field("light", &self.light).finish_non_exhaustive()
     }
@@ -151,7 +151,7 @@ struct Around {
 }
 
 impl Around {
-    fn new(source: &dyn BlockSource, frame: &Frame, window: Window) -> Result<Self> {
+    fn new(source: &impl BlockSource, frame: &Frame, window: Window) -> Result<Self> {
         // Cells that the raster has before and after the window: none or one.
         let before = [window.column.min(1), window.row.min(1)];
         let after =

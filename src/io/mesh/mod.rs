@@ -17,10 +17,10 @@
 //! - `constrained_edge`: `int vertex1`, `int vertex2`, the ends of each edge on a breakline, smaller
 //!   number first. Left out when there is none. Programs skip elements that they do not know.
 //!
-//! The coordinate system stands in the header, in lines `comment crs TEXT`: WKT, or a code as in
-//! `EPSG:25832`. Some readers take no line over 1024 bytes, so that the text is cut into
-//! lines of at most 200; it is what follows `crs ` in all of them, joined. The OBJ comments are alike,
-//! with `# crs `.
+//! The coordinate system stands in the header as WKT, in lines `comment crs TEXT`. Some readers take
+//! no line over 1024 bytes, so that the text is cut into lines of about 200; it is what follows
+//! `crs ` in all of them, joined. The OBJ comments are alike, with `# crs `. Readers also take a code
+//! there, as in `EPSG:25832`.
 
 mod canonical;
 mod crs_text;
@@ -101,7 +101,7 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
 ///
 /// # Errors
 /// If the file is damaged, is no surface ([`Mesh::new`] says what is none), has no faces or polygons
-/// that are not convex, or the format is not one that is read.
+/// that are far from convex, or the format is not one that is read.
 pub fn read(path: &Path) -> Result<Mesh> {
     let read = || {
         let format = Format::of(path).ok_or_else(|| unknown(path))?;

@@ -1,5 +1,6 @@
 use crate::data::orientation;
 use crate::error::{Error, Result};
+use crate::num::Sign;
 
 /// Divides a polygon into triangles by a fan from one of its corners, and adds them to `faces`.
 ///
@@ -7,8 +8,8 @@ use crate::error::{Error, Result};
 /// without area. Triangles are taken as they are; [`Mesh::new`](crate::data::Mesh::new) judges them.
 ///
 /// # Errors
-/// If there are fewer than three corners, a corner is no vertex, or no fan fits, which in plan is so
-/// for polygons that are not convex.
+/// If there are fewer than three corners, a corner is no vertex, or no fan fits: one does for every
+/// polygon that is convex in plan, and for some others.
 pub(super) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Vec<[u32; 3]>) -> Result<()> {
     let count = corners.len();
     if count < 3 {
@@ -26,9 +27,10 @@ pub(super) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Ve
     }
     let fan = |start: usize| (1..count - 1).map(move |i| [start, start + i, start + i + 1].map(|k| corners[k % count]));
     let turns =
-        |start: usize, sign: f64| fan(start).all(|face| orientation(face.map(|v| vertices[v as usize])) * sign > 0.0);
-    let start = (0..count).find(|&start| turns(start, 1.0) || turns(start, -1.0)).ok_or_else(|| {
-        Error::unsupported(format!("a face of {count} corners is not convex in plan"))
+        |start: usize, sign: Sign| fan(start).all(|face| orientation(face.map(|v| vertices[v as usize])) == sign);
+    let fits = |start: &usize| turns(*start, Sign::Positive) || turns(*start, Sign::Negative);
+    let start = (0..count).find(fits).ok_or_else(|| {
+        Error::unsupported(format!("a face has {count} corners, and none of them sees all others in plan"))
             .cure("divide the polygons of the mesh into triangles")
     })?;
     faces.extend(fan(start));
@@ -53,8 +55,16 @@ mod tests {
         assert_eq!(divided(&[0, 2, 3, 4]), Ok(vec![[0, 2, 3], [0, 3, 4]]));
         assert_eq!(divided(&[0, 1, 2, 3, 4]), Ok(vec![[1, 2, 3], [1, 3, 4], [1, 4, 0]]));
         assert_eq!(divided(&[4, 3, 2, 1, 0]), Ok(vec![[4, 3, 2], [4, 2, 1], [4, 1, 0]]));
-        assert_eq!(divided(&[0, 2, 3, 5]), Err("a face of 4 corners is not convex in plan".into()));
+        assert_eq!(divided(&[0, 2, 3, 5]), Ok(vec![[2, 3, 5], [2, 5, 0]]));
         assert_eq!(divided(&[0, 1]), Err("a face has 2 corners, expected 3 or more".into()));
         assert_eq!(divided(&[0, 1, 2, 9]), Err("a face names vertex 9, but there are 6 vertices".into()));
+    }
+
+    #[test]
+    fn refuses_what_no_fan_fits() {
+        let s_shape = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [3.0, 1.0], [3.0, 2.0], [1.0, 2.0], [1.0, 1.0], [0.0, 1.0]];
+        let vertices = s_shape.map(|[x, y]| [x, y, 0.0]);
+        let error = add_polygon(&vertices, &[0, 1, 2, 3, 4, 5, 6, 7], &mut Vec::new()).unwrap_err();
+        assert_eq!(error.to_string(), "a face has 8 corners, and none of them sees all others in plan");
     }
 }

@@ -74,6 +74,10 @@ impl FaceIndex {
     /// The bins where a face may hold a center: for each row of bins, those between the leftmost and
     /// the rightmost place of the face in it.
     fn bins_of(&self, corners: &[[f64; 3]; 3], placement: &Placement, mut each: impl FnMut(u32)) {
+        if corners.as_flattened().iter().any(|c| !c.is_finite()) {
+            // Beyond what can be scanned: vertices near the end of the numbers, a rotated raster.
+            return;
+        }
         let [a, b, c] = corners;
         let rows = placement.rows.cells(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
         let columns = placement.columns.cells(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));

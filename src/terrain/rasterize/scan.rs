@@ -12,6 +12,7 @@ use std::ops::Range;
 
 use super::placement::Centers;
 use crate::data::orientation;
+use crate::num::Sign;
 
 /// A block of cells that faces are drawn into.
 pub(super) struct Scan<'a> {
@@ -96,18 +97,20 @@ impl Face {
         }
         let center = [x, y, 0.0];
         let turn = orientation([*a, *b, *c]);
+        if turn == Sign::Zero {
+            // A face without area covers nothing that its neighbors do not cover.
+            return;
+        }
         let mut edge = None;
-        for (p, q, sense) in [(a, b, 1.0), (b, c, 1.0), (a, c, -1.0)] {
-            let side = orientation([*p, *q, center]);
-            if side == 0.0 {
-                edge = Some((p, q));
-            } else if side * turn.signum() * sense < 0.0 {
-                return;
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            match turn * orientation([*p, *q, center]) {
+                Sign::Negative => return,
+                // Its direction must not depend on the face.
+                Sign::Zero => edge = Some(if (p[1], p[0]) < (q[1], q[0]) { (p, q) } else { (q, p) }),
+                Sign::Positive => (),
             }
         }
         let z = match edge {
-            // A face without area covers nothing that its neighbors do not cover.
-            _ if turn == 0.0 => return,
             Some((p, q)) => height_on_edge(p, q, x, y),
             None if right.0 > left.0 => between(left.1, right.1, (x - left.0) / (right.0 - left.0)),
             None => left.1,
