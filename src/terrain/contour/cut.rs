@@ -155,6 +155,11 @@ impl Face {
         }
     }
 
+    /// Whether the edge opposite corner `i` has an end at a point in plan.
+    pub(super) fn ends_at(&self, i: usize, point: [f64; 2]) -> bool {
+        [1, 2].into_iter().any(|k| self.at[(i + k) % 3][..2] == point)
+    }
+
     /// The piece across the face that begins or ends in a corner on the level.
     fn ray(&self, corner: usize) -> Option<Ray> {
         let way = match [self.side[(corner + 1) % 3], self.side[(corner + 2) % 3]] {
