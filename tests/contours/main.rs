@@ -113,7 +113,7 @@ proptest! {
         order in prop::collection::vec(any::<u32>(), 7..50),
     ) {
         for (p, (x, y, z)) in surface.vertices.iter_mut().zip(noise) {
-            *p = [p[0] + x + 512_000.0, p[1] + y + 5_403_000.0, p[2] + z];
+            *p = [p[0] + x, p[1] + y + 5_403_000.0, p[2] + z];
         }
         let levels: Vec<f64> = (-10..40).map(|i| f64::from(i) / 10.0).collect();
         let lines = draw(&surface, &levels);

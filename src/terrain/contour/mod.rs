@@ -88,9 +88,10 @@ use trace::{Done, Traces};
 /// If the levels within the heights of the surface are more than [`MAX_LEVELS`](super::MAX_LEVELS).
 ///
 /// # Complexity
-/// Linear in faces and pieces of contour, and some passes over the faces: one for each two million
-/// pieces. Memory: 24 bytes for each piece of these, or of one level where that has more; 16 bytes a
-/// level; one bit a face for each thread.
+/// Linear in faces and pieces of contour, but for sorting the lines: two passes over the faces at once,
+/// and one for every two million pieces (or one level with more), which are drawn together while the
+/// iterator waits. Memory: for these, 8 bytes a piece and 16 bytes a point; 16 bytes a level; one bit a
+/// face for each thread. Levels are drawn in parallel.
 pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Result<Contours<'a, S>> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (_, [a, b, c]) in heights(surface) {
