@@ -20,6 +20,13 @@ pub(crate) fn lattice_point(p: [f64; 2]) -> Point {
     })
 }
 
+/// A coordinate that is off the lattice by less than a step of an `f64` at 5 000 000.
+pub(crate) fn to_lattice(c: f64) -> f64 {
+    let near = (c * LATTICE as f64).round() / LATTICE as f64;
+    assert!((near - c).abs() < 1e-9, "{c} is no multiple of 1/{LATTICE}");
+    near
+}
+
 /// The pieces of contour at `half_level / 2`: the polygons {height >= level} of all faces, those
 /// without area left out; the sum of their boundaries; less what lies on the edge of the data;
 /// turned to have the polygons on the right.
@@ -214,15 +221,23 @@ fn border(surface: &Faces, half_level: i64) -> BTreeSet<Point> {
 
 /// The faces that hold the middle of a segment, on their border too.
 pub(crate) fn faces_at(surface: &Faces, segment: Segment) -> Vec<usize> {
+    (0..surface.faces.len()).filter(|&i| turns_around(surface, i, segment).iter().all(|&turn| turn >= 0)).collect()
+}
+
+/// Whether the middle of a segment lies on a side of one face only.
+pub(crate) fn is_on_edge_of_data(surface: &Faces, segment: Segment) -> bool {
+    let faces = faces_at(surface, segment);
+    faces.len() == 1 && turns_around(surface, faces[0], segment).contains(&0)
+}
+
+/// On which side of each side of a face the middle of a segment lies.
+fn turns_around(surface: &Faces, face: usize, segment: Segment) -> [i64; 3] {
     let middle = [segment[0][0] + segment[1][0], segment[0][1] + segment[1][1]];
-    let holds = |face: &[u32; 3]| {
-        let at = face.map(|v| {
-            let p = surface.vertices[v as usize];
-            lattice_point([p[0], p[1]]).map(|c| 2 * c)
-        });
-        (0..3).all(|i| turn(at[i], at[(i + 1) % 3], middle) >= 0)
-    };
-    (0..surface.faces.len()).filter(|&i| holds(&surface.faces[i])).collect()
+    let at = surface.faces[face].map(|v| {
+        let p = surface.vertices[v as usize];
+        lattice_point([p[0], p[1]]).map(|c| 2 * c)
+    });
+    std::array::from_fn(|i| turn(at[i], at[(i + 1) % 3], middle))
 }
 
 fn cross(a: Point, b: Point) -> i64 {

@@ -155,6 +155,11 @@ impl Face {
         }
     }
 
+    /// Whether the edge opposite corner `i` has an end at a point in plan.
+    pub(super) fn ends_at(&self, i: usize, point: [f64; 2]) -> bool {
+        [1, 2].into_iter().any(|k| self.at[(i + k) % 3][..2] == point)
+    }
+
     /// The piece across the face that begins or ends in a corner on the level.
     fn ray(&self, corner: usize) -> Option<Ray> {
         let way = match [self.side[(corner + 1) % 3], self.side[(corner + 2) % 3]] {
@@ -217,4 +222,28 @@ fn crossing(a: [f64; 3], b: [f64; 3], level: f64) -> [f64; 2] {
         value.max(a.min(b)).min(a.max(b)) + 0.0
     };
     [between(a[0], b[0]), between(a[1], b[1])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_are_small() {
+        assert_eq!(size_of::<Piece>(), 8);
+    }
+
+    #[test]
+    fn crossings_stay_in_the_box_of_the_edge() {
+        let (a, b) = ([0.1, 1e300, -f64::MAX], [0.3, -1e300, f64::MAX]);
+        for level in [-1e308, 0.0, 1e308, f64::MAX.next_down()] {
+            let [x, y] = crossing(a, b, level);
+            assert!((0.1..=0.3).contains(&x) && (-1e300..=1e300).contains(&y), "{x} {y}");
+            assert_eq!(crossing(b, a, level), [x, y]);
+        }
+        assert_eq!(crossing([0.0, 0.0, 0.0], [3.0, -6.0, 3.0], 1.0), [1.0, -2.0]);
+        // Denormal heights: somewhere on the edge.
+        let [x, _] = crossing([1.0, 0.0, 0.0], [2.0, 0.0, 2.0 * f64::from_bits(1)], f64::from_bits(1));
+        assert!((1.0..=2.0).contains(&x), "{x}");
+    }
 }

@@ -1,9 +1,11 @@
 use super::cut::Way;
 use super::trace::{LooseEnd, Trace};
 use crate::data::Surface;
+use crate::kernel::{Exact, Kernel, Orientation2};
+use crate::num::Sign;
 use std::cmp::Ordering;
 
-/// The points of a line and whether it is closed.
+/// The points of a line; one that is closed repeats its first at the end.
 pub(super) struct Joined {
     pub(super) points: Vec<[f64; 2]>,
     pub(super) closed: bool,
@@ -15,40 +17,78 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
     let mut joined = Vec::new();
     let mut open = Vec::new();
     let mut ends = Vec::new();
+    let plan = |vertex: u32| {
+        let [x, y, _] = surface.position(vertex);
+        [x, y]
+    };
     for trace in traces {
         match trace {
             Trace::Closed(points) => joined.push(Joined { points, closed: true }),
             Trace::Open { points, start, end } => {
                 let line = open.len();
                 open.push(points);
-                ends.extend(start.map(|at| End { at, way: Way::Forward, line }));
-                ends.extend(end.map(|at| End { at, way: Way::Backward, line }));
+                for (loose, way) in [(start, Way::Forward), (end, Way::Backward)] {
+                    let Some(LooseEnd { vertex, toward }) = loose else { continue };
+                    ends.push((vertex, End { center: plan(vertex), toward: plan(toward), way, line }));
+                }
             }
         }
     }
+    ends.sort_by_key(|(vertex, _)| *vertex);
     let mut next = vec![None; open.len()];
-    ends.sort_by_key(|end| end.at.vertex);
-    for group in ends.chunk_by_mut(|a, b| a.at.vertex == b.at.vertex) {
-        pair(surface, group, &mut next);
+    for group in ends.chunk_by(|a, b| a.0 == b.0) {
+        pair(group.iter().map(|(_, end)| *end).collect(), &mut next);
     }
     chain(open, &next, &mut joined);
     joined
 }
 
-/// An end of an open line, seen from its vertex: forward if the line begins there.
+/// Takes lines apart, lets pieces of no length go and opposite pieces cancel that coincide now that
+/// their points are rounded, and joins the rest anew, by the turn rule at each point.
+pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
+    let mut pieces: Vec<[[f64; 2]; 2]> =
+        lines.iter().flat_map(|line| line.points.windows(2)).map(|p| [p[0], p[1]]).filter(|[a, b]| a != b).collect();
+    let sorted = |[a, b]: [[f64; 2]; 2]| if a <= b { [a, b] } else { [b, a] };
+    let by_place = |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+    pieces.sort_by(|&a, &b| by_place(&sorted(a), &sorted(b)).then_with(|| by_place(&a, &b)));
+    let mut open = Vec::new();
+    for same in pieces.chunk_by(|&a, &b| sorted(a) == sorted(b)) {
+        let first_way = same.iter().take_while(|&&piece| piece == same[0]).count();
+        let cancelled = first_way.min(same.len() - first_way);
+        open.extend(same[cancelled..same.len() - cancelled].iter().map(|piece| piece.to_vec()));
+    }
+    let mut ends = Vec::new();
+    for (line, points) in open.iter().enumerate() {
+        let [a, b] = [points[0], points[1]];
+        ends.push(End { center: a, toward: b, way: Way::Forward, line });
+        ends.push(End { center: b, toward: a, way: Way::Backward, line });
+    }
+    ends.sort_by(|a, b| a.center.partial_cmp(&b.center).unwrap_or(Ordering::Equal));
+    let mut next = vec![None; open.len()];
+    for group in ends.chunk_by(|a, b| a.center == b.center) {
+        pair(group.to_vec(), &mut next);
+    }
+    let mut joined = Vec::new();
+    chain(open, &next, &mut joined);
+    joined
+}
+
+/// An end of an open line, seen from there: forward if the line begins.
 #[derive(Clone, Copy)]
 struct End {
-    at: LooseEnd,
+    center: [f64; 2],
+    /// Says on which side of the center the line is.
+    toward: [f64; 2],
     way: Way,
     line: usize,
 }
 
-/// Gives each line that arrives the first one counter-clockwise that leaves and is not taken by one
+/// Gives each line that arrives at a point the first one counter-clockwise that leaves and is not taken by one
 /// that arrives in between: as brackets are paired, around the vertex.
-fn pair<S: Surface + ?Sized>(surface: &S, group: &mut [End], next: &mut [Option<usize>]) {
+fn pair(mut group: Vec<End>, next: &mut [Option<usize>]) {
+    // Two can be paired in one way only.
     if group.len() > 2 {
-        let center = surface.position(group[0].at.vertex);
-        group.sort_by(|a, b| around(center, surface.position(a.at.toward), surface.position(b.at.toward)));
+        group.sort_by(|a, b| around(a.center, a.toward, b.toward));
     }
     let mut arrived = Vec::new();
     let mut left = vec![false; group.len()];
@@ -70,12 +110,12 @@ fn pair<S: Surface + ?Sized>(surface: &S, group: &mut [End], next: &mut [Option<
 }
 
 /// Compares the directions from the center to two points, counter-clockwise from east.
-fn around(center: [f64; 3], a: [f64; 3], b: [f64; 3]) -> Ordering {
-    let lower_half = |p: [f64; 3]| p[1] < center[1] || (p[1] == center[1] && p[0] < center[0]);
-    lower_half(a).cmp(&lower_half(b)).then_with(|| {
-        let left = (a[0] - center[0]) * (b[1] - center[1]);
-        let right = (a[1] - center[1]) * (b[0] - center[0]);
-        right.total_cmp(&left)
+fn around(center: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Ordering {
+    let lower_half = |p: [f64; 2]| p[1] < center[1] || (p[1] == center[1] && p[0] < center[0]);
+    lower_half(a).cmp(&lower_half(b)).then_with(|| match Exact::sign(&Orientation2([center, a, b])) {
+        Sign::Positive => Ordering::Less,
+        Sign::Zero => Ordering::Equal,
+        Sign::Negative => Ordering::Greater,
     })
 }
 

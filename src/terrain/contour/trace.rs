@@ -10,6 +10,13 @@ pub(super) enum Trace {
     Open { points: Vec<[f64; 2]>, start: Option<LooseEnd>, end: Option<LooseEnd> },
 }
 
+/// All lines of a level.
+pub(super) struct Traces {
+    pub(super) traces: Vec<Trace>,
+    /// Whether the crossing of an edge was rounded to one of its ends.
+    pub(super) touches_vertices: bool,
+}
+
 /// An end at a vertex. The line may go on beyond the gap in the data.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct LooseEnd {
@@ -53,34 +60,18 @@ impl Done {
 }
 
 /// Joins the pieces of a level, each of which is given once.
-pub(super) fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, pieces: &[Piece], done: &mut Done) -> Vec<Trace> {
-    let mut traces = Vec::new();
-    for &seed in pieces {
-        if !done.insert(seed) {
-            continue;
-        }
-        let Some(face) = cut.face(seed.face()) else { continue };
-        let mut after = Vec::new();
-        traces.push(match follow(cut, face, seed, Way::Forward, &mut after, done) {
-            Stop::Seed => {
-                after.extend_from_within(..1);
-                Trace::Closed(after)
-            }
-            Stop::Data(end) => {
-                let mut points = Vec::new();
-                let start = match follow(cut, face, seed, Way::Backward, &mut points, done) {
-                    Stop::Data(start) => start,
-                    // Not possible: forward would have come here too.
-                    Stop::Seed => None,
-                };
-                points.reverse();
-                points.append(&mut after);
-                Trace::Open { points, start, end }
-            }
-        });
-    }
+pub(super) fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, pieces: &[Piece], done: &mut Done) -> Traces {
+    let mut tracer = Tracer { cut, done, touches_vertices: false };
+    let traces = pieces.iter().filter_map(|&seed| tracer.line_of(seed)).collect();
+    let touches_vertices = tracer.touches_vertices;
     done.clear(pieces);
-    traces
+    Traces { traces, touches_vertices }
+}
+
+struct Tracer<'t, 'a, S: ?Sized> {
+    cut: &'t Cut<'a, S>,
+    done: &'t mut Done,
+    touches_vertices: bool,
 }
 
 enum Stop {
@@ -90,32 +81,59 @@ enum Stop {
     Data(Option<LooseEnd>),
 }
 
-/// Goes from the seed as far as it leads; adds the far node of each piece.
-fn follow<S: Surface + ?Sized>(
-    cut: &Cut<'_, S>,
-    mut face: Face,
-    seed: Piece,
-    way: Way,
-    points: &mut Vec<[f64; 2]>,
-    done: &mut Done,
-) -> Stop {
-    let mut piece = seed;
-    loop {
-        let node = face.node(piece, way);
-        points.push(cut.point(&face, node));
-        let next = match node {
-            Node::Edge(i) => cut.across(&face, i).map(|(next, _)| (next, Piece::Across(next.id))),
-            Node::Corner(i) => cut.continuation(&face, i, way).map(|ray| (ray.face, ray.piece)),
-        };
-        match next {
-            Some((next, next_piece)) if done.insert(next_piece) => (face, piece) = (next, next_piece),
-            Some((_, next_piece)) if next_piece == seed => return Stop::Seed,
-            // The first of these only if the links between faces contradict each other.
-            Some(_) | None => {
-                return Stop::Data(match node {
-                    Node::Edge(_) => None,
-                    Node::Corner(i) => Some(LooseEnd { vertex: face.vertices[i], toward: face.vertices[(i + 1) % 3] }),
-                });
+impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
+    /// The line that a piece is part of, unless it was found before.
+    fn line_of(&mut self, seed: Piece) -> Option<Trace> {
+        if !self.done.insert(seed) {
+            return None;
+        }
+        let face = self.cut.face(seed.face())?;
+        let mut after = Vec::new();
+        Some(match self.follow(face, seed, Way::Forward, &mut after) {
+            Stop::Seed => {
+                after.extend_from_within(..1);
+                Trace::Closed(after)
+            }
+            Stop::Data(end) => {
+                let mut points = Vec::new();
+                let start = match self.follow(face, seed, Way::Backward, &mut points) {
+                    Stop::Data(start) => start,
+                    // Not possible: forward would have come here too.
+                    Stop::Seed => None,
+                };
+                points.reverse();
+                points.append(&mut after);
+                Trace::Open { points, start, end }
+            }
+        })
+    }
+
+    /// Goes from the seed as far as it leads; adds the far node of each piece.
+    fn follow(&mut self, mut face: Face, seed: Piece, way: Way, points: &mut Vec<[f64; 2]>) -> Stop {
+        let mut piece = seed;
+        loop {
+            let node = face.node(piece, way);
+            let point = self.cut.point(&face, node);
+            points.push(point);
+            let next = match node {
+                Node::Edge(i) => {
+                    self.touches_vertices |= face.ends_at(i, point);
+                    self.cut.across(&face, i).map(|(next, _)| (next, Piece::Across(next.id)))
+                }
+                Node::Corner(i) => self.cut.continuation(&face, i, way).map(|ray| (ray.face, ray.piece)),
+            };
+            match next {
+                Some((next, next_piece)) if self.done.insert(next_piece) => (face, piece) = (next, next_piece),
+                Some((_, next_piece)) if next_piece == seed => return Stop::Seed,
+                // The first of these only if the links between faces contradict each other.
+                Some(_) | None => {
+                    return Stop::Data(match node {
+                        Node::Edge(_) => None,
+                        Node::Corner(i) => {
+                            Some(LooseEnd { vertex: face.vertices[i], toward: face.vertices[(i + 1) % 3] })
+                        }
+                    });
+                }
             }
         }
     }
