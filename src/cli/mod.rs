@@ -1,9 +1,9 @@
 //! The command line: one file per verb.
 //!
-//! What is typed ([`args`]) and what it means ([`plan`], [`outputs`], [`systems`]) are kept apart.
-//! [`gather`] makes a surface of files, a verb makes something of the surface, and [`open`] is the
+//! What is typed (`args`) and what it means (`plan`, `outputs`, `systems`) are kept apart.
+//! `gather` makes a surface of files, a verb makes something of the surface, and `open` is the
 //! one place that names readers, writers and verbs of the library. Data goes to files or stdout, talk
-//! ([`talk`]) to stderr.
+//! (`talk`) to stderr.
 
 mod args;
 mod check;

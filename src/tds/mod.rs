@@ -2,7 +2,7 @@
 //!
 //! The conventions that everything relies on:
 //! - A triangulation is kept as one of the *sphere*: beside the finite vertices there is one
-//!   [`INFINITE`](VertexId::INFINITE) vertex, joined to the hull. So every cell has all its
+//!   `INFINITE` vertex, joined to the hull. So every cell has all its
 //!   neighbors, and the hull needs no special case.
 //! - A full cell has `N` vertices: 3 for triangles, 4 for tetrahedra. Neighbor `i` lies opposite
 //!   vertex `i`.
