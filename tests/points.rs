@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use breakline::data::{Bounds, PointBatch, PointSource};
+use breakline::crs::CrsKind;
+use breakline::data::{Bounds, PointBatch, PointInfo, PointSource};
 use breakline::error::Kind;
 use breakline::io::{las, points};
 use serde_json::Value;
@@ -112,6 +113,7 @@ fn every_lidar_file_gives_what_is_known_of_it() {
             let bounds = info.bounds.unwrap();
             assert_eq!((bounds.min, bounds.max), (triple(&fact["hdr_min"]), triple(&fact["hdr_max"])), "{path}");
         }
+        check_crs(path, info, fact);
         if fact.get("read_points").is_some() {
             assert_eq!(Some(found.count), fact["read_points"].as_u64(), "{path}");
             let classes: BTreeMap<u8, u64> = serde_json::from_value(fact["classes"].clone()).unwrap();
@@ -126,6 +128,35 @@ fn every_lidar_file_gives_what_is_known_of_it() {
         seen += 1;
     }
     assert_eq!(seen, 70, "files of the shared folder");
+}
+
+/// Files whose keys give a code for metres and feet as the unit. The coordinates are in feet, which
+/// has a code of its own.
+const IN_FEET: &str = "lidar/formats/lazrs/point-version-1-point-wise.";
+
+fn check_crs(path: &str, info: &PointInfo, fact: &Value) {
+    let found = info.crs.as_ref();
+    match &fact["crs"] {
+        Value::Number(_) if path.starts_with(IN_FEET) => assert_eq!(found.unwrap().epsg, Some(2271)),
+        Value::Number(code) => assert_eq!(found.unwrap().epsg.map(u64::from), code.as_u64(), "{path}"),
+        // One bracket too many, which that reader does not forgive.
+        Value::String(text) if text == "unparsable" => assert_eq!(found.unwrap().epsg, Some(32610), "{path}"),
+        Value::String(name) => assert_eq!(&found.unwrap().name, name, "{path}"),
+        _ => {
+            // Where that reader had records to read, we may understand more of them.
+            let records = fact["vlr"].as_array().into_iter().flatten();
+            if !records.into_iter().any(|record| record.as_str().unwrap().starts_with("LASF_Projection")) {
+                assert_eq!(found, None, "{path}");
+            }
+        }
+    }
+}
+
+#[test]
+fn geocentric_coordinates_are_known_as_such() {
+    let Some(file) = common::shared("lidar/formats/lone-star.copc.laz") else { return };
+    let source = las::open(file).unwrap();
+    assert_eq!(source.info().crs.as_ref().unwrap().kind, CrsKind::Geocentric);
 }
 
 /// Files whose header counts by return are the truth (they are wrong in some).
@@ -234,17 +265,23 @@ fn every_broken_file_has_its_fate() {
             (Full(count), Ok(found)) => {
                 assert_eq!(found.count, *count, "{name}");
                 assert!(!found.warnings.iter().any(|w| w.contains("point")), "{name}: {:?}", found.warnings);
-                compare_points(name, &found, &facts[&format!("lidar/broken/{name}")]);
+                compare_with_fact(&path, &found, &facts[&format!("lidar/broken/{name}")]);
             }
             (Warned(count, words), Ok(found)) => {
                 assert_eq!(found.count, *count, "{name}: {:?}", found.warnings);
                 assert!(found.warnings.iter().any(|w| w.contains(words)), "{name}: {:?}", found.warnings);
-                compare_points(name, &found, &facts[&format!("lidar/broken/{name}")]);
+                compare_with_fact(&path, &found, &facts[&format!("lidar/broken/{name}")]);
             }
             (Refused(kind, words), Err(error)) => {
                 assert_eq!(error.kind(), *kind, "{error}");
                 assert!(error.to_string().contains(words), "{error}");
                 assert_eq!(error.path(), Some(path.as_path()));
+                let text = error.to_string();
+                assert!(
+                    ["byte ", "record ", "chunk "].iter().any(|place| text.contains(&format!(": {place}"))),
+                    "{text}"
+                );
+                assert!(error.cure_text().is_some(), "{text}");
             }
             (_, Ok(found)) => panic!("{name}: read {} points, {:?}", found.count, found.warnings),
             (_, Err(error)) => panic!("{name}: {error}"),
@@ -253,12 +290,13 @@ fn every_broken_file_has_its_fate() {
 }
 
 /// Where another reader got all the points, ours are the same.
-fn compare_points(name: &str, found: &Summary, fact: &Value) {
+fn compare_with_fact(path: &Path, found: &Summary, fact: &Value) {
+    check_crs(&path.to_string_lossy(), las::open(path).unwrap().info(), fact);
     if fact.get("sum_int_xyz").is_none() {
         return;
     }
     let sums = fact["sum_int_xyz"].as_array().unwrap();
-    assert_eq!(found.lattice_sums, [0, 1, 2].map(|i| i128::from(sums[i].as_i64().unwrap())), "{name}");
+    assert_eq!(found.lattice_sums, [0, 1, 2].map(|i| i128::from(sums[i].as_i64().unwrap())), "{}", path.display());
 }
 
 /// What a cut or damaged LAZ file still gives are points of the whole file.
@@ -327,6 +365,16 @@ fn points_are_opened_by_what_they_are() {
         std::fs::copy(&file, &renamed).unwrap();
         assert_eq!(points::open(&renamed).unwrap().info().format, format);
     }
+    let Some(file) = common::shared("shp/shapelib_eg/masspntz.shp") else { return };
+    let mut source = points::open(&file).unwrap();
+    let mut batch = PointBatch::default();
+    source.read(&mut batch).unwrap();
+    assert_eq!(batch.len(), 815);
+    assert!(batch.z.iter().all(|z| (678.0..1050.0).contains(z)));
+    let lines = common::shared("shp/shapelib_eg/brklinz.shp").unwrap();
+    let error = points::open(&lines).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains("has no points, but 122 other shapes"), "{error}");
+    assert_eq!(error.path(), Some(lines.as_path()));
     let Some(file) = common::shared("dem/bigtujunga.tif") else { return };
     let error = points::open(&file).map(|_| ()).unwrap_err();
     assert_eq!(error.kind(), Kind::Unsupported);

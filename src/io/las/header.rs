@@ -11,6 +11,8 @@ const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 const COMPRESSED: u8 = 0x80;
 const COMPRESSED_OLD: u8 = 0x40;
 
+const DAMAGED: &str = "the header was never finished, or it is damaged: get the file again from its producer";
+
 /// Bit of the global encoding that says that the coordinate system is written in WKT.
 const WKT_BIT: u16 = 1 << 4;
 
@@ -86,6 +88,7 @@ impl Header {
                 "the file ends after {} bytes, within its header of at least {SHORTEST_HEADER}",
                 bytes.len()
             ))
+            .at(format!("byte {}", bytes.len()))
             .cure("the file was cut: copy or download it again"));
         }
         let raw = RawHeader::parse(bytes);
@@ -141,14 +144,16 @@ impl Header {
 
 fn check_signature(bytes: &[u8]) -> Result<()> {
     if bytes.is_empty() {
-        return Err(Error::format("the file is empty").cure("copy or download it again"));
+        return Err(Error::format("the file is empty").at("byte 0").cure("copy or download it again"));
     }
     let found = &bytes[..bytes.len().min(4)];
     if found != b"LASF" {
         return Err(Error::format(format!(
             "not a LAS file: it begins with \"{}\", expected \"LASF\"",
             found.escape_ascii()
-        )));
+        ))
+        .at("byte 0")
+        .cure("if its name is wrong, rename it; else get it again from its producer"));
     }
     Ok(())
 }
@@ -167,7 +172,7 @@ fn check_version(raw: &RawHeader, available: usize) -> Result<()> {
             "the header has {found} bytes, a LAS {major}.{minor} header has at least {least}"
         ))
         .at("byte 94")
-        .cure("the file was never finished, or it is damaged: get it again from its producer"));
+        .cure(DAMAGED));
     }
     Ok(())
 }
@@ -178,18 +183,22 @@ fn check_format(raw: &RawHeader) -> Result<u8> {
             "point format byte {:#04x}: compressed by a pre-release LASzip",
             raw.format
         ))
-        .at("byte 104"));
+        .at("byte 104")
+        .cure("decompress it with the program that made it"));
     }
     let format = raw.format & !COMPRESSED;
     let Some(&least) = RECORD_LENGTHS.get(usize::from(format)) else {
-        return Err(Error::unsupported(format!("point format {format}; supported are 0 to 10")).at("byte 104"));
+        return Err(Error::unsupported(format!("point format {format}; supported are 0 to 10"))
+            .at("byte 104")
+            .cure("save it with one of them"));
     };
     if raw.record_length < least {
         return Err(Error::format(format!(
             "point records of {} bytes; point format {format} has at least {least}",
             raw.record_length
         ))
-        .at("byte 105"));
+        .at("byte 105")
+        .cure(DAMAGED));
     }
     Ok(format)
 }
@@ -200,19 +209,20 @@ fn check_lattice(raw: &RawHeader) -> Result<()> {
         if !scale.is_finite() || scale == 0.0 {
             return Err(Error::format(format!("{name} scale is {scale}, expected a finite number other than 0"))
                 .at(format!("byte {}", 131 + 8 * axis))
-                .cure("the coordinates cannot be told without it: get the file again from its producer"));
+                .cure(DAMAGED));
         }
         if !offset.is_finite() {
             return Err(Error::format(format!("{name} offset is {offset}, expected a finite number"))
                 .at(format!("byte {}", 155 + 8 * axis))
-                .cure("the coordinates cannot be told without it: get the file again from its producer"));
+                .cure(DAMAGED));
         }
         let farthest = scale.abs() * f64::from(1_u32 << 31) + offset.abs();
         if !farthest.is_finite() {
             return Err(Error::format(format!(
                 "{name} scale {scale} and offset {offset} lead to infinite coordinates"
             ))
-            .at(format!("byte {}", 131 + 8 * axis)));
+            .at(format!("byte {}", 131 + 8 * axis))
+            .cure(DAMAGED));
         }
     }
     Ok(())
@@ -225,7 +235,8 @@ fn lay_out(raw: &RawHeader, file_length: u64) -> Result<Layout> {
         return Err(Error::format(format!(
             "the points are said to begin at byte {points_start}, within the header of {vlr_start} bytes"
         ))
-        .at("byte 96"));
+        .at("byte 96")
+        .cure(DAMAGED));
     }
     if points_start > file_length {
         return Err(Error::format(format!(

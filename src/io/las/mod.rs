@@ -26,7 +26,6 @@
 //! | LAZ: file cut | points up to the cut (formats 6 to 10: whole chunks), and a warning |
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
 
-mod contain;
 mod header;
 mod input;
 mod laz;

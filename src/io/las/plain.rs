@@ -34,8 +34,7 @@ impl Plain {
                 rest => format!(" and {rest} bytes of another"),
             };
             warnings.push(format!(
-                "the header states {} points, but the file holds {room}{torn}: it was cut, or its header is wrong; \
-                 the {room} are read",
+                "the header states {} points, but the file holds {room}{torn}: it was cut, or its header is wrong",
                 header.count
             ));
         } else if header.count == 0 && room > 0 {

@@ -6,6 +6,7 @@ use las::point::{Classification, Format};
 use las::{Builder, Color, Point, Transform, Vector, Version, Vlr, Writer};
 
 use super::{LasReader, from_stream};
+use crate::crs::{Crs, GeoKeys};
 use crate::data::{PointBatch, PointFlags, PointSource};
 use crate::error::Result;
 
@@ -290,16 +291,59 @@ fn counts_that_disagree_are_told() {
     assert!(reader.info().warnings[0].contains("states 1000 points, and 999 for old readers"));
 }
 
+fn projection(record_id: u16, data: Vec<u8>) -> Vlr {
+    Vlr { user_id: "LASF_Projection".into(), record_id, description: "".into(), data }
+}
+
+/// The records for one system as WKT and another as GeoTIFF keys.
+fn two_systems(wkt: u32, keys: u32) -> Vec<Vlr> {
+    let crs = |code| Crs::from_epsg(code).unwrap();
+    let keys = GeoKeys::from_crs(&crs(keys));
+    let directory = keys.directory.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let doubles = keys.doubles.iter().flat_map(|number| number.to_le_bytes()).collect();
+    vec![
+        projection(34735, directory),
+        projection(34736, doubles),
+        projection(34737, keys.ascii.into_bytes()),
+        projection(2112, [crs(wkt).to_prj().as_bytes(), b"\0"].concat()),
+    ]
+}
+
+#[test]
+fn of_two_coordinate_systems_the_header_takes_one() {
+    for (wkt, keys, is_set, taken) in
+        [(25832, 25832, true, 25832), (25832, 25833, true, 25832), (25832, 25833, false, 25833)]
+    {
+        let mut bytes = Spec { records: two_systems(wkt, keys), ..Spec::new((1, 4), 1) }.write();
+        bytes[6] = if is_set { bytes[6] | 16 } else { bytes[6] & !16 };
+        let (reader, _) = read(&bytes).unwrap();
+        assert_eq!(reader.info().crs.as_ref().unwrap().epsg, Some(taken));
+        let warned = reader.info().warnings.iter().any(|warning| {
+            warning.contains("two coordinate systems") && warning.contains("25832") && warning.contains("25833")
+        });
+        assert_eq!(warned, wkt != keys, "{:?}", reader.info().warnings);
+    }
+    // One kind alone counts whatever the bit says; WKT after the points too.
+    for (records, late_records) in [
+        (two_systems(25832, 25832).split_off(3), Vec::new()),
+        (Vec::new(), two_systems(25832, 25832).split_off(3)),
+        (two_systems(25832, 25832).drain(..3).collect(), Vec::new()),
+    ] {
+        let mut bytes = Spec { records, late_records, ..Spec::new((1, 4), 1) }.write();
+        for bit in [0, 16] {
+            bytes[6] = bytes[6] & !16 | bit;
+            let (reader, _) = read(&bytes).unwrap();
+            assert_eq!(reader.info().crs.as_ref().unwrap().epsg, Some(25832));
+            assert!(reader.info().warnings.is_empty(), "{:?}", reader.info().warnings);
+        }
+    }
+}
+
 #[test]
 fn wkt_that_is_no_wkt_is_a_warning() {
-    let wkt = |text: &[u8]| Vlr {
-        user_id: "LASF_Projection".into(),
-        record_id: 2112,
-        description: "".into(),
-        data: text.to_vec(),
-    };
     for (text, word) in [(&b"nonsense[\0"[..], "not understood"), (b" \0", "is empty"), (b"", "is empty")] {
-        let (reader, all) = read(&Spec { records: vec![wkt(text)], ..Spec::new((1, 4), 6) }.write()).unwrap();
+        let (reader, all) =
+            read(&Spec { records: vec![projection(2112, text.to_vec())], ..Spec::new((1, 4), 6) }.write()).unwrap();
         assert_eq!(all.len(), 1000);
         assert_eq!(reader.info().crs, None);
         assert!(reader.info().warnings[0].contains(word), "{:?}", reader.info().warnings);

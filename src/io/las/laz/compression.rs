@@ -48,8 +48,11 @@ impl Compression {
     pub(super) fn check(payload: Option<&[u8]>, header: &Header) -> Result<Self> {
         let payload = payload.ok_or_else(|| {
             Error::format("the points are marked as compressed, but the record \"laszip encoded\" is missing")
+                .at("byte 104")
+                .cure("copy or download the file again")
         })?;
-        Self::parse(payload, header).map_err(|error| error.at("record \"laszip encoded\""))
+        let place = |error: Error| error.at("record \"laszip encoded\"").cure("copy or download the file again");
+        Self::parse(payload, header).map_err(place)
     }
 
     fn parse(payload: &[u8], header: &Header) -> Result<Self> {

@@ -68,6 +68,7 @@ impl Laz {
                 return Err(Error::format(format!(
                     "{reason}, and chunks of different sizes cannot be found without it"
                 ))
+                .at(format!("byte {}", header.layout.points_start))
                 .cure("copy or download the file again"));
             }
             Err(reason) => {
@@ -79,7 +80,7 @@ impl Laz {
         if found < header.count {
             warnings.push(format!(
                 "the header states {} points, but the file holds {found} in whole chunks: it was cut, or its header \
-                 is wrong; the {found} are read",
+                 is wrong",
                 header.count
             ));
         }
