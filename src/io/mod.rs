@@ -14,5 +14,8 @@ pub mod raster;
 pub mod shapefile;
 pub mod text;
 mod world_file;
+pub mod gdal;
+mod output;
+pub mod proj;
 
 pub use output::Output;
