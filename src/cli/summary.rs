@@ -82,7 +82,7 @@ pub(super) fn tell_place(extent: Bounds, crs: Option<&Crs>, talk: &Talk) {
         talk.line(format_args!("extent      x {}, y {}, z {}", axis(0), axis(1), axis(2)));
     }
     match crs {
-        Some(crs) => talk.line(format_args!("CRS         {crs}, in units of the {}", crs.unit.name)),
+        Some(crs) => talk.line(format_args!("CRS         {}", crs.describe())),
         None => talk.line("CRS         not known"),
     }
 }
@@ -158,8 +158,8 @@ pub(super) fn tell_cost(start: Instant, talk: &Talk) {
     }
 }
 
-fn seconds(time: Duration) -> String {
-    format!("{} s", number(time.as_secs_f64()))
+pub(super) fn seconds(time: Duration) -> String {
+    format!("{:.2} s", time.as_secs_f64())
 }
 
 /// The most memory that this process held, where the system tells.

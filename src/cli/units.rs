@@ -50,15 +50,6 @@ impl Units {
         self.is_angular
     }
 
-    /// What heights are multiplied by to be in the units of the plan.
-    pub(super) fn height_in_plan(&self) -> f64 {
-        match (&self.plan, &self.height) {
-            (Some(_), Some(height)) if self.is_angular => height.factor / METRES_PER_DEGREE,
-            (Some(plan), Some(height)) if plan.factor > 0.0 => height.factor / plan.factor,
-            _ => 1.0,
-        }
-    }
-
     /// The two names, where lengths of the plan and heights are in different units.
     pub(super) fn disagreement(&self) -> Option<(&str, &str)> {
         match (&self.plan, &self.height) {
@@ -73,6 +64,7 @@ impl Units {
 fn with_unit(value: f64, unit: Option<&Unit>) -> String {
     let value = number(value);
     match unit.map(|unit| unit.name.as_str()) {
+        None if value == "1" => "1 unit".to_owned(),
         None => format!("{value} units"),
         Some("metre" | "meter") => format!("{value} m"),
         Some("foot") => format!("{value} ft"),
@@ -121,11 +113,10 @@ mod tests {
     }
 
     #[test]
-    fn feet_over_metres_are_told_and_scaled() {
+    fn feet_over_metres_are_told() {
         let mixed =
             Units::of(Some(&crs(CrsKind::Projected, ("metre", 1.0), Some(("US survey foot", 1200.0 / 3937.0)))));
         assert_eq!(mixed.disagreement(), Some(("metre", "US survey foot")));
-        assert_eq!(mixed.height_in_plan(), 1200.0 / 3937.0);
         assert_eq!(mixed.height(2.5), "2.5 ftUS");
     }
 
