@@ -67,5 +67,6 @@ fn tell_lines(drawn: &ContourSummary, crs: Option<&Crs>, talk: &Talk) {
     }
     let units = Units::of(crs);
     let (low, high) = (units.height(drawn.bounds.min[2]), units.height(drawn.bounds.max[2]));
-    talk.line(format_args!("contours    {} lines ({} closed) from {low} to {high}", drawn.lines, drawn.closed));
+    let noun = if drawn.lines == 1 { "line" } else { "lines" };
+    talk.line(format_args!("contours    {} {noun} ({} closed) from {low} to {high}", drawn.lines, drawn.closed));
 }

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::talk::Talk;
-use super::units::number;
+use super::units::{neat, number};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
@@ -78,7 +78,7 @@ impl Made {
 /// Where something is, and in which coordinate system.
 pub(super) fn tell_place(extent: Bounds, crs: Option<&Crs>, talk: &Talk) {
     if !extent.is_empty() {
-        let axis = |i: usize| format!("{} .. {}", extent.min[i], extent.max[i]);
+        let axis = |i: usize| format!("{} .. {}", neat(extent.min[i]), neat(extent.max[i]));
         talk.line(format_args!("extent      x {}, y {}, z {}", axis(0), axis(1), axis(2)));
     }
     match crs {

@@ -74,6 +74,17 @@ fn with_unit(value: f64, unit: Option<&Unit>) -> String {
     }
 }
 
+/// A number for people: without what is beyond the ninth decimal.
+pub(super) fn neat(value: f64) -> String {
+    let text = format!("{:.9}", value + 0.0);
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        // Not zero, but smaller than that.
+        "0" | "-0" if value != 0.0 => value.to_string(),
+        "-0" => "0".to_owned(),
+        trimmed => trimmed.to_owned(),
+    }
+}
+
 /// Two decimals for what is a measure of land, all that there are for what is small.
 pub(super) fn number(value: f64) -> String {
     if value.abs() >= 1.0 || value == 0.0 {
@@ -133,6 +144,10 @@ mod tests {
             [(0.0, "0"), (1.0, "1"), (-12.345, "-12.35"), (100.0, "100"), (0.25, "0.25"), (0.001234, "0.00123")];
         for (value, text) in cases {
             assert_eq!(number(value), text);
+        }
+        let cases = [(-0.0, "0"), (0.1 + 0.2, "0.3"), (-1e-12, "-0.000000000001"), (1e-3, "0.001"), (7e5, "700000")];
+        for (value, text) in cases {
+            assert_eq!(neat(value), text);
         }
     }
 }

@@ -2,8 +2,9 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::sheet::{Sheet, neat};
+use super::Sheet;
 use crate::cli::open;
+use crate::cli::units::neat;
 use crate::data::{Bounds, Frame};
 use crate::error::Result;
 

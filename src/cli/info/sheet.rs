@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
+use crate::cli::units::neat;
 use crate::crs::{Crs, CrsKind};
 use crate::data::Bounds;
 
@@ -103,17 +104,6 @@ impl Sheet {
         }
         object.insert("warnings".to_owned(), json!(self.warnings));
         Value::Object(object)
-    }
-}
-
-/// A number for people: without what is beyond the ninth decimal.
-pub(super) fn neat(value: f64) -> String {
-    let text = format!("{:.9}", value + 0.0);
-    match text.trim_end_matches('0').trim_end_matches('.') {
-        // Not zero, but smaller than that.
-        "0" | "-0" if value != 0.0 => value.to_string(),
-        "-0" => "0".to_owned(),
-        trimmed => trimmed.to_owned(),
     }
 }
 
