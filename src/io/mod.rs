@@ -2,6 +2,7 @@
 
 mod contain;
 pub mod contours;
+pub mod gdal;
 pub mod geojson;
 pub mod geotiff;
 pub mod las;
@@ -10,6 +11,7 @@ pub mod mesh;
 mod output;
 pub mod png;
 pub mod points;
+pub mod proj;
 pub mod raster;
 pub mod shapefile;
 pub mod text;

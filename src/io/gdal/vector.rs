@@ -1,0 +1,275 @@
+use std::path::Path;
+
+use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
+use gdal::vector::{
+    FieldValue, Geometry, LayerAccess, geometry_type_flatten, geometry_type_has_z, geometry_type_to_name,
+};
+use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
+use gdal_sys::OGRwkbGeometryType as Type;
+
+use super::messages;
+use crate::crs::Crs;
+use crate::data::{Layer, Shape};
+use crate::error::{Error, Result};
+
+/// Geometry collections in geometry collections; deeper ones are refused.
+const DEEPEST: usize = 16;
+
+/// Reads a layer of any vector file that GDAL knows.
+///
+/// `name` is `LAYER`, `FIELD` or `LAYER:FIELD`, and may also stand behind a colon in `path`; a file of one layer needs
+/// none. `FIELD` is the attribute with the heights; else they come from the geometry, and are NaN where that is flat.
+/// Arcs become polylines (by GDAL's default of a vertex every 4 degrees). The parts of a collection become shapes of
+/// their own.
+///
+/// # Errors
+/// If GDAL cannot open the file, has no such layer or field, or fails while reading; and if the file has several layers
+/// and none is named.
+pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
+    messages::listen();
+    let (path, behind) = super::split(path);
+    let name = match (behind, name) {
+        (Some(first), Some(second)) => Some(format!("{first}:{second}")),
+        (first, second) => first.or(second.map(str::to_owned)),
+    };
+    let path = path.as_path();
+    let options = DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_VECTOR, ..DatasetOptions::default() };
+    let dataset = Dataset::open_ex(path, options).map_err(|error| messages::cannot_open(path, "vector", error))?;
+    let (layer_name, field) = choose(&dataset, name.as_deref()).map_err(|error| error.in_file(path))?;
+    let mut source = dataset.layer_by_name(&layer_name).map_err(|error| messages::error(path, error))?;
+    let fields: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
+    let field = match field {
+        Some(wanted) => Some(position(&fields, &wanted).ok_or_else(|| no_such(&wanted, &fields).in_file(path))?),
+        None => None,
+    };
+    let mut layer = Layer {
+        format: format!(
+            "GDAL {} {}",
+            dataset.driver().short_name(),
+            geometry_type_to_name(source.defn().geometry_type())
+        ),
+        fields,
+        ..Layer::default()
+    };
+    let reference = source.spatial_ref();
+    let is_swapped = reference.as_ref().is_some_and(is_north_first);
+    layer.crs = reference.and_then(|reference| crs(&reference, &mut layer.warnings));
+    let mut without_height = 0;
+    for feature in source.features() {
+        let first = layer.shapes.len();
+        match feature.geometry() {
+            Some(geometry) if !is_absent(geometry) => {
+                shapes(geometry, 0, &mut layer.shapes).map_err(|error| error.in_file(path))?
+            }
+            _ => layer.shapes.push(Shape::Null),
+        }
+        if let Some(field) = field {
+            let height = feature.field(field).map_err(|error| messages::error(path, error))?.and_then(number);
+            without_height += usize::from(height.is_none());
+            let height = height.unwrap_or(f64::NAN);
+            layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
+        }
+        if is_swapped {
+            layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
+        }
+    }
+    // The iterator ends at an error as at the end of the file.
+    if let Some(error) = messages::failure(path) {
+        return Err(error.at(format!("layer {layer_name}, after {} records", layer.shapes.len())));
+    }
+    layer.warnings.extend(messages::warnings());
+    if without_height > 0 {
+        layer.warnings.push(format!("{without_height} records without a number in the field of the heights"));
+    }
+    Ok(layer)
+}
+
+/// The layer, and the field of the heights.
+fn choose(dataset: &Dataset, name: Option<&str>) -> Result<(String, Option<String>)> {
+    let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
+    let is_layer = |name: &str| layers.iter().any(|layer| layer == name);
+    let several = |message: String| {
+        Error::usage(message).cure(format!("name one behind a colon, as FILE:LAYER: {}", layers.join(", ")))
+    };
+    let [only] = layers.as_slice() else {
+        let Some(name) = name else {
+            return Err(match layers.len() {
+                0 => Error::format("there is no layer in it"),
+                count => several(format!("there are {count} layers in it")),
+            });
+        };
+        if is_layer(name) {
+            return Ok((name.to_owned(), None));
+        }
+        // Layers may have colons in their names.
+        let parts = name.match_indices(':').map(|(at, _)| (&name[..at], &name[at + 1..]));
+        return match parts.into_iter().find(|(layer, _)| is_layer(layer)) {
+            Some((layer, field)) => Ok((layer.to_owned(), Some(field.to_owned()))),
+            None => Err(several(format!("there is no layer \"{name}\""))),
+        };
+    };
+    let field = match name {
+        Some(name) if name != only => Some(name.strip_prefix(&format!("{only}:")).unwrap_or(name).to_owned()),
+        _ => None,
+    };
+    Ok((only.clone(), field))
+}
+
+fn position(fields: &[String], wanted: &str) -> Option<usize> {
+    let exact = fields.iter().position(|field| field == wanted);
+    exact.or_else(|| fields.iter().position(|field| field.eq_ignore_ascii_case(wanted)))
+}
+
+fn no_such(wanted: &str, fields: &[String]) -> Error {
+    let error = Error::usage(format!("there is no layer or field \"{wanted}\""));
+    match fields {
+        [] => error.cure("the layer has no fields"),
+        _ => error.cure(format!("the layer's fields are {}", fields.join(", "))),
+    }
+}
+
+fn crs(reference: &SpatialRef, warnings: &mut Vec<String>) -> Option<Crs> {
+    let read = reference.to_wkt().map_err(|error| error.to_string());
+    match read.and_then(|wkt| Crs::from_wkt(&wkt).map_err(|error| error.to_string())) {
+        Ok(crs) => Some(crs),
+        Err(reason) => {
+            warnings.push(format!("the coordinate system is not understood: {reason}"));
+            None
+        }
+    }
+}
+
+/// Whether the first coordinate is a latitude or northing, by the order that the data is in.
+fn is_north_first(reference: &SpatialRef) -> bool {
+    let target = if reference.is_geographic() { "GEOGCS" } else { "PROJCS" };
+    reference.axis_mapping_strategy() == AxisMappingStrategy::AuthorityCompliant
+        && reference.axis_orientation(target, 0).is_ok_and(|axis| axis == gdal_sys::OGRAxisOrientation::OAO_North)
+}
+
+fn number(value: FieldValue) -> Option<f64> {
+    let number = match value {
+        // GDAL's own conversion makes 0 of anything.
+        FieldValue::StringValue(text) => text.trim().replace(',', ".").parse().ok(),
+        FieldValue::IntegerValue(value) => Some(f64::from(value)),
+        FieldValue::Integer64Value(value) => Some(value as f64),
+        FieldValue::RealValue(value) => Some(value),
+        _ => None,
+    };
+    number.filter(|number: &f64| number.is_finite())
+}
+
+fn each_vertex(shape: &mut Shape, mut change: impl FnMut(&mut [f64; 3])) {
+    match shape {
+        Shape::Null => {}
+        Shape::Points(points) => points.iter_mut().for_each(change),
+        Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter_mut().flatten().for_each(change),
+        Shape::Triangles(triangles) => triangles.iter_mut().flatten().for_each(&mut change),
+    }
+}
+
+/// Adds the shape of a geometry; several for a collection.
+fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()> {
+    if depth > DEEPEST {
+        return Err(Error::limit(format!("geometry collections nested more than {DEEPEST} deep")));
+    }
+    let members = || (0..geometry.geometry_count()).map(|i| geometry.get_geometry(i));
+    let kind = geometry_type_flatten(geometry.geometry_type());
+    into.push(match kind {
+        Type::wkbPoint => Shape::Points(vertices(geometry)),
+        Type::wkbMultiPoint => Shape::Points(members().flat_map(|part| vertices(&part)).collect()),
+        Type::wkbLineString | Type::wkbLinearRing => Shape::Lines(vec![vertices(geometry)]),
+        Type::wkbMultiLineString => Shape::Lines(members().map(|part| vertices(&part)).collect()),
+        Type::wkbPolygon | Type::wkbTriangle => Shape::Polygon(rings(geometry)),
+        Type::wkbMultiPolygon => Shape::Polygon(members().flat_map(|part| rings(&part)).collect()),
+        Type::wkbTIN | Type::wkbPolyhedralSurface => surface(members().map(|part| parts(&part)).collect()),
+        Type::wkbGeometryCollection => {
+            for part in members() {
+                shapes(&part, depth + 1, into)?;
+            }
+            return Ok(());
+        }
+        Type::wkbCircularString
+        | Type::wkbCompoundCurve
+        | Type::wkbCurvePolygon
+        | Type::wkbMultiCurve
+        | Type::wkbMultiSurface => {
+            return with_polylines(geometry, |straight| shapes(straight, depth + 1, into));
+        }
+        Type::wkbNone => Shape::Null,
+        _ => return Err(Error::unsupported(format!("geometry of the type {}", geometry_type_to_name(kind)))),
+    });
+    Ok(())
+}
+
+/// Whether a record has no geometry: the `gdal` crate then wraps a null pointer, of which GDAL complains.
+#[allow(unsafe_code)]
+fn is_absent(geometry: &Geometry) -> bool {
+    // SAFETY: the pointer is looked at, not followed.
+    unsafe { geometry.c_geometry() }.is_null()
+}
+
+/// Shows a geometry with its arcs as polylines.
+#[allow(unsafe_code)]
+fn with_polylines(geometry: &Geometry, show: impl FnOnce(&Geometry) -> Result<()>) -> Result<()> {
+    // The `gdal` crate has no safe way to this, and GDAL's global flag for it forgets arcs with heights (seen in 3.6).
+    // SAFETY: the pointer is that of a geometry that lives; GDAL does not keep it, and a null pointer for the options
+    // and an angle of 0 stand for the defaults.
+    let straight = unsafe { gdal_sys::OGR_G_GetLinearGeometry(geometry.c_geometry(), 0.0, std::ptr::null_mut()) };
+    if straight.is_null() {
+        return Err(Error::unsupported(format!("arcs of the type {}", geometry.geometry_name())));
+    }
+    let result = {
+        // SAFETY: a wrapper that does not own its geometry; it ends before the geometry does, below.
+        let wrapper = unsafe { Geometry::lazy_feature_geometry() };
+        // SAFETY: the wrapper is empty and does not own, and the pointer is a geometry.
+        unsafe { wrapper.set_c_geometry(straight) };
+        show(&wrapper)
+    };
+    // SAFETY: `OGR_G_GetLinearGeometry` gave the geometry to us, and nothing refers to it any more.
+    unsafe { gdal_sys::OGR_G_DestroyGeometry(straight) };
+    result
+}
+
+fn vertices(geometry: &Geometry) -> Vec<[f64; 3]> {
+    let has_z = geometry_type_has_z(geometry.geometry_type());
+    let mut points = Vec::new();
+    if !geometry.is_empty() {
+        geometry.get_points(&mut points);
+    }
+    points.into_iter().map(|(x, y, z)| [x, y, if has_z { z } else { f64::NAN }]).collect()
+}
+
+/// The rings of one polygon as they are.
+fn parts(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
+    (0..polygon.geometry_count()).map(|i| vertices(&polygon.get_geometry(i))).filter(|ring| !ring.is_empty()).collect()
+}
+
+/// The rings of one polygon, the outer one clockwise and the others not, as [`Shape::Polygon`] has it.
+fn rings(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
+    let mut rings = parts(polygon);
+    for (i, ring) in rings.iter_mut().enumerate() {
+        let is_clockwise = area(ring) < 0.0;
+        if is_clockwise != (i == 0) {
+            ring.reverse();
+        }
+    }
+    rings
+}
+
+/// Twice the signed area, positive counter-clockwise; from the first vertex, for precision.
+fn area(ring: &[[f64; 3]]) -> f64 {
+    let Some(&[x0, y0, _]) = ring.first() else { return 0.0 };
+    ring.windows(2).map(|pair| (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0)).sum()
+}
+
+/// Triangles, or polygons if any face has more corners.
+fn surface(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Shape {
+    let triangle = |face: &Vec<Vec<[f64; 3]>>| match face.as_slice() {
+        [ring] if ring.len() == 4 => Some([ring[0], ring[1], ring[2]]),
+        _ => None,
+    };
+    match faces.iter().map(triangle).collect() {
+        Some(triangles) => Shape::Triangles(triangles),
+        None => Shape::Polygon(faces.into_iter().flatten().collect()),
+    }
+}

@@ -1,0 +1,244 @@
+//! Reprojection by [PROJ](https://proj.org), behind the feature `proj`.
+//!
+//! Coordinates are always easting (or longitude) first. In plan PROJ does what it does: it picks the best operation that
+//! it has grids for, point by point. None of the large grids are shipped, so it may fall back on an operation of metres,
+//! or of unknown accuracy; [`Transform::warnings`](crate::crs::Transform::warnings) says which operations were used and how good they are. Heights are
+//! converted between units, and never between vertical datums: the warnings say so where it matters.
+
+/// The operation that takes coordinates from one system to another.
+///
+/// It may be used from many threads; each gets a PROJ context of its own. Of geocentric systems only the source may be
+/// one: X, Y and Z then become longitude, latitude and ellipsoidal height first.
+///
+/// # Errors
+/// If PROJ does not know one of the systems or no way between them; without the feature `proj`, always.
+#[cfg(not(feature = "proj"))]
+pub fn transform(from: &crate::crs::Crs, to: &crate::crs::Crs) -> crate::Result<Box<dyn crate::crs::Transform>> {
+    Err(crate::Error::unsupported(format!(
+        "reprojecting from {from} to {to} needs PROJ, which this build does not have"
+    ))
+    .cure("build with `cargo build --release --features proj` (needs g++, make, cmake, sqlite3)"))
+}
+
+#[cfg(feature = "proj")]
+pub use with_proj::transform;
+
+#[cfg(feature = "proj")]
+mod with_proj {
+    use std::cell::RefCell;
+    use std::collections::{BTreeSet, VecDeque};
+    use std::rc::Rc;
+    use std::sync::atomic::{AtomicU64, Ordering};
+    use std::sync::{Mutex, PoisonError};
+
+    use proj::{Proj, ProjInfo};
+
+    use crate::crs::{Crs, CrsKind, Transform};
+    use crate::error::{Error, Result};
+
+    /// PROJ objects that a thread keeps; more transforms than this at once are made anew when they are used.
+    const KEPT: usize = 8;
+
+    /// An accuracy worse than this, in metres, is told: lidar is better.
+    const TOLD: f64 = 0.1;
+
+    thread_local! {
+        static OBJECTS: RefCell<VecDeque<(u64, Rc<Proj>)>> = const { RefCell::new(VecDeque::new()) };
+    }
+
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+
+    struct Operation {
+        /// Names it in [`OBJECTS`].
+        id: u64,
+        from: Crs,
+        to: Crs,
+        /// What PROJ is asked for; heights are not in it.
+        definitions: (String, String),
+        /// From a geocentric source to the geographic system on the same datum.
+        geocentric: Option<proj_core::Transform>,
+        /// Units of height in the target for one in the source.
+        height: f64,
+        warnings: Mutex<BTreeSet<String>>,
+    }
+
+    /// See the other [`transform`](super::transform), which stands in the documentation.
+    pub fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
+        for crs in [from, to] {
+            if crs.kind == CrsKind::Local {
+                return Err(Error::usage(format!("{crs} is a local system: nothing says where on earth it is"))
+                    .cure("state the system with --a-srs"));
+            }
+        }
+        if to.kind == CrsKind::Geocentric && !from.is_same(to) {
+            return Err(Error::unsupported(format!("reprojecting to {to}, which is geocentric"))
+                .cure("choose a projected system, as EPSG:25832"));
+        }
+        let (geocentric, base) = match from.kind {
+            CrsKind::Geocentric => {
+                let (first, base) = from_geocentric(from)?;
+                (Some(first), base)
+            }
+            _ => (None, definition(from)),
+        };
+        let heights = heights(from, to);
+        let operation = Operation {
+            id: NEXT.fetch_add(1, Ordering::Relaxed),
+            definitions: (base, definition(to)),
+            geocentric,
+            height: heights.0,
+            warnings: Mutex::new(heights.1.into_iter().collect()),
+            from: from.clone(),
+            to: to.clone(),
+        };
+        // Made now, so that what cannot work fails before anything is read.
+        let object = operation.object()?;
+        operation.learn(&object.proj_info());
+        Ok(Box::new(operation))
+    }
+
+    /// What PROJ understands: the code of the horizontal part, or the definition.
+    fn definition(crs: &Crs) -> String {
+        match crs.epsg {
+            Some(code) => format!("EPSG:{code}"),
+            None => crs.to_wkt(),
+        }
+    }
+
+    fn from_geocentric(from: &Crs) -> Result<(proj_core::Transform, String)> {
+        let failed = |reason: String| Error::unsupported(format!("reprojecting from {from}: {reason}"));
+        let code = from.epsg.ok_or_else(|| failed("a geocentric system without an EPSG code".into()))?;
+        let source = proj_core::lookup_epsg(code).ok_or_else(|| failed("it is not in the registry".into()))?;
+        let base = source.base_geographic_crs_epsg().ok_or_else(|| failed("its datum is unknown".into()))?;
+        let target = proj_core::lookup_epsg(base).ok_or_else(|| failed("its datum is unknown".into()))?;
+        let first = proj_core::Transform::from_crs_defs(&source, &target).map_err(|error| failed(error.to_string()))?;
+        Ok((first, format!("EPSG:{base}")))
+    }
+
+    /// The factor of the heights, and what is to be said of them.
+    fn heights(from: &Crs, to: &Crs) -> (f64, Option<String>) {
+        let (Some(source), target) = (&from.vertical_unit, &to.vertical_unit) else {
+            let nothing = to.vertical_epsg.map(|code| {
+                format!(
+                    "heights are left as they are: {from} does not say what they are, EPSG:{code} is taken for granted"
+                )
+            });
+            return (1.0, nothing);
+        };
+        if from.kind == CrsKind::Geocentric {
+            let unit = target.as_ref().map_or(1.0, |unit| unit.factor);
+            let told = to
+                .vertical_epsg
+                .map(|code| format!("heights are left over the ellipsoid: they are not those of EPSG:{code}"));
+            return (1.0 / unit, told.or_else(|| Some("heights are those over the ellipsoid".to_owned())));
+        }
+        let factor = target.as_ref().map_or(1.0, |target| source.factor / target.factor);
+        let same = match (from.vertical_epsg, to.vertical_epsg) {
+            (Some(a), Some(b)) => a == b || vertical_datum(a).is_some() && vertical_datum(a) == vertical_datum(b),
+            (None, None) => true,
+            _ => false,
+        };
+        let name =
+            |code: Option<u32>| code.map_or("heights over the ellipsoid".to_owned(), |code| format!("EPSG:{code}"));
+        let told = match target {
+            None => from.vertical_epsg.map(|code| {
+                format!(
+                    "heights are left as they are, in {} (EPSG:{code}): {to} states no vertical system",
+                    source.name
+                )
+            }),
+            Some(_) if same => None,
+            Some(target) => Some(format!(
+                "heights are left on their datum{}: no transformation from {} to {} is made",
+                if (factor - 1.0).abs() > 1e-12 { format!(" (in {})", target.name) } else { String::new() },
+                name(from.vertical_epsg),
+                name(to.vertical_epsg),
+            )),
+        };
+        (factor, told)
+    }
+
+    fn vertical_datum(code: u32) -> Option<u32> {
+        proj_core::lookup_vertical_epsg(code)?.vertical_datum_epsg()
+    }
+
+    impl Operation {
+        /// This thread's PROJ object.
+        fn object(&self) -> Result<Rc<Proj>> {
+            let kept =
+                OBJECTS.with_borrow(|kept| kept.iter().find(|entry| entry.0 == self.id).map(|entry| entry.1.clone()));
+            if let Some(object) = kept {
+                return Ok(object);
+            }
+            let (from, to) = &self.definitions;
+            let object = Proj::new_known_crs(from, to, None).map_err(|error| {
+                Error::unsupported(format!("PROJ knows no way from {} to {}: {error}", self.from, self.to))
+                    .cure("name other systems with --a-srs (of the input) or --t-srs")
+            })?;
+            let object = Rc::new(object);
+            OBJECTS.with_borrow_mut(|kept| {
+                kept.push_back((self.id, object.clone()));
+                if kept.len() > KEPT {
+                    kept.pop_front();
+                }
+            });
+            Ok(object)
+        }
+
+        /// Notes how good the operation is that was used last.
+        fn learn(&self, info: &ProjInfo) {
+            let name = info.description.as_deref().unwrap_or("an operation without a name");
+            // Before the first point PROJ has not chosen among several.
+            if info.id.as_deref() == Some("unknown") && name.starts_with("unavailable until") {
+                return;
+            }
+            let (from, to) = (&self.from, &self.to);
+            let warning = if info.accuracy < 0.0 {
+                format!("the accuracy of the way from {from} to {to} is unknown ({name})")
+            } else if info.accuracy > TOLD {
+                format!("the way from {from} to {to} is accurate to {} m ({name})", info.accuracy)
+            } else {
+                return;
+            };
+            self.warnings.lock().unwrap_or_else(PoisonError::into_inner).insert(warning);
+        }
+
+        fn one(&self, object: &Proj, point: [f64; 3]) -> std::result::Result<[f64; 3], String> {
+            let mut start = point;
+            if let Some(first) = &self.geocentric {
+                let place = first.convert_3d((point[0], point[1], point[2])).map_err(|error| error.to_string())?;
+                start = [place.0, place.1, place.2];
+            }
+            let (x, y) = object.convert((start[0], start[1])).map_err(|error| error.to_string())?;
+            if x.is_finite() && y.is_finite() {
+                Ok([x, y, start[2] * self.height])
+            } else {
+                Err("it lies outside of what the operation covers".to_owned())
+            }
+        }
+    }
+
+    impl Transform for Operation {
+        fn transform(&self, points: &mut [[f64; 3]]) -> Result<()> {
+            let object = self.object()?;
+            for point in points.iter_mut() {
+                *point = self.one(&object, *point).map_err(|reason| {
+                    let [x, y, _] = point;
+                    Error::format(format!(
+                        "point ({x}, {y}) cannot be taken from {} to {}: {reason}",
+                        self.from, self.to
+                    ))
+                    .cure("check that the file's coordinate system is what it says (--a-srs overrides it)")
+                })?;
+            }
+            if !points.is_empty() {
+                self.learn(&object.proj_info());
+            }
+            Ok(())
+        }
+
+        fn warnings(&self) -> Vec<String> {
+            self.warnings.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+        }
+    }
+}
