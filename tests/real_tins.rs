@@ -66,7 +66,12 @@ fn shapelib_mass_points_and_breaklines() {
 
 #[test]
 fn lake() {
-    check(&["lidar/lake_breakline/lake.laz"], true, Some("lidar/lake_breakline/lake_breakline.shp"), [28_180, 56_326, 253]);
+    check(
+        &["lidar/lake_breakline/lake.laz"],
+        true,
+        Some("lidar/lake_breakline/lake_breakline.shp"),
+        [28_180, 56_326, 253],
+    );
 }
 
 #[test]

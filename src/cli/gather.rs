@@ -138,6 +138,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     let window = plan.bounds.map(|bounds| bounds.grown(rim.buffer));
     let selection = Selection::new(plan.classes.clone(), window);
     let (columns, report) = read_points(&mut files, point_roads, &roads, selection, talk)?;
+    roads.warn(talk);
     tell_classes(&report, &plan.classes, talk);
     if columns.x.is_empty() && made.breaklines == 0 {
         return Err(nothing_left(&report));
@@ -245,7 +246,6 @@ impl Roads {
                     None => {
                         let transform = open::transform(from, to)?;
                         talk.note(format_args!("reprojecting from {from} to {to}"));
-                        transform.warnings().iter().for_each(|text| talk.warning(text));
                         known.push(from);
                         roads.transforms.push(transform);
                         known.len() - 1
@@ -256,6 +256,12 @@ impl Roads {
             roads.by_file.push(road);
         }
         Ok(roads)
+    }
+
+    /// Says what there is to say of the transforms: which operations, how good. Complete when they are
+    /// done.
+    fn warn(&self, talk: &Talk) {
+        self.transforms.iter().flat_map(|transform| transform.warnings()).for_each(|text| talk.warning(text));
     }
 
     fn take(&self, road: Option<usize>, points: &mut [[f64; 3]]) -> Result<()> {

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use crate::crs::{Crs, Transform};
 use crate::data::{BlockSource, Frame, Grid, Layer, Mesh, PointSource, Surface};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::io::contours::{self, ContourSummary};
-use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
+use crate::io::geotiff::{self, CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
 use crate::io::mesh::{self, MeshSummary};
-use crate::io::{layer, png, points, raster};
+use crate::io::{gdal, layer, png, points, proj, raster};
 use crate::terrain::{self, Dem, GridSurface, Levels};
 
 /// What a file holds.
@@ -57,18 +57,37 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 /// Points of any format; of a vector layer, with the heights of an attribute where the name ends in
 /// `:FIELD`.
 pub(super) fn points(path: &Path) -> Result<Box<dyn PointSource + Send>> {
+    let of_layer = || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path)?)?)) };
     match content(path) {
-        Content::Layer => Ok(Box::new(points::from_layer(layer(path)?)?)),
-        Content::Points | Content::Raster | Content::Mesh => points::open(path),
+        Content::Layer => of_layer(),
+        Content::Points | Content::Raster | Content::Mesh => {
+            points::open(path).or_else(|error| match gdal_may_help(&error) {
+                // What GDAL says of a file that it does not know either is less exact.
+                true => of_layer().map_err(|_| error),
+                false => Err(error),
+            })
+        }
     }
 }
 
-/// A vector layer, with the heights of an attribute where the name ends in `:FIELD`.
+/// A vector layer, with the heights of an attribute where the name ends in `:FIELD`; of formats that
+/// GDAL reads, the layer of that name.
 pub(super) fn layer(path: &Path) -> Result<Layer> {
-    match path.to_str() {
-        Some(spec) => layer::read(spec),
-        None => Err(Error::unsupported("the name is not valid Unicode").in_file(path)),
-    }
+    let Some(spec) = path.to_str() else {
+        return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
+    };
+    layer::read(spec).or_else(|error| {
+        if !gdal_may_help(&error) {
+            return Err(error);
+        }
+        let (file, name) = layer::split(spec);
+        gdal::read_layer(&file, name)
+    })
+}
+
+/// Whether a file that is not read here may be one for GDAL.
+fn gdal_may_help(error: &Error) -> bool {
+    cfg!(feature = "gdal") && error.kind() == Kind::Unsupported
 }
 
 /// What a raster's header says, and its cells.
@@ -76,8 +95,8 @@ pub(super) fn layer(path: &Path) -> Result<Layer> {
 pub(super) struct RasterFacts {
     /// "GeoTIFF, float32, 1 band, compression DEFLATE, tiles of 256 x 256"
     pub(super) format: String,
-    /// "float32"
-    pub(super) sample: String,
+    /// "float32", unless the format says it
+    pub(super) sample: Option<String>,
     pub(super) frame: Frame,
     pub(super) crs: Option<Crs>,
     /// Before scale and offset.
@@ -89,35 +108,78 @@ pub(super) struct RasterFacts {
     pub(super) warnings: Vec<String>,
 }
 
-/// What a raster's header says, and what its cells say together; in bounded memory.
+/// What a raster's header says, and what its cells say together; for GeoTIFF in bounded memory.
 pub(super) fn raster_facts(path: &Path) -> Result<RasterFacts> {
-    let reader = raster::open(path)?;
-    let info = reader.info();
-    let extremes = reader.extremes()?;
-    Ok(RasterFacts {
-        format: info.description(),
-        sample: info.sample.to_string(),
-        frame: reader.frame(),
-        crs: info.crs.clone(),
-        nodata: info.nodata,
-        scale: info.scale,
-        offset: info.offset,
-        valid: extremes.valid,
-        range: extremes.range,
-        warnings: info.warnings.clone(),
-    })
+    match Raster::open(path)? {
+        Raster::GeoTiff(reader) => {
+            let info = reader.info();
+            let extremes = reader.extremes()?;
+            Ok(RasterFacts {
+                format: info.description(),
+                sample: Some(info.sample.to_string()),
+                frame: reader.frame(),
+                crs: info.crs.clone(),
+                nodata: info.nodata,
+                scale: info.scale,
+                offset: info.offset,
+                valid: extremes.valid,
+                range: extremes.range,
+                warnings: info.warnings.clone(),
+            })
+        }
+        Raster::Gdal(raster) => {
+            let values = raster.read_grid()?.values;
+            let valid = values.into_iter().filter(|value| !value.is_nan());
+            let (count, range) = valid.fold((0, None), |(count, range): (u64, Option<[f64; 2]>), value| {
+                let [low, high] = range.unwrap_or([value; 2]);
+                (count + 1, Some([low.min(value), high.max(value)]))
+            });
+            Ok(RasterFacts {
+                format: raster.description(),
+                sample: None,
+                frame: raster.frame(),
+                crs: raster.crs().cloned(),
+                nodata: None,
+                scale: 1.0,
+                offset: 0.0,
+                valid: count,
+                range,
+                warnings: raster.warnings().to_vec(),
+            })
+        }
+    }
+}
+
+/// A raster that is open.
+enum Raster {
+    GeoTiff(Box<GeoTiffReader>),
+    Gdal(gdal::Raster),
+}
+
+impl Raster {
+    fn open(path: &Path) -> Result<Self> {
+        match raster::open(path) {
+            Ok(reader) => Ok(Raster::GeoTiff(Box::new(reader))),
+            Err(error) if gdal_may_help(&error) => gdal::open_raster(path).map(Raster::Gdal),
+            Err(error) => Err(error),
+        }
+    }
 }
 
 /// A raster, whole, and what is to be told about it.
 pub(super) fn raster(path: &Path) -> Result<(Grid, Vec<String>)> {
-    let reader = raster::open(path)?;
-    Ok((reader.read_grid()?, reader.info().warnings.clone()))
+    match Raster::open(path)? {
+        Raster::GeoTiff(reader) => Ok((reader.read_grid()?, reader.info().warnings.clone())),
+        Raster::Gdal(raster) => Ok((raster.read_grid()?, raster.warnings().to_vec())),
+    }
 }
 
 /// Where a raster is, without reading its cells.
 pub(super) fn raster_place(path: &Path) -> Result<(Frame, Option<Crs>)> {
-    let reader = raster::open(path)?;
-    Ok((reader.frame(), reader.info().crs.clone()))
+    match Raster::open(path)? {
+        Raster::GeoTiff(reader) => Ok((reader.frame(), reader.info().crs.clone())),
+        Raster::Gdal(raster) => Ok((raster.frame(), raster.crs().cloned())),
+    }
 }
 
 /// A mesh as this program writes it.
@@ -125,10 +187,9 @@ pub(super) fn mesh(path: &Path) -> Result<Mesh> {
     mesh::read(path)
 }
 
-/// What takes coordinates from one system to the other.
+/// What takes coordinates from one system to the other; needs the feature `proj`.
 pub(super) fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
-    Err(Error::unsupported(format!("reprojecting from {from} to {to} needs PROJ, which is not in this build"))
-        .cure("build with it: cargo build --release --features proj"))
+    proj::transform(from, to)
 }
 
 /// Writes a mesh, format by extension.

@@ -14,7 +14,9 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     let mut sheet = Sheet::with_warnings(facts.warnings);
     sheet.silent("kind", "raster");
     sheet.plain("format", facts.format);
-    sheet.plain("sample", facts.sample);
+    if let Some(sample) = facts.sample {
+        sheet.plain("sample", sample);
+    }
     sheet.row("size", format!("{} x {} cells", frame.width, frame.height), json!([frame.width, frame.height]));
     sheet.row("cell", cell(&frame), json!(frame.transform));
     sheet.bounds(extent(&frame));
