@@ -1,15 +1,17 @@
 use super::args::ContourArgs;
 use super::gather::Ground;
-use super::open::{self, Heights};
-use super::outputs::{self, Format};
+use super::open;
+use super::outputs::{self, Format, Target};
 use super::plan::SurfacePlan;
 use super::summary::tell_place;
 use super::talk::Talk;
 use super::units::Units;
 use super::{Exit, gather, raster};
 use crate::crs::Crs;
-use crate::data::{Bounds, ContourLine};
+use crate::data::Bounds;
 use crate::error::Result;
+use crate::io::contours::ContourSummary;
+use crate::terrain::Levels;
 
 const FORMATS: &[Format<()>] = &[
     Format { extension: "shp", kind: (), companions: &["shx", "dbf", "prj", "cpg"] },
@@ -24,58 +26,47 @@ const DEFAULT_INTERVAL: f64 = 1.0;
 pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
-    let heights = heights(args);
+    let levels = levels(args)?;
     let ground = gather::ground(&mut plan, talk)?;
-    let crs = match &ground {
-        Ground::Surface(gathered) => gathered.surface.crs().cloned(),
-        Ground::Raster(grid) => grid.crs.clone(),
-    };
+    let crs = ground.crs();
     if args.interval.is_none() && args.levels.is_empty() {
-        let height = Units::of(crs.as_ref()).height(DEFAULT_INTERVAL);
+        let height = Units::of(crs).height(DEFAULT_INTERVAL);
         talk.note(format_args!("contours are {height} apart (--interval)"));
     }
-    let lines = match &ground {
-        Ground::Surface(gathered) => open::contours_of_surface(gathered.surface.as_ref(), &heights)?,
-        Ground::Raster(grid) => open::contours_of_grid(grid, &heights)?,
-    };
-    for target in &targets {
-        open::write_contours(&target.path, &lines, crs.as_ref()).map_err(|e| e.in_file(&target.path))?;
+    let mut drawn = ContourSummary::default();
+    for Target { path, .. } in &targets {
+        let written = match &ground {
+            Ground::Surface(gathered) => open::contours_of_surface(path, gathered.surface.as_ref(), &levels),
+            Ground::Raster(grid) => open::contours_of_grid(path, grid, &levels),
+        };
+        drawn = written.map_err(|e| e.in_file(path))?;
+        drawn.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
     }
     match &ground {
         Ground::Surface(gathered) => gathered.made.tell(gathered.surface.as_ref(), talk),
         Ground::Raster(grid) => {
-            talk.line(format_args!("raster      {}", raster::describe(&grid.frame, crs.as_ref())));
-            tell_place(Bounds::default(), crs.as_ref(), talk);
+            talk.line(format_args!("raster      {}", raster::describe(&grid.frame, crs)));
+            tell_place(Bounds::default(), crs, talk);
         }
     }
-    tell_lines(&lines, crs.as_ref(), talk);
+    tell_lines(&drawn, crs, talk);
     outputs::tell(&targets, talk);
     Ok(Exit::Done)
 }
 
-fn heights(args: &ContourArgs) -> Heights {
-    if args.levels.is_empty() {
-        return Heights::Every { interval: args.interval.unwrap_or(DEFAULT_INTERVAL), base: args.base };
+fn levels(args: &ContourArgs) -> Result<Levels> {
+    match args.levels.as_slice() {
+        [] => Levels::every(args.interval.unwrap_or(DEFAULT_INTERVAL), args.base),
+        levels => Levels::listed(levels),
     }
-    let mut levels = args.levels.clone();
-    levels.sort_by(f64::total_cmp);
-    levels.dedup();
-    Heights::These(levels)
 }
 
-fn tell_lines(lines: &[ContourLine], crs: Option<&Crs>, talk: &Talk) {
-    let (Some(low), Some(high)) =
-        (lines.iter().map(|line| line.level).reduce(f64::min), lines.iter().map(|line| line.level).reduce(f64::max))
-    else {
-        talk.warning("no contour crosses the surface at these levels");
-        return;
-    };
+fn tell_lines(drawn: &ContourSummary, crs: Option<&Crs>, talk: &Talk) {
+    if drawn.lines == 0 {
+        return talk.warning("no contour crosses the surface at these levels");
+    }
     let units = Units::of(crs);
-    let closed = lines.iter().filter(|line| line.is_closed()).count();
-    talk.line(format_args!(
-        "contours    {} lines ({closed} closed) from {} to {}",
-        lines.len(),
-        units.height(low),
-        units.height(high)
-    ));
+    let (low, high) = (units.height(drawn.bounds.min[2]), units.height(drawn.bounds.max[2]));
+    let noun = if drawn.lines == 1 { "line" } else { "lines" };
+    talk.line(format_args!("contours    {} {noun} ({} closed) from {low} to {high}", drawn.lines, drawn.closed));
 }

@@ -4,6 +4,7 @@ use super::plan::SurfacePlan;
 use super::raster::{self, Watched};
 use super::summary::SurfaceFacts;
 use super::talk::Talk;
+use super::units::Units;
 use super::{Exit, gather, open};
 use crate::error::Result;
 
@@ -18,13 +19,19 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let gathered = gather::surface(&mut plan, talk)?;
     let surface = gathered.surface.as_ref();
     let frame = raster::frame(&args.frame, SurfaceFacts::of(surface).extent, surface.crs(), talk)?;
-    let dem = open::dem(surface, frame);
+    let dem = open::dem(surface, frame)?;
+    let mut written = None;
     for target in &targets {
         let watched = Watched::new(dem.as_ref(), "writing cells", talk);
-        open::write_heights(&target.path, &watched).map_err(|e| e.in_file(&target.path))?;
+        written = Some(open::write_heights(&target.path, &watched).map_err(|e| e.in_file(&target.path))?);
     }
     gathered.made.tell(surface, talk);
     talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
+    if let Some(cells) = written.filter(|cells| cells.valid > 0) {
+        let units = Units::of(surface.crs());
+        let (low, high) = (units.height(cells.min), units.height(cells.max));
+        talk.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
+    }
     outputs::tell(&targets, talk);
     Ok(Exit::Done)
 }

@@ -1,22 +1,23 @@
 //! From files to a surface.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::args::{Corners, EdgeLength};
+use super::args::EdgeLength;
 use super::lines::{self, Rings};
 use super::open;
 use super::plan::{From, PointPlan, SurfacePlan};
 use super::relabeled::Relabeled;
-use super::summary::Made;
-use super::systems::{self, Stated, Systems, Wish};
+use super::summary::{Made, seconds};
+use super::systems::{self, Role, Stated, Systems, Wish};
 use super::talk::Talk;
 use super::units::Units;
 use crate::crs::{Crs, Transform};
 use crate::data::{Grid, Layer, PointBatch, PointSource, Surface};
 use crate::error::{Error, Result};
-use crate::terrain::{Classes, Columns, Selection, SelectionReport, TinBuilder};
+use crate::terrain::{Classes, Columns, Selection, SelectionReport, TinBuilder, TinReport};
 
 /// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
@@ -31,6 +32,15 @@ const REPROJECTED_AT_ONCE: usize = 4096;
 pub(super) enum Ground {
     Surface(Gathered),
     Raster(Grid),
+}
+
+impl Ground {
+    pub(super) fn crs(&self) -> Option<&Crs> {
+        match self {
+            Ground::Surface(gathered) => gathered.surface.crs(),
+            Ground::Raster(grid) => grid.crs.as_ref(),
+        }
+    }
 }
 
 /// A surface, and what is to be told of how it was made.
@@ -53,7 +63,8 @@ pub(super) fn ground(plan: &mut SurfacePlan, talk: &Talk) -> Result<Ground> {
             Ok(Ground::Surface(Gathered { surface, made: Made::default() }))
         }
         From::Raster(path) => {
-            let mut grid = open::raster(path)?;
+            let (mut grid, warnings) = open::raster(path)?;
+            warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
             grid.crs = one_system(path, grid.crs.as_ref(), &plan.wish, talk)?;
             Ok(Ground::Raster(grid))
         }
@@ -77,7 +88,7 @@ pub(super) fn surface(plan: &mut SurfacePlan, talk: &Talk) -> Result<Gathered> {
 }
 
 fn one_system(path: &Path, crs: Option<&Crs>, wish: &Wish, talk: &Talk) -> Result<Option<Crs>> {
-    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned() }];
+    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), role: Role::Ground }];
     Ok(systems::reconcile(&stated, wish, talk)?.crs)
 }
 
@@ -87,9 +98,11 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     let boundary = layers(&plan.boundary, talk)?;
 
     let mut stated: Vec<Stated> = files.iter().map(|file| file.stated.clone()).collect();
-    stated.extend(
-        breaklines.iter().chain(&boundary).map(|(path, layer)| Stated { path: path.clone(), crs: layer.crs.clone() }),
-    );
+    stated.extend(breaklines.iter().chain(&boundary).map(|(path, layer)| Stated {
+        path: path.clone(),
+        crs: layer.crs.clone(),
+        role: Role::Lines,
+    }));
     let Systems { from, crs } = systems::reconcile(&stated, wish, talk)?;
     let roads = Roads::new(&from, crs.as_ref(), talk)?;
     let (point_roads, layer_roads) = roads.by_file.split_at(files.len());
@@ -100,6 +113,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     let rim = Rim::new(plan, &units, talk);
     builder.duplicates = plan.duplicates;
     builder.max_edge = rim.max_edge;
+    builder.bounds = plan.bounds.map(|bounds| bounds.grown(0.0));
     builder.crs = crs;
 
     // Lines first: they are few, and what is wrong with them is known before the points are read.
@@ -117,12 +131,14 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
             }
         }
     }
-    let clip = clip_rings(&boundary, boundary_roads, &roads, plan.bounds)?;
-    clip.iter().for_each(|rings| builder.add_boundary(rings));
+    for rings in clip_polygons(&boundary, boundary_roads, &roads)? {
+        builder.add_boundary(&rings);
+    }
 
     let window = plan.bounds.map(|bounds| bounds.grown(rim.buffer));
     let selection = Selection::new(plan.classes.clone(), window);
     let (columns, report) = read_points(&mut files, point_roads, &roads, selection, talk)?;
+    roads.warn(talk);
     tell_classes(&report, &plan.classes, talk);
     if columns.x.is_empty() && made.breaklines == 0 {
         return Err(nothing_left(&report));
@@ -130,7 +146,14 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     builder.add_points(&columns.x, &columns.y, &columns.z);
     drop(columns);
 
+    let bar = talk.bar("triangulating", None);
+    let start = Instant::now();
     let tin = builder.build()?;
+    bar.finish_and_clear();
+    talk.detail(format_args!("triangulated in {}", seconds(start.elapsed())));
+    if tin.report().triangles == 0 {
+        return Err(no_triangle(tin.report(), &rim, &units));
+    }
     made.files = plan.files.len();
     made.points = Some(report);
     made.tin = Some(tin.report().clone());
@@ -187,7 +210,7 @@ fn open_all(paths: &[PathBuf], talk: &Talk) -> Result<Vec<PointFile>> {
         if !info.has_classes && paths.len() > 1 {
             talk.detail(format_args!("{}: no classes, all points are used", path.display()));
         }
-        let stated = Stated { path: path.clone(), crs: info.crs.clone() };
+        let stated = Stated { path: path.clone(), crs: info.crs.clone(), role: Role::Ground };
         let count = info.count;
         let keep = paths.len() <= FILES_KEPT_OPEN || path.as_os_str() == super::inputs::STDIN;
         files.push(PointFile { stated, count, source: Some(source).filter(|_| keep) });
@@ -223,7 +246,6 @@ impl Roads {
                     None => {
                         let transform = open::transform(from, to)?;
                         talk.note(format_args!("reprojecting from {from} to {to}"));
-                        transform.warnings().iter().for_each(|text| talk.warning(text));
                         known.push(from);
                         roads.transforms.push(transform);
                         known.len() - 1
@@ -234,6 +256,12 @@ impl Roads {
             roads.by_file.push(road);
         }
         Ok(roads)
+    }
+
+    /// Says what there is to say of the transforms: which operations, how good. Complete when they are
+    /// done.
+    fn warn(&self, talk: &Talk) {
+        self.transforms.iter().flat_map(|transform| transform.warnings()).for_each(|text| talk.warning(text));
     }
 
     fn take(&self, road: Option<usize>, points: &mut [[f64; 3]]) -> Result<()> {
@@ -286,6 +314,7 @@ fn read_points(
             selection.add(&batch).map_err(|e| e.in_file(path))?;
             bar.inc(batch.len() as u64);
         }
+        talk.detail(format_args!("{}: read", path.display()));
         source.warnings().iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
     }
     bar.finish_and_clear();
@@ -299,8 +328,26 @@ fn tell_classes(report: &SelectionReport, wanted: &Classes, talk: &Talk) {
         }
     } else if report.classes.is_some() {
         talk.note("class 2 (ground) is used");
+        if report.without_class > 0 {
+            talk.note(format_args!("{} points of files without classes are used too", report.without_class));
+        }
     } else if !report.by_class.is_empty() {
         talk.note("no point is of class 2 (ground): all classes are used");
+    }
+}
+
+#[cold]
+fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
+    let TinReport { faces_beyond_max_edge: long, faces_clipped: clipped, .. } = report;
+    match rim.max_edge {
+        Some(length) if *long > 0 => {
+            let length = units.length(length);
+            Error::format(format!(
+                "no triangle is left: {long} have edges over {length} at the rim, {clipped} are clipped"
+            ))
+            .cure("allow longer edges with --max-edge LENGTH or --max-edge none")
+        }
+        _ => Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds")),
     }
 }
 
@@ -317,13 +364,8 @@ fn nothing_left(report: &SelectionReport) -> Error {
     error
 }
 
-/// What the surface is clipped to: the boundary, the bounds, or what both have in common.
-fn clip_rings(
-    boundary: &[(PathBuf, Layer)],
-    by_file: &[Option<usize>],
-    roads: &Roads,
-    bounds: Option<Corners>,
-) -> Result<Vec<Rings>> {
+/// The polygons that the surface is clipped to.
+fn clip_polygons(boundary: &[(PathBuf, Layer)], by_file: &[Option<usize>], roads: &Roads) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
     for ((path, layer), road) in boundary.iter().zip(by_file) {
         for mut rings in lines::polygons(layer, path)? {
@@ -335,13 +377,5 @@ fn clip_rings(
             polygons.push(rings);
         }
     }
-    let Some(bounds) = bounds else { return Ok(polygons) };
-    if boundary.is_empty() {
-        return Ok(vec![vec![lines::rectangle(bounds)]]);
-    }
-    let clipped: Vec<Rings> = polygons.iter().map(|rings| lines::clipped(rings, bounds)).collect();
-    if clipped.iter().all(Vec::is_empty) {
-        return Err(Error::usage("the boundary lies outside of --bounds"));
-    }
-    Ok(clipped)
+    Ok(polygons)
 }

@@ -1,21 +1,22 @@
 use super::args::{FrameArgs, HillshadeArgs};
 use super::gather::Ground;
-use super::open::{self, Light, ShadeFormat};
+use super::open::{self, ShadeFormat};
 use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
 use super::raster::{self, Watched};
 use super::summary::SurfaceFacts;
 use super::talk::Talk;
-use super::units::{Units, number};
+use super::units::number;
 use super::{Exit, gather};
 use crate::crs::Crs;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
+use crate::terrain::{Hillshade, Light};
 
 const FORMATS: &[Format<ShadeFormat>] = &[
     Format { extension: "tif", kind: ShadeFormat::GeoTiff, companions: &[] },
     Format { extension: "tiff", kind: ShadeFormat::GeoTiff, companions: &[] },
-    Format { extension: "png", kind: ShadeFormat::Png, companions: &[] },
+    Format { extension: "png", kind: ShadeFormat::Png, companions: &["pgw"] },
 ];
 
 /// Shades a TIN or a DEM.
@@ -27,15 +28,13 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
         Ground::Surface(gathered) => {
             let surface = gathered.surface.as_ref();
             let frame = raster::frame(&args.frame, SurfaceFacts::of(surface).extent, surface.crs(), talk)?;
-            let shade = open::shade_of_surface(surface, frame, light(args, surface.crs(), talk));
-            write(&targets, shade.as_ref(), talk)?;
+            shade(open::dem(surface, frame)?.as_ref(), args, &targets, talk)?;
             gathered.made.tell(surface, talk);
             talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
         }
         Ground::Raster(grid) => {
             refuse_frame(&args.frame)?;
-            let shade = open::shade_of_grid(&grid, light(args, grid.crs.as_ref(), talk));
-            write(&targets, shade.as_ref(), talk)?;
+            shade(&grid, args, &targets, talk)?;
             talk.line(format_args!("raster      {}", raster::describe(&grid.frame, grid.crs.as_ref())));
         }
     }
@@ -43,9 +42,15 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-fn write(targets: &[outputs::Target<ShadeFormat>], shade: &dyn BlockSource, talk: &Talk) -> Result<()> {
+fn shade(
+    heights: &dyn BlockSource,
+    args: &HillshadeArgs,
+    targets: &[outputs::Target<ShadeFormat>],
+    talk: &Talk,
+) -> Result<()> {
+    let shade = Hillshade::new(heights, light(args, heights.crs(), talk))?;
     for target in targets {
-        let watched = Watched::new(shade, "shading cells", talk);
+        let watched = Watched::new(&shade, "shading cells", talk);
         open::write_shade(&target.path, target.kind, &watched).map_err(|e| e.in_file(&target.path))?;
     }
     Ok(())
@@ -53,7 +58,7 @@ fn write(targets: &[outputs::Target<ShadeFormat>], shade: &dyn BlockSource, talk
 
 fn light(args: &HillshadeArgs, crs: Option<&Crs>, talk: &Talk) -> Light {
     let z_factor = args.z_factor.unwrap_or_else(|| {
-        let factor = Units::of(crs).height_in_plan();
+        let factor = Light::for_crs(crs).z_factor;
         if factor != 1.0 {
             talk.note(format_args!("heights are multiplied by {} to match the plan (--z-factor)", number(factor)));
         }

@@ -2,9 +2,6 @@
 
 use std::path::Path;
 
-use geo::{BooleanOps, LineString, MultiPolygon, Polygon};
-
-use super::args::Corners;
 use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
 
@@ -125,26 +122,6 @@ pub(super) fn near<'a>(line: &'a [[f64; 3]], window: &Bounds) -> Vec<&'a [[f64; 
     runs
 }
 
-/// The ring around a rectangle.
-pub(super) fn rectangle(bounds: Corners) -> Vec<[f64; 2]> {
-    let ([x0, y0], [x1, y1]) = (bounds.min, bounds.max);
-    vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]]
-}
-
-/// What a polygon and a rectangle have in common, which may be nothing.
-pub(super) fn clipped(rings: &Rings, bounds: Corners) -> Rings {
-    let line = |ring: &Vec<[f64; 2]>| LineString::from(ring.clone());
-    let rectangle = Polygon::new(line(&rectangle(bounds)), Vec::new());
-    // The rings as they are: which of them are holes comes out of the even-odd rule.
-    let polygon = MultiPolygon::new(rings.iter().map(|ring| Polygon::new(line(ring), Vec::new())).collect());
-    let rings_of = |polygon: Polygon| {
-        let (outer, inner) = polygon.into_inner();
-        std::iter::once(outer).chain(inner)
-    };
-    let common = polygon.intersection(&rectangle);
-    common.into_iter().flat_map(rings_of).map(|ring| ring.into_iter().map(|p| [p.x, p.y]).collect()).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,20 +159,6 @@ mod tests {
         let points = layer(vec![Shape::Points(vec![[0.0; 3]])]);
         assert!(breaklines(&points, Path::new("p")).is_err());
         assert!(polygons(&points, Path::new("p")).is_err());
-    }
-
-    #[test]
-    fn a_polygon_with_a_hole_is_clipped_to_a_rectangle() {
-        let square = |a: f64, b: f64| vec![[a, a], [b, a], [b, b], [a, b], [a, a]];
-        let bounds = Corners { min: [5.0, -5.0], max: [50.0, 50.0] };
-        let rings = clipped(&vec![square(0.0, 10.0), square(4.0, 6.0)], bounds);
-        let area: f64 = rings
-            .iter()
-            .flat_map(|ring| ring.windows(2))
-            .map(|pair| (pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1]) / 2.0)
-            .sum();
-        assert!((area.abs() - 48.0).abs() < 1e-6, "{area}: {rings:?}");
-        assert!(clipped(&vec![square(60.0, 70.0)], bounds).is_empty());
     }
 
     #[test]

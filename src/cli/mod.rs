@@ -33,7 +33,7 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use self::args::{Cli, Verb};
+use self::args::{Cli, TalkArgs, Verb};
 use self::talk::Talk;
 use crate::error::{Kind, Result};
 
@@ -70,10 +70,11 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
     }
     let start = Instant::now();
-    match dispatch(&cli.verb, &talk) {
+    match dispatch(&cli.verb, &cli.talk, &talk) {
         Ok(exit) => {
-            if !matches!(cli.verb, Verb::Info(_)) {
-                summary::tell_cost(start, &talk);
+            match cli.verb {
+                Verb::Info(_) | Verb::Demo(_) => {}
+                _ => summary::tell_cost(start, &talk),
             }
             exit
         }
@@ -87,7 +88,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     }
 }
 
-fn dispatch(verb: &Verb, talk: &Talk) -> Result<Exit> {
+fn dispatch(verb: &Verb, how: &TalkArgs, talk: &Talk) -> Result<Exit> {
     match verb {
         Verb::Info(args) => info::run(args, talk),
         Verb::Tin(args) => tin::run(args, talk),
@@ -95,7 +96,7 @@ fn dispatch(verb: &Verb, talk: &Talk) -> Result<Exit> {
         Verb::Contour(args) => contour::run(args, talk),
         Verb::Hillshade(args) => hillshade::run(args, talk),
         Verb::Check(args) => check::run(args, talk),
-        Verb::Demo(args) => demo::run(args, talk),
+        Verb::Demo(args) => demo::run(args, how, talk),
     }
 }
 

@@ -1,10 +1,16 @@
 //! The one place where the command line meets readers, writers and verbs of the library.
 
+use std::io::Read;
 use std::path::Path;
 
 use crate::crs::{Crs, Transform};
-use crate::data::{BlockSource, Bounds, ContourLine, Frame, Grid, Layer, Mesh, PointSource, Surface, Window};
-use crate::error::{Error, Result};
+use crate::data::{BlockSource, Frame, Grid, Layer, Mesh, PointSource, Surface};
+use crate::error::{Error, Kind, Result};
+use crate::io::contours::{self, ContourSummary};
+use crate::io::geotiff::{self, CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
+use crate::io::mesh::{self, MeshSummary};
+use crate::io::{gdal, layer, png, points, proj, raster};
+use crate::terrain::{self, Dem, GridSurface, Levels};
 
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,157 +21,195 @@ pub(super) enum Content {
     Mesh,
 }
 
-/// What the extension says. What it does not know are points: text comes under any name.
+/// What the first bytes and the extension say. What neither knows are points: text comes under any
+/// name.
 pub(super) fn content(path: &Path) -> Content {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let head = first_bytes(path).unwrap_or_default();
+    if head.starts_with(b"LASF") {
+        return Content::Points;
+    }
+    if raster::is_tiff(&head) {
+        return Content::Raster;
+    }
+    let file = layer::split(&path.to_string_lossy()).0;
+    let extension = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match extension.as_str() {
-        "ply" => Content::Mesh,
-        "tif" | "tiff" | "vrt" | "img" | "hgt" | "dem" | "dt0" | "dt1" | "dt2" | "asc" => Content::Raster,
+        "ply" | "obj" | "stl" => Content::Mesh,
+        "tif" | "tiff" | "vrt" | "img" | "hgt" | "dem" | "dt0" | "dt1" | "dt2" => Content::Raster,
+        // Points as text, or a grid.
+        "asc" if head.to_ascii_lowercase().starts_with(b"ncols") => Content::Raster,
         "shp" | "geojson" | "json" | "gpkg" | "fgb" | "kml" | "gml" | "dxf" => Content::Layer,
         _ => Content::Points,
     }
 }
 
-/// Points of any format.
+fn first_bytes(path: &Path) -> Option<Vec<u8>> {
+    let file = std::fs::File::open(path).ok()?;
+    // Reading from a pipe would take away what it holds.
+    if !file.metadata().ok()?.is_file() {
+        return None;
+    }
+    let mut head = Vec::new();
+    file.take(16).read_to_end(&mut head).ok()?;
+    Some(head)
+}
+
+/// Points of any format; of a vector layer, with the heights of an attribute where the name ends in
+/// `:FIELD`.
 pub(super) fn points(path: &Path) -> Result<Box<dyn PointSource + Send>> {
-    Err(missing(path, "points"))
+    let of_layer = || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path)?)?)) };
+    match content(path) {
+        Content::Layer => of_layer(),
+        Content::Points | Content::Raster | Content::Mesh => {
+            points::open(path).or_else(|error| match gdal_may_help(&error) {
+                // What GDAL says of a file that it does not know either is less exact.
+                true => of_layer().map_err(|_| error),
+                false => Err(error),
+            })
+        }
+    }
 }
 
-/// A vector layer, with the heights of an attribute where the name ends in `:FIELD`.
+/// A vector layer, with the heights of an attribute where the name ends in `:FIELD`; of formats that
+/// GDAL reads, the layer of that name.
 pub(super) fn layer(path: &Path) -> Result<Layer> {
-    Err(missing(path, "vector layers"))
+    let Some(spec) = path.to_str() else {
+        return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
+    };
+    layer::read(spec).or_else(|error| {
+        if !gdal_may_help(&error) {
+            return Err(error);
+        }
+        let (file, name) = layer::split(spec);
+        gdal::read_layer(&file, name)
+    })
 }
 
-/// What a raster's header says.
-#[derive(Debug, Clone)]
-pub(super) struct RasterFacts {
-    /// "GeoTIFF, tiles of 256 x 256, DEFLATE"
-    pub(super) format: String,
-    /// "Float32"
-    pub(super) sample: String,
-    pub(super) nodata: Option<f64>,
-    pub(super) place: RasterPlace,
-    pub(super) warnings: Vec<String>,
+/// Whether a file that is not read here may be one for GDAL.
+fn gdal_may_help(error: &Error) -> bool {
+    cfg!(feature = "gdal") && error.kind() == Kind::Unsupported
 }
 
 /// What a raster's header says, and its cells.
-pub(super) fn raster_facts(path: &Path) -> Result<(RasterFacts, Grid)> {
-    Err(missing(path, "rasters"))
+#[derive(Debug, Clone)]
+pub(super) struct RasterFacts {
+    /// "GeoTIFF, float32, 1 band, compression DEFLATE, tiles of 256 x 256"
+    pub(super) format: String,
+    /// "float32", unless the format says it
+    pub(super) sample: Option<String>,
+    pub(super) frame: Frame,
+    pub(super) crs: Option<Crs>,
+    /// Before scale and offset.
+    pub(super) nodata: Option<f64>,
+    pub(super) scale: f64,
+    pub(super) offset: f64,
+    pub(super) valid: u64,
+    pub(super) range: Option<[f64; 2]>,
+    pub(super) warnings: Vec<String>,
 }
 
-/// A raster, whole.
-pub(super) fn raster(path: &Path) -> Result<Grid> {
-    Err(missing(path, "rasters"))
+/// What a raster's header says, and what its cells say together; for GeoTIFF in bounded memory.
+pub(super) fn raster_facts(path: &Path) -> Result<RasterFacts> {
+    match Raster::open(path)? {
+        Raster::GeoTiff(reader) => {
+            let info = reader.info();
+            let extremes = reader.extremes()?;
+            Ok(RasterFacts {
+                format: info.description(),
+                sample: Some(info.sample.to_string()),
+                frame: reader.frame(),
+                crs: info.crs.clone(),
+                nodata: info.nodata,
+                scale: info.scale,
+                offset: info.offset,
+                valid: extremes.valid,
+                range: extremes.range,
+                warnings: info.warnings.clone(),
+            })
+        }
+        Raster::Gdal(raster) => {
+            let values = raster.read_grid()?.values;
+            let valid = values.into_iter().filter(|value| !value.is_nan());
+            let (count, range) = valid.fold((0, None), |(count, range): (u64, Option<[f64; 2]>), value| {
+                let [low, high] = range.unwrap_or([value; 2]);
+                (count + 1, Some([low.min(value), high.max(value)]))
+            });
+            Ok(RasterFacts {
+                format: raster.description(),
+                sample: None,
+                frame: raster.frame(),
+                crs: raster.crs().cloned(),
+                nodata: None,
+                scale: 1.0,
+                offset: 0.0,
+                valid: count,
+                range,
+                warnings: raster.warnings().to_vec(),
+            })
+        }
+    }
+}
+
+/// A raster that is open.
+enum Raster {
+    GeoTiff(Box<GeoTiffReader>),
+    Gdal(gdal::Raster),
+}
+
+impl Raster {
+    fn open(path: &Path) -> Result<Self> {
+        match raster::open(path) {
+            Ok(reader) => Ok(Raster::GeoTiff(Box::new(reader))),
+            Err(error) if gdal_may_help(&error) => gdal::open_raster(path).map(Raster::Gdal),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// A raster, whole, and what is to be told about it.
+pub(super) fn raster(path: &Path) -> Result<(Grid, Vec<String>)> {
+    match Raster::open(path)? {
+        Raster::GeoTiff(reader) => Ok((reader.read_grid()?, reader.info().warnings.clone())),
+        Raster::Gdal(raster) => Ok((raster.read_grid()?, raster.warnings().to_vec())),
+    }
+}
+
+/// Where a raster is, without reading its cells.
+pub(super) fn raster_place(path: &Path) -> Result<(Frame, Option<Crs>)> {
+    match Raster::open(path)? {
+        Raster::GeoTiff(reader) => Ok((reader.frame(), reader.info().crs.clone())),
+        Raster::Gdal(raster) => Ok((raster.frame(), raster.crs().cloned())),
+    }
 }
 
 /// A mesh as this program writes it.
 pub(super) fn mesh(path: &Path) -> Result<Mesh> {
-    Err(missing(path, "meshes"))
+    mesh::read(path)
 }
 
-/// What takes coordinates from one system to the other.
+/// What takes coordinates from one system to the other; needs the feature `proj`.
 pub(super) fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
-    Err(Error::unsupported(format!("reprojecting from {from} to {to}")))
+    proj::transform(from, to)
 }
 
-/// The file formats of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MeshFormat {
-    Ply,
-    Obj,
-    Stl,
-}
-
-/// Writes a mesh; returns what is to be told about it.
-pub(super) fn write_mesh(target: &Path, _format: MeshFormat, _surface: &dyn Surface) -> Result<Vec<String>> {
-    Err(missing(target, "meshes"))
-}
-
-/// Where a raster is.
-#[derive(Debug, Clone)]
-pub(super) struct RasterPlace {
-    pub(super) frame: Frame,
-    pub(super) crs: Option<Crs>,
-}
-
-/// Size and place of a raster, without reading its cells.
-pub(super) fn raster_place(path: &Path) -> Result<RasterPlace> {
-    Err(missing(path, "rasters"))
-}
-
-/// The frame around an extent with its corner at multiples of the resolution.
-pub(super) fn snapped(_extent: Bounds, resolution: f64) -> Result<Frame> {
-    Err(Error::unsupported(format!("a frame at {resolution}")))
+/// Writes a mesh, format by extension.
+pub(super) fn write_mesh(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
+    mesh::write(target, surface)
 }
 
 /// Heights of a surface at the centers of cells.
-pub(super) fn dem<'a>(surface: &'a dyn Surface, frame: Frame) -> Box<dyn BlockSource + 'a> {
-    Box::new(Blank { frame, crs: surface.crs() })
-}
-
-/// Where the light comes from.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Light {
-    pub(super) azimuth: f64,
-    pub(super) altitude: f64,
-    pub(super) z_factor: f64,
-}
-
-/// Brightness of a surface at the centers of cells.
-pub(super) fn shade_of_surface<'a>(surface: &'a dyn Surface, frame: Frame, _light: Light) -> Box<dyn BlockSource + 'a> {
-    Box::new(Blank { frame, crs: surface.crs() })
-}
-
-/// Brightness of the cells of a raster.
-pub(super) fn shade_of_grid(grid: &Grid, _light: Light) -> Box<dyn BlockSource + '_> {
-    Box::new(Blank { frame: grid.frame, crs: grid.crs.as_ref() })
-}
-
-struct Blank<'a> {
-    frame: Frame,
-    crs: Option<&'a Crs>,
-}
-
-impl BlockSource for Blank<'_> {
-    fn frame(&self) -> Frame {
-        self.frame
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        self.crs
-    }
-
-    fn fill(&self, _window: Window, out: &mut [f32]) -> Result<()> {
-        out.fill(f32::NAN);
-        Ok(())
-    }
-}
-
-/// The heights of contours.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Heights {
-    Every { interval: f64, base: f64 },
-    These(Vec<f64>),
-}
-
-/// Contours straight from triangles.
-pub(super) fn contours_of_surface(_surface: &dyn Surface, heights: &Heights) -> Result<Vec<ContourLine>> {
-    Err(Error::unsupported(format!("contours at {heights:?}")))
-}
-
-/// Contours between the centers of cells.
-pub(super) fn contours_of_grid(_grid: &Grid, heights: &Heights) -> Result<Vec<ContourLine>> {
-    Err(Error::unsupported(format!("contours at {heights:?}")))
+pub(super) fn dem<'a>(surface: &'a dyn Surface, frame: Frame) -> Result<Box<dyn BlockSource + 'a>> {
+    Ok(Box::new(Dem::new(surface, frame)?))
 }
 
 /// What is wrong with a surface, one line each.
-pub(super) fn flaws(_surface: &dyn Surface) -> Result<Vec<String>> {
-    Err(Error::unsupported("checking"))
+pub(super) fn flaws(surface: &dyn Surface) -> Vec<String> {
+    terrain::surface_flaws(surface).iter().map(ToString::to_string).collect()
 }
 
 /// Writes heights as GeoTIFF.
-pub(super) fn write_heights(target: &Path, _source: &dyn BlockSource) -> Result<()> {
-    Err(missing(target, "rasters"))
+pub(super) fn write_heights(target: &Path, source: &dyn BlockSource) -> Result<RasterSummary> {
+    geotiff::write(target, source, WriteOptions { cells: CellFormat::Heights, progress: None })
 }
 
 /// The file formats of a hillshade.
@@ -176,16 +220,22 @@ pub(super) enum ShadeFormat {
 }
 
 /// Writes brightness as a picture.
-pub(super) fn write_shade(target: &Path, _format: ShadeFormat, _source: &dyn BlockSource) -> Result<()> {
-    Err(missing(target, "pictures"))
+pub(super) fn write_shade(target: &Path, format: ShadeFormat, source: &dyn BlockSource) -> Result<()> {
+    match format {
+        ShadeFormat::GeoTiff => {
+            geotiff::write(target, source, WriteOptions { cells: CellFormat::Shades, progress: None }).map(drop)
+        }
+        ShadeFormat::Png => png::write_gray(target, source),
+    }
 }
 
-/// Writes contours, format by extension.
-pub(super) fn write_contours(target: &Path, _lines: &[ContourLine], _crs: Option<&Crs>) -> Result<()> {
-    Err(missing(target, "contours"))
+/// Draws contours straight from triangles and writes them as they come, format by extension.
+pub(super) fn contours_of_surface(target: &Path, surface: &dyn Surface, levels: &Levels) -> Result<ContourSummary> {
+    contours::write(target, &mut terrain::contours(surface, levels)?, surface.crs())
 }
 
-#[cold]
-fn missing(path: &Path, what: &str) -> Error {
-    Error::unsupported(format!("{what} are not supported by this build")).in_file(path)
+/// Draws contours between the centers of cells.
+pub(super) fn contours_of_grid(target: &Path, grid: &Grid, levels: &Levels) -> Result<ContourSummary> {
+    let surface = GridSurface::new(grid)?;
+    contours::write(target, &mut terrain::contours(&surface, levels)?, surface.crs())
 }

@@ -19,16 +19,23 @@ const DEFAULT_RESOLUTION: f64 = 1.0;
 /// If the raster to align to cannot be read or is in another system, or no cell would be there.
 pub(super) fn frame(args: &FrameArgs, extent: Bounds, crs: Option<&Crs>, talk: &Talk) -> Result<Frame> {
     let units = Units::of(crs);
+    let extent = match args.te {
+        Some(corners) => corners.grown(0.0),
+        None => extent,
+    };
+    if extent.is_empty() {
+        return Err(Error::format("the surface has no triangle, so there is no raster of it"));
+    }
     if let Some(path) = &args.align_to {
-        let info = open::raster_place(path)?;
-        if let (Some(theirs), Some(ours)) = (&info.crs, crs)
+        let (frame, theirs) = open::raster_place(path)?;
+        if let (Some(theirs), Some(ours)) = (theirs, crs)
             && !theirs.is_same(ours)
         {
             return Err(Error::unsupported(format!("the raster is in {theirs}, the surface in {ours}"))
                 .in_file(path)
                 .cure("reproject the input to the raster's system with --t-srs"));
         }
-        return Ok(info.frame);
+        return Frame::aligned_to(&frame, &extent);
     }
     let resolution = match args.resolution {
         Some(resolution) => resolution,
@@ -40,14 +47,7 @@ pub(super) fn frame(args: &FrameArgs, extent: Bounds, crs: Option<&Crs>, talk: &
             DEFAULT_RESOLUTION
         }
     };
-    let extent = match args.te {
-        Some(corners) => corners.grown(0.0),
-        None => extent,
-    };
-    if extent.is_empty() {
-        return Err(Error::format("the surface has no triangle, so there is no raster of it"));
-    }
-    open::snapped(extent, resolution)
+    Frame::snapped(&extent, resolution)
 }
 
 /// A source of blocks that tells a progress bar what it has filled.

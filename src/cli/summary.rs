@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::talk::Talk;
-use super::units::number;
+use super::units::{neat, number};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
@@ -78,11 +78,11 @@ impl Made {
 /// Where something is, and in which coordinate system.
 pub(super) fn tell_place(extent: Bounds, crs: Option<&Crs>, talk: &Talk) {
     if !extent.is_empty() {
-        let axis = |i: usize| format!("{} .. {}", extent.min[i], extent.max[i]);
+        let axis = |i: usize| format!("{} .. {}", neat(extent.min[i]), neat(extent.max[i]));
         talk.line(format_args!("extent      x {}, y {}, z {}", axis(0), axis(1), axis(2)));
     }
     match crs {
-        Some(crs) => talk.line(format_args!("CRS         {crs}, in units of the {}", crs.unit.name)),
+        Some(crs) => talk.line(format_args!("CRS         {}", crs.describe())),
         None => talk.line("CRS         not known"),
     }
 }
@@ -158,8 +158,8 @@ pub(super) fn tell_cost(start: Instant, talk: &Talk) {
     }
 }
 
-fn seconds(time: Duration) -> String {
-    format!("{} s", number(time.as_secs_f64()))
+pub(super) fn seconds(time: Duration) -> String {
+    format!("{:.2} s", time.as_secs_f64())
 }
 
 /// The most memory that this process held, where the system tells.

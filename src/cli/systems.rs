@@ -30,6 +30,15 @@ pub(super) enum Degrees {
 pub(super) struct Stated {
     pub(super) path: PathBuf,
     pub(super) crs: Option<Crs>,
+    pub(super) role: Role,
+}
+
+/// What a file is there for. Where all else is equal, the definition of the later one is taken:
+/// that of a `.prj` has shortened names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Role {
+    Lines,
+    Ground,
 }
 
 /// The answer.
@@ -80,7 +89,7 @@ fn assigned(files: &[Stated], wish: &Wish, talk: &Talk) -> Vec<Stated> {
                 let path = file.path.display();
                 talk.note(format_args!("{path} states {crs}; {assign} is taken, as --a-srs says"));
             }
-            Stated { path: file.path.clone(), crs: Some(assign.clone()) }
+            Stated { crs: Some(assign.clone()), ..file.clone() }
         })
         .collect()
 }
@@ -94,7 +103,7 @@ fn agree(files: &[Stated], talk: &Talk) -> Result<Option<Crs>> {
             return Err(two_systems(best, (file, crs)));
         }
         // The most complete definition, whatever the order of the files.
-        if rank(crs) > rank(best.1) {
+        if rank(file, crs) > rank(best.0, best.1) {
             best = (file, crs);
         }
     }
@@ -108,8 +117,8 @@ fn agree(files: &[Stated], talk: &Talk) -> Result<Option<Crs>> {
     Ok(Some(best.clone()))
 }
 
-fn rank(crs: &Crs) -> impl PartialOrd + use<'_> {
-    (crs.vertical_epsg, crs.vertical_unit.is_some(), crs.epsg, crs.wkt.as_deref(), crs.name.as_str())
+fn rank<'a>(file: &Stated, crs: &'a Crs) -> impl PartialOrd + use<'a> {
+    (crs.vertical_epsg, crs.vertical_unit.is_some(), crs.epsg, file.role, crs.wkt.as_deref(), crs.name.as_str())
 }
 
 fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Error {
@@ -185,6 +194,7 @@ mod tests {
             .map(|(i, &code)| Stated {
                 path: format!("f{i}").into(),
                 crs: code.map(|code| crs(code, CrsKind::Projected)),
+                role: Role::Ground,
             })
             .collect()
     }
@@ -229,7 +239,7 @@ mod tests {
     #[test]
     fn degrees_and_geocentric_are_refused() {
         let of = |kind, degrees| {
-            let stated = [Stated { path: "f".into(), crs: Some(crs(1, kind)) }];
+            let stated = [Stated { path: "f".into(), crs: Some(crs(1, kind)), role: Role::Ground }];
             reconcile(&stated, &Wish { degrees, ..Wish::default() }, &quiet())
         };
         assert!(of(CrsKind::Geographic, Degrees::Refuse).unwrap_err().cure_text().unwrap().contains("--force-degrees"));

@@ -1,15 +1,15 @@
 use super::args::TinArgs;
-use super::open::{self, MeshFormat};
+use super::open;
 use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
 use super::talk::Talk;
 use super::{Exit, gather};
 use crate::error::Result;
 
-const FORMATS: &[Format<MeshFormat>] = &[
-    Format { extension: "ply", kind: MeshFormat::Ply, companions: &[] },
-    Format { extension: "obj", kind: MeshFormat::Obj, companions: &[] },
-    Format { extension: "stl", kind: MeshFormat::Stl, companions: &[] },
+const FORMATS: &[Format<()>] = &[
+    Format { extension: "ply", kind: (), companions: &[] },
+    Format { extension: "obj", kind: (), companions: &[] },
+    Format { extension: "stl", kind: (), companions: &["stl.origin.txt"] },
 ];
 
 /// Builds a TIN and writes it as a mesh.
@@ -19,8 +19,10 @@ pub(super) fn run(args: &TinArgs, talk: &Talk) -> Result<Exit> {
     let gathered = gather::surface(&mut plan, talk)?;
     let surface = gathered.surface.as_ref();
     for target in &targets {
-        for note in open::write_mesh(&target.path, target.kind, surface).map_err(|e| e.in_file(&target.path))? {
-            talk.note(format_args!("{}: {note}", target.path.display()));
+        let written = open::write_mesh(&target.path, surface).map_err(|e| e.in_file(&target.path))?;
+        if let Some(([x, y, z], beside)) = written.origin {
+            let (mesh, beside) = (target.path.display(), beside.display());
+            talk.note(format_args!("{mesh}: coordinates are relative to {x} {y} {z}, as {beside} says"));
         }
     }
     gathered.made.tell(surface, talk);

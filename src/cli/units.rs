@@ -50,15 +50,6 @@ impl Units {
         self.is_angular
     }
 
-    /// What heights are multiplied by to be in the units of the plan.
-    pub(super) fn height_in_plan(&self) -> f64 {
-        match (&self.plan, &self.height) {
-            (Some(_), Some(height)) if self.is_angular => height.factor / METRES_PER_DEGREE,
-            (Some(plan), Some(height)) if plan.factor > 0.0 => height.factor / plan.factor,
-            _ => 1.0,
-        }
-    }
-
     /// The two names, where lengths of the plan and heights are in different units.
     pub(super) fn disagreement(&self) -> Option<(&str, &str)> {
         match (&self.plan, &self.height) {
@@ -73,12 +64,24 @@ impl Units {
 fn with_unit(value: f64, unit: Option<&Unit>) -> String {
     let value = number(value);
     match unit.map(|unit| unit.name.as_str()) {
+        None if value == "1" => "1 unit".to_owned(),
         None => format!("{value} units"),
         Some("metre" | "meter") => format!("{value} m"),
         Some("foot") => format!("{value} ft"),
         Some("US survey foot") => format!("{value} ftUS"),
         Some("degree") => format!("{value} degrees"),
         Some(name) => format!("{value} {name}"),
+    }
+}
+
+/// A number for people: without what is beyond the ninth decimal.
+pub(super) fn neat(value: f64) -> String {
+    let text = format!("{:.9}", value + 0.0);
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        // Not zero, but smaller than that.
+        "0" | "-0" if value != 0.0 => value.to_string(),
+        "-0" => "0".to_owned(),
+        trimmed => trimmed.to_owned(),
     }
 }
 
@@ -121,11 +124,10 @@ mod tests {
     }
 
     #[test]
-    fn feet_over_metres_are_told_and_scaled() {
+    fn feet_over_metres_are_told() {
         let mixed =
             Units::of(Some(&crs(CrsKind::Projected, ("metre", 1.0), Some(("US survey foot", 1200.0 / 3937.0)))));
         assert_eq!(mixed.disagreement(), Some(("metre", "US survey foot")));
-        assert_eq!(mixed.height_in_plan(), 1200.0 / 3937.0);
         assert_eq!(mixed.height(2.5), "2.5 ftUS");
     }
 
@@ -142,6 +144,10 @@ mod tests {
             [(0.0, "0"), (1.0, "1"), (-12.345, "-12.35"), (100.0, "100"), (0.25, "0.25"), (0.001234, "0.00123")];
         for (value, text) in cases {
             assert_eq!(number(value), text);
+        }
+        let cases = [(-0.0, "0"), (0.1 + 0.2, "0.3"), (-1e-12, "-0.000000000001"), (1e-3, "0.001"), (7e5, "700000")];
+        for (value, text) in cases {
+            assert_eq!(neat(value), text);
         }
     }
 }

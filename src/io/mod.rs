@@ -2,6 +2,7 @@
 
 mod contain;
 pub mod contours;
+pub mod gdal;
 pub mod geojson;
 pub mod geotiff;
 pub mod las;
@@ -10,12 +11,10 @@ pub mod mesh;
 mod output;
 pub mod png;
 pub mod points;
+pub mod proj;
 pub mod raster;
 pub mod shapefile;
 pub mod text;
 mod world_file;
-pub mod gdal;
-mod output;
-pub mod proj;
 
 pub use output::Output;

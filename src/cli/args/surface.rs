@@ -9,9 +9,10 @@ use super::parse::{Corners, EdgeLength};
 pub(in crate::cli) struct SurfaceArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
-    /// Points from LAS, LAZ, COPC, text (x y z) and shapefiles (`FILE:FIELD` takes the height from
-    /// an attribute); or one TIN as this program writes it (.ply), which then comes with its
-    /// breaklines. `@list.txt` names one file a line (`#` starts a comment), relative to the list.
+    /// Points from LAS, LAZ, COPC, text (x y z) and vector layers (`FILE:FIELD` takes the height from
+    /// an attribute). Or one TIN: a .ply of this program, which comes with its breaklines and
+    /// coordinate system, or an .obj. `@list.txt` names one file a line (`#` starts a comment),
+    /// relative to the list.
     /// The order of the files makes no difference, except to `--duplicates first` and `last`.
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,
@@ -43,7 +44,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Triangles that can be reached from outside over longer edges are left out: the convex hull
     /// of real data has long slivers that nothing was measured in. Breaklines stop it. In the units
     /// of the coordinate system (100 metres are 328.08 feet); without one, 100 units.
-    #[arg(long, value_name = "LENGTH|none", help_heading = "Surface")]
+    #[arg(long, value_name = "LENGTH|none", allow_negative_numbers = true, help_heading = "Surface")]
     pub(in crate::cli) max_edge: Option<EdgeLength>,
 
     /// Classes to use, as `2,8` [default: 2 if any point has it, else all]

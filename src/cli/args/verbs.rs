@@ -25,7 +25,7 @@ pub(in crate::cli) struct FrameArgs {
     ///
     /// In the units of the coordinate system. Cells start at multiples of it, so that neighboring
     /// rasters fit together.
-    #[arg(long, value_name = "LENGTH", value_parser = positive)]
+    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     pub(in crate::cli) resolution: Option<f64>,
 
     /// Extent of the raster [default: that of the surface]
@@ -34,10 +34,11 @@ pub(in crate::cli) struct FrameArgs {
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true)]
     pub(in crate::cli) te: Option<Corners>,
 
-    /// Raster whose cells are to be matched exactly
+    /// Raster whose cells are to be matched
     ///
-    /// Same size, place and resolution as that file.
-    #[arg(long, value_name = "RASTER", conflicts_with_all = ["resolution", "te"])]
+    /// The cells are those of its grid, continued beyond its edges; the extent is that of the
+    /// surface, or of `--te`.
+    #[arg(long, value_name = "RASTER", conflicts_with = "resolution")]
     pub(in crate::cli) align_to: Option<PathBuf>,
 }
 
@@ -113,7 +114,7 @@ pub(in crate::cli) struct ContourArgs {
     /// Height between contours [default: 1]
     ///
     /// In the units of the heights.
-    #[arg(long, value_name = "HEIGHT", value_parser = positive, help_heading = "Levels")]
+    #[arg(long, value_name = "HEIGHT", value_parser = positive, allow_negative_numbers = true, help_heading = "Levels")]
     pub(in crate::cli) interval: Option<f64>,
 
     /// A height that contours are counted from
@@ -155,13 +156,13 @@ pub(in crate::cli) struct HillshadeArgs {
     pub(in crate::cli) azimuth: f64,
 
     /// How high the light stands above the horizon, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = altitude, default_value = "45", help_heading = "Light")]
+    #[arg(long, value_name = "DEGREES", value_parser = altitude, allow_negative_numbers = true, default_value = "45", help_heading = "Light")]
     pub(in crate::cli) altitude: f64,
 
     /// What heights are multiplied by [default: 1, or what brings them to the units of the plan]
     ///
     /// Heights in feet over a plan in metres count 0.3048 unless this says otherwise.
-    #[arg(long, value_name = "FACTOR", value_parser = positive, help_heading = "Light")]
+    #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Light")]
     pub(in crate::cli) z_factor: Option<f64>,
 }
 

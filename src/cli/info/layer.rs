@@ -42,7 +42,8 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     };
     sheet.row("heights", text, vertices - without_height);
     sheet.crs(layer.crs.as_ref());
-    sheet.row("fields", layer.fields.join(", "), layer.fields.clone());
+    let fields = if layer.fields.is_empty() { "none".to_owned() } else { layer.fields.join(", ") };
+    sheet.row("fields", fields, layer.fields.clone());
     Ok(sheet)
 }
 

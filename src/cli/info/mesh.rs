@@ -11,7 +11,8 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     let facts = SurfaceFacts::of(&mesh);
     let mut sheet = Sheet::default();
     sheet.silent("kind", "mesh");
-    sheet.plain("format", "TIN (PLY)");
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
+    sheet.plain("format", format!("TIN, {extension}"));
     sheet.plain("vertices", facts.vertices);
     sheet.plain("triangles", facts.triangles);
     sheet.row("breaklines", format!("{} edges", facts.constrained), facts.constrained);

@@ -79,7 +79,7 @@ fn tell(info: &PointInfo, census: &Census) -> Sheet {
     sheet.bounds(census.bounds);
     sheet.crs(info.crs.as_ref());
     if let Some((scale, offset)) = info.lattice {
-        let list = |values: [f64; 3]| values.map(|value| value.to_string()).join(" ");
+        let list = |values: [f64; 3]| values.map(|value| (value + 0.0).to_string()).join(" ");
         sheet.row("scale", list(scale), json!(scale));
         sheet.row("offset", list(offset), json!(offset));
     }

@@ -4,35 +4,36 @@ use serde_json::{Value, json};
 
 use super::Sheet;
 use crate::cli::open;
+use crate::cli::units::neat;
 use crate::data::{Bounds, Frame};
 use crate::error::Result;
 
 pub(super) fn sheet(path: &Path) -> Result<Sheet> {
-    let (facts, grid) = open::raster_facts(path)?;
-    let frame = facts.place.frame;
+    let facts = open::raster_facts(path)?;
+    let frame = facts.frame;
     let mut sheet = Sheet::with_warnings(facts.warnings);
     sheet.silent("kind", "raster");
     sheet.plain("format", facts.format);
-    sheet.plain("sample", facts.sample);
+    if let Some(sample) = facts.sample {
+        sheet.plain("sample", sample);
+    }
     sheet.row("size", format!("{} x {} cells", frame.width, frame.height), json!([frame.width, frame.height]));
     sheet.row("cell", cell(&frame), json!(frame.transform));
     sheet.bounds(extent(&frame));
-    sheet.crs(facts.place.crs.as_ref());
+    sheet.crs(facts.crs.as_ref());
     match facts.nodata {
         Some(nodata) if nodata.is_finite() => sheet.plain("nodata", nodata),
         // JSON has no such numbers.
         Some(nodata) => sheet.plain("nodata", nodata.to_string()),
         None => sheet.row("nodata", "not stated", Value::Null),
     }
-    let mut heights: Option<(f64, f64)> = None;
-    let mut valid = 0u64;
-    for &value in grid.values.iter().filter(|value| !value.is_nan()) {
-        valid += 1;
-        let (low, high) = heights.unwrap_or((value, value));
-        heights = Some((low.min(value), high.max(value)));
+    if facts.scale != 1.0 || facts.offset != 0.0 {
+        sheet.plain("scale", facts.scale);
+        sheet.plain("offset", facts.offset);
     }
-    sheet.row("valid", format!("{valid} of {} cells", grid.values.len()), valid);
-    if let Some((low, high)) = heights {
+    let cells = frame.width as u64 * frame.height as u64;
+    sheet.row("valid", format!("{} of {cells} cells", facts.valid), facts.valid);
+    if let Some([low, high]) = facts.range {
         sheet.plain("min", low);
         sheet.plain("max", high);
     }
@@ -42,9 +43,10 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
 fn cell(frame: &Frame) -> String {
     let t = frame.transform;
     if frame.is_north_up() {
-        format!("{} x {}, first corner at {} {}", t[1], -t[5], t[0], t[3])
+        format!("{} x {}, first corner at {} {}", neat(t[1]), neat(-t[5]), neat(t[0]), neat(t[3]))
     } else if t[2] == 0.0 && t[4] == 0.0 {
-        format!("{} x {} (south up or mirrored), first corner at {} {}", t[1], -t[5], t[0], t[3])
+        let size = format!("{} x {}", neat(t[1]), neat(-t[5]));
+        format!("{size} (south up or mirrored), first corner at {} {}", neat(t[0]), neat(t[3]))
     } else {
         format!("rotated, transform {}", t.map(|value| value.to_string()).join(" "))
     }

@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
+use crate::cli::units::neat;
 use crate::crs::{Crs, CrsKind};
 use crate::data::Bounds;
 
@@ -36,6 +37,7 @@ impl Sheet {
         let value = value.into();
         let text = match &value {
             Value::String(text) => text.clone(),
+            Value::Number(number) => number.as_f64().filter(|_| number.is_f64()).map_or(number.to_string(), neat),
             other => other.to_string(),
         };
         self.rows.push(Row { key, text: Some(text), value });
@@ -51,7 +53,7 @@ impl Sheet {
         if bounds.is_empty() {
             return self.row("bounds", "none", Value::Null);
         }
-        let axis = |i: usize, name: &str| format!("{name} {} .. {}", bounds.min[i], bounds.max[i]);
+        let axis = |i: usize, name: &str| format!("{name} {} .. {}", neat(bounds.min[i]), neat(bounds.max[i]));
         let mut text = format!("{}, {}", axis(0, "x"), axis(1, "y"));
         // Without a single height the box is inside out.
         if bounds.min[2] <= bounds.max[2] {
@@ -63,17 +65,6 @@ impl Sheet {
     /// The coordinate system, or that there is none.
     pub(super) fn crs(&mut self, crs: Option<&Crs>) {
         let Some(crs) = crs else { return self.row("crs", "not stated", Value::Null) };
-        let mut text = match crs.kind {
-            CrsKind::Projected | CrsKind::Local => format!("{crs}, in units of the {}", crs.unit.name),
-            CrsKind::Geographic => format!("{crs}, geographic, in units of the {}", crs.unit.name),
-            CrsKind::Geocentric => format!("{crs}, geocentric, in units of the {}", crs.unit.name),
-        };
-        if let Some(unit) = crs.vertical_unit.as_ref().filter(|unit| **unit != crs.unit) {
-            text += &format!(", heights in units of the {}", unit.name);
-        }
-        if let Some(code) = crs.vertical_epsg {
-            text += &format!(", vertical EPSG:{code}");
-        }
         let kind = match crs.kind {
             CrsKind::Projected => "projected",
             CrsKind::Geographic => "geographic",
@@ -89,7 +80,7 @@ impl Sheet {
             "vertical_unit": crs.vertical_unit.as_ref().map(|unit| json!({ "name": unit.name, "factor": unit.factor })),
             "wkt": crs.wkt,
         });
-        self.row("crs", text, value);
+        self.row("crs", crs.describe(), value);
     }
 
     /// For people; warnings are said elsewhere.
