@@ -5,7 +5,8 @@ use crate::geometry::Terrain;
 use crate::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, spatial_order};
 
-use super::{DuplicateRule, Tin, clip};
+use super::clip::Clip;
+use super::{DuplicateRule, Tin};
 
 /// Collects points and lines and makes a [`Tin`] of them.
 ///
@@ -99,7 +100,7 @@ impl TinBuilder {
     }
 
     /// Clips the surface to a polygon, given as its rings (by the even-odd rule: a ring within a ring is
-    /// a hole). Heights along the rings are taken from the surface. May be called several times: what
+    /// a hole). Heights along the rings are taken from the surface, and they and the rim of the surface become constraints. May be called several times: what
     /// is inside of any polygon stays.
     pub fn add_boundary(&mut self, rings: &[Vec<[f64; 2]>]) {
         self.boundaries.push(rings.to_vec());
@@ -143,11 +144,12 @@ impl TinBuilder {
         report.constrained_edges = triangulation.constrained_edges().count();
 
         let mut tin = Tin::new(triangulation, self.crs.take());
-        if self.bounds.is_some() || !self.boundaries.is_empty() {
-            report.faces_clipped = clip::clip(&mut tin, &self.boundaries, self.bounds);
-        }
         if let Some(limit) = self.max_edge {
             report.faces_beyond_max_edge = tin.peel(limit);
+        }
+        let clip = Clip { polygons: self.boundaries, bounds: self.bounds };
+        if !clip.is_everything() {
+            report.faces_clipped = clip.apply(&mut tin);
         }
         (report.vertices, report.triangles) = tin.count();
         tin.report = report;

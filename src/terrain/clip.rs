@@ -1,97 +1,122 @@
 //! Clipping a TIN to polygons.
 //!
-//! 1. The polygons are united, and intersected with the bounds and the convex hull: every vertex of the
-//!    clip line has a height then.
-//! 2. The heights are read off the surface, and the line goes in as constraints. Where it crosses a
-//!    breakline, the breakline's height stands.
-//! 3. The faces fall into regions that no constraint divides; of each, one point tells whether it stays.
+//! 1. The rim of the surface becomes a constraint, so that it stays where it is.
+//! 2. The clip line goes in as constraints, its vertices where they were given, with heights read off the
+//!    surface. Where it crosses a breakline or the rim, the height of those stands.
+//! 3. The faces fall into regions that no constraint divides; of each, one point tells whether it lies
+//!    within the old rim, the bounds, and any of the polygons.
 
-use geo::{BooleanOps, Contains, Coord, LineString, MultiPolygon, Polygon, unary_union};
+use geo::{Contains, Coord, LineString, Polygon};
 
 use crate::data::Bounds;
-use crate::tds::{CellId, VertexId};
+use crate::tds::{CellId, VertexId, ccw, cw};
 
 use super::Tin;
 use super::builder::sorted_segments;
 
-fn polygon(ring: impl IntoIterator<Item = [f64; 2]>) -> Polygon {
-    Polygon::new(LineString::from_iter(ring.into_iter().map(|[x, y]| Coord { x, y })), Vec::new())
+/// Polygons and a box; what lies in any of the polygons (in the plane, if there are none) and in the box
+/// stays.
+pub(super) struct Clip {
+    /// Each polygon's rings. By the even-odd rule: it does not matter which is a hole.
+    pub(super) polygons: Vec<Vec<Vec<[f64; 2]>>>,
+    pub(super) bounds: Option<Bounds>,
 }
 
-/// What is to stay: within the hull, within the bounds, within any of the polygons.
-fn region(tin: &Tin, boundaries: &[Vec<Vec<[f64; 2]>>], bounds: Option<Bounds>) -> MultiPolygon {
-    let triangulation = tin.triangulation();
-    let hull: Vec<[f64; 2]> = hull(tin).into_iter().map(|v| *triangulation.point(v)).map(|p| [p[0], p[1]]).collect();
-    let mut region = MultiPolygon::from(polygon(hull));
-    if let Some(Bounds { min, max }) = bounds {
-        let corners = [[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]];
-        region = region.intersection(&MultiPolygon::from(polygon(corners)));
+impl Clip {
+    pub(super) fn is_everything(&self) -> bool {
+        self.polygons.is_empty() && self.bounds.is_none()
     }
-    if !boundaries.is_empty() {
-        // By the even-odd rule, whichever way round and in whatever order the rings come.
-        let even_odd = |rings: &Vec<Vec<[f64; 2]>>| {
-            rings.iter().fold(MultiPolygon::new(Vec::new()), |sum, ring| {
-                sum.xor(&MultiPolygon::from(polygon(ring.iter().copied())))
-            })
+
+    /// The closed lines to insert.
+    fn rings(&self) -> Vec<Vec<[f64; 2]>> {
+        let mut rings: Vec<Vec<[f64; 2]>> = self.polygons.iter().flatten().cloned().collect();
+        rings.extend(
+            self.bounds.map(|Bounds { min, max }| {
+                vec![[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]]
+            }),
+        );
+        for ring in &mut rings {
+            ring.iter_mut().flatten().for_each(|x| *x += 0.0); // zero has one sign only
+            ring.extend(ring.first().copied());
+        }
+        rings
+    }
+
+    /// Clips the surface; returns the number of faces left out.
+    pub(super) fn apply(&self, tin: &mut Tin) -> usize {
+        let rim = rim(tin);
+        let rim_places = rim.iter().map(|edge| edge.map(|v| plan(tin, v))).collect::<Vec<_>>();
+        for &[a, b] in &rim {
+            tin.triangulation.insert_segment(a, b);
+        }
+        self.insert(tin);
+        tin.include_all();
+        let before = tin.count().1;
+        let polygons: Vec<Vec<Polygon>> =
+            self.polygons.iter().map(|rings| rings.iter().map(polygon).collect()).collect();
+        let in_data = |p| is_within(&rim_places, p);
+        let stays = |p: [f64; 2]| {
+            let at = Coord { x: p[0], y: p[1] };
+            let in_polygon = |rings: &Vec<Polygon>| rings.iter().filter(|ring| ring.contains(&at)).count() % 2 == 1;
+            self.bounds.is_none_or(|bounds| bounds.holds(p[0], p[1]))
+                && (polygons.is_empty() || polygons.iter().any(in_polygon))
         };
-        let polygons: Vec<MultiPolygon> = boundaries.iter().map(even_odd).collect();
-        region = region.intersection(&unary_union(&polygons));
+        let mut outside_data = 0;
+        for (faces, p) in regions(tin) {
+            let data = in_data(p);
+            if !data {
+                outside_data += faces.len();
+            }
+            if !data || !stays(p) {
+                faces.iter().for_each(|face| tin.inside[face.index()] = false);
+            }
+        }
+        before - outside_data - tin.count().1
     }
-    region
-}
 
-/// The vertices of the convex hull, counter-clockwise.
-fn hull(tin: &Tin) -> Vec<VertexId> {
-    let tds = tin.triangulation().tds();
-    let around = tds.around(VertexId::INFINITE);
-    let mut hull: Vec<VertexId> = around
-        .filter_map(|cell| {
-            let infinite = tds.index_of(cell, VertexId::INFINITE)?;
-            Some(tds.vertex(cell, crate::tds::ccw(infinite)))
-        })
-        .collect();
-    hull.reverse(); // seen from infinity it runs the other way
-    hull
-}
-
-/// Leaves only what is inside; returns the number of faces left out.
-pub(super) fn clip(tin: &mut Tin, boundaries: &[Vec<Vec<[f64; 2]>>], bounds: Option<Bounds>) -> usize {
-    let region = region(tin, boundaries, bounds);
-    let rings = region.iter().flat_map(|p| std::iter::once(p.exterior()).chain(p.interiors()));
-    let mut line: Vec<[f64; 3]> = Vec::new();
-    let mut line_ends = Vec::new();
-    for ring in rings {
-        line.extend(ring.coords().map(|c| [c.x + 0.0, c.y + 0.0, f64::NAN]));
-        line_ends.push(line.len());
-    }
-    let heights: Vec<f64> = line.iter().map(|p| height_near(tin, [p[0], p[1]])).collect();
-
-    let before = tin.triangulation.vertex_count();
-    // Without heights for now, so that a crossing takes that of the breakline it crosses.
-    let Ok(vertices) = line.iter().map(|&p| tin.triangulation.insert(p)).collect::<Result<Vec<_>, _>>() else {
-        return 0; // the region lies within the hull, whose coordinates were admitted
-    };
-    for [a, b] in sorted_segments(&vertices, &line_ends) {
-        tin.triangulation.insert_segment(a, b);
-    }
-    for (&vertex, &z) in vertices.iter().zip(&heights) {
-        set_height(tin, vertex, z);
-    }
-    // Where roundings made the clip line cross itself: the mean of what is around.
-    for vertex in (before..tin.triangulation.vertex_count()).map(VertexId::new) {
-        if tin.triangulation.point(vertex)[2].is_nan() {
-            let tds = tin.triangulation.tds();
-            let corners = tds.around(vertex).flat_map(|cell| *tds.corners(cell));
-            let around = corners.filter(|&v| v != VertexId::INFINITE).map(|v| tin.triangulation.point(v)[2]);
-            let known: Vec<f64> = around.filter(|z| z.is_finite()).collect();
-            let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
-            set_height(tin, vertex, mean);
+    /// Inserts the clip line.
+    fn insert(&self, tin: &mut Tin) {
+        let mut line = Vec::new();
+        let mut line_ends = Vec::new();
+        for ring in self.rings() {
+            line.extend(ring);
+            line_ends.push(line.len());
+        }
+        let heights: Vec<Option<f64>> = line.iter().map(|&[x, y]| tin.elevation(x, y)).collect();
+        let first_new = tin.triangulation.vertex_count();
+        // Without heights at first, so that a crossing takes that of the breakline it crosses. Places that
+        // the arithmetic does not admit are far outside of any data.
+        let vertices: Vec<VertexId> = line
+            .iter()
+            .map(|&[x, y]| tin.triangulation.insert([x, y, f64::NAN]).unwrap_or(VertexId::INFINITE))
+            .collect();
+        for [a, b] in sorted_segments(&vertices, &line_ends) {
+            if b != VertexId::INFINITE {
+                tin.triangulation.insert_segment(a, b);
+            }
+        }
+        for (&vertex, height) in vertices.iter().zip(heights) {
+            if let (Some(z), true) = (height, vertex != VertexId::INFINITE) {
+                set_height(tin, vertex, z);
+            }
+        }
+        // Where the clip line crosses itself: between its neighbors.
+        for vertex in (first_new..tin.triangulation.vertex_count()).map(VertexId::new) {
+            if tin.triangulation.point(vertex)[2].is_nan() {
+                let z = mean_around(tin, vertex);
+                set_height(tin, vertex, z);
+            }
         }
     }
-    tin.include_all();
-    let faces = tin.inside.iter().filter(|&&inside| inside).count();
-    exclude_outside(tin, &region);
-    faces - tin.inside.iter().filter(|&&inside| inside).count()
+}
+
+fn polygon(ring: &Vec<[f64; 2]>) -> Polygon {
+    Polygon::new(LineString::from_iter(ring.iter().map(|&[x, y]| Coord { x, y })), Vec::new())
+}
+
+fn plan(tin: &Tin, vertex: VertexId) -> [f64; 2] {
+    let p = tin.triangulation.point(vertex);
+    [p[0], p[1]]
 }
 
 fn set_height(tin: &mut Tin, vertex: VertexId, z: f64) {
@@ -101,57 +126,64 @@ fn set_height(tin: &mut Tin, vertex: VertexId, z: f64) {
     }
 }
 
-/// The height of the surface at a place; beside the surface by a rounding, that of the edge next to it.
-fn height_near(tin: &Tin, [x, y]: [f64; 2]) -> f64 {
-    if let Some(z) = tin.elevation(x, y) {
-        return z;
-    }
-    let hull = hull(tin);
-    let ends = |i: usize| [hull[i], hull[(i + 1) % hull.len()]].map(|v| *tin.triangulation.point(v));
-    let foot = |i: usize| {
-        let [a, b] = ends(i);
-        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-        let t = (((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-        ((a[0] + t * dx - x).hypot(a[1] + t * dy - y), a[2] + t * (b[2] - a[2]))
-    };
-    let nearest = (0..hull.len()).map(foot).min_by(|a, b| a.0.total_cmp(&b.0));
-    nearest.map_or(f64::NAN, |(_, z)| z)
+/// The mean height of the neighbors that have one; 0 if none has, which are outside of the data.
+fn mean_around(tin: &Tin, vertex: VertexId) -> f64 {
+    let tds = tin.triangulation.tds();
+    let corners = tds.around(vertex).flat_map(|cell| *tds.corners(cell)).filter(|&v| v != VertexId::INFINITE);
+    let heights: Vec<f64> = corners.map(|v| tin.triangulation.point(v)[2]).filter(|z| z.is_finite()).collect();
+    heights.iter().sum::<f64>() / heights.len().max(1) as f64
 }
 
-/// Takes out the regions of faces that lie outside.
-fn exclude_outside(tin: &mut Tin, region: &MultiPolygon) {
+/// The edges between the surface and what is not part of it, in an order of their own.
+fn rim(tin: &Tin) -> Vec<[VertexId; 2]> {
+    let tds = tin.triangulation.tds();
+    let mut rim = Vec::new();
+    for cell in tin.triangulation.finite_cells().filter(|cell| tin.inside[cell.index()]) {
+        for i in (0..3).filter(|&i| !tin.inside[tds.neighbor(cell, i).index()]) {
+            let (a, b) = (tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
+            rim.push([a.min(b), a.max(b)]);
+        }
+    }
+    rim.sort_unstable();
+    rim
+}
+
+/// Whether a ray to the left crosses the edges an odd number of times.
+fn is_within(edges: &[[[f64; 2]; 2]], [x, y]: [f64; 2]) -> bool {
+    let crosses =
+        |&&[a, b]: &&[[f64; 2]; 2]| (a[1] <= y) != (b[1] <= y) && a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) < x;
+    edges.iter().filter(crosses).count() % 2 == 1
+}
+
+/// The sets of faces that no constraint divides, each with a place within.
+fn regions(tin: &Tin) -> Vec<(Vec<CellId>, [f64; 2])> {
     let tds = tin.triangulation.tds();
     let mut seen = vec![false; tin.inside.len()];
-    let mut faces = Vec::new();
-    for start in 0..tin.inside.len() {
-        if seen[start] || !tin.inside[start] {
+    let mut regions = Vec::new();
+    for start in tin.triangulation.finite_cells() {
+        if std::mem::replace(&mut seen[start.index()], true) {
             continue;
         }
-        faces.clear();
-        faces.push(start);
-        seen[start] = true;
+        let mut faces = vec![start];
         let mut next = 0;
-        // Of the largest face the middle is furthest from any rounding.
+        // In the middle of the largest face one is furthest from any rounding.
         let mut largest = (f64::NEG_INFINITY, [0.0; 2]);
         while next < faces.len() {
-            let cell = CellId::new(faces[next]);
+            let cell = faces[next];
             next += 1;
-            let [a, b, c] = tds.corners(cell).map(|v| *tin.triangulation.point(v));
+            let [a, b, c] = tds.corners(cell).map(|v| plan(tin, v));
             let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
             if area > largest.0 {
                 largest = (area, [0, 1].map(|k| a[k] + ((b[k] - a[k]) + (c[k] - a[k])) / 3.0));
             }
-            for i in 0..3 {
-                let beside = tds.neighbor(cell, i).index();
-                if !tin.triangulation.is_constrained(cell, i) && tin.inside[beside] && !seen[beside] {
-                    seen[beside] = true;
+            for i in (0..3).filter(|&i| !tin.triangulation.is_constrained(cell, i)) {
+                let beside = tds.neighbor(cell, i);
+                if !tds.is_infinite(beside) && !std::mem::replace(&mut seen[beside.index()], true) {
                     faces.push(beside);
                 }
             }
         }
-        let [x, y] = largest.1;
-        if !region.contains(&Coord { x, y }) {
-            faces.iter().for_each(|&face| tin.inside[face] = false);
-        }
+        regions.push((faces, largest.1));
     }
+    regions
 }
