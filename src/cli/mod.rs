@@ -4,6 +4,9 @@
 //! `gather` makes a surface of files, a verb makes something of the surface, and `open` is the
 //! one place that names readers, writers and verbs of the library. Data goes to files or stdout, talk
 //! (`talk`) to stderr.
+//! What is typed (`args`) and what it means (`plan`, `outputs`, `systems`) are kept apart. `gather`
+//! makes a surface of files, a verb makes something of the surface, and `open` is the one place that
+//! names the readers and writers of the library. Data goes to files or stdout, talk to stderr.
 
 mod args;
 mod check;

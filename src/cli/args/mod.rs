@@ -1,4 +1,4 @@
-//! What is typed. What it means is worked out elsewhere ([`super::plan`], [`super::outputs`], ...).
+//! What is typed. What it means is worked out elsewhere (`super::plan`, `super::outputs`, ...).
 
 mod parse;
 mod surface;
