@@ -210,7 +210,6 @@ mod with_gdal {
         let mut band = dataset.rasterband(1).unwrap();
         band.set_no_data_value(Some(nodata)).unwrap();
         band.write((0, 0), (4, 3), &mut Buffer::new((4, 3), values.to_vec())).unwrap();
-        drop(band);
         let driver = DriverManager::get_driver_by_name(driver).unwrap();
         dataset.create_copy(&driver, path, &RasterCreationOptions::default()).unwrap().flush_cache().unwrap();
     }

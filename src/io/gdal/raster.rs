@@ -56,7 +56,6 @@ pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
     let mask = band.mask_flags().map_err(in_file)?;
     let has_mask = !mask.is_all_valid() && !mask.is_nodata();
     let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
-    drop(band);
     let mut warnings = messages::warnings();
     let (width, height) = dataset.raster_size();
     let transform = dataset.geo_transform().unwrap_or_else(|_| {
