@@ -148,7 +148,10 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
 
     let bar = talk.bar("triangulating", None);
     let start = Instant::now();
-    let tin = builder.build()?;
+    let tin = builder.build().map_err(|error| match plan.files.as_slice() {
+        [file] => error.in_file(file),
+        _ => error,
+    })?;
     bar.finish_and_clear();
     talk.detail(format_args!("triangulated in {}", seconds(start.elapsed())));
     if tin.report().triangles == 0 {
