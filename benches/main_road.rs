@@ -3,7 +3,8 @@
 //! The points are made up, like airborne lidar: a rolling ground, two points to the square metre, in steps of a
 //! centimetre, flight line by flight line. Whole programs, files included, are compared outside of the crate.
 
-use breakline::terrain::{Tin, TinBuilder};
+use breakline::data::{Bounds, Frame, Grid};
+use breakline::terrain::{Dem, Levels, Tin, TinBuilder, contours};
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 /// Number of points.
@@ -17,6 +18,30 @@ fn main() {
 fn tin(bencher: Bencher, count: usize) {
     let points = points(count);
     bencher.counter(ItemsCount::new(count)).bench_local(|| build(black_box(&points)));
+}
+
+/// Cells of a metre.
+#[divan::bench(args = SIZES, max_time = 10)]
+fn dem(bencher: Bencher, count: usize) {
+    let points = points(count);
+    let mut bounds = Bounds::default();
+    points[0].iter().zip(&points[1]).for_each(|(&x, &y)| bounds.add([x, y, 0.0]));
+    let frame = Frame::snapped(&bounds, 1.0).expect("a metre divides the extent");
+    let tin = build(&points);
+    bencher.counter(ItemsCount::new(frame.width * frame.height)).bench_local(|| {
+        let dem = Dem::new(black_box(&tin), frame).expect("the frame was made for the TIN");
+        Grid::collect(&dem).expect("a raster of a TIN reads nothing")
+    });
+}
+
+/// A metre apart.
+#[divan::bench(args = SIZES, max_time = 10)]
+fn contour(bencher: Bencher, count: usize) {
+    let tin = build(&points(count));
+    let levels = Levels::every(1.0, 0.0).expect("a metre is an interval");
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| contours(black_box(&tin), &levels).expect("there are few levels").count());
 }
 
 /// Columns x, y and z.

@@ -13,8 +13,8 @@
 /// # Errors
 /// If PROJ does not know one of the systems or no way between them; without the feature `proj`, always.
 #[cfg(not(feature = "proj"))]
-pub fn transform(from: &crate::crs::Crs, to: &crate::crs::Crs) -> crate::Result<Box<dyn crate::crs::Transform>> {
-    Err(crate::Error::unsupported(format!(
+pub fn transform(from: &crate::crs::Crs, to: &crate::crs::Crs) -> crate::error::Result<Box<dyn crate::crs::Transform>> {
+    Err(crate::error::Error::unsupported(format!(
         "reprojecting from {from} to {to} needs PROJ, which this build does not have"
     ))
     .cure("build with `cargo build --release --features proj` (needs g++, make, cmake, sqlite3)"))
