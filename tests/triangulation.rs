@@ -242,6 +242,37 @@ fn wild_crossings_leave_a_valid_triangulation() {
     }
 }
 
+/// The bulk builder against insertion one by one, on grids, lines, circles and nearly so.
+#[test]
+fn bulk_and_one_by_one_agree() {
+    let mut random = Random(6);
+    for round in 0..6000 {
+        let count = 1 + random.below(if round % 50 == 0 { 400 } else { 40 });
+        let points: Vec<[f64; 2]> = match round % 5 {
+            0 => {
+                let side = 1 + random.below(9);
+                grid_points(&mut random, count, side, 1.0)
+            }
+            1 => grid_points::<2>(&mut random, count, 300, 0.01)
+                .iter()
+                .map(|p| [p[0] + 5e5, p[1] + 4_649_000.0])
+                .collect(),
+            2 => (0..count).map(|i| [i as f64, (i * i) as f64]).collect(),
+            3 => (0..count).map(|_| [random.below(3) as f64 * 1e-9, random.below(1000) as f64]).collect(),
+            _ => grid_points::<2>(&mut random, count, 1 << 40, 1.0),
+        };
+        let (bulk, vertices): (ConstrainedDelaunay<Plane>, _) =
+            ConstrainedDelaunay::from_points(Plane::default(), &points).unwrap();
+        assert_eq!(bulk.check(Level::Law), [], "{points:?}");
+        let mut one_by_one: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
+        for &p in &points {
+            one_by_one.insert(p).unwrap();
+        }
+        assert_eq!(cells(&bulk), cells(&one_by_one), "{points:?}");
+        assert!(points.iter().zip(&vertices).all(|(p, &v)| bulk.point(v) == p));
+    }
+}
+
 #[test]
 fn points_fall_on_constraints() {
     let mut t: ConstrainedDelaunay<Terrain> = ConstrainedDelaunay::new(Terrain::default());

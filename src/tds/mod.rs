@@ -22,13 +22,13 @@ pub use zone::Zone;
 
 /// The vertices and neighbors of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Links<const N: usize> {
-    vertices: [VertexId; N],
-    neighbors: [CellId; N],
+pub(crate) struct Links<const N: usize> {
+    pub(crate) vertices: [VertexId; N],
+    pub(crate) neighbors: [CellId; N],
 }
 
 impl<const N: usize> Links<N> {
-    const UNUSED: Self = Links { vertices: [VertexId::NONE; N], neighbors: [CellId::NONE; N] };
+    pub(crate) const UNUSED: Self = Links { vertices: [VertexId::NONE; N], neighbors: [CellId::NONE; N] };
 }
 
 /// A triangulated sphere of dimension up to `N - 1`, with payload `V` at each vertex and `C` at each
@@ -64,6 +64,23 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             vertex_data: Vec::new(),
             infinite_cell: CellId::NONE,
         }
+    }
+
+    /// A full-dimensional complex, given as its cells; the vertices are numbered from 0 and all in use.
+    pub(crate) fn from_cells(links: Vec<Links<N>>, vertices: usize) -> Self
+    where
+        V: Default,
+    {
+        let mut tds = Self::new();
+        tds.dimension = N as i32 - 1;
+        tds.cell_data = vec![C::default(); links.len()];
+        tds.vertex_data.resize_with(vertices, V::default);
+        tds.vertex_cell = vec![CellId::NONE; vertices];
+        for (index, links) in links.iter().enumerate() {
+            links.vertices.iter().for_each(|&vertex| tds.set_cell_of(vertex, CellId::new(index)));
+        }
+        tds.links = links;
+        tds
     }
 
     /// Makes room for that many more vertices and the cells that come with them.

@@ -132,7 +132,7 @@ impl TinBuilder {
             .map_err(|refused| Error::limit(refused.to_string()))?;
         if triangulation.dimension() < 2 {
             let count = triangulation.vertex_count();
-            return Err(Error::usage(format!("{count} distinct points on one line or place do not span a surface"))
+            return Err(Error::format(format!("{count} distinct points on one line or place do not span a surface"))
                 .cure("check the inputs, the classes (--class) and the bounds"));
         }
 

@@ -1,10 +1,10 @@
 use std::ops::Deref;
 
 use crate::geometry::{Coordinates, Crossing};
-use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::tds::{CellId, Tds, VertexId, ccw, cw};
 
 use super::segment::Scratch;
-use super::{Flaw, Level, Location, Refused, Triangulation, spatial_order};
+use super::{Flaw, Level, Location, Refused, Triangulation, bulk, spatial_order};
 
 /// Which edges of a triangle are constraints: bit `i` is set for the one opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -196,12 +196,15 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// The first point that is refused, by its position.
     pub(crate) fn from_sorted(geometry: G, points: Vec<G::Point>) -> Result<Self, Refused> {
         let mut triangulation = Self::new(geometry);
-        triangulation.inner.tds.reserve(points.len());
         if let Some(bad) = points.iter().position(|p| !triangulation.inner.geometry.admits(p)) {
             return Err(Refused::Coordinate(bad));
         }
         let count = points.len();
         triangulation.inner.points = points;
+        if let Some(cells) = bulk::build(&triangulation.inner.geometry, &triangulation.inner.points) {
+            triangulation.inner.tds = Tds::from_cells(cells, count);
+            return Ok(triangulation);
+        }
         for index in 0..count {
             triangulation.insert_near(triangulation.inner.points[index], None);
         }
@@ -209,22 +212,28 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Ok(triangulation)
     }
 
-    /// Triangulates many points, taken in spatial order. Returns the vertex of each point beside.
+    /// Triangulates many points. Returns the vertex of each point beside: they are numbered along a space
+    /// filling curve, and points on one site share theirs (the first of them stands).
     ///
     /// # Errors
     /// The first point that is refused, by its position.
+    ///
+    /// # Complexity
+    /// O(n log n), on all threads.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
         if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
             return Err(Refused::Coordinate(bad));
         }
         let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
-        let mut triangulation = Self::new(geometry);
-        triangulation.inner.tds.reserve(points.len());
-        triangulation.inner.points.reserve_exact(points.len());
+        let mut sites: Vec<G::Point> = Vec::with_capacity(points.len());
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         for index in order {
-            vertices[index as usize] = triangulation.insert(points[index as usize])?;
+            let p = points[index as usize];
+            if sites.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
+                sites.push(p);
+            }
+            vertices[index as usize] = VertexId::new(sites.len() - 1);
         }
-        Ok((triangulation, vertices))
+        Ok((Self::from_sorted(geometry, sites)?, vertices))
     }
 }

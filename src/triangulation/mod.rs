@@ -17,6 +17,7 @@
 //!
 //! The core cannot fail on points that it admitted; [`Refused`] says which are not.
 
+mod bulk;
 mod check;
 mod constrained;
 mod delaunay;
