@@ -6,9 +6,8 @@
 //! | OBJ | decimals that give the same doubles back | coordinate system, as a comment | yes |
 //! | STL | 32-bit floats from a local origin | no | no |
 //!
-//! The bytes of a file depend on the surface alone, not on how its vertices and faces are numbered:
-//! vertices come in ascending order of x, y and z, faces in that of their corners. Vertices without
-//! a face are not written.
+//! Vertices and faces come in the order of the surface, which for a TIN is a function of its points and
+//! lines: along a curve, so that neighbors stand near each other. Vertices without a face are not written.
 //!
 //! # What PLY files hold
 //! `format binary_little_endian 1.0`, then the elements
@@ -22,8 +21,8 @@
 //! `crs ` in all of them, joined. The OBJ comments are alike, with `# crs `. Readers also take a code
 //! there, as in `EPSG:25832`.
 
-mod canonical;
 mod crs_text;
+mod listing;
 mod obj;
 mod ply;
 mod polygon;
@@ -32,7 +31,7 @@ mod stl;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use canonical::Canonical;
+use listing::Listing;
 
 use crate::data::{Mesh, Surface};
 use crate::error::{Error, Result};
@@ -81,15 +80,15 @@ pub struct MeshSummary {
 /// be written.
 pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
     let format = Format::of(target).ok_or_else(|| unknown(target))?;
-    let mesh = Canonical::new(surface);
+    let mesh = Listing::new(surface);
     let origin = match format {
         Format::Ply => ply::write(target, &mesh, surface.crs()).map(|()| None),
         Format::Obj => obj::write(target, &mesh, surface.crs()).map(|()| None),
         Format::Stl => stl::write(target, &mesh).map(Some),
     };
     Ok(MeshSummary {
-        vertices: mesh.vertices.len(),
-        faces: mesh.faces.len(),
+        vertices: mesh.vertex_count,
+        faces: mesh.face_count,
         constrained_edges: mesh.constrained_edges.len(),
         origin: origin.map_err(|e| e.in_file(target))?,
     })

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::canonical::Canonical;
+use super::listing::Listing;
 use super::{crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Mesh;
@@ -17,14 +17,14 @@ const LINES: usize = 1 << 14;
 
 /// Writes `v x y z` and `f a b c`, numbered from 1. The decimals are the fewest that give the same
 /// double back.
-pub(super) fn write(target: &Path, mesh: &Canonical, crs: Option<&Crs>) -> Result<()> {
+pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let mut output = Output::create(target)?;
     writeln!(output, "# breakline")?;
     for line in crs_text::lines(crs) {
         writeln!(output, "# crs {line}")?;
     }
-    write_lines(&mut output, &mesh.vertices, |text, [x, y, z]| writeln!(text, "v {x} {y} {z}"))?;
-    write_lines(&mut output, &mesh.faces, |text, face| {
+    write_lines(&mut output, mesh.vertices(), |text, [x, y, z]| writeln!(text, "v {x} {y} {z}"))?;
+    write_lines(&mut output, mesh.faces(), |text, face| {
         // As wide as the largest number and one more.
         let [a, b, c] = face.map(|v| u64::from(v) + 1);
         writeln!(text, "f {a} {b} {c}")
@@ -34,10 +34,16 @@ pub(super) fn write(target: &Path, mesh: &Canonical, crs: Option<&Crs>) -> Resul
 
 fn write_lines<T: Copy + Sync>(
     output: &mut Output,
-    items: &[T],
+    mut items: impl Iterator<Item = T>,
     line: impl Fn(&mut Vec<u8>, T) -> std::io::Result<()> + Sync,
 ) -> Result<()> {
-    for batch in items.chunks(LINES * rayon::current_num_threads()) {
+    let mut batch = Vec::new();
+    loop {
+        batch.clear();
+        batch.extend(items.by_ref().take(LINES * rayon::current_num_threads()));
+        if batch.is_empty() {
+            return Ok(());
+        }
         let texts: Vec<std::io::Result<Vec<u8>>> = batch
             .par_chunks(LINES)
             .map(|chunk| {
@@ -50,7 +56,6 @@ fn write_lines<T: Copy + Sync>(
             output.write_all(&text?)?;
         }
     }
-    Ok(())
 }
 
 /// Reads `v` and `f` lines (with texture and normal numbers, and numbers from the end), and comments

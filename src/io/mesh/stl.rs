@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::canonical::Canonical;
+use super::listing::Listing;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
 use crate::io::Output;
@@ -12,11 +12,11 @@ use crate::io::Output;
 ///
 /// The origin is the smallest corner of the data in whole units: a float then keeps the millimetre
 /// over 8 km, where map coordinates would lose the metre.
-pub(super) fn write(target: &Path, mesh: &Canonical) -> Result<([f64; 3], PathBuf)> {
-    let count = u32::try_from(mesh.faces.len())
-        .map_err(|_| Error::limit(format!("{} triangles; an STL file counts to {}", mesh.faces.len(), u32::MAX)))?;
+pub(super) fn write(target: &Path, mesh: &Listing) -> Result<([f64; 3], PathBuf)> {
+    let count = u32::try_from(mesh.face_count)
+        .map_err(|_| Error::limit(format!("{} triangles; an STL file counts to {}", mesh.face_count, u32::MAX)))?;
     let mut bounds = Bounds::default();
-    mesh.vertices.iter().for_each(|p| bounds.add(*p));
+    mesh.vertices().for_each(|p| bounds.add(p));
     let origin = if bounds.is_empty() { [0.0; 3] } else { bounds.min.map(f64::floor) };
     let [x, y, z] = origin;
 
@@ -28,8 +28,8 @@ pub(super) fn write(target: &Path, mesh: &Canonical) -> Result<([f64; 3], PathBu
     let mut output = Output::create(target)?;
     output.write_all(&header)?;
     output.write_all(&count.to_le_bytes())?;
-    for face in &mesh.faces {
-        let corners = face.map(|v| local(mesh.vertices[v as usize], origin));
+    for corners in mesh.triangles() {
+        let corners = corners.map(|p| local(p, origin));
         let mut facet = [0u8; 50];
         let numbers = std::iter::once(normal(corners)).chain(corners).flatten();
         for (bytes, number) in facet.chunks_exact_mut(4).zip(numbers) {

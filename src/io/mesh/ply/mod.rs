@@ -13,7 +13,7 @@ use std::path::Path;
 use body::Body;
 use header::{Element, Header, Property};
 
-use super::canonical::Canonical;
+use super::listing::Listing;
 use super::{crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Mesh;
@@ -21,8 +21,8 @@ use crate::error::{Error, Result};
 use crate::io::Output;
 
 /// Writes vertices, faces, constrained edges and the coordinate system.
-pub(super) fn write(target: &Path, mesh: &Canonical, crs: Option<&Crs>) -> Result<()> {
-    let vertex_count = mesh.vertices.len();
+pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
+    let vertex_count = mesh.vertex_count;
     if i32::try_from(vertex_count).is_err() {
         return Err(Error::limit(format!("{vertex_count} vertices; a PLY file with int numbers has {}", i32::MAX)));
     }
@@ -32,20 +32,20 @@ pub(super) fn write(target: &Path, mesh: &Canonical, crs: Option<&Crs>) -> Resul
         writeln!(output, "comment crs {line}")?;
     }
     write!(output, "element vertex {vertex_count}\nproperty double x\nproperty double y\nproperty double z\n")?;
-    write!(output, "element face {}\nproperty list uchar int vertex_indices\n", mesh.faces.len())?;
+    write!(output, "element face {}\nproperty list uchar int vertex_indices\n", mesh.face_count)?;
     if !mesh.constrained_edges.is_empty() {
         let count = mesh.constrained_edges.len();
         write!(output, "element constrained_edge {count}\nproperty int vertex1\nproperty int vertex2\n")?;
     }
     output.write_all(b"end_header\n")?;
-    for p in &mesh.vertices {
+    for p in mesh.vertices() {
         let mut row = [0; 24];
         for (bytes, value) in row.chunks_exact_mut(8).zip(p) {
             bytes.copy_from_slice(&value.to_le_bytes());
         }
         output.write_all(&row)?;
     }
-    for face in &mesh.faces {
+    for face in mesh.faces() {
         let mut row = [3; 13];
         for (bytes, v) in row[1..].chunks_exact_mut(4).zip(face) {
             bytes.copy_from_slice(&v.to_le_bytes());
