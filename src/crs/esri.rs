@@ -68,6 +68,10 @@ const PROJECTED: &[(u32, &str)] = &[
     (5070, "NAD_1983_Contiguous_USA_Albers"),
     (27700, "British_National_Grid"),
     (28992, "RD_New"),
+    (31466, "DHDN_3_Degree_Gauss_Zone_2"),
+    (31467, "DHDN_3_Degree_Gauss_Zone_3"),
+    (31468, "DHDN_3_Degree_Gauss_Zone_4"),
+    (31469, "DHDN_3_Degree_Gauss_Zone_5"),
     (32661, "UPS_North"),
     (32761, "UPS_South"),
 ];

@@ -1,6 +1,7 @@
 //! The EPSG registry: definitions from `proj-core`, further names from `crs-definitions`.
 
-use std::collections::HashMap;
+use std::cmp::Reverse;
+use std::collections::{HashMap, HashSet};
 use std::sync::OnceLock;
 
 use proj_core::{AxisOrder, CrsDef, HorizontalCrsDef, VerticalCrsDef};
@@ -242,7 +243,8 @@ fn heights(unit: &Unit) -> impl Iterator<Item = &'static VerticalCrsDef> {
 }
 
 /// The code of the system with this definition: method, parameters, datum and unit are the same. Where several are (the
-/// registry has copies with northings first), the one of this name, else an ordinary one, else the lowest.
+/// registry has copies with northings first), the one of this name, else of the most words of it, else an ordinary one,
+/// else the lowest.
 pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
     let datum = wanted.datum.code?;
     let codes: Vec<u32> = match wanted.kind {
@@ -260,6 +262,9 @@ pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
         CrsKind::Geocentric if datum == 6326 && wanted.unit.is_same(&Unit::metre()) => vec![4978],
         _ => Vec::new(),
     };
+    if codes.len() < 2 {
+        return codes.first().copied();
+    }
     let key = normalized(name);
     let is_named = |code: u32| {
         find(code).is_some_and(|found| {
@@ -270,12 +275,21 @@ pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
             [esri, found.name].iter().any(|name| normalized(name) == key)
         })
     };
+    // New Jersey's system is also New York East's; Esri's name has these words in common with EPSG's, and little else.
+    let stated = words(name);
+    let common_words = |code: u32| find(code).map_or(0, |found| words(&found.name).intersection(&stated).count());
     codes.into_iter().min_by_key(|&code| {
         let northing_first = proj_core::lookup_authority_axis_order(code) == Some(AxisOrder::NorthEast);
         // Geographic systems all begin with latitude.
         let odd = northing_first && wanted.kind == CrsKind::Projected;
-        (!is_named(code), odd, code)
+        (!is_named(code), Reverse(common_words(code)), odd, code)
     })
+}
+
+/// "New", "Jersey": what is made of letters alone, as the numbers of zones are written in many ways.
+fn words(name: &str) -> HashSet<String> {
+    let words = name.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() > 2);
+    words.map(str::to_ascii_lowercase).collect()
 }
 
 /// Every projected system, by code.
@@ -335,5 +349,30 @@ mod tests {
             let found = identify(definition, &name).unwrap_or_else(|| panic!("EPSG:{code} {name}"));
             assert!(find(found).unwrap().definition.unwrap().is_same(definition), "{code} is taken for {found}");
         }
+    }
+
+    #[test]
+    fn of_systems_with_one_definition_the_name_decides() {
+        for (code, name) in [
+            (3424, "NAD_1983_StatePlane_New_Jersey_FIPS_2900_Feet"),
+            (2260, "NAD_1983_StatePlane_New_York_East_FIPS_3101_Feet"),
+            (31467, "DHDN_3_Degree_Gauss_Zone_3"),
+            (5677, "DHDN / 3-degree Gauss-Kruger zone 3 (E-N)"),
+            (25832, "no such name"),
+        ] {
+            let definition = find(code).unwrap().definition.unwrap();
+            assert_eq!(identify(&definition, name), Some(code), "{name}");
+        }
+    }
+
+    #[test]
+    fn heights_are_identified_by_datum_else_by_name() {
+        let metre = Unit::metre();
+        assert_eq!(identify_vertical("North_American_Vertical_Datum_1988", "", &metre), Some(5703));
+        assert_eq!(identify_vertical("Deutsches Haupthoehennetz 2016", "", &metre), Some(7837));
+        assert_eq!(identify_vertical("unknown", "SVS2000 height", &metre), Some(5779));
+        assert_eq!(identify_vertical("of nobody", "of nobody", &metre), None);
+        assert_eq!(vertical_of_datum(5103, &Unit::length(12.0 / 39.37)), Some(6360));
+        assert_eq!(vertical_datum(7837).unwrap(), ("Deutsches Haupthoehennetz 2016".to_owned(), 1170));
     }
 }
