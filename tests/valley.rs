@@ -32,9 +32,8 @@ fn tin(breaklines: &[Vec<[f64; 3]>]) -> Tin {
         }
         selection.add(&batch).unwrap();
     }
-    let (columns, _) = selection.finish();
     let mut builder = TinBuilder::default();
-    builder.add_points(&columns.x, &columns.y, &columns.z);
+    builder.add_owned_points(selection.finish().0);
     breaklines.iter().for_each(|line| builder.add_breakline(line));
     builder.build().unwrap()
 }
