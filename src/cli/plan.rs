@@ -56,8 +56,8 @@ impl SurfacePlan {
             degrees: if args.force_degrees { Degrees::Allow } else { Degrees::Refuse },
         };
         inputs::require(args.breaklines.iter().chain(&args.boundary))?;
-        refuse_other_kinds("--breaklines", &args.breaklines)?;
-        refuse_other_kinds("--boundary", &args.boundary)?;
+        refuse_other_kinds("--breaklines takes lines or polygons", &args.breaklines)?;
+        refuse_other_kinds("--boundary takes polygons", &args.boundary)?;
         let mut inputs = files.clone();
         inputs.extend(args.breaklines.iter().chain(&args.boundary).cloned());
         let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));
@@ -106,7 +106,7 @@ impl PointPlan {
 }
 
 /// What is known to hold no lines or polygons is not handed to a reader of them.
-fn refuse_other_kinds(option: &str, paths: &[PathBuf]) -> Result<()> {
+fn refuse_other_kinds(wanted: &str, paths: &[PathBuf]) -> Result<()> {
     for path in paths {
         let what = match content(path) {
             Content::Raster => "a raster",
@@ -114,7 +114,7 @@ fn refuse_other_kinds(option: &str, paths: &[PathBuf]) -> Result<()> {
             Content::Points if open::is_lidar(path) => "lidar points",
             Content::Points | Content::Layer => continue,
         };
-        return Err(Error::usage(format!("{option} takes lines or polygons, this is {what}")).in_file(path));
+        return Err(Error::usage(format!("{wanted}, this is {what}")).in_file(path));
     }
     Ok(())
 }

@@ -31,7 +31,7 @@ impl Made {
         let facts = SurfaceFacts::of(surface);
         if self.tin.is_none() {
             if facts.constrained > 0 {
-                talk.line(format_args!("breaklines  {} edges", facts.constrained));
+                talk.line(format_args!("breaklines  {} edges, lines of a clip included", facts.constrained));
             }
             talk.line(format_args!("vertices    {}", facts.vertices));
         }
