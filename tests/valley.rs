@@ -24,9 +24,8 @@ fn parts(name: &str) -> Vec<Vec<[f64; 3]>> {
 fn builder(breaklines: &[Vec<[f64; 3]>]) -> TinBuilder {
     let mut selection = Selection::default();
     selection.add_source(&mut *breakline::io::points::open(fixture("valley.laz")).unwrap()).unwrap();
-    let (columns, _) = selection.finish();
     let mut builder = TinBuilder::default();
-    builder.add_points(&columns.x, &columns.y, &columns.z);
+    builder.add_owned_points(selection.finish().0);
     breaklines.iter().for_each(|line| builder.add_breakline(line));
     builder
 }
