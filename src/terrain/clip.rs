@@ -53,7 +53,7 @@ impl Clip {
         tin.include_all();
         let before = tin.count().1;
         let polygons: Vec<Vec<Polygon>> =
-            self.polygons.iter().map(|rings| rings.iter().map(polygon).collect()).collect();
+            self.polygons.iter().map(|rings| rings.iter().map(|ring| polygon(ring)).collect()).collect();
         let in_data = |p| is_within(&rim_places, p);
         let stays = |p: [f64; 2]| {
             let at = Coord { x: p[0], y: p[1] };
@@ -110,7 +110,7 @@ impl Clip {
     }
 }
 
-fn polygon(ring: &Vec<[f64; 2]>) -> Polygon {
+fn polygon(ring: &[[f64; 2]]) -> Polygon {
     Polygon::new(LineString::from_iter(ring.iter().map(|&[x, y]| Coord { x, y })), Vec::new())
 }
 
