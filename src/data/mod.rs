@@ -8,6 +8,7 @@
 mod bounds;
 mod contour_line;
 mod frame;
+pub mod geo;
 mod grid;
 mod mesh;
 mod points;
