@@ -1,7 +1,7 @@
 use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
-use crate::geometry::Terrain;
+use crate::geometry::{Geometry, Terrain};
 use crate::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, spatial_order};
 
@@ -127,13 +127,14 @@ impl TinBuilder {
     pub fn build(mut self) -> Result<Tin> {
         let mut report =
             TinReport { points: self.points.len(), breaklines: self.line_ends.len(), ..Default::default() };
-        let bad = |p: &[f64; 3]| p.iter().any(|x| !x.is_finite());
+        let geometry: Terrain = Terrain::default();
+        let bad = |p: &[f64; 3]| !geometry.admits(p) || !p[2].is_finite();
         if let Some(at) = self.points.iter().position(bad) {
-            return Err(not_finite(self.points[at]).at(format!("point {at}")));
+            return Err(unfit(self.points[at]).at(format!("point {at}")));
         }
         if let Some(at) = self.line_points.iter().position(bad) {
             let line = self.line_ends.partition_point(|&end| end <= at);
-            return Err(not_finite(self.line_points[at]).at(format!("breakline {line}")));
+            return Err(unfit(self.line_points[at]).at(format!("breakline {line}")));
         }
 
         // One vertex for each place, in spatial order.
@@ -206,8 +207,8 @@ impl TinBuilder {
 }
 
 #[cold]
-fn not_finite(p: [f64; 3]) -> Error {
-    Error::format(format!("{p:?} is not a finite point"))
+fn unfit(p: [f64; 3]) -> Error {
+    Error::format(format!("{p:?} is not a finite point, or has coordinates too large or small to compute with"))
 }
 
 /// Each pair of consecutive vertices once, the smaller number first, in order.

@@ -35,6 +35,10 @@ const NONE: u32 = u32::MAX;
 /// Ranges of more points than this are halved between threads.
 const PARALLEL: usize = 1 << 14;
 
+/// More points are left to insertion one by one: four numbers to each of the two faces of a point must fit 32
+/// bits.
+const MOST: usize = 1 << 29;
+
 /// The next edge of the face.
 #[inline(always)]
 fn next(edge: u32) -> u32 {
@@ -73,9 +77,9 @@ struct Range<'a, G: Coordinates<3>> {
 }
 
 /// Triangulates different points that are in the order of [`spatial_order`](super::spatial_order); `None` if they
-/// are all collinear. Vertices are numbered as the points.
+/// are all collinear, or too many. Vertices are numbered as the points.
 pub(super) fn build<G: Coordinates<3>>(geometry: &G, points: &[G::Point]) -> Option<Vec<Links<3>>> {
-    if points.len() < 3 {
+    if points.len() < 3 || points.len() >= MOST {
         return None;
     }
     let curve = Curve::through(points.len(), |i| geometry.coordinates(&points[i]));
