@@ -68,6 +68,7 @@ const PROJECTED: &[(u32, &str)] = &[
     (5070, "NAD_1983_Contiguous_USA_Albers"),
     (27700, "British_National_Grid"),
     (28992, "RD_New"),
+    (5520, "DHDN_3_Degree_Gauss_Zone_1"),
     (31466, "DHDN_3_Degree_Gauss_Zone_2"),
     (31467, "DHDN_3_Degree_Gauss_Zone_3"),
     (31468, "DHDN_3_Degree_Gauss_Zone_4"),
