@@ -15,8 +15,7 @@
 //!
 //! let mut builder = terrain::TinBuilder::default();
 //! builder.crs = points.info().crs.clone();
-//! let (kept, _) = ground.finish();
-//! builder.add_points(&kept.x, &kept.y, &kept.z);
+//! builder.add_owned_points(ground.finish().0);
 //! for line in io::layer::read("fixtures/breaklines.shp")?.lines() {
 //!     builder.add_breakline(line);
 //! }

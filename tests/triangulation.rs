@@ -271,3 +271,37 @@ fn points_fall_on_constraints() {
     assert_eq!(t.point(crossing[0])[2], 0.25);
     assert_eq!(t.check(Level::Law), []);
 }
+
+#[test]
+fn a_segment_crosses_the_edges_that_it_crosses() {
+    let mut random = Random(7);
+    let mut crossed = 0;
+    for _ in 0..3000 {
+        let count = 3 + random.below(20);
+        let points = grid_points::<2>(&mut random, count, 7, 1.0);
+        let (t, _): (ConstrainedDelaunay<Plane>, _) =
+            ConstrainedDelaunay::from_points(Plane::default(), &points).unwrap();
+        let [a, b]: [[f64; 2]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| random.below(11) as f64 - 2.0));
+        let turn = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+            ((p[0] - r[0]) * (q[1] - r[1]) - (p[1] - r[1]) * (q[0] - r[0])).partial_cmp(&0.0).unwrap() as i32
+        };
+        if t.dimension() < 2 {
+            continue;
+        }
+        let mut expected = Vec::new();
+        for cell in t.finite_cells() {
+            let corners = t.tds().cell_vertices(cell);
+            for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+                let (c, d) = (*t.point(corners[i]), *t.point(corners[j]));
+                if turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0 {
+                    expected.push([corners[i].min(corners[j]), corners[i].max(corners[j])]);
+                }
+            }
+        }
+        expected.sort();
+        expected.dedup();
+        assert_eq!(t.edges_crossed(&a, &b), expected, "{points:?} {a:?} {b:?}");
+        crossed += expected.len();
+    }
+    assert!(crossed > 1000);
+}

@@ -16,7 +16,7 @@ pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
     }
     gathered.made.tell(surface, talk);
     let SurfaceFacts { vertices, triangles, constrained, .. } = SurfaceFacts::of(surface);
-    let what = format!("{vertices} vertices, {triangles} triangles, {constrained} breakline edges");
+    let what = format!("{vertices} vertices, {triangles} triangles, {constrained} constrained edges");
     match flaws.len() {
         0 => {
             print(&format!("{what}: no flaw found\n"))?;

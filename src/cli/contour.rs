@@ -8,7 +8,6 @@ use super::talk::Talk;
 use super::units::Units;
 use super::{Exit, gather, raster};
 use crate::crs::Crs;
-use crate::data::Bounds;
 use crate::error::Result;
 use crate::io::contours::ContourSummary;
 use crate::terrain::Levels;
@@ -46,7 +45,7 @@ pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
         Ground::Surface(gathered) => gathered.made.tell(gathered.surface.as_ref(), talk),
         Ground::Raster(grid) => {
             talk.line(format_args!("raster      {}", raster::describe(&grid.frame, crs)));
-            tell_place(Bounds::default(), crs, talk);
+            tell_place(raster::extent_of(grid), crs, talk);
         }
     }
     tell_lines(&drawn, crs, talk);

@@ -5,7 +5,7 @@ use super::raster::{self, Watched};
 use super::summary::SurfaceFacts;
 use super::talk::Talk;
 use super::units::Units;
-use super::{Exit, gather, open};
+use super::{Exit, gather, inputs, open};
 use crate::error::Result;
 
 const FORMATS: &[Format<()>] =
@@ -14,6 +14,7 @@ const FORMATS: &[Format<()>] =
 /// Writes heights of a TIN as a raster.
 pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+    inputs::require(&args.frame.align_to)?;
     plan.inputs.extend(args.frame.align_to.clone());
     let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
     let gathered = gather::surface(&mut plan, talk)?;
@@ -27,6 +28,9 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     }
     gathered.made.tell(surface, talk);
     talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
+    if written.as_ref().is_some_and(|cells| cells.valid == 0) {
+        talk.warning("no cell has a height");
+    }
     if let Some(cells) = written.filter(|cells| cells.valid > 0) {
         let units = Units::of(surface.crs());
         let (low, high) = (units.height(cells.min), units.height(cells.max));

@@ -3,30 +3,24 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use rayon::prelude::*;
-
 use super::args::EdgeLength;
 use super::lines::{self, Rings};
 use super::open;
 use super::plan::{From, PointPlan, SurfacePlan};
+use super::point_files;
 use super::relabeled::Relabeled;
+use super::roads::Roads;
 use super::summary::{Made, seconds};
 use super::systems::{self, Role, Stated, Systems, Wish};
 use super::talk::Talk;
 use super::units::Units;
-use crate::crs::{Crs, Transform};
-use crate::data::{Grid, Layer, PointBatch, PointSource, Surface};
+use crate::crs::Crs;
+use crate::data::{Bounds, Grid, Layer, Surface};
 use crate::error::{Error, Result};
-use crate::terrain::{Classes, Columns, Selection, SelectionReport, TinBuilder, TinReport};
+use crate::terrain::{Classes, Selection, SelectionReport, TinBuilder, TinReport};
 
 /// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
-
-/// More files than this are opened a second time rather than kept open.
-const FILES_KEPT_OPEN: usize = 100;
-
-/// Points between two looks at the progress bar: enough to keep all cores at reprojecting.
-const REPROJECTED_AT_ONCE: usize = 4096;
 
 /// What the verbs work on.
 pub(super) enum Ground {
@@ -88,12 +82,12 @@ pub(super) fn surface(plan: &mut SurfacePlan, talk: &Talk) -> Result<Gathered> {
 }
 
 fn one_system(path: &Path, crs: Option<&Crs>, wish: &Wish, talk: &Talk) -> Result<Option<Crs>> {
-    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), role: Role::Ground }];
+    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), role: Role::Whole }];
     Ok(systems::reconcile(&stated, wish, talk)?.crs)
 }
 
 fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
-    let mut files = open_all(&plan.files, talk)?;
+    let mut files = point_files::open_all(&plan.files, talk)?;
     let breaklines = layers(&plan.breaklines, talk)?;
     let boundary = layers(&plan.boundary, talk)?;
 
@@ -118,10 +112,12 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
 
     // Lines first: they are few, and what is wrong with them is known before the points are read.
     let mut made = Made::default();
+    let mut line_extent = Bounds::default();
     for ((path, layer), road) in breaklines.iter().zip(line_roads) {
         for mut line in lines::breaklines(layer, path)? {
             roads.take(*road, &mut line).map_err(|e| e.in_file(path))?;
             made.breaklines += 1;
+            line.iter().for_each(|&vertex| line_extent.add(vertex));
             match plan.bounds {
                 Some(bounds) => {
                     let window = bounds.grown(rim.buffer);
@@ -136,17 +132,20 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     }
 
     let window = plan.bounds.map(|bounds| bounds.grown(rim.buffer));
-    let selection = Selection::new(plan.classes.clone(), window);
-    let (columns, report) = read_points(&mut files, point_roads, &roads, selection, talk)?;
+    let mut selection = Selection::new(plan.classes.clone(), window);
+    point_files::read_all(&mut files, point_roads, &roads, &mut selection, talk)?;
+    let (points, report) = selection.finish();
     roads.warn(talk);
     tell_classes(&report, &plan.classes, talk);
-    if columns.x.is_empty() && made.breaklines == 0 {
+    if points.is_empty() && made.breaklines == 0 {
         return Err(nothing_left(&report));
     }
-    builder.add_points(&columns.x, &columns.y, &columns.z);
-    drop(columns);
+    if plan.bounds.is_none() && boundary.is_empty() {
+        tell_beyond(&points, line_extent, &rim, &units, talk);
+    }
+    builder.add_owned_points(points);
 
-    let bar = talk.bar("triangulating", None);
+    let bar = talk.spinner("triangulating");
     let start = Instant::now();
     let tin = builder.build().map_err(|error| match plan.files.as_slice() {
         [file] => error.in_file(file),
@@ -196,31 +195,6 @@ impl Rim {
     }
 }
 
-/// A file of points.
-struct PointFile {
-    stated: Stated,
-    source: Option<Box<dyn PointSource + Send>>,
-    count: Option<u64>,
-}
-
-fn open_all(paths: &[PathBuf], talk: &Talk) -> Result<Vec<PointFile>> {
-    let mut files = Vec::with_capacity(paths.len());
-    for path in paths {
-        let source = open::points(path).map_err(|e| e.in_file(path))?;
-        let info = source.info();
-        talk.detail(format_args!("{}: {}", path.display(), info.format));
-        info.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
-        if !info.has_classes && paths.len() > 1 {
-            talk.detail(format_args!("{}: no classes, all points are used", path.display()));
-        }
-        let stated = Stated { path: path.clone(), crs: info.crs.clone(), role: Role::Ground };
-        let count = info.count;
-        let keep = paths.len() <= FILES_KEPT_OPEN || path.as_os_str() == super::inputs::STDIN;
-        files.push(PointFile { stated, count, source: Some(source).filter(|_| keep) });
-    }
-    Ok(files)
-}
-
 fn layers(paths: &[PathBuf], talk: &Talk) -> Result<Vec<(PathBuf, Layer)>> {
     let mut layers = Vec::with_capacity(paths.len());
     for path in paths {
@@ -230,98 +204,6 @@ fn layers(paths: &[PathBuf], talk: &Talk) -> Result<Vec<(PathBuf, Layer)>> {
         layers.push((path.clone(), layer));
     }
     Ok(layers)
-}
-
-/// The transforms in use, and which file takes which.
-struct Roads {
-    transforms: Vec<Box<dyn Transform>>,
-    by_file: Vec<Option<usize>>,
-}
-
-impl Roads {
-    fn new(from: &[Option<Crs>], to: Option<&Crs>, talk: &Talk) -> Result<Self> {
-        let mut known: Vec<&Crs> = Vec::new();
-        let mut roads = Roads { transforms: Vec::new(), by_file: Vec::with_capacity(from.len()) };
-        for from in from {
-            let road = match (from, to) {
-                (Some(from), Some(to)) => Some(match known.iter().position(|crs| *crs == from) {
-                    Some(road) => road,
-                    None => {
-                        let transform = open::transform(from, to)?;
-                        talk.note(format_args!("reprojecting from {from} to {to}"));
-                        known.push(from);
-                        roads.transforms.push(transform);
-                        known.len() - 1
-                    }
-                }),
-                _ => None,
-            };
-            roads.by_file.push(road);
-        }
-        Ok(roads)
-    }
-
-    /// Says what there is to say of the transforms: which operations, how good. Complete when they are
-    /// done.
-    fn warn(&self, talk: &Talk) {
-        self.transforms.iter().flat_map(|transform| transform.warnings()).for_each(|text| talk.warning(text));
-    }
-
-    fn take(&self, road: Option<usize>, points: &mut [[f64; 3]]) -> Result<()> {
-        match road {
-            Some(road) => {
-                let transform = &self.transforms[road];
-                points.par_chunks_mut(REPROJECTED_AT_ONCE).try_for_each(|chunk| transform.transform(chunk))
-            }
-            None => Ok(()),
-        }
-    }
-
-    fn take_batch(&self, road: Option<usize>, batch: &mut PointBatch) -> Result<()> {
-        if road.is_none() {
-            return Ok(());
-        }
-        let mut points: Vec<[f64; 3]> =
-            batch.x.iter().zip(&batch.y).zip(&batch.z).map(|((&x, &y), &z)| [x, y, z]).collect();
-        self.take(road, &mut points)?;
-        for (i, [x, y, z]) in points.into_iter().enumerate() {
-            (batch.x[i], batch.y[i], batch.z[i]) = (x, y, z);
-        }
-        Ok(())
-    }
-}
-
-fn read_points(
-    files: &mut [PointFile],
-    by_file: &[Option<usize>],
-    roads: &Roads,
-    mut selection: Selection,
-    talk: &Talk,
-) -> Result<(Columns, SelectionReport)> {
-    let length = files.iter().map(|file| file.count).sum::<Option<u64>>();
-    let bar = talk.bar("reading points", length);
-    let mut batch = PointBatch::default();
-    for (file, road) in files.iter_mut().zip(by_file) {
-        let path = &file.stated.path;
-        let mut source = match file.source.take() {
-            Some(source) => source,
-            None => open::points(path).map_err(|e| e.in_file(path))?,
-        };
-        selection.next_source();
-        loop {
-            source.read(&mut batch).map_err(|e| e.in_file(path))?;
-            if batch.is_empty() {
-                break;
-            }
-            roads.take_batch(*road, &mut batch).map_err(|e| e.in_file(path))?;
-            selection.add(&batch).map_err(|e| e.in_file(path))?;
-            bar.inc(batch.len() as u64);
-        }
-        talk.detail(format_args!("{}: read", path.display()));
-        source.warnings().iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
-    }
-    bar.finish_and_clear();
-    Ok(selection.finish())
 }
 
 fn tell_classes(report: &SelectionReport, wanted: &Classes, talk: &Talk) {
@@ -336,6 +218,23 @@ fn tell_classes(report: &SelectionReport, wanted: &Classes, talk: &Talk) {
         }
     } else if !report.by_class.is_empty() {
         talk.note("no point is of class 2 (ground): all classes are used");
+    }
+}
+
+/// Lines of a whole district over points of one tile: the extent is then not what one expects.
+fn tell_beyond(points: &[[f64; 3]], lines: Bounds, rim: &Rim, units: &Units, talk: &Talk) {
+    let mut extent = Bounds::default();
+    points.iter().for_each(|&point| extent.add(point));
+    if extent.is_empty() || lines.is_empty() {
+        return;
+    }
+    let reach = (0..2).flat_map(|i| [extent.min[i] - lines.min[i], lines.max[i] - extent.max[i]]);
+    let furthest = reach.fold(0.0, f64::max);
+    if furthest > rim.buffer {
+        talk.note(format_args!(
+            "breaklines reach {} beyond the points: the surface there rests on them alone (--bounds clips it)",
+            units.length(furthest)
+        ));
     }
 }
 
@@ -360,6 +259,9 @@ fn nothing_left(report: &SelectionReport) -> Error {
     let error = Error::format(format!(
         "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
     ));
+    if *outside > 0 {
+        return error.cure("compare --bounds with the extent that `breakline info` tells");
+    }
     if *other_class > 0 {
         let classes: Vec<String> = report.by_class.keys().map(u8::to_string).collect();
         return error.cure(format!("the points are of class {}: choose with --class", classes.join(", ")));

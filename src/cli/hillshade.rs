@@ -4,10 +4,10 @@ use super::open::{self, ShadeFormat};
 use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
 use super::raster::{self, Watched};
-use super::summary::SurfaceFacts;
+use super::summary::{SurfaceFacts, tell_place};
 use super::talk::Talk;
 use super::units::number;
-use super::{Exit, gather};
+use super::{Exit, gather, inputs};
 use crate::crs::Crs;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
@@ -22,6 +22,7 @@ const FORMATS: &[Format<ShadeFormat>] = &[
 /// Shades a TIN or a DEM.
 pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+    inputs::require(&args.frame.align_to)?;
     plan.inputs.extend(args.frame.align_to.clone());
     let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
     match gather::ground(&mut plan, talk)? {
@@ -36,6 +37,7 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
             refuse_frame(&args.frame)?;
             shade(&grid, args, &targets, talk)?;
             talk.line(format_args!("raster      {}", raster::describe(&grid.frame, grid.crs.as_ref())));
+            tell_place(raster::extent_of(&grid), grid.crs.as_ref(), talk);
         }
     }
     outputs::tell(&targets, talk);

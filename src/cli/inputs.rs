@@ -63,7 +63,18 @@ pub(super) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Resul
 
 #[cold]
 fn no_such_file(path: &Path) -> Error {
-    Error::from(std::io::Error::new(std::io::ErrorKind::NotFound, "no such file")).in_file(path)
+    let error = Error::from(std::io::Error::new(std::io::ErrorKind::NotFound, "no such file")).in_file(path);
+    match path.to_str().is_some_and(|text| text.parse::<f64>().is_ok()) {
+        true => error.cure("several values of one option have commas between them, as in --class 2,8"),
+        false => error,
+    }
+}
+
+#[cold]
+fn folder(path: &Path) -> Error {
+    Error::from(std::io::Error::new(std::io::ErrorKind::IsADirectory, "this is a folder"))
+        .in_file(path)
+        .cure(format!("name its files, as in {}", path.join("*.laz").display()))
 }
 
 fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
@@ -85,6 +96,10 @@ fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
 
 fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
     if path.as_os_str() == STDIN || file_of(path).is_some() {
+        // A folder with an extension may be a data set of GDAL, as `.gdb`.
+        if path.is_dir() && path.extension().is_none() {
+            return Err(folder(path));
+        }
         found.push(path.to_path_buf());
         return Ok(());
     }

@@ -4,9 +4,6 @@
 //! `gather` makes a surface of files, a verb makes something of the surface, and `open` is the
 //! one place that names readers, writers and verbs of the library. Data goes to files or stdout, talk
 //! (`talk`) to stderr.
-//! What is typed (`args`) and what it means (`plan`, `outputs`, `systems`) are kept apart. `gather`
-//! makes a surface of files, a verb makes something of the surface, and `open` is the one place that
-//! names the readers and writers of the library. Data goes to files or stdout, talk to stderr.
 
 mod args;
 mod check;
@@ -21,8 +18,10 @@ mod lines;
 mod open;
 mod outputs;
 mod plan;
+mod point_files;
 mod raster;
 mod relabeled;
+mod roads;
 mod summary;
 mod systems;
 mod talk;
@@ -36,7 +35,7 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use self::args::{Cli, TalkArgs, Verb};
+use self::args::{Cli, TalkArgs, Verb, join_corners};
 use self::talk::Talk;
 use crate::error::{Kind, Result};
 
@@ -59,7 +58,7 @@ impl From<Exit> for ExitCode {
 
 /// Runs the program with these arguments, the first of which is its name.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
-    let cli = match Cli::try_parse_from(args) {
+    let cli = match Cli::try_parse_from(join_corners(args)) {
         Ok(cli) => cli,
         Err(error) => {
             // Help goes to stdout and is no failure; a closed pipe is none either.

@@ -21,11 +21,19 @@ pub(super) enum Content {
     Mesh,
 }
 
+/// What LAS, LAZ and COPC begin with.
+const LIDAR: &[u8] = b"LASF";
+
+/// Whether a file is LAS, LAZ or COPC.
+pub(super) fn is_lidar(path: &Path) -> bool {
+    first_bytes(path).is_some_and(|head| head.starts_with(LIDAR))
+}
+
 /// What the first bytes and the extension say. What neither knows are points: text comes under any
 /// name.
 pub(super) fn content(path: &Path) -> Content {
     let head = first_bytes(path).unwrap_or_default();
-    if head.starts_with(b"LASF") {
+    if head.starts_with(LIDAR) {
         return Content::Points;
     }
     if raster::is_tiff(&head) {

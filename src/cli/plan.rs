@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::args::{Corners, DuplicatesArg, EdgeLength, SurfaceArgs};
 use super::inputs;
-use super::open::{Content, content};
+use super::open::{self, Content, content};
 use super::systems::{self, Degrees, Wish};
 use super::talk::Talk;
 use crate::error::{Error, Result};
@@ -56,6 +56,8 @@ impl SurfacePlan {
             degrees: if args.force_degrees { Degrees::Allow } else { Degrees::Refuse },
         };
         inputs::require(args.breaklines.iter().chain(&args.boundary))?;
+        refuse_other_kinds("--breaklines takes lines or polygons", &args.breaklines)?;
+        refuse_other_kinds("--boundary takes polygons", &args.boundary)?;
         let mut inputs = files.clone();
         inputs.extend(args.breaklines.iter().chain(&args.boundary).cloned());
         let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));
@@ -101,6 +103,20 @@ impl PointPlan {
             duplicates,
         }
     }
+}
+
+/// What is known to hold no lines or polygons is not handed to a reader of them.
+fn refuse_other_kinds(wanted: &str, paths: &[PathBuf]) -> Result<()> {
+    for path in paths {
+        let what = match content(path) {
+            Content::Raster => "a raster",
+            Content::Mesh => "a mesh",
+            Content::Points if open::is_lidar(path) => "lidar points",
+            Content::Points | Content::Layer => continue,
+        };
+        return Err(Error::usage(format!("{wanted}, this is {what}")).in_file(path));
+    }
+    Ok(())
 }
 
 /// A surface that is there already is taken as it is.

@@ -7,7 +7,7 @@ use super::open;
 use super::talk::Talk;
 use super::units::Units;
 use crate::crs::Crs;
-use crate::data::{BlockSource, Bounds, Frame, Window};
+use crate::data::{BlockSource, Bounds, Frame, Grid, Window};
 use crate::error::{Error, Result};
 
 /// Cells are this large unless something else is said.
@@ -19,13 +19,19 @@ const DEFAULT_RESOLUTION: f64 = 1.0;
 /// If the raster to align to cannot be read or is in another system, or no cell would be there.
 pub(super) fn frame(args: &FrameArgs, extent: Bounds, crs: Option<&Crs>, talk: &Talk) -> Result<Frame> {
     let units = Units::of(crs);
-    let extent = match args.te {
-        Some(corners) => corners.grown(0.0),
-        None => extent,
-    };
     if extent.is_empty() {
         return Err(Error::format("the surface has no triangle, so there is no raster of it"));
     }
+    let extent = match args.te {
+        Some(corners) => {
+            let te = corners.grown(0.0);
+            if (0..2).any(|i| te.max[i] <= extent.min[i] || te.min[i] >= extent.max[i]) {
+                talk.warning("the rectangle of --te does not touch the surface");
+            }
+            te
+        }
+        None => extent,
+    };
     if let Some(path) = &args.align_to {
         let (frame, theirs) = open::raster_place(path)?;
         if let (Some(theirs), Some(ours)) = (theirs, crs)
@@ -33,7 +39,7 @@ pub(super) fn frame(args: &FrameArgs, extent: Bounds, crs: Option<&Crs>, talk: &
         {
             return Err(Error::unsupported(format!("the raster is in {theirs}, the surface in {ours}"))
                 .in_file(path)
-                .cure("reproject the input to the raster's system with --t-srs"));
+                .cure("build the surface of points with --t-srs and the raster's system"));
         }
         return Frame::aligned_to(&frame, &extent);
     }
@@ -48,6 +54,25 @@ pub(super) fn frame(args: &FrameArgs, extent: Bounds, crs: Option<&Crs>, talk: &
         }
     };
     Frame::snapped(&extent, resolution)
+}
+
+/// The box of all cells, corners included; without heights.
+pub(super) fn extent(frame: &Frame) -> Bounds {
+    let mut bounds = Bounds::default();
+    let (width, height) = (frame.width as f64, frame.height as f64);
+    for (column, row) in [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)] {
+        let [x, y] = frame.to_map(column, row);
+        bounds.add([x, y, f64::NAN]);
+    }
+    bounds
+}
+
+/// The same with the lowest and the highest height, where there is any.
+pub(super) fn extent_of(grid: &Grid) -> Bounds {
+    let mut bounds = extent(&grid.frame);
+    let [x, y, _] = bounds.min;
+    grid.values.iter().filter(|z| !z.is_nan()).for_each(|&z| bounds.add([x, y, z]));
+    bounds
 }
 
 /// A source of blocks that tells a progress bar what it has filled.

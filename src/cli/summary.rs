@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::talk::Talk;
-use super::units::{neat, number};
+use super::units::{neat, number, thousandths};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
@@ -30,6 +30,9 @@ impl Made {
         }
         let facts = SurfaceFacts::of(surface);
         if self.tin.is_none() {
+            if facts.constrained > 0 {
+                talk.line(format_args!("breaklines  {} edges, lines of a clip included", facts.constrained));
+            }
             talk.line(format_args!("vertices    {}", facts.vertices));
         }
         talk.line(format_args!("triangles   {}{}", facts.triangles, self.left_out()));
@@ -78,8 +81,12 @@ impl Made {
 /// Where something is, and in which coordinate system.
 pub(super) fn tell_place(extent: Bounds, crs: Option<&Crs>, talk: &Talk) {
     if !extent.is_empty() {
-        let axis = |i: usize| format!("{} .. {}", neat(extent.min[i]), neat(extent.max[i]));
-        talk.line(format_args!("extent      x {}, y {}, z {}", axis(0), axis(1), axis(2)));
+        // Millimetres will do where there are metres; degrees are small.
+        let is_wide = (0..2).any(|i| extent.max[i] - extent.min[i] > 10.0);
+        let tell = if is_wide { thousandths } else { neat };
+        let axis = |i: usize| format!("{} .. {}", tell(extent.min[i]), tell(extent.max[i]));
+        let heights = if extent.min[2] <= extent.max[2] { format!(", z {}", axis(2)) } else { String::new() };
+        talk.line(format_args!("extent      x {}, y {}{heights}", axis(0), axis(1)));
     }
     match crs {
         Some(crs) => talk.line(format_args!("CRS         {}", crs.describe())),

@@ -39,6 +39,8 @@ pub(super) struct Stated {
 pub(super) enum Role {
     Lines,
     Ground,
+    /// A surface that is there already; it is not reprojected.
+    Whole,
 }
 
 /// The answer.
@@ -159,8 +161,13 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, talk: &Talk) -> Result<(
         CrsKind::Geographic if degrees == Degrees::Refuse => {
             let unit = &crs.unit.name;
             let error = Error::unsupported(format!("{crs} is geographic: its unit, the {unit}, is no length"));
-            let cure = "reproject to a projected system with --t-srs EPSG:CODE, or go on with --force-degrees";
-            return Err(in_file(error).cure(cure));
+            let cure = match file {
+                Some(Stated { role: Role::Whole, .. }) => {
+                    "make it of points with --t-srs EPSG:CODE (a raster: gdalwarp)"
+                }
+                _ => "reproject to a projected system with --t-srs EPSG:CODE",
+            };
+            return Err(in_file(error).cure(format!("{cure}, or go on with --force-degrees")));
         }
         _ => {}
     }

@@ -78,14 +78,21 @@ impl Talk {
 
     /// A bar for work of known or unknown size, seen on a terminal only.
     pub(super) fn bar(&self, what: &'static str, length: Option<u64>) -> ProgressBar {
-        let template = match length {
-            Some(_) => "{msg} [{bar:30}] {human_pos} of {human_len}, {eta} left",
-            None => "{msg} {spinner} {human_pos}",
-        };
-        let bar = match length {
-            Some(length) => ProgressBar::new(length),
-            None => ProgressBar::no_length(),
-        };
+        match length {
+            Some(length) => {
+                let template = "{msg} [{bar:30}] {human_pos} of {human_len}, {eta} left";
+                self.show(ProgressBar::new(length), what, template)
+            }
+            None => self.show(ProgressBar::no_length(), what, "{msg} {spinner} {human_pos}"),
+        }
+    }
+
+    /// The same for work that is not counted.
+    pub(super) fn spinner(&self, what: &'static str) -> ProgressBar {
+        self.show(ProgressBar::no_length(), what, "{msg} {spinner} {elapsed}")
+    }
+
+    fn show(&self, bar: ProgressBar, what: &'static str, template: &str) -> ProgressBar {
         let bar = self.bars.add(bar);
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("=> "));

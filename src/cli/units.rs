@@ -85,6 +85,11 @@ pub(super) fn neat(value: f64) -> String {
     }
 }
 
+/// A number with three decimals at most.
+pub(super) fn thousandths(value: f64) -> String {
+    neat((value * 1e3).round() / 1e3)
+}
+
 /// Two decimals for what is a measure of land, all that there are for what is small.
 pub(super) fn number(value: f64) -> String {
     if value.abs() >= 1.0 || value == 0.0 {

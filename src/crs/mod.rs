@@ -5,10 +5,12 @@
 //!
 //! Whatever a format writes (a code, WKT of any kind, GeoKeys) becomes a `Definition`: datum, projection with its
 //! parameters, unit. Two systems are the same when their definitions are; names never decide. Codes come from the EPSG
-//! registry in `proj-core`.
+//! registry in `proj-core`, names that it lacks from `crs-definitions`, names for a `.prj` from a rule.
 
 mod definition;
+mod esri;
 mod geokeys;
+mod names;
 mod projection;
 mod registry;
 mod unit;

@@ -1,13 +1,14 @@
-//! The EPSG registry: definitions from `proj-core`, further names from `names.txt` (made by `names.sql`).
+//! The EPSG registry: definitions from `proj-core`, further names from `crs-definitions`.
 
-use std::collections::{BTreeMap, HashMap};
+use std::cmp::Reverse;
+use std::collections::{HashMap, HashSet};
 use std::sync::OnceLock;
 
 use proj_core::{AxisOrder, CrsDef, HorizontalCrsDef, VerticalCrsDef};
 
 use super::definition::{Datum, Definition, Ellipsoid};
 use super::projection::{Projection, normalized};
-use super::{CrsKind, Unit};
+use super::{CrsKind, Unit, esri, names};
 
 /// The highest code that a coordinate system has in the registry, which is also the highest that GeoKeys can hold.
 const LAST_CODE: u32 = 32766;
@@ -35,16 +36,8 @@ pub(super) struct Vertical {
 /// The system with this code.
 pub(super) fn find(code: u32) -> Option<System> {
     let Some(found) = proj_core::lookup_epsg(code) else {
-        let (factor, name) = names().formulaless.get(&code)?;
-        let unit = Unit::length(*factor);
-        return Some(System {
-            name: (*name).to_owned(),
-            kind: CrsKind::Projected,
-            code,
-            unit,
-            definition: None,
-            vertical: None,
-        });
+        let (name, unit) = names::projected(code)?;
+        return Some(System { name, kind: CrsKind::Projected, code, unit, definition: None, vertical: None });
     };
     let whole = found.name().to_owned();
     let mut system = match &found {
@@ -118,23 +111,24 @@ fn plain(found: &CrsDef) -> System {
 /// The geodetic datum with this code.
 pub(super) fn datum(code: u32) -> Option<Datum> {
     let found = proj_core::lookup_datum_epsg(code)?;
-    let row = names().datums.get(&code);
-    let ellipsoid_code = row.map(|row| row.ellipsoid).or_else(|| proj_core::lookup_ellipsoid_code_for_datum(code));
+    let names = names::datum(code);
+    // A datum that is younger than the definitions goes by the name of a system that rests on it.
+    let named_after =
+        || geographic().iter().find(|system| system.datum == code).map_or(String::new(), |system| system.name.clone());
+    let ellipsoid_code = proj_core::lookup_ellipsoid_code_for_datum(code);
     let ellipsoid = found.ellipsoid();
     let rf = if ellipsoid.flattening() == 0.0 { 0.0 } else { 1.0 / ellipsoid.flattening() };
     Some(Datum {
-        name: row.map_or(String::new(), |row| row.name.to_owned()),
+        name: names.map_or_else(named_after, |names| names.name.clone()),
         code: Some(code),
         ellipsoid: Ellipsoid {
-            name: ellipsoid_code
-                .and_then(|code| names().ellipsoids.get(&code))
-                .map_or("unknown".into(), |row| row.0.to_owned()),
+            name: ellipsoid_code.and_then(names::ellipsoid).unwrap_or("unknown").to_owned(),
             code: ellipsoid_code,
             a: ellipsoid.semi_major_axis(),
             // Through the flattening and back costs digits that were never there.
             rf: (rf * 1e10).round() / 1e10,
         },
-        meridian: row.map_or(0.0, |row| meridian(row.meridian)),
+        meridian: names.and_then(|names| names.meridian).map_or(0.0, meridian),
     })
 }
 
@@ -191,51 +185,66 @@ pub(super) fn datum_code(datum: &str, geographic: &str) -> Option<u32> {
             .or_else(|| proj_core::lookup_datum_code_for_name(name))
             .or_else(|| proj_core::lookup_datum_code_for_name(&format!("D_{name}")))
     };
-    by_name(datum).or_else(|| names().datum_of_geographic.get(&normalized(geographic)).copied())
+    by_name(datum).or_else(|| datum_of_geographic(geographic))
 }
 
-/// What an Esri definition calls a datum, ellipsoid, geographic or projected system.
-pub(super) mod esri {
-    use super::names;
-
-    pub(in crate::crs) fn datum(code: u32) -> Option<&'static str> {
-        names().datums.get(&code).map(|row| row.esri).filter(|name| !name.is_empty())
-    }
-
-    pub(in crate::crs) fn ellipsoid(code: u32) -> Option<&'static str> {
-        names().ellipsoids.get(&code).map(|row| row.1).filter(|name| !name.is_empty())
-    }
-
-    pub(in crate::crs) fn geographic(code: u32) -> Option<&'static str> {
-        names().geographic.get(&code).map(|row| row.0).filter(|name| !name.is_empty())
-    }
-
-    pub(in crate::crs) fn projected(code: u32) -> Option<&'static str> {
-        names().projected.get(&code).copied()
-    }
+/// The code of the datum of the geographic system with this name, EPSG's or Esri's.
+fn datum_of_geographic(name: &str) -> Option<u32> {
+    static BY_NAME: OnceLock<HashMap<String, u32>> = OnceLock::new();
+    let by_name = BY_NAME.get_or_init(|| {
+        let mut by_name = HashMap::new();
+        for system in geographic() {
+            for name in [normalized(&system.name), normalized(&esri::geographic(&system.name))] {
+                by_name.entry(name).or_insert(system.datum);
+            }
+        }
+        by_name
+    });
+    by_name.get(&normalized(name)).copied()
 }
 
 /// Name and code of the datum of a vertical system.
-pub(super) fn vertical_datum(code: u32) -> Option<(&'static str, u32)> {
-    names().verticals.get(&code).map(|row| (row.datum_name, row.datum))
+pub(super) fn vertical_datum(code: u32) -> Option<(String, u32)> {
+    let system = verticals().iter().find(|system| system.epsg() == code)?;
+    Some((vertical_datum_name(system), system.vertical_datum_epsg()?))
 }
 
-/// The vertical system of heights over the datum of this name, in this unit.
-pub(super) fn identify_vertical(datum: &str, unit: &Unit) -> Option<u32> {
-    let key = normalized(datum);
-    let heights =
-        names().verticals.iter().filter(|(_, row)| normalized(row.datum_name) == key && row.name.contains("height"));
-    heights.map(|(&code, _)| code).find(|&code| find_vertical(code).is_some_and(|found| found.unit.is_same(unit)))
+/// The name of the datum; where nothing states it, that of the system without "height".
+fn vertical_datum_name(system: &VerticalCrsDef) -> String {
+    let known = system.vertical_datum_epsg().and_then(names::vertical_datum);
+    known.map_or_else(
+        || {
+            let name = system.name();
+            let end = [" height", " depth"].iter().filter_map(|word| name.find(word)).min().unwrap_or(name.len());
+            name[..end].to_owned()
+        },
+        str::to_owned,
+    )
+}
+
+/// The vertical system of heights over the datum of this name, in this unit; where no datum has that name, the one that
+/// is itself called so.
+pub(super) fn identify_vertical(datum: &str, name: &str, unit: &Unit) -> Option<u32> {
+    let (datum, name) = (normalized(datum), normalized(name));
+    let by_datum = heights(unit).find(|system| normalized(&vertical_datum_name(system)) == datum);
+    let found = by_datum.or_else(|| heights(unit).find(|system| normalized(system.name()) == name));
+    found.map(VerticalCrsDef::epsg)
 }
 
 /// The vertical system of heights over the datum with this code, in this unit.
 pub(super) fn vertical_of_datum(datum: u32, unit: &Unit) -> Option<u32> {
-    let name = names().verticals.values().find(|row| row.datum == datum)?.datum_name;
-    identify_vertical(name, unit)
+    heights(unit).find(|system| system.vertical_datum_epsg() == Some(datum)).map(VerticalCrsDef::epsg)
+}
+
+/// The vertical systems of heights in this unit, by code.
+fn heights(unit: &Unit) -> impl Iterator<Item = &'static VerticalCrsDef> {
+    let in_unit = |system: &&VerticalCrsDef| unit.is_same(&Unit::length(system.linear_unit_to_meter()));
+    verticals().iter().filter(|system| system.name().contains("height")).filter(in_unit)
 }
 
 /// The code of the system with this definition: method, parameters, datum and unit are the same. Where several are (the
-/// registry has copies with northings first), the one of this name, else an ordinary one, else the lowest.
+/// registry has copies with northings first), the one of this name, else of the most words of it, else an ordinary one,
+/// else the lowest.
 pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
     let datum = wanted.datum.code?;
     let codes: Vec<u32> = match wanted.kind {
@@ -244,30 +253,43 @@ pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
             .filter(|(_, found)| found.datum.code == Some(datum) && found.is_same(wanted))
             .map(|(code, _)| *code)
             .collect(),
-        CrsKind::Geographic => names()
-            .geographic
+        CrsKind::Geographic => geographic()
             .iter()
-            .filter(|(_, row)| row.1 == datum)
-            .filter(|(code, _)| {
-                find(**code).and_then(|found| found.definition).is_some_and(|found| found.is_same(wanted))
-            })
-            .map(|(code, _)| *code)
+            .filter(|system| system.datum == datum)
+            .map(|system| system.code)
+            .filter(|&code| find(code).and_then(|found| found.definition).is_some_and(|found| found.is_same(wanted)))
             .collect(),
         CrsKind::Geocentric if datum == 6326 && wanted.unit.is_same(&Unit::metre()) => vec![4978],
         _ => Vec::new(),
     };
+    if codes.len() < 2 {
+        return codes.first().copied();
+    }
     let key = normalized(name);
     let is_named = |code: u32| {
-        let esri = esri::projected(code).or_else(|| esri::geographic(code));
-        esri.is_some_and(|esri| normalized(esri) == key)
-            || find(code).is_some_and(|found| normalized(&found.name) == key)
+        find(code).is_some_and(|found| {
+            let esri = match found.kind {
+                CrsKind::Projected => esri::projected(&found.name, Some(code)),
+                _ => esri::geographic(&found.name),
+            };
+            [esri, found.name].iter().any(|name| normalized(name) == key)
+        })
     };
+    // New Jersey's system is also New York East's; Esri's name has these words in common with EPSG's, and little else.
+    let stated = words(name);
+    let common_words = |code: u32| find(code).map_or(0, |found| words(&found.name).intersection(&stated).count());
     codes.into_iter().min_by_key(|&code| {
         let northing_first = proj_core::lookup_authority_axis_order(code) == Some(AxisOrder::NorthEast);
         // Geographic systems all begin with latitude.
         let odd = northing_first && wanted.kind == CrsKind::Projected;
-        (!is_named(code), odd, code)
+        (!is_named(code), Reverse(common_words(code)), odd, code)
     })
+}
+
+/// "New", "Jersey": what is made of letters alone, as the numbers of zones are written in many ways.
+fn words(name: &str) -> HashSet<String> {
+    let words = name.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() > 2);
+    words.map(str::to_ascii_lowercase).collect()
 }
 
 /// Every projected system, by code.
@@ -283,95 +305,36 @@ fn projected() -> &'static [(u32, Definition)] {
     })
 }
 
-struct DatumRow {
-    name: &'static str,
-    esri: &'static str,
-    ellipsoid: u32,
-    meridian: u32,
-}
-
-struct VerticalRow {
-    name: &'static str,
+struct Geographic {
+    code: u32,
+    name: String,
     datum: u32,
-    datum_name: &'static str,
 }
 
-#[derive(Default)]
-struct Names {
-    datums: HashMap<u32, DatumRow>,
-    /// Name and Esri's name.
-    ellipsoids: HashMap<u32, (&'static str, &'static str)>,
-    /// Esri's name and the datum.
-    geographic: BTreeMap<u32, (&'static str, u32)>,
-    /// By normalized name, EPSG's and Esri's.
-    datum_of_geographic: HashMap<String, u32>,
-    projected: HashMap<u32, &'static str>,
-    verticals: BTreeMap<u32, VerticalRow>,
-    /// Metres in a unit and name.
-    formulaless: HashMap<u32, (f64, &'static str)>,
-}
-
-fn names() -> &'static Names {
-    static NAMES: OnceLock<Names> = OnceLock::new();
-    NAMES.get_or_init(|| {
-        let mut names = Names::default();
-        for line in include_str!("names.txt").lines() {
-            // A line that does not parse cannot be: a test reads them all.
-            let _ = names.add(line);
-        }
-        names
+/// Every geographic system of two dimensions, by code.
+fn geographic() -> &'static [Geographic] {
+    static ALL: OnceLock<Vec<Geographic>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        (1024..=LAST_CODE)
+            .filter_map(|code| match proj_core::lookup_epsg(code)? {
+                CrsDef::Geographic(found) => {
+                    Some(Geographic { code, name: found.name().to_owned(), datum: found.datum().epsg() })
+                }
+                _ => None,
+            })
+            .collect()
     })
 }
 
-impl Names {
-    fn add(&mut self, line: &'static str) -> Option<()> {
-        let mut fields = line.split('|');
-        let kind = fields.next()?;
-        let code = fields.next()?.parse().ok()?;
-        let mut text = || fields.next();
-        match kind {
-            "d" => {
-                let (name, esri) = (text()?, text()?);
-                let (ellipsoid, meridian) = (text()?.parse().ok()?, text()?.parse().ok()?);
-                self.datums.insert(code, DatumRow { name, esri, ellipsoid, meridian });
-            }
-            "e" => drop(self.ellipsoids.insert(code, (text()?, text()?))),
-            "g" => {
-                let (esri, datum) = (text()?, text()?.parse().ok()?);
-                self.geographic.insert(code, (esri, datum));
-                let name = proj_core::lookup_epsg(code).map_or("", |found| match found {
-                    CrsDef::Geographic(found) => found.name(),
-                    _ => "",
-                });
-                for name in [name, esri].map(normalized) {
-                    if !name.is_empty() {
-                        self.datum_of_geographic.entry(name).or_insert(datum);
-                    }
-                }
-            }
-            "p" => drop(self.projected.insert(code, text()?)),
-            "v" => {
-                let (name, datum, datum_name) = (text()?, text()?.parse().ok()?, text()?);
-                self.verticals.insert(code, VerticalRow { name, datum, datum_name });
-            }
-            "n" => drop(self.formulaless.insert(code, (text()?.parse().ok()?, text()?))),
-            _ => return None,
-        }
-        Some(())
-    }
+/// Every vertical system, by code.
+fn verticals() -> &'static [VerticalCrsDef] {
+    static ALL: OnceLock<Vec<VerticalCrsDef>> = OnceLock::new();
+    ALL.get_or_init(|| (1024..=LAST_CODE).filter_map(proj_core::lookup_vertical_epsg).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_line_of_the_names_is_read() {
-        let mut names = Names::default();
-        for line in include_str!("names.txt").lines() {
-            assert!(names.add(line).is_some(), "{line}");
-        }
-    }
 
     #[test]
     fn prime_meridians_are_those_of_the_registry() {
@@ -386,5 +349,30 @@ mod tests {
             let found = identify(definition, &name).unwrap_or_else(|| panic!("EPSG:{code} {name}"));
             assert!(find(found).unwrap().definition.unwrap().is_same(definition), "{code} is taken for {found}");
         }
+    }
+
+    #[test]
+    fn of_systems_with_one_definition_the_name_decides() {
+        for (code, name) in [
+            (3424, "NAD_1983_StatePlane_New_Jersey_FIPS_2900_Feet"),
+            (2260, "NAD_1983_StatePlane_New_York_East_FIPS_3101_Feet"),
+            (31467, "DHDN_3_Degree_Gauss_Zone_3"),
+            (5677, "DHDN / 3-degree Gauss-Kruger zone 3 (E-N)"),
+            (25832, "no such name"),
+        ] {
+            let definition = find(code).unwrap().definition.unwrap();
+            assert_eq!(identify(&definition, name), Some(code), "{name}");
+        }
+    }
+
+    #[test]
+    fn heights_are_identified_by_datum_else_by_name() {
+        let metre = Unit::metre();
+        assert_eq!(identify_vertical("North_American_Vertical_Datum_1988", "", &metre), Some(5703));
+        assert_eq!(identify_vertical("Deutsches Haupthoehennetz 2016", "", &metre), Some(7837));
+        assert_eq!(identify_vertical("unknown", "SVS2000 height", &metre), Some(5779));
+        assert_eq!(identify_vertical("of nobody", "of nobody", &metre), None);
+        assert_eq!(vertical_of_datum(5103, &Unit::length(12.0 / 39.37)), Some(6360));
+        assert_eq!(vertical_datum(7837).unwrap(), ("Deutsches Haupthoehennetz 2016".to_owned(), 1170));
     }
 }

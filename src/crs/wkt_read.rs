@@ -133,7 +133,7 @@ fn add_vertical(crs: &mut Crs, node: &Node) {
     };
     if let Some(unit) = stated {
         let datum = node.find(&["VERT_DATUM", "VDATUM", "VERTICALDATUM", "VRF"]).map_or("", Node::name);
-        crs.vertical_epsg = code.or_else(|| registry::identify_vertical(datum, &unit));
+        crs.vertical_epsg = code.or_else(|| registry::identify_vertical(datum, node.name(), &unit));
         crs.vertical_unit = Some(unit);
     } else {
         crs.vertical_epsg = code;

@@ -1,9 +1,9 @@
 //! From a [`Definition`] to WKT 1, in GDAL's words or in Esri's.
 
 use super::definition::Definition;
+use super::esri::{self, underscored};
 use super::projection::{Measure, Method, Param, Projection};
-use super::registry::{self, esri};
-use super::{CrsKind, Unit};
+use super::{CrsKind, Unit, registry};
 
 /// Whose WKT 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,14 +38,14 @@ pub(super) fn write_compound(name: &str, horizontal: &str, vertical: (Option<u32
     let vertical_name = found.as_ref().map_or("unknown height", |found| &found.name);
     let (datum, datum_code) = match code.and_then(registry::vertical_datum) {
         Some((datum, code)) => (datum, Some(code)),
-        None => ("unknown", None),
+        None => ("unknown".into(), None),
     };
     let writer = Writer { dialect: Dialect::Gdal };
     format!(
         "COMPD_CS[{},{horizontal},VERT_CS[{},VERT_DATUM[{},2005{}],{},AXIS[\"Gravity-related height\",UP]{}]]",
         quoted(name),
         quoted(vertical_name),
-        quoted(datum),
+        quoted(&datum),
         authority(datum_code),
         writer.unit(unit),
         authority(code.filter(|_| found.is_some())),
@@ -69,7 +69,7 @@ impl Writer {
         let geographic = self.geographic(definition, &definition.geographic.0, definition.geographic.1);
         let mut text = format!(
             "PROJCS[{},{geographic},PROJECTION[{}]",
-            quoted(&self.name(name, epsg.and_then(esri::projected))),
+            quoted(&self.name(name, |name| esri::projected(name, epsg))),
             quoted(method_name),
         );
         for (name, value) in parameters {
@@ -169,11 +169,7 @@ impl Writer {
     }
 
     fn geographic(&self, definition: &Definition, name: &str, epsg: Option<u32>) -> String {
-        let esri_name = epsg.and_then(esri::geographic).map(str::to_owned);
-        let name = match self.dialect {
-            Dialect::Gdal => name.to_owned(),
-            Dialect::Esri => esri_name.unwrap_or_else(|| prefixed("GCS_", name)),
-        };
+        let name = self.name(name, esri::geographic);
         let codes = if self.is_esri() { String::new() } else { authority(epsg) };
         format!("GEOGCS[{},{},{}{codes}]", quoted(&name), self.datum(definition), self.unit(&definition.angle))
     }
@@ -194,10 +190,7 @@ impl Writer {
         let ellipsoid = &datum.ellipsoid;
         let (name, ellipsoid_name) = match self.dialect {
             Dialect::Gdal => (gdal_datum_name(&datum.name), ellipsoid.name.clone()),
-            Dialect::Esri => (
-                datum.code.and_then(esri::datum).map_or_else(|| prefixed("D_", &datum.name), str::to_owned),
-                ellipsoid.code.and_then(esri::ellipsoid).map_or_else(|| underscored(&ellipsoid.name), str::to_owned),
-            ),
+            Dialect::Esri => (esri::datum(datum), esri::ellipsoid(&ellipsoid.name)),
         };
         let (meridian, meridian_code) = registry::meridian_name(datum.meridian);
         let codes = |code: Option<u32>| if self.is_esri() { String::new() } else { authority(code) };
@@ -232,11 +225,10 @@ impl Writer {
         format!("UNIT[{},{}{}]", quoted(name), self.number(unit.factor), authority(code))
     }
 
-    fn name(&self, name: &str, esri: Option<&str>) -> String {
-        match (self.dialect, esri) {
-            (Dialect::Esri, Some(esri)) => esri.to_owned(),
-            (Dialect::Esri, None) => underscored(name),
-            (Dialect::Gdal, _) => name.to_owned(),
+    fn name(&self, name: &str, esri: impl Fn(&str) -> String) -> String {
+        match self.dialect {
+            Dialect::Gdal => name.to_owned(),
+            Dialect::Esri => esri(name),
         }
     }
 
@@ -266,24 +258,6 @@ fn gdal_datum_name(name: &str) -> String {
         "World Geodetic System 1984" => "WGS_1984".into(),
         _ => underscored(name),
     }
-}
-
-fn prefixed(prefix: &str, name: &str) -> String {
-    let name = underscored(name);
-    if name.starts_with(prefix) { name } else { format!("{prefix}{name}") }
-}
-
-/// "ETRS89 / UTM zone 32N" to "ETRS89_UTM_zone_32N"; signs that names carry a meaning in ("CH1903+") stay.
-fn underscored(name: &str) -> String {
-    let mut text = String::new();
-    for c in name.chars() {
-        if c.is_alphanumeric() || "+-".contains(c) {
-            text.push(c);
-        } else if !text.is_empty() && !text.ends_with('_') {
-            text.push('_');
-        }
-    }
-    text.trim_end_matches('_').to_owned()
 }
 
 fn quoted(text: &str) -> String {

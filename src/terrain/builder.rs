@@ -88,6 +88,16 @@ impl TinBuilder {
         self.points.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| tidy([x, y, z])));
     }
 
+    /// Adds points without a copy of them, where they are the first.
+    pub fn add_owned_points(&mut self, mut points: Vec<[f64; 3]>) {
+        points.iter_mut().for_each(|point| *point = tidy(*point));
+        if self.points.is_empty() {
+            self.points = points;
+        } else {
+            self.points.append(&mut points);
+        }
+    }
+
     /// Makes room for that many more points, where the number is known.
     pub fn reserve(&mut self, points: usize) {
         self.points.reserve_exact(points);
@@ -133,8 +143,11 @@ impl TinBuilder {
         let mut triangulation = ConstrainedDelaunay::from_sorted(geometry, vertices)
             .map_err(|refused| Error::limit(refused.to_string()))?;
         if triangulation.dimension() < 2 {
-            let count = triangulation.vertex_count();
-            return Err(Error::format(format!("{count} distinct points on one line or place do not span a surface"))
+            let what = match triangulation.vertex_count() {
+                0 | 1 => "fewer than two distinct points do".to_owned(),
+                count => format!("{count} distinct points on one line do"),
+            };
+            return Err(Error::format(format!("{what} not span a surface"))
                 .cure("check the inputs, the classes (--class) and the bounds"));
         }
 
@@ -163,7 +176,8 @@ impl TinBuilder {
     fn merge(&mut self, report: &mut TinReport) -> Result<(Vec<[f64; 3]>, Vec<VertexId>)> {
         let mut all = std::mem::take(&mut self.points);
         let lines_from = all.len();
-        all.extend_from_slice(&std::mem::take(&mut self.line_points));
+        all.reserve_exact(self.line_points.len());
+        all.append(&mut self.line_points);
         let order = spatial_order(all.len(), |i| [all[i][0], all[i][1]]).map_err(|e| Error::limit(e.to_string()))?;
         let place = |i: u32| [all[i as usize][0], all[i as usize][1]];
         let mut vertices = Vec::with_capacity(all.len());

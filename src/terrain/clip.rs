@@ -1,14 +1,16 @@
 //! Clipping a TIN to polygons.
 //!
 //! 1. The rim of the surface becomes a constraint, so that it stays where it is.
-//! 2. The clip line goes in as constraints, its vertices where they were given, with heights read off the
-//!    surface. Where it crosses a breakline or the rim, the height of those stands.
+//! 2. The clip line goes in as constraints, its vertices where they were given. Its heights are read off
+//!    the surface: at its vertices, and at new ones wherever it crosses an edge. Where it crosses a
+//!    breakline or the rim, the height of those stands.
 //! 3. The faces fall into regions that no constraint divides; of each, one point tells whether it lies
 //!    within the old rim, the bounds, and any of the polygons.
 
 use geo::{Contains, Coord, LineString, Polygon};
 
 use crate::data::Bounds;
+use crate::geometry::{Crossing, Geometry};
 use crate::tds::{CellId, VertexId, ccw, cw};
 
 use super::Tin;
@@ -79,7 +81,11 @@ impl Clip {
         let mut line = Vec::new();
         let mut line_ends = Vec::new();
         for ring in self.rings() {
-            line.extend(ring);
+            for pair in ring.windows(2) {
+                line.push(pair[0]);
+                line.extend(crossings_between(tin, pair[0], pair[1]));
+            }
+            line.extend(ring.last());
             line_ends.push(line.len());
         }
         let heights: Vec<Option<f64>> = line.iter().map(|&[x, y]| tin.elevation(x, y)).collect();
@@ -108,6 +114,30 @@ impl Clip {
             }
         }
     }
+}
+
+/// The places between two others where the way crosses an edge of the surface that is no constraint, in
+/// their order.
+fn crossings_between(tin: &Tin, [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> Vec<[f64; 2]> {
+    let triangulation = &tin.triangulation;
+    let (a, b) = ([ax, ay, f64::NAN], [bx, by, f64::NAN]);
+    if !(triangulation.geometry().admits(&a) && triangulation.geometry().admits(&b)) {
+        return Vec::new();
+    }
+    let is_open = |&[c, d]: &[VertexId; 2]| {
+        triangulation.tds().edge(c, d).is_some_and(|(cell, i)| {
+            let beside = triangulation.tds().neighbor(cell, i);
+            !triangulation.is_constrained(cell, i) && (tin.inside[cell.index()] || tin.inside[beside.index()])
+        })
+    };
+    let crossed = triangulation.edges_crossed(&a, &b).into_iter().filter(is_open);
+    let mut places: Vec<[f64; 2]> = crossed
+        .map(|[c, d]| triangulation.geometry().crossing([&a, &b], [triangulation.point(c), triangulation.point(d)]))
+        .map(|p| [p[0], p[1]])
+        .collect();
+    let along = |p: &[f64; 2]| (p[0] - ax) * (bx - ax) + (p[1] - ay) * (by - ay);
+    places.sort_unstable_by(|p, q| along(p).total_cmp(&along(q)));
+    places
 }
 
 fn polygon(ring: &[[f64; 2]]) -> Polygon {

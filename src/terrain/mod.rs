@@ -47,6 +47,6 @@ pub use grid_surface::GridSurface;
 pub use hillshade::{Hillshade, Light};
 pub use levels::{Levels, MAX_LEVELS};
 pub use rasterize::Dem;
-pub use selection::{Classes, Columns, Selection, SelectionReport};
+pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, surface_flaws};
 pub use tin::Tin;

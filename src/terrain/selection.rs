@@ -38,17 +38,6 @@ pub struct SelectionReport {
     pub classes: Option<Vec<u8>>,
 }
 
-/// Points as columns of equal length: 24 bytes a point.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Columns {
-    /// Eastings.
-    pub x: Vec<f64>,
-    /// Northings.
-    pub y: Vec<f64>,
-    /// Heights.
-    pub z: Vec<f64>,
-}
-
 /// Chooses the points that a surface is made of, and keeps nothing but their coordinates.
 ///
 /// Withheld points are dropped, coordinates that are not finite refused. While no ground point was
@@ -59,7 +48,7 @@ pub struct Columns {
 pub struct Selection {
     classes: Classes,
     window: Option<Bounds>,
-    kept: Columns,
+    kept: Vec<[f64; 3]>,
     /// Which of `kept` are there only until the first ground point comes.
     spare: Vec<Range<usize>>,
     has_ground: bool,
@@ -106,7 +95,7 @@ impl Selection {
         Selection {
             classes,
             window,
-            kept: Columns::default(),
+            kept: Vec::new(),
             spare: Vec::new(),
             has_ground: false,
             read: 0,
@@ -159,7 +148,7 @@ impl Selection {
         Ok(())
     }
 
-    fn take(&mut self, [x, y, z]: [f64; 3], class: Option<u8>) {
+    fn take(&mut self, point: [f64; 3], class: Option<u8>) {
         if class == Some(GROUND) && !self.has_ground {
             self.has_ground = true;
             if self.classes == Classes::GroundOrAll {
@@ -170,7 +159,7 @@ impl Selection {
             Some(class) => &mut self.by_class[usize::from(class)],
             None => &mut self.without_class,
         };
-        if self.window.is_some_and(|window| !window.holds(x, y)) {
+        if self.window.is_some_and(|window| !window.holds(point[0], point[1])) {
             tally.outside += 1;
             return;
         }
@@ -179,10 +168,8 @@ impl Selection {
         if fate == Use::No {
             return;
         }
-        let at = self.kept.x.len();
-        self.kept.x.push(x);
-        self.kept.y.push(y);
-        self.kept.z.push(z);
+        let at = self.kept.len();
+        self.kept.push(point);
         if fate == Use::Maybe {
             match self.spare.last_mut() {
                 Some(last) if last.end == at => last.end += 1,
@@ -204,20 +191,16 @@ impl Selection {
 
     /// Forgets the points that were kept for the case that there is no ground point.
     fn drop_spare(&mut self) {
-        let spare = std::mem::take(&mut self.spare);
-        for column in [&mut self.kept.x, &mut self.kept.y, &mut self.kept.z] {
-            let mut end = 0;
-            let mut from = 0;
-            for range in &spare {
-                column.copy_within(from..range.start, end);
-                end += range.start - from;
-                from = range.end;
-            }
-            let length = column.len();
-            column.copy_within(from..length, end);
-            column.truncate(end + length - from);
-            column.shrink_to_fit();
+        let (mut end, mut from) = (0, 0);
+        for range in std::mem::take(&mut self.spare) {
+            self.kept.copy_within(from..range.start, end);
+            end += range.start - from;
+            from = range.end;
         }
+        let length = self.kept.len();
+        self.kept.copy_within(from..length, end);
+        self.kept.truncate(end + length - from);
+        self.kept.shrink_to_fit();
     }
 
     #[cold]
@@ -258,8 +241,8 @@ impl Selection {
         report
     }
 
-    /// The points, in the order of the input, and what became of the others.
-    pub fn finish(self) -> (Columns, SelectionReport) {
+    /// The points, in the order of the input (24 bytes each), and what became of the others.
+    pub fn finish(self) -> (Vec<[f64; 3]>, SelectionReport) {
         let report = self.report();
         (self.kept, report)
     }
@@ -291,11 +274,11 @@ mod tests {
             selection.next_source();
             selection.add(batch).unwrap();
         }
-        let (columns, report) = selection.finish();
-        assert_eq!(columns.x, columns.z);
-        assert_eq!(columns.x.len() as u64, report.used);
+        let (points, report) = selection.finish();
+        assert!(points.iter().all(|p| p[0] == p[2]));
+        assert_eq!(points.len() as u64, report.used);
         assert_eq!(report.read, report.used + report.withheld + report.other_class + report.outside);
-        (columns.x, report)
+        (points.iter().map(|p| p[0]).collect(), report)
     }
 
     #[test]

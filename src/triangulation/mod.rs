@@ -32,6 +32,7 @@
 mod bulk;
 mod check;
 mod constrained;
+mod crossed;
 mod delaunay;
 mod locate;
 mod segment;

@@ -8,7 +8,7 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, Parser, Subcommand};
 
-pub(super) use parse::{Corners, EdgeLength};
+pub(super) use parse::{Corners, EdgeLength, join_corners};
 pub(super) use surface::{DuplicatesArg, SurfaceArgs};
 pub(super) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs, TinArgs,

@@ -1,10 +1,42 @@
 //! Values of options that are more than a number or a name.
 
+use std::collections::VecDeque;
+use std::ffi::OsString;
 use std::str::FromStr;
 
 use crate::data::Bounds;
 
-/// `xmin,ymin,xmax,ymax`
+/// Options whose four values may stand apart, as GDAL has them.
+const CORNER_OPTIONS: [&str; 2] = ["--te", "--bounds"];
+
+/// Joins `--te 1 2 3 4` to `--te 1,2,3,4`, and leaves all else as it is.
+///
+/// To the parser four values would be four that each may be a file, and a negative one an option.
+pub(in crate::cli) fn join_corners(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut rest: VecDeque<OsString> = args.into_iter().collect();
+    let mut joined = Vec::with_capacity(rest.len());
+    while let Some(arg) = rest.pop_front() {
+        if arg == "--" {
+            joined.push(arg);
+            break;
+        }
+        let takes_corners = CORNER_OPTIONS.iter().any(|option| arg == *option);
+        joined.push(arg);
+        if takes_corners {
+            let numbers: Vec<&str> =
+                rest.iter().take(4).map_while(|a| a.to_str().filter(|text| finite(text).is_ok())).collect();
+            if numbers.len() == 4 {
+                let corners = numbers.join(",");
+                rest.drain(..4);
+                joined.push(corners.into());
+            }
+        }
+    }
+    joined.extend(rest);
+    joined
+}
+
+/// `xmin,ymin,xmax,ymax`, or with blanks between them
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::cli) struct Corners {
     pub(in crate::cli) min: [f64; 2],
@@ -15,8 +47,10 @@ impl FromStr for Corners {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let values: Vec<f64> = text
-            .split(',')
+        let parts: Vec<&str> =
+            if text.contains(',') { text.split(',').collect() } else { text.split_whitespace().collect() };
+        let values: Vec<f64> = parts
+            .into_iter()
             .map(|part| finite(part).map_err(|e| format!("{e}; expected xmin,ymin,xmax,ymax")))
             .collect::<Result<_, _>>()?;
         let &[x0, y0, x1, y1] = values.as_slice() else {
@@ -89,8 +123,29 @@ mod tests {
     #[test]
     fn corners_are_four_numbers_in_order() {
         assert_eq!("-1, 2,3,4.5".parse(), Ok(Corners { min: [-1.0, 2.0], max: [3.0, 4.5] }));
-        for wrong in ["", "1,2,3", "1,2,3,4,5", "3,2,1,4", "1,2,1,4", "1,2,inf,4", "1,2,nan,4", "a,b,c,d"] {
+        assert_eq!(" 1  2 3.5\t4".parse(), Ok(Corners { min: [1.0, 2.0], max: [3.5, 4.0] }));
+        for wrong in ["", "1,2,3", "1,,2,3,4", "1,2,3,4,5", "3,2,1,4", "1,2,1,4", "1,2,inf,4", "1,2,nan,4", "a,b,c,d"] {
             assert!(wrong.parse::<Corners>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn four_values_in_a_row_are_one() {
+        let join = |line: &str| {
+            let joined = join_corners(line.split(' ').map(OsString::from));
+            joined.iter().map(|arg| arg.to_str().unwrap()).collect::<Vec<_>>().join(" ")
+        };
+        let cases = [
+            ("dem --te -10 -2.5 1e3 4 a.laz -o b.tif", "dem --te -10,-2.5,1e3,4 a.laz -o b.tif"),
+            ("dem a.laz --bounds 1 2 3 4 --te 5 6 7 8", "dem a.laz --bounds 1,2,3,4 --te 5,6,7,8"),
+            ("dem --te 1,2,3,4 5 6 7 8", "dem --te 1,2,3,4 5 6 7 8"),
+            ("dem --te 1 2 3 a.laz", "dem --te 1 2 3 a.laz"),
+            ("dem --te 1 2 3", "dem --te 1 2 3"),
+            ("dem --class 1 2 3 4 --te=1,2,3,4", "dem --class 1 2 3 4 --te=1,2,3,4"),
+            ("dem -- --te 1 2 3 4", "dem -- --te 1 2 3 4"),
+        ];
+        for (typed, expected) in cases {
+            assert_eq!(join(typed), expected);
         }
     }
 

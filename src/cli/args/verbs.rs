@@ -30,7 +30,7 @@ pub(in crate::cli) struct FrameArgs {
 
     /// Extent of the raster [default: that of the surface]
     ///
-    /// Grown outward to whole cells.
+    /// Grown outward to whole cells. With commas or blanks between the values.
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true)]
     pub(in crate::cli) te: Option<Corners>,
 
@@ -86,6 +86,7 @@ pub(in crate::cli) struct TinArgs {
 #[command(after_long_help = "\
 Example:
   breakline dem tile.laz --breaklines edges.shp --resolution 0.5 -o dem.tif
+  breakline dem ground.ply --te 688000 5261000 688400 5261300 -o dem.tif
   breakline dem ground.ply --align-to ortho.tif -o dem.tif")]
 pub(in crate::cli) struct DemArgs {
     #[command(flatten)]

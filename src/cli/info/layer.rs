@@ -4,6 +4,7 @@ use std::path::Path;
 use serde_json::{Map, json};
 
 use super::Sheet;
+use super::sheet::counted;
 use crate::cli::open;
 use crate::data::{Bounds, Shape, ShapeKind};
 use crate::error::Result;
@@ -28,7 +29,7 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     }
     sheet.silent("kind", "layer");
     sheet.plain("format", layer.format.as_str());
-    sheet.row("count", format!("{} records", layer.shapes.len()), layer.shapes.len());
+    sheet.row("count", counted(layer.shapes.len() as u64, "record"), layer.shapes.len());
     let words: Vec<String> = kinds.iter().map(|(kind, count)| format!("{}: {count}", name(*kind))).collect();
     let object: Map<_, _> = kinds.iter().map(|(kind, count)| (name(*kind).to_owned(), json!(count))).collect();
     sheet.row("shapes", words.join(", "), object);

@@ -15,7 +15,7 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     sheet.plain("format", format!("TIN, {extension}"));
     sheet.plain("vertices", facts.vertices);
     sheet.plain("triangles", facts.triangles);
-    sheet.row("breaklines", format!("{} edges", facts.constrained), facts.constrained);
+    sheet.row("breaklines", format!("{} edges, lines of a clip included", facts.constrained), facts.constrained);
     sheet.bounds(facts.extent);
     sheet.crs(mesh.crs());
     Ok(sheet)

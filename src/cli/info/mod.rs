@@ -6,7 +6,8 @@ mod points;
 mod raster;
 mod sheet;
 
-use std::path::Path;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 
 use self::sheet::Sheet;
 use super::args::InfoArgs;
@@ -17,7 +18,8 @@ use crate::error::Result;
 
 /// Tells what is in files. A file that cannot be read does not keep the others from being told.
 pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
-    let files = inputs::expand(&args.files, talk)?;
+    let mut files = inputs::expand(&args.files, talk)?;
+    drop_parts(&mut files, talk);
     let mut exit = Exit::Done;
     let mut objects = Vec::new();
     for (i, path) in files.iter().enumerate() {
@@ -42,6 +44,21 @@ pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
         print(&format!("{:#}\n", serde_json::Value::Array(objects)))?;
     }
     Ok(exit)
+}
+
+/// `FOLDER/*` names the parts of shapefiles too; they are told with the `.shp`.
+fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
+    const PARTS: [&str; 8] = ["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"];
+    let shapefiles: HashSet<PathBuf> =
+        files.iter().filter(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("shp"))).cloned().collect();
+    files.retain(|path| {
+        let is_part = path.extension().is_some_and(|e| PARTS.iter().any(|part| e.eq_ignore_ascii_case(part)))
+            && ["shp", "SHP"].iter().any(|e| shapefiles.contains(&path.with_extension(e)));
+        if is_part {
+            talk.detail(format_args!("{} is part of a shapefile", path.display()));
+        }
+        !is_part
+    });
 }
 
 fn sheet(path: &Path, talk: &Talk) -> Result<Sheet> {

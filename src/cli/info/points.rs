@@ -3,6 +3,7 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::Sheet;
+use super::sheet::counted;
 use crate::cli::open;
 use crate::cli::talk::Talk;
 use crate::data::{Bounds, PointBatch, PointFlags, PointInfo};
@@ -74,7 +75,7 @@ fn tell(info: &PointInfo, census: &Census) -> Sheet {
     let mut sheet = Sheet::with_warnings(info.warnings.clone());
     sheet.silent("kind", "points");
     sheet.plain("format", info.format.as_str());
-    sheet.row("count", format!("{} points", census.count), census.count);
+    sheet.row("count", counted(census.count, "point"), census.count);
     sheet.silent("stated_count", info.count);
     sheet.bounds(census.bounds);
     sheet.crs(info.crs.as_ref());

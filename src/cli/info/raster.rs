@@ -4,8 +4,9 @@ use serde_json::{Value, json};
 
 use super::Sheet;
 use crate::cli::open;
+use crate::cli::raster::extent;
 use crate::cli::units::neat;
-use crate::data::{Bounds, Frame};
+use crate::data::Frame;
 use crate::error::Result;
 
 pub(super) fn sheet(path: &Path) -> Result<Sheet> {
@@ -50,14 +51,4 @@ fn cell(frame: &Frame) -> String {
     } else {
         format!("rotated, transform {}", t.map(|value| value.to_string()).join(" "))
     }
-}
-
-fn extent(frame: &Frame) -> Bounds {
-    let mut bounds = Bounds::default();
-    let (width, height) = (frame.width as f64, frame.height as f64);
-    for (column, row) in [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)] {
-        let [x, y] = frame.to_map(column, row);
-        bounds.add([x, y, f64::NAN]);
-    }
-    bounds
 }

@@ -1,0 +1,70 @@
+use std::collections::HashSet;
+
+use crate::geometry::Geometry;
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId, ccw, cw};
+
+use super::{Location, Triangulation};
+
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+    /// The finite edges that the open segment from `a` to `b` crosses between their ends, each once, from no
+    /// end in particular. The two need not be vertices, nor lie in the hull. Edges that the segment runs
+    /// along or touches with an end are not crossed.
+    ///
+    /// # Complexity
+    /// Linear in the number of triangles met, after location; in the size of the hull where `a` is outside.
+    pub fn edges_crossed(&self, a: &G::Point, b: &G::Point) -> Vec<[VertexId; 2]> {
+        let mut crossed = Vec::new();
+        if self.dimension() < 2 || self.geometry.compare(a, b).is_eq() {
+            return crossed;
+        }
+        let mut open = self.cells_at(a);
+        let mut seen: HashSet<CellId> = open.iter().copied().collect();
+        while let Some(cell) = open.pop() {
+            let corners = *self.tds.corners(cell);
+            let infinite = corners.iter().position(|&v| v == VertexId::INFINITE);
+            for i in (0..3).filter(|&i| infinite.is_none_or(|infinite| infinite == i)) {
+                let ends = [corners[ccw(i)], corners[cw(i)]];
+                if self.crosses(a, b, ends) {
+                    let beyond = self.tds.neighbor(cell, i);
+                    if seen.insert(beyond) {
+                        open.push(beyond);
+                    }
+                    // Of the two cells of an edge, the one that has it this way around tells it.
+                    crossed.extend((ends[0] < ends[1]).then_some(ends));
+                }
+            }
+            // Through a vertex the way goes on in any of its cells.
+            for &vertex in corners.iter().filter(|&&v| v != VertexId::INFINITE && self.is_between(a, b, v)) {
+                open.extend(self.tds.around(vertex).filter(|&cell| seen.insert(cell)));
+            }
+        }
+        crossed.sort_unstable();
+        crossed.dedup();
+        crossed
+    }
+
+    /// The cells that have a place in them or on their border; all infinite ones for a place outside.
+    fn cells_at(&self, a: &G::Point) -> Vec<CellId> {
+        match self.locate(a, None) {
+            Location::Vertex(vertex) => self.tds.around(vertex).collect(),
+            Location::Cell { cell, touching } => {
+                let beside = (0..3).filter(|i| touching >> i & 1 == 1).map(|i| self.tds.neighbor(cell, i));
+                std::iter::once(cell).chain(beside).collect()
+            }
+            Location::OutsideHull { .. } | Location::OutsideAffineHull => self.tds.around(VertexId::INFINITE).collect(),
+        }
+    }
+
+    fn crosses(&self, a: &G::Point, b: &G::Point, [c, d]: [VertexId; 2]) -> bool {
+        let (c, d) = (self.point(c), self.point(d));
+        let turn = |p, q, r| self.geometry.orientation([p, q, r]);
+        turn(a, b, c) * turn(a, b, d) == Sign::Negative && turn(c, d, a) * turn(c, d, b) == Sign::Negative
+    }
+
+    fn is_between(&self, a: &G::Point, b: &G::Point, v: VertexId) -> bool {
+        let p = self.point(v);
+        self.geometry.orientation([a, b, p]) == Sign::Zero
+            && self.geometry.side_of_sphere_in_flat(&[a, b], p) == Sign::Positive
+    }
+}
