@@ -32,7 +32,8 @@ use super::sort::Curve;
 /// No edge: a single point has no ghosts.
 const NONE: u32 = u32::MAX;
 
-/// The most points whose edges can be numbered: `2 n - 2` faces with four numbers each, all of them ids.
+/// The most points whose edges can be numbered: `2 n - 2` faces with four numbers each, all of them ids. More are
+/// left to insertion one by one.
 const MAX_POINTS: usize = 1 << 29;
 const _: () = assert!(4 * (2 * MAX_POINTS as u64 - 2) <= CellId::LIMIT as u64);
 
