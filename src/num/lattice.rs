@@ -18,7 +18,7 @@ fn lowest_bit(x: f64) -> Option<i32> {
 }
 
 /// A power of two of which every coordinate is a multiple, if differences within an axis counted in
-/// it stay within `bits` bits; returned as its inverse, to multiply with.
+/// it stay below `2^bits`; returned as its inverse, to multiply with. `bits` is 53 at the most.
 ///
 /// `None` if the range is wider, or the inverse is not a normal number.
 pub fn inverse_unit<A>(axes: impl Iterator<Item = A> + Clone, bits: i32) -> Option<f64>
@@ -30,11 +30,12 @@ where
         return None;
     }
     let inverse = 2f64.powi(-lowest);
-    // The rounding of max - min is harmless: 2^bits is representable, and rounding is monotone.
+    // The rounding of max - min is harmless: it is monotone and 2^bits is representable, so that nothing
+    // from there on gets below. (2^53 + 1 gets *to* 2^53.)
     let limit = 2f64.powi(bits);
     let fits = |axis: A| {
         let (min, max) = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), x| (min.min(x), max.max(x)));
-        (max - min) * inverse <= limit
+        (max - min) * inverse < limit
     };
     axes.into_iter().all(fits).then_some(inverse)
 }
@@ -46,4 +47,33 @@ where
 #[inline]
 pub fn difference(a: f64, b: f64, inverse_unit: f64) -> i128 {
     i128::from(((a - b) * inverse_unit) as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit_of(points: &[f64], bits: i32) -> Option<f64> {
+        inverse_unit(std::iter::once(points.iter().copied()), bits)
+    }
+
+    #[test]
+    fn differences_stay_below_the_limit() {
+        let limit = 2f64.powi(53);
+        assert_eq!(unit_of(&[0.0, 1.0, limit - 1.0], 53), Some(1.0));
+        // 2^53 + 1 apart, which no double says: max - min is 2^53.
+        assert_eq!(unit_of(&[-1.0, limit], 53), None);
+        assert_eq!(unit_of(&[1.0, 2f64.powi(24)], 24), Some(1.0));
+        assert_eq!(unit_of(&[0.0, 1.0, 2f64.powi(24)], 24), None);
+    }
+
+    #[test]
+    fn the_unit_divides_every_coordinate() {
+        assert_eq!(unit_of(&[0.75, 5.0, -3.5], 30), Some(4.0));
+        assert_eq!(unit_of(&[96.0, 0.0, -32.0], 30), Some(1.0 / 32.0));
+        assert_eq!(unit_of(&[0.0, -0.0], 30), Some(1.0));
+        assert_eq!(difference(0.75, -3.5, 4.0), 17);
+        assert_eq!(unit_of(&[5e-324, 1e-323], 53), None);
+        assert_eq!(unit_of(&[f64::MAX, -f64::MAX], 53), None);
+    }
 }
