@@ -64,8 +64,9 @@
 //! | [`triangulation`] | location, insertion, kinds, checks |
 //! | [`terrain`] | TIN, contours, DEM, hillshade |
 //! | [`io`] | formats: LAS, GeoTIFF, shapefile, PLY and others |
-//! | [`cli`] | the command line |
+//! | `cli` | the command line; not for other programs |
 
+#[doc(hidden)] // the program as a function: no part of what the library promises
 pub mod cli;
 pub mod crs;
 pub mod data;

@@ -1,24 +1,11 @@
 //! The raster of a surface: what its cells hold, and that nothing else matters.
 
+mod common;
+
 use breakline::data::{BlockSource, Frame, Grid, Mesh, Surface, Window};
 use breakline::terrain::{Dem, Hillshade, Light};
+use common::random::Random;
 use rayon::prelude::*;
-
-/// SplitMix64 from a fixed seed.
-struct Random(u64);
-
-impl Random {
-    fn new(seed: u8) -> Self {
-        Random(u64::from(seed))
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % end as u64) as usize
-    }
-}
 
 type Lattice = [i64; 2];
 
@@ -36,18 +23,18 @@ struct Patchwork {
 
 impl Patchwork {
     fn new(seed: u8, side: i64, count: usize) -> Self {
-        let mut random = Random::new(seed);
+        let mut random = Random(seed.into());
         let mut patches = Patchwork {
             points: vec![[0, 0], [side, 0], [side, side], [0, side]],
             heights: Vec::new(),
             faces: vec![[0, 1, 2], [0, 2, 3]],
         };
         for _ in 0..count {
-            let p = [0, 0].map(|_| random.below(side as usize + 1) as i64);
+            let p = [0, 0].map(|_| random.index(side as usize + 1) as i64);
             patches.insert(p);
-            patches.flip(random.below(patches.faces.len()), random.below(3));
+            patches.flip(random.index(patches.faces.len()), random.index(3));
         }
-        patches.heights = patches.points.iter().map(|_| random.below(1000) as f64 / 8.0).collect();
+        patches.heights = patches.points.iter().map(|_| random.index(1000) as f64 / 8.0).collect();
         patches
     }
 
@@ -93,16 +80,16 @@ impl Patchwork {
 
     /// The mesh with its lattice at `(left, bottom)`, vertices and faces in an order from `seed`.
     fn mesh(&self, left: f64, bottom: f64, step: f64, seed: u8) -> Mesh {
-        let mut random = Random::new(seed);
+        let mut random = Random(seed.into());
         let mut order: Vec<usize> = (0..self.points.len()).collect();
         let mut faces = self.faces.clone();
         if seed > 0 {
             for i in 0..order.len() {
-                order.swap(i, random.below(i + 1));
+                order.swap(i, random.index(i + 1));
             }
             for i in 0..faces.len() {
-                faces.swap(i, random.below(i + 1));
-                faces[i].rotate_left(random.below(3));
+                faces.swap(i, random.index(i + 1));
+                faces[i].rotate_left(random.index(3));
             }
         }
         let mut number = vec![0; order.len()];
@@ -206,12 +193,12 @@ fn a_block_holds_the_cells_of_the_whole() {
         let dem = Dem::new(&mesh, frame).unwrap();
         let mut whole = vec![0.0; frame.width * frame.height];
         dem.fill(frame.window(), &mut whole).unwrap();
-        let mut random = Random::new(8);
+        let mut random = Random(8);
         let windows: Vec<Window> = (0..400)
             .map(|_| {
-                let (column, row) = (random.below(frame.width), random.below(frame.height));
-                let width = random.below(frame.width - column + 1);
-                let height = random.below(frame.height - row + 1);
+                let (column, row) = (random.index(frame.width), random.index(frame.height));
+                let width = random.index(frame.width - column + 1);
+                let height = random.index(frame.height - row + 1);
                 Window { column, row, width, height }
             })
             .collect();

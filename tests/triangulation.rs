@@ -1,34 +1,14 @@
 //! Laws of the triangulations, on small integer grids where ties are the rule.
 
+mod common;
+
 use std::collections::BTreeSet;
 
 use breakline::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
 use breakline::kernel::{Adaptive, Exact, Expansions, Kernel};
 use breakline::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, Refused, Triangulation};
-
-/// splitmix64
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    fn shuffle<T>(&mut self, items: &mut [T]) {
-        for i in (1..items.len()).rev() {
-            items.swap(i, self.below(i as u64 + 1) as usize);
-        }
-    }
-}
+use common::random::Random;
 
 /// The finite cells as sets of points, whatever their numbers and order.
 fn cells<G, const N: usize, V, C>(t: &Triangulation<G, N, V, C>) -> BTreeSet<Vec<Vec<i64>>>

@@ -24,10 +24,12 @@ impl Bounds {
         }
     }
 
-    /// Grows the box so that it holds `other`.
+    /// Grows the box so that it holds `other`. An empty box changes nothing.
     pub fn merge(&mut self, other: &Bounds) {
-        self.add(other.min);
-        self.add(other.max);
+        for axis in 0..3 {
+            self.min[axis] = self.min[axis].min(other.min[axis]);
+            self.max[axis] = self.max[axis].max(other.max[axis]);
+        }
     }
 
     /// Whether nothing was added yet (in plan).
@@ -38,5 +40,26 @@ impl Bounds {
     /// Whether `(x, y)` lies in the box or on its border.
     pub fn holds(&self, x: f64, y: f64) -> bool {
         self.min[0] <= x && x <= self.max[0] && self.min[1] <= y && y <= self.max[1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_added_by_an_empty_box_or_a_nan() {
+        let mut bounds = Bounds::default();
+        bounds.merge(&Bounds::default());
+        assert!(bounds.is_empty());
+        bounds.add([1.0, 2.0, f64::NAN]);
+        bounds.add([3.0, -2.0, 5.0]);
+        let whole = bounds;
+        bounds.merge(&Bounds::default());
+        assert_eq!(bounds, whole);
+        assert_eq!(bounds, Bounds { min: [1.0, -2.0, 5.0], max: [3.0, 2.0, 5.0] });
+        let mut empty = Bounds::default();
+        empty.merge(&whole);
+        assert_eq!(empty, whole);
     }
 }

@@ -43,7 +43,16 @@ impl Grid {
         Ok(Grid { frame, crs: source.crs().cloned(), values })
     }
 
+    #[cold]
+    fn too_short(&self) -> Error {
+        let Frame { width, height, .. } = self.frame;
+        Error::usage(format!("a grid of {width} x {height} cells holds {} values", self.values.len()))
+    }
+
     /// The value of a cell.
+    ///
+    /// # Panics
+    /// If the cell is not in the raster.
     pub fn value(&self, column: usize, row: usize) -> f64 {
         self.values[row * self.frame.width + column]
     }
@@ -97,7 +106,8 @@ impl BlockSource for Grid {
         }
         for (i, row) in out.chunks_exact_mut(window.width).enumerate() {
             let first = (window.row + i) * self.frame.width + window.column;
-            for (to, &from) in row.iter_mut().zip(&self.values[first..]) {
+            let values = self.values.get(first..first + window.width).ok_or_else(|| self.too_short())?;
+            for (to, &from) in row.iter_mut().zip(values) {
                 *to = from as f32;
             }
         }
@@ -121,5 +131,8 @@ mod tests {
         assert_eq!(Grid::collect(&grid).unwrap().values, grid.values);
         let beyond = Window { column: 35, row: 148, width: 3, height: 2 };
         assert!(grid.fill(beyond, &mut block).is_err());
+        let short = Grid { values: vec![0.0; 37 * 149], ..grid };
+        let error = Grid::collect(&short).unwrap_err();
+        assert_eq!(error.to_string(), "a grid of 37 x 150 cells holds 5513 values");
     }
 }

@@ -4,10 +4,26 @@
 //! these into each other. Neither knows the other. A verb returns a *source* (a surface, an iterator
 //! of lines, a filler of raster blocks) and a writer takes one, so that nothing has to be whole in
 //! memory because of the border between them.
+//!
+//! | what | record | stream |
+//! |---|---|---|
+//! | points | [`PointBatch`] (columns), [`PointInfo`] | [`PointSource`] |
+//! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
+//! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
+//! | rasters | [`Grid`], with its place: [`Frame`] | [`BlockSource`], asked by [`Window`] |
+//! | triangles | [`Mesh`] | [`Surface`] |
+//! | a box | [`Bounds`] | |
+//!
+//! Conventions: x to the east, y to the north, z up, in the units of the coordinate system that comes
+//! along (`crs`, where it is known); NaN is a height, or a cell, without a value; faces are
+//! counter-clockwise in plan; rasters have their transform in GDAL's order, for the corners of cells.
+//! Nothing here reads, writes or computes a result. [`geo`] converts to the types of the crate of that
+//! name.
 
 mod bounds;
 mod contour_line;
 mod frame;
+pub mod geo;
 mod grid;
 mod mesh;
 mod points;

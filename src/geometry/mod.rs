@@ -11,6 +11,14 @@
 //! | [`Space`] | `[f64; 3]` | in space |
 //!
 //! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
+//!
+//! | for | a geometry of one's own needs |
+//! |---|---|
+//! | insertion one by one, location, checks | [`Geometry`] |
+//! | construction in bulk | [`Coordinates`], too |
+//! | constraints | [`Crossing`], too |
+//!
+//! Distances and angles are asked nowhere, and units play no part.
 
 mod perturbation;
 mod plane;
@@ -25,6 +33,7 @@ pub use terrain::Terrain;
 use std::cmp::Ordering;
 use std::fmt::Debug;
 
+use crate::kernel::Range;
 use crate::num::Sign;
 
 /// The questions a triangulation asks of points. `N` is the number of vertices of a full cell: 3 for
@@ -166,12 +175,31 @@ impl<T: Copy> Crossed<T> {
         Crossed { ab, cd, along_ab, along_cd }
     }
 
-    /// The place in plan, taken on the first segment and kept within its box.
-    fn place(&self, plan: impl Fn(T) -> [f64; 2]) -> [f64; 2] {
+    /// The place in plan, taken on the first segment and kept within its box. What comes closer to zero
+    /// than the arithmetic goes is zero, which is then in the box, too.
+    fn place(&self, range: Range, plan: impl Fn(T) -> [f64; 2]) -> [f64; 2] {
         let [a, b] = self.ab.map(plan);
         std::array::from_fn(|axis| {
             let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
-            (a[axis] + self.along_ab * (b[axis] - a[axis])).clamp(low, high)
+            let x = (a[axis] + self.along_ab * (b[axis] - a[axis])).clamp(low, high);
+            if range.admits(x) { x } else { 0.0 }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crossings_are_points_that_the_geometry_admits() {
+        let geometry: Plane = Plane::default();
+        let tiny = crate::kernel::RANGE.min;
+        // They cross at half of the smallest coordinate there is.
+        let (ab, cd) = ([[0.0, 0.0], [1.0, 1.0]], [[-1.0, tiny], [1.0, 0.0]]);
+        let x = geometry.crossing(ab.each_ref(), cd.each_ref());
+        assert_eq!(x, [0.0, 0.0]);
+        let x = geometry.crossing([[0.0, 0.0], [8.0, 8.0]].each_ref(), [[0.0, 2.0], [2.0, 0.0]].each_ref());
+        assert_eq!(x, [1.0, 1.0]);
     }
 }

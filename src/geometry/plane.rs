@@ -44,6 +44,6 @@ impl<K: Kernel> Coordinates<3> for Plane<K> {
 
 impl<K: Kernel> Crossing for Plane<K> {
     fn crossing(&self, ab: [&[f64; 2]; 2], cd: [&[f64; 2]; 2]) -> [f64; 2] {
-        Crossed::new(ab, cd, |p| *p).place(|p| *p)
+        Crossed::new(ab, cd, |p| *p).place(K::RANGE, |p| *p)
     }
 }

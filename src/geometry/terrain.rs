@@ -53,7 +53,7 @@ impl<K: Kernel> Coordinates<3> for Terrain<K> {
 impl<K: Kernel> Crossing for Terrain<K> {
     fn crossing(&self, ab: [&[f64; 3]; 2], cd: [&[f64; 3]; 2]) -> [f64; 3] {
         let crossed = Crossed::new(ab, cd, plan);
-        let [x, y] = crossed.place(plan);
+        let [x, y] = crossed.place(K::RANGE, plan);
         let height = |[p, q]: [&[f64; 3]; 2], along: f64| p[2] + along * (q[2] - p[2]);
         let z = height(crossed.ab, crossed.along_ab).min(height(crossed.cd, crossed.along_cd));
         [x, y, z]

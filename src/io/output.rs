@@ -9,6 +9,7 @@ use crate::error::{Error, Kind, Result};
 /// A file that appears whole or not at all: it is written beside its target and renamed by
 /// [`commit`](Output::commit). Dropped before that, it leaves nothing behind.
 #[derive(Debug)]
+#[must_use = "nothing is at the target before `commit`"]
 pub struct Output {
     file: BufWriter<NamedTempFile>,
     target: PathBuf,

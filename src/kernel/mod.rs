@@ -1,8 +1,8 @@
 //! Predicates: one formula, any arithmetic.
 //!
-//! A [`Predicate`] is a polynomial in differences of coordinates, written once in
-//! [`formula`](self); its sign says on which side something lies. A [`Kernel`] is a choice of
-//! arithmetic to find that sign, so a user changes one type to change it:
+//! A [`Predicate`] is a polynomial in differences of coordinates, written once, in any arithmetic; its
+//! sign says on which side something lies. A [`Kernel`] is a choice of arithmetic to find that sign, so a
+//! user changes one type to change it:
 //!
 //! | kernel | arithmetic | is |
 //! |---|---|---|

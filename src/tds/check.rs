@@ -21,6 +21,7 @@ pub enum Flaw {
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Level 1: links. Every cell has distinct, existing vertices and neighbors, neighbors know each
     /// other and share their facet with opposite orientation, and vertices know a cell of theirs.
+    #[must_use]
     pub fn check_links(&self) -> Vec<Flaw> {
         let mut flaws = Vec::new();
         for cell in self.cells() {
@@ -83,6 +84,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// Level 2: manifold and Euler. The cells around each vertex hang together, and so do all; the
     /// characteristic is that of a sphere. Assumes level 1.
+    #[must_use]
     pub fn check_manifold(&self) -> Vec<Flaw> {
         let width = (self.dimension() + 1) as usize;
         if width < 2 {

@@ -2,8 +2,8 @@
 //!
 //! The conventions that everything relies on:
 //! - A triangulation is kept as one of the *sphere*: beside the finite vertices there is one
-//!   `INFINITE` vertex, joined to the hull. So every cell has all its
-//!   neighbors, and the hull needs no special case.
+//!   [`INFINITE`](VertexId::INFINITE) vertex, joined to the hull. So every cell has all its neighbors,
+//!   and the hull needs no special case.
 //! - A full cell has `N` vertices: 3 for triangles, 4 for tetrahedra. Neighbor `i` lies opposite
 //!   vertex `i`.
 //! - All cells are oriented alike: counter-clockwise, for those without the infinite vertex, as the
@@ -11,6 +11,19 @@
 //! - Before the points span the space, the complex has a lower [dimension](Tds::dimension): -1 (no
 //!   point), 0 (one), 1 (collinear), 2 (coplanar). Its cells then have `dimension + 1` vertices, in the
 //!   low slots of the same arrays.
+//!
+//! | to ask for | use |
+//! |---|---|
+//! | the corners and neighbors of a cell | [`Tds::cell_vertices`], [`Tds::cell_neighbors`]; one: [`Tds::vertex`], [`Tds::neighbor`] |
+//! | the same cell as its neighbor sees it | [`Tds::index_of_neighbor`] |
+//! | all cells, with or without the infinite ones | [`Tds::cells`], [`Tds::is_infinite`] |
+//! | the triangles around a vertex, an edge | [`Tds::around`], [`Tds::edge`] |
+//! | whether it is a sphere | [`Tds::check_links`], [`Tds::check_manifold`] |
+//!
+//! A number of a removed cell is used again; vertices are never removed. Numbers stay within 32 bits:
+//! there are at most 2^32 - 3 cells. Asking for what does not exist panics, like an index.
+//! Readers cannot change who is whose neighbor: that is left to
+//! [`triangulation`](crate::triangulation).
 
 mod check;
 mod id;

@@ -2,6 +2,7 @@ use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Terrain};
+use crate::kernel::{RANGE, Range};
 use crate::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, spatial_order};
 
@@ -119,7 +120,7 @@ impl TinBuilder {
     /// Makes the TIN.
     ///
     /// # Errors
-    /// If a coordinate is not finite, there are more points than 32-bit numbers can count, or nothing
+    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit numbers can count, or nothing
     /// spans an area.
     ///
     /// # Complexity
@@ -130,16 +131,16 @@ impl TinBuilder {
         let geometry: Terrain = Terrain::default();
         let bad = |p: &[f64; 3]| !geometry.admits(p) || !p[2].is_finite();
         if let Some(at) = self.points.iter().position(bad) {
-            return Err(unfit(self.points[at]).at(format!("point {at}")));
+            return Err(refused(self.points[at]).at(format!("point {at}")));
         }
         if let Some(at) = self.line_points.iter().position(bad) {
             let line = self.line_ends.partition_point(|&end| end <= at);
-            return Err(unfit(self.line_points[at]).at(format!("breakline {line}")));
+            return Err(refused(self.line_points[at]).at(format!("breakline {line}")));
         }
 
         // One vertex for each place, in spatial order.
         let (vertices, line_vertices) = self.merge(&mut report)?;
-        let mut triangulation = ConstrainedDelaunay::from_sorted(Terrain::default(), vertices)
+        let mut triangulation = ConstrainedDelaunay::from_sorted(geometry, vertices)
             .map_err(|refused| Error::limit(refused.to_string()))?;
         if triangulation.dimension() < 2 {
             let what = match triangulation.vertex_count() {
@@ -207,8 +208,12 @@ impl TinBuilder {
 }
 
 #[cold]
-fn unfit(p: [f64; 3]) -> Error {
-    Error::format(format!("{p:?} is not a finite point, or has coordinates too large or small to compute with"))
+fn refused(p: [f64; 3]) -> Error {
+    if p.iter().all(|x| x.is_finite()) {
+        let Range { min, max } = RANGE;
+        return Error::limit(format!("{p:?} has a coordinate that is neither 0 nor between {min:.0e} and {max:.0e}"));
+    }
+    Error::format(format!("{p:?} is not a finite point"))
 }
 
 /// Each pair of consecutive vertices once, the smaller number first, in order.
@@ -223,4 +228,55 @@ pub(super) fn sorted_segments(vertices: &[VertexId], line_ends: &[usize]) -> Vec
     segments.sort_unstable();
     segments.dedup();
     segments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Surface;
+
+    fn square() -> TinBuilder {
+        let mut builder = TinBuilder::default();
+        builder.add_points(&[-8.0, 8.0, 8.0, -8.0], &[-8.0, -8.0, 8.0, 8.0], &[1.0, 1.0, 3.0, 3.0]);
+        builder
+    }
+
+    #[test]
+    fn points_that_are_refused_are_named_as_they_came() {
+        for (x, message) in [
+            (1e80, "point 4: [1e80, 0.0, 2.0] has a coordinate that is neither 0 nor between 7e-49 and 2e60"),
+            (1e-80, "point 4: [1e-80, 0.0, 2.0] has a coordinate that is neither 0 nor between 7e-49 and 2e60"),
+            (f64::NAN, "point 4: [NaN, 0.0, 2.0] is not a finite point"),
+        ] {
+            let mut builder = square();
+            builder.add_points(&[x, 1.0], &[0.0, 1.0], &[2.0, 2.0]);
+            assert_eq!(builder.build().unwrap_err().to_string(), message);
+        }
+    }
+
+    #[test]
+    fn any_place_can_be_asked_for_its_height() {
+        let tin = square().build().unwrap();
+        for tiny in [0.0, -0.0, 1e-80, -1e-300, f64::MIN_POSITIVE] {
+            assert_eq!(tin.elevation(tiny, tiny), Some(2.0));
+            assert_eq!(tin.elevation(8.0, tiny), Some(2.0));
+        }
+        for huge in [1e80, -1e300, f64::MAX, f64::INFINITY, f64::NAN] {
+            assert_eq!(tin.elevation(huge, 0.0), None);
+            assert_eq!(tin.elevation(huge, huge), None);
+            assert_eq!(tin.elevation(0.0, -huge), None);
+        }
+    }
+
+    #[test]
+    fn a_tin_answers_many_threads() {
+        fn is_shared<T: Send + Sync>(_: &T) {}
+        let tin = square().build().unwrap();
+        is_shared(&tin);
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| assert_eq!((tin.elevation(0.0, 8.0), tin.face_count()), (Some(3.0), tin.face_count())));
+            }
+        });
+    }
 }

@@ -1,4 +1,32 @@
 //! What a surveyor says: TIN, breakline, contour, raster, hillshade.
+//!
+//! | I have | I want | |
+//! |---|---|---|
+//! | points of many classes | the ground | [`Selection`] |
+//! | points and breaklines | a surface | [`TinBuilder`], which makes a [`Tin`] |
+//! | a TIN | the height at a place | [`Tin::elevation`] |
+//! | any surface | a DEM | [`Dem`] |
+//! | any surface | contours | [`contours()`], at [`Levels`] |
+//! | a DEM | contours | [`GridSurface`], which is a surface |
+//! | a DEM | shaded relief | [`Hillshade`] |
+//! | any surface | to know that it is sound | [`surface_flaws`]; of a TIN, [`Tin::check`] |
+//!
+//! A surface is whatever implements [`Surface`](crate::data::Surface): a [`Tin`], a
+//! [`Mesh`](crate::data::Mesh) from a file, a [`GridSurface`]. What comes out is a source (of raster blocks, of
+//! lines) that a writer in [`io`](crate::io) takes, so that a result need not fit into memory.
+//!
+//! # Conventions
+//!
+//! - Everything is seen in plan: x to the east, y to the north, one height for each place. Walls and
+//!   overhangs cannot be held.
+//! - Lengths and heights are in the units of the data. Heights are linear on each triangle.
+//! - Results are functions of the set of points and lines: order and number of threads do not show.
+//! - All questions take `&self`, and may be asked from many threads at once.
+//!
+//! # What it does not do
+//!
+//! Coordinates are not reprojected, ground is not told from vegetation (classes are taken as given), and
+//! nothing is smoothed or thinned out.
 
 mod builder;
 mod clip;

@@ -37,6 +37,7 @@ impl std::fmt::Display for SurfaceFlaw {
 ///
 /// # Complexity
 /// Linear.
+#[must_use]
 pub fn surface_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     let checks: [fn(&dyn Surface) -> Vec<SurfaceFlaw>; 5] =
         [bad_vertices, bad_links, bad_orientations, bad_fans, bad_circles];

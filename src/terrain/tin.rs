@@ -1,6 +1,7 @@
 use crate::crs::Crs;
 use crate::data::Surface;
-use crate::geometry::Terrain;
+use crate::geometry::{Geometry, Terrain};
+use crate::kernel::RANGE;
 use crate::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
@@ -44,6 +45,7 @@ impl Tin {
 
     /// Checks the triangulation up to the level, with exact predicates; no flaw means that it is a
     /// constrained Delaunay triangulation.
+    #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         self.triangulation.check(level)
     }
@@ -53,7 +55,9 @@ impl Tin {
     /// # Complexity
     /// A walk through about as many triangles as lie in a row across the surface.
     pub fn elevation(&self, x: f64, y: f64) -> Option<f64> {
-        if !(x.is_finite() && y.is_finite()) {
+        // Closer to zero than the arithmetic goes is zero; what is beyond its other end is beyond all vertices.
+        let [x, y] = [x, y].map(|c| if c.abs() < RANGE.min { 0.0 } else { c });
+        if !self.triangulation.geometry().admits(&[x, y, 0.0]) {
             return None;
         }
         match self.triangulation.locate(&[x, y, 0.0], None) {

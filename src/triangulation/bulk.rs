@@ -32,12 +32,13 @@ use super::sort::Curve;
 /// No edge: a single point has no ghosts.
 const NONE: u32 = u32::MAX;
 
+/// The most points whose edges can be numbered: `2 n - 2` faces with four numbers each, all of them ids. More are
+/// left to insertion one by one.
+const MAX_POINTS: usize = 1 << 29;
+const _: () = assert!(4 * (2 * MAX_POINTS as u64 - 2) <= CellId::LIMIT as u64);
+
 /// Ranges of more points than this are halved between threads.
 const PARALLEL: usize = 1 << 14;
-
-/// More points are left to insertion one by one: four numbers to each of the two faces of a point must fit 32
-/// bits.
-const MOST: usize = 1 << 29;
 
 /// The next edge of the face.
 #[inline(always)]
@@ -77,9 +78,9 @@ struct Range<'a, G: Coordinates<3>> {
 }
 
 /// Triangulates different points that are in the order of [`spatial_order`](super::spatial_order); `None` if they
-/// are all collinear, or too many. Vertices are numbered as the points.
+/// are all collinear, or more than [`MAX_POINTS`]. Vertices are numbered as the points.
 pub(super) fn build<G: Coordinates<3>>(geometry: &G, points: &[G::Point]) -> Option<Vec<Links<3>>> {
-    if points.len() < 3 || points.len() >= MOST {
+    if !(3..=MAX_POINTS).contains(&points.len()) {
         return None;
     }
     let curve = Curve::through(points.len(), |i| geometry.coordinates(&points[i]));
@@ -272,6 +273,32 @@ impl<G: Coordinates<3>> Range<'_, G> {
         }
     }
 
+    /// Climbs down both rings, from a ghost and its vertex on each ([`NONE`] for a single point), until no
+    /// vertex is below the line through the two. A collinear vertex does not move it: it is further away.
+    #[inline(always)]
+    fn lower_tangent(&self, left: (u32, VertexId), right: (u32, VertexId)) -> [(u32, VertexId); 2] {
+        let ((mut gl, mut a), (mut gr, mut b)) = (left, right);
+        loop {
+            if gl != NONE {
+                let ghost = self.previous_ghost(gl);
+                let x = self.origin(ghost + 1);
+                if self.turn(a, b, x) == Sign::Negative {
+                    (gl, a) = (ghost, x);
+                    continue;
+                }
+            }
+            if gr != NONE {
+                let ghost = self.next_ghost(gr);
+                let x = self.origin(ghost);
+                if self.turn(a, b, x) == Sign::Negative {
+                    (gr, b) = (ghost, x);
+                    continue;
+                }
+            }
+            return [(gl, a), (gr, b)];
+        }
+    }
+
     fn merge(&mut self, left: Part, right: Part, mid: usize, axis: Axis) -> Part {
         let (one_left, one_right) = (left.bottom == NONE, right.bottom == NONE);
         // `gl` is the ghost of the hull edge that starts at `a` on the left, `gr` of that which ends at `b` on
@@ -290,29 +317,7 @@ impl<G: Coordinates<3>> Range<'_, G> {
             gr = self.previous_ghost(start);
         }
 
-        // Lower tangent. A collinear vertex does not move it: it is further away.
-        loop {
-            let mut moved = false;
-            while !one_left {
-                let ghost = self.previous_ghost(gl);
-                let x = self.origin(ghost + 1);
-                if self.turn(a, b, x) != Sign::Negative {
-                    break;
-                }
-                (gl, a, moved) = (ghost, x, true);
-            }
-            while !one_right {
-                let ghost = self.next_ghost(gr);
-                let x = self.origin(ghost);
-                if self.turn(a, b, x) != Sign::Negative {
-                    break;
-                }
-                (gr, b, moved) = (ghost, x, true);
-            }
-            if !moved {
-                break;
-            }
-        }
+        [(gl, a), (gr, b)] = self.lower_tangent((gl, a), (gr, b));
 
         // The ghosts below and above.
         let (below, above) = (8 * mid as u32 - 8, 8 * mid as u32 - 4);

@@ -31,8 +31,6 @@ pub enum Flaw {
     NotDelaunay(CellId, usize),
     /// Level 4: an edge is constrained on one side only.
     OneSided(CellId, usize),
-    /// Level 4: a constraint is not in the triangulation: the edge between these vertices.
-    Missing(VertexId, VertexId),
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
@@ -95,6 +93,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 impl<G: Geometry<N>, const N: usize, V> super::Delaunay<G, N, V> {
     /// Checks up to the level, with exact predicates; no flaw means that the triangulation is what it
     /// claims to be.
+    #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         self.flaws(level, |_, _| true)
     }

@@ -174,6 +174,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 
     /// Checks up to the level, with exact predicates. No flaw means that the triangulation is what it
     /// claims to be.
+    #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let flaws = self.flaws(level, |cell, i| !self.is_constrained(cell, i));
         if !flaws.is_empty() || level < Level::Law || self.dimension() < 2 {

@@ -45,6 +45,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// Finds where `q` lies, by a remembering stochastic walk (Devillers, Pion, Teillaud 2002) from a
     /// cell nearby, or from the last insertion. Ends on any triangulation, with probability one; in
     /// the order of the square root of the number of vertices when started anywhere.
+    ///
+    /// The point must be one that the geometry [admits](Geometry::admits): for others the predicates have no
+    /// answer, and so has this.
     pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
         let start = near.filter(|&c| self.tds.is_used(c)).or(self.last.filter(|&c| self.tds.is_used(c)));
         match self.dimension() {

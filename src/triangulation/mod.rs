@@ -16,6 +16,18 @@
 //! insertion does not show in the cells.
 //!
 //! The core cannot fail on points that it admitted; [`Refused`] says which are not.
+//!
+//! | to | use |
+//! |---|---|
+//! | triangulate many points at once | [`Delaunay::from_points`], [`ConstrainedDelaunay::from_points`] |
+//! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
+//! | add a line | [`ConstrainedDelaunay::insert_polyline`], [`ConstrainedDelaunay::insert_segment`] |
+//! | find where a place lies | [`Triangulation::locate`] |
+//! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
+//! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
+//!
+//! All questions take `&self`. Points and constraints cannot be removed, and there is no weighted
+//! (regular) kind.
 
 mod bulk;
 mod check;

@@ -41,7 +41,7 @@ enum Met {
 }
 
 /// Pieces of pieces: each level of crossings moves a line by a rounding at the most. Never seen to
-/// matter; a line that exceeds it is left out and found by the check.
+/// matter; a piece that exceeds it is left out.
 const MAX_DEPTH: u32 = 256;
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {

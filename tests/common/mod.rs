@@ -1,6 +1,8 @@
 //! What the integration tests share.
 #![allow(dead_code, unreachable_pub)]
 
+pub(crate) mod random;
+
 use std::path::{Path, PathBuf};
 
 /// A file of the shared data folder, beside the repository; `None`, said plainly, when it is absent.

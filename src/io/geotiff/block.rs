@@ -32,10 +32,9 @@ pub(super) fn values(layout: &Layout, nodata: &Nodata, bytes: &Bytes, piece: &Pi
     }
     // The decoders beneath are well tested, but not proven: a panic in one of them is a damaged
     // block, not the end of the program.
-    let decoded = contain(|| decode(file))
+    contain(|| Ok(pick(&decode(file)?, layout, nodata, piece, part)))
         .unwrap_or_else(|| Err(Error::format("the decoder gave up")))
-        .map_err(|e| place(in_compression(e, layout.compression)))?;
-    Ok(pick(&decoded, layout, nodata, piece, part))
+        .map_err(|e| place(in_compression(e, layout.compression)))
 }
 
 fn in_compression(error: Error, compression: u16) -> Error {

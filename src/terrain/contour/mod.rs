@@ -105,6 +105,7 @@ pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Res
 }
 
 /// The contours of a surface, one after the other; made by [`contours`].
+#[must_use = "lines are drawn when they are asked for"]
 pub struct Contours<'a, S: ?Sized> {
     surface: &'a S,
     index: LevelIndex,

@@ -35,7 +35,7 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
         return Err(damaged(format!("lies beyond the end of the file at byte {}", input.length)));
     }
     let mut start = points_start + POINTER;
-    let room = table.saturating_sub(start);
+    let room = table - start;
     let mut read = |count| input.bytes(table, count).map_err(|error| damaged(error.to_string()));
     let count = u32_at(&read(8)?, 4);
     // Every chunk begins with an uncompressed point.
@@ -85,7 +85,7 @@ fn find(input: &mut Input, points_start: u64) -> Option<u64> {
     let mut place_at = |start| {
         let bytes = input.bytes(start, 8).ok().filter(|bytes| bytes.len() == 8)?;
         let place = u64_at(&bytes, 0);
-        (place > points_start && place <= i64::MAX as u64).then_some(place)
+        (place >= points_start + POINTER && place <= i64::MAX as u64).then_some(place)
     };
     place_at(points_start).or_else(|| place_at(last?))
 }
