@@ -1,29 +1,67 @@
-//! The main road from points to products, in one process and without files: `cargo bench`.
+//! The main road from points to products, in one process: `cargo bench`. Run once, to see that it runs:
+//! `cargo bench --bench main_road -- --test`.
 //!
-//! The points are made up, like airborne lidar: a rolling ground, two points to the square metre, in steps of a
-//! centimetre, flight line by flight line. Whole programs, files included, are compared outside of the crate.
+//! The points are made up. Whole programs, files included, are compared in `docs/performance.md`.
+
+use std::path::Path;
 
 use breakline::data::{Bounds, Frame, Grid};
-use breakline::terrain::{Dem, Levels, Tin, TinBuilder, contours};
+use breakline::io;
+use breakline::terrain::{Dem, Levels, Selection, Tin, TinBuilder, contours};
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 /// Number of points.
 const SIZES: [usize; 2] = [100_000, 1_000_000];
 
+/// How points lie in plan; two to the square metre.
+#[derive(Debug, Clone, Copy)]
+enum Lay {
+    /// Like airborne lidar: in steps of a centimetre, flight line by flight line.
+    Lidar,
+    /// Anywhere, in no order.
+    Random,
+    /// On the crossings of a grid, row by row: every circle goes through four of them.
+    Grid,
+}
+
 fn main() {
     divan::main();
 }
 
-#[divan::bench(args = SIZES, max_time = 10)]
-fn tin(bencher: Bencher, count: usize) {
-    let points = points(count);
+#[divan::bench(args = [(Lay::Lidar, 100_000), (Lay::Random, 100_000), (Lay::Lidar, 1_000_000), (Lay::Random, 1_000_000), (Lay::Grid, 1_000_000)], max_time = 10)]
+fn tin(bencher: Bencher, (lay, count): (Lay, usize)) {
+    let points = points(lay, count);
     bencher.counter(ItemsCount::new(count)).bench_local(|| build(black_box(&points)));
+}
+
+/// From file to columns of ground points.
+#[divan::bench(args = SIZES, max_time = 10)]
+fn read_laz(bencher: Bencher, count: usize) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("points.laz");
+    write_laz(&path, &points(Lay::Lidar, count));
+    bencher.counter(ItemsCount::new(count)).bench_local(|| {
+        let mut source = io::points::open(&path).expect("the file was just written");
+        let mut selection = Selection::default();
+        selection.add_source(&mut *source).expect("the file is sound");
+        selection.finish()
+    });
+}
+
+#[divan::bench(args = SIZES, max_time = 10)]
+fn write_ply(bencher: Bencher, count: usize) {
+    let tin = build(&points(Lay::Lidar, count));
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("mesh.ply");
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| io::mesh::write(&path, black_box(&tin)).expect("there is room for the file"));
 }
 
 /// Cells of a metre.
 #[divan::bench(args = SIZES, max_time = 10)]
 fn dem(bencher: Bencher, count: usize) {
-    let points = points(count);
+    let points = points(Lay::Lidar, count);
     let mut bounds = Bounds::default();
     points[0].iter().zip(&points[1]).for_each(|(&x, &y)| bounds.add([x, y, 0.0]));
     let frame = Frame::snapped(&bounds, 1.0).expect("a metre divides the extent");
@@ -37,7 +75,7 @@ fn dem(bencher: Bencher, count: usize) {
 /// A metre apart.
 #[divan::bench(args = SIZES, max_time = 10)]
 fn contour(bencher: Bencher, count: usize) {
-    let tin = build(&points(count));
+    let tin = build(&points(Lay::Lidar, count));
     let levels = Levels::every(1.0, 0.0).expect("a metre is an interval");
     bencher
         .counter(ItemsCount::new(count))
@@ -53,7 +91,7 @@ fn build([x, y, z]: &Points) -> Tin {
     builder.build().expect("made-up points have a TIN")
 }
 
-fn points(count: usize) -> Points {
+fn points(lay: Lay, count: usize) -> Points {
     let side = (count as f64 / 2.0).sqrt();
     let mut seed = 1u64;
     let mut unit = || {
@@ -63,15 +101,46 @@ fn points(count: usize) -> Points {
     };
     let centimetres = |v: f64| (v * 100.0).round() / 100.0;
     let rows = side.sqrt().ceil().max(1.0) as usize * 8;
-    let mut columns = [Vec::new(), Vec::new(), Vec::new()];
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let mut points = [Vec::new(), Vec::new(), Vec::new()];
     for i in 0..count {
-        let row = i * rows / count;
-        let x = centimetres(side * unit());
-        let y = centimetres(side * (row as f64 + unit()) / rows as f64);
+        let [x, y] = match lay {
+            Lay::Lidar => {
+                let row = i * rows / count;
+                [side * unit(), side * (row as f64 + unit()) / rows as f64].map(centimetres)
+            }
+            Lay::Random => [side * unit(), side * unit()],
+            Lay::Grid => [i % columns, i / columns].map(|k| centimetres(k as f64 * 0.71)),
+        };
         let z = centimetres(220.0 + 25.0 * (x / 310.0).sin() * (y / 270.0).cos() + 3.0 * ((x + y) / 31.0).sin());
-        for (column, value) in columns.iter_mut().zip([500_000.0 + x, 5_400_000.0 + y, z]) {
+        for (column, value) in points.iter_mut().zip([500_000.0 + x, 5_400_000.0 + y, z]) {
             column.push(value);
         }
     }
-    columns
+    points
+}
+
+/// LAZ as it is delivered: LAS 1.4, point format 6, ground, steps of a centimetre.
+fn write_laz(path: &Path, [x, y, z]: &Points) {
+    let mut builder = las::Builder::from((1, 4));
+    builder.point_format = las::point::Format::new(6).expect("there is a format 6");
+    builder.point_format.is_compressed = true;
+    let axis = |offset| las::Transform { scale: 0.01, offset };
+    builder.transforms = las::Vector { x: axis(500_000.0), y: axis(5_400_000.0), z: axis(0.0) };
+    let header = builder.into_header().expect("the header is sound");
+    let mut writer = las::Writer::from_path(path, header).expect("there is room for the file");
+    for i in 0..x.len() {
+        let point = las::Point {
+            x: x[i],
+            y: y[i],
+            z: z[i],
+            classification: las::point::Classification::Ground,
+            return_number: 1,
+            number_of_returns: 1,
+            gps_time: Some(i as f64 * 2e-6),
+            ..Default::default()
+        };
+        writer.write_point(point).expect("the point fits the format");
+    }
+    writer.close().expect("the file can be ended");
 }

@@ -137,8 +137,13 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     let (points, report) = selection.finish();
     roads.warn(talk);
     tell_classes(&report, &plan.classes, talk);
+<<<<<<< HEAD
     if points.is_empty() && made.breaklines == 0 {
         return Err(nothing_left(&report));
+=======
+    if columns.x.is_empty() && made.breaklines == 0 {
+        return Err(nothing_left(&report, &plan.files));
+>>>>>>> 65fef5d (Test the products as files: order, known shapes, GDAL's reading, damaged inputs; give every error of a damaged raster its cure)
     }
     if plan.bounds.is_none() && boundary.is_empty() {
         tell_beyond(&points, line_extent, &rim, &units, talk);
@@ -249,16 +254,24 @@ fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
             ))
             .cure("allow longer edges with --max-edge LENGTH or --max-edge none")
         }
-        _ => Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds")),
+        _ => Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
+            .cure("`breakline info` tells the extent of each file"),
     }
 }
 
 #[cold]
-fn nothing_left(report: &SelectionReport) -> Error {
+fn nothing_left(report: &SelectionReport, files: &[PathBuf]) -> Error {
     let SelectionReport { read, withheld, other_class, outside, .. } = report;
-    let error = Error::format(format!(
+    let named = |error: Error| match files {
+        [file] => error.in_file(file),
+        _ => error,
+    };
+    if *read == 0 {
+        return named(Error::format("there is no point").cure("give files that hold points"));
+    }
+    let error = named(Error::format(format!(
         "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
-    ));
+    )));
     if *outside > 0 {
         return error.cure("compare --bounds with the extent that `breakline info` tells");
     }
@@ -266,7 +279,7 @@ fn nothing_left(report: &SelectionReport) -> Error {
         let classes: Vec<String> = report.by_class.keys().map(u8::to_string).collect();
         return error.cure(format!("the points are of class {}: choose with --class", classes.join(", ")));
     }
-    error
+    error.cure("withheld points are never used: take the mark off those that are good")
 }
 
 /// The polygons that the surface is clipped to.

@@ -24,7 +24,9 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Vec<[f64; 3]>
         lines.extend(parts.iter().filter(|part| part.len() > 1).cloned());
     }
     if lines.is_empty() {
-        return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer))).in_file(path));
+        return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
+            .in_file(path)
+            .cure("give a layer of lines or polygons; points are inputs without an option"));
     }
     Ok(lines)
 }
@@ -80,9 +82,11 @@ fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
     let [x, y, z] = part[vertex];
     let number = vertex + 1;
     if z.is_nan() && x.is_finite() && y.is_finite() {
-        return Error::format(format!("vertex {number} at {x} {y} has no height, though others have"));
+        return Error::format(format!("vertex {number} at {x} {y} has no height, though others have"))
+            .cure("give it one, or take the record out");
     }
     Error::format(format!("vertex {number} at {x} {y} {z}: expected finite coordinates"))
+        .cure("repair the record or take it out")
 }
 
 fn at_record(error: Error, path: &Path, record: usize) -> Error {

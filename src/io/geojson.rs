@@ -315,7 +315,8 @@ fn write(
         summary.add(&line);
         // Negative zero is zero.
         let level = line.level + 0.0;
-        write!(out, "{comma}\n{{\"type\":\"Feature\",\"properties\":{{\"ID\":{},\"ELEV\":{level}}},", summary.lines)?;
+        // `800.0` and not `800`, so that readers take the field for a real number.
+        write!(out, "{comma}\n{{\"type\":\"Feature\",\"properties\":{{\"ID\":{},\"ELEV\":{level:?}}},", summary.lines)?;
         out.write_all(b"\"geometry\":{\"type\":\"LineString\",\"coordinates\":[")?;
         for (i, [x, y]) in line.points.iter().enumerate() {
             let comma = if i == 0 { "" } else { "," };

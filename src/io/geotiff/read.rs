@@ -10,7 +10,7 @@ use super::nodata::{Nodata, scale_and_offset};
 use super::{MAX_CELLS, block, tags};
 use crate::crs::{Crs, GeoKeys};
 use crate::data::{BlockSource, Frame, Grid, Window};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::io::world_file;
 
 /// What the header of a GeoTIFF says.
@@ -100,7 +100,17 @@ pub struct GeoTiffReader {
 /// message names it.
 pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
     let path = path.as_ref();
-    read_header(path).map_err(|e| e.in_file(path))
+    read_header(path).map_err(|e| told(e, path))
+}
+
+/// Names the file, and the cure where it is damaged.
+#[cold]
+fn told(error: Error, path: &Path) -> Error {
+    let error = error.in_file(path);
+    match (error.kind(), error.cure_text()) {
+        (Kind::Format, None) => error.cure("the file is damaged: copy or download it again"),
+        _ => error,
+    }
 }
 
 fn read_header(path: &Path) -> Result<GeoTiffReader> {
@@ -259,7 +269,7 @@ impl GeoTiffReader {
     /// # Errors
     /// As there.
     pub fn read_stored(&self, window: Window) -> Result<Vec<f64>> {
-        self.stored(window).map_err(|e| e.in_file(&self.path))
+        self.stored(window).map_err(|e| told(e, &self.path))
     }
 
     /// The whole raster.
