@@ -137,13 +137,8 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     let (points, report) = selection.finish();
     roads.warn(talk);
     tell_classes(&report, &plan.classes, talk);
-<<<<<<< HEAD
     if points.is_empty() && made.breaklines == 0 {
-        return Err(nothing_left(&report));
-=======
-    if columns.x.is_empty() && made.breaklines == 0 {
         return Err(nothing_left(&report, &plan.files));
->>>>>>> 65fef5d (Test the products as files: order, known shapes, GDAL's reading, damaged inputs; give every error of a damaged raster its cure)
     }
     if plan.bounds.is_none() && boundary.is_empty() {
         tell_beyond(&points, line_extent, &rim, &units, talk);
