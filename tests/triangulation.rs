@@ -305,3 +305,23 @@ fn a_segment_crosses_the_edges_that_it_crosses() {
     }
     assert!(crossed > 1000);
 }
+
+/// Where coordinates are a few units in the last place apart, every crossing is rounded to a place that may
+/// lie on, beyond or at the end of other lines: pieces cross anew, and it still comes to an end.
+#[test]
+fn crossings_in_the_last_bits_come_to_an_end() {
+    let mut random = Random(5);
+    for (steps, lines) in [(4, 20), (8, 40), (64, 60), (1024, 60)] {
+        for _ in 0..10 {
+            let mut t: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
+            for _ in 0..lines {
+                let [a, b] = [0, 1].map(|_| {
+                    let p = [0, 1].map(|_| 1.0 + random.below(steps) as f64 * f64::EPSILON);
+                    t.insert(p).unwrap()
+                });
+                t.insert_segment(a, b);
+            }
+            assert_eq!(t.check(Level::Law), []);
+        }
+    }
+}

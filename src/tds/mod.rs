@@ -30,7 +30,7 @@ mod id;
 mod zone;
 
 pub use check::Flaw;
-pub use id::{CellId, VertexId};
+pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 pub use zone::Zone;
 
 /// The vertices and neighbors of one cell.
