@@ -20,6 +20,7 @@
 //!
 //! Distances and angles are asked nowhere, and units play no part.
 
+mod crossed;
 mod perturbation;
 mod plane;
 mod space;
@@ -33,7 +34,6 @@ pub use terrain::Terrain;
 use std::cmp::Ordering;
 use std::fmt::Debug;
 
-use crate::kernel::Range;
 use crate::num::Sign;
 
 /// The questions a triangulation asks of points. `N` is the number of vertices of a full cell: 3 for
@@ -136,8 +136,9 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 /// A geometry of the plane that can make points where segments cross and clone them with new places.
 /// What constrained triangulations need beyond predicates.
 pub trait Crossing: Geometry<3> {
-    /// The point where segments `a b` and `c d` cross in their interiors, rounded. Must not depend
-    /// on the order of the two segments, nor of their ends.
+    /// The point where segments `a b` and `c d` cross in their interiors, rounded; or an end of one of them
+    /// that is so near to the other that rounding may hide on which side of it the end lies. Must not
+    /// depend on the order of the two segments, nor of their ends.
     fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point;
 }
 
@@ -150,56 +151,4 @@ fn lexicographic<const D: usize>(p: [f64; D], q: [f64; D]) -> Ordering {
         }
     }
     Ordering::Equal
-}
-
-/// Where two segments cross, in plan, as fractions of the way along each; each segment is turned so
-/// that it starts at its lexicographic minimum, and `ab` is the smaller segment of the two.
-struct Crossed<T> {
-    ab: [T; 2],
-    cd: [T; 2],
-    along_ab: f64,
-    along_cd: f64,
-}
-
-impl<T: Copy> Crossed<T> {
-    fn new(ab: [T; 2], cd: [T; 2], plan: impl Fn(T) -> [f64; 2]) -> Self {
-        let sorted = |[p, q]: [T; 2]| if lexicographic(plan(p), plan(q)).is_gt() { [q, p] } else { [p, q] };
-        let (mut ab, mut cd) = (sorted(ab), sorted(cd));
-        let order = lexicographic(plan(ab[0]), plan(cd[0])).then_with(|| lexicographic(plan(ab[1]), plan(cd[1])));
-        if order.is_gt() {
-            std::mem::swap(&mut ab, &mut cd);
-        }
-        let [a, b, c, d] = [ab[0], ab[1], cd[0], cd[1]].map(plan);
-        let along_ab = crate::kernel::crossing(a, b, c, d);
-        let along_cd = crate::kernel::crossing(c, d, a, b);
-        Crossed { ab, cd, along_ab, along_cd }
-    }
-
-    /// The place in plan, taken on the first segment and kept within its box. What comes closer to zero
-    /// than the arithmetic goes is zero, which is then in the box, too.
-    fn place(&self, range: Range, plan: impl Fn(T) -> [f64; 2]) -> [f64; 2] {
-        let [a, b] = self.ab.map(plan);
-        std::array::from_fn(|axis| {
-            let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
-            let x = (a[axis] + self.along_ab * (b[axis] - a[axis])).clamp(low, high);
-            if range.admits(x) { x } else { 0.0 }
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn crossings_are_points_that_the_geometry_admits() {
-        let geometry: Plane = Plane::default();
-        let tiny = crate::kernel::RANGE.min;
-        // They cross at half of the smallest coordinate there is.
-        let (ab, cd) = ([[0.0, 0.0], [1.0, 1.0]], [[-1.0, tiny], [1.0, 0.0]]);
-        let x = geometry.crossing(ab.each_ref(), cd.each_ref());
-        assert_eq!(x, [0.0, 0.0]);
-        let x = geometry.crossing([[0.0, 0.0], [8.0, 8.0]].each_ref(), [[0.0, 2.0], [2.0, 0.0]].each_ref());
-        assert_eq!(x, [1.0, 1.0]);
-    }
 }

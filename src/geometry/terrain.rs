@@ -1,7 +1,8 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Crossed, Crossing, Geometry, lexicographic};
+use super::crossed::Crossed;
+use super::{Coordinates, Crossing, Geometry, lexicographic};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
@@ -53,7 +54,7 @@ impl<K: Kernel> Coordinates<3> for Terrain<K> {
 impl<K: Kernel> Crossing for Terrain<K> {
     fn crossing(&self, ab: [&[f64; 3]; 2], cd: [&[f64; 3]; 2]) -> [f64; 3] {
         let crossed = Crossed::new(ab, cd, plan);
-        let [x, y] = crossed.place(K::RANGE, plan);
+        let [x, y] = crossed.place::<K>(plan);
         let height = |[p, q]: [&[f64; 3]; 2], along: f64| p[2] + along * (q[2] - p[2]);
         let z = height(crossed.ab, crossed.along_ab).min(height(crossed.cd, crossed.along_cd));
         [x, y, z]

@@ -1,7 +1,7 @@
 //! The formulas, each written once.
 
-use super::Predicate;
-use crate::num::{Expansion, Number};
+use super::{Predicate, RANGE};
+use crate::num::{Dyadic, Expansion, Number};
 
 /// `a b - c d`
 #[inline(always)]
@@ -169,13 +169,55 @@ impl Predicate for InCircleOfPlane {
     }
 }
 
+/// Of three points in the plane: positive if the second is further from the first than the third is.
+#[derive(Debug, Clone, Copy)]
+pub struct CompareDistance(pub [[f64; 2]; 3]);
+
+impl Predicate for CompareDistance {
+    const DEGREE: i32 = 2;
+    const AXES: usize = 2;
+
+    #[inline(always)]
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.0.iter().map(move |p| p[axis])
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [from, p, q] = self.0;
+        let [p, q] = [p, q].map(|p| minus(p, from, difference));
+        (square(&p[0]) + square(&p[1])) - (square(&q[0]) + square(&q[1]))
+    }
+}
+
+/// Twice the signed area of the triangle of three points, right to the last bits: positive if they turn
+/// counter-clockwise, zero only if they are collinear (or the area is too small for a number).
+pub fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    let area = Orientation2([a, b, c]);
+    if in_range(&area) {
+        area.value(Expansion::difference).estimate()
+    } else {
+        area.value(Dyadic::difference).estimate()
+    }
+}
+
 /// Where segment `a b` crosses the line through `c` and `d`, as the fraction of the way from `a`.
 ///
 /// The two areas are computed exactly and only their quotient is rounded, so that the place is right
 /// to the last bits however small the angle is. The caller knows that the segment crosses.
 pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
-    let area = |p| Orientation2([c, d, p]).value(Expansion::difference);
-    let (at_a, at_b) = (area(a), area(b));
-    let from_a = at_a.estimate();
-    from_a / (at_a - at_b).estimate()
+    let (area_a, area_b) = (Orientation2([c, d, a]), Orientation2([c, d, b]));
+    if in_range(&area_a) && in_range(&area_b) {
+        let (at_a, at_b) = (area_a.value(Expansion::difference), area_b.value(Expansion::difference));
+        let from_a = at_a.estimate();
+        from_a / (at_a - at_b).estimate()
+    } else {
+        let (at_a, at_b) = (area_a.value(Dyadic::difference), area_b.value(Dyadic::difference));
+        at_a.clone().quotient(&(at_a - at_b))
+    }
+}
+
+/// Whether expansions are exact for these coordinates.
+fn in_range<P: Predicate>(predicate: &P) -> bool {
+    (0..P::AXES).all(|axis| predicate.axis(axis).all(|x| RANGE.admits(x)))
 }

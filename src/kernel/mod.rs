@@ -21,7 +21,9 @@ mod adaptive;
 mod formula;
 
 pub use adaptive::{ErrorBound, OnLattice};
-pub use formula::{InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing};
+pub use formula::{
+    CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
+};
 
 use std::fmt::Debug;
 use std::marker::PhantomData;

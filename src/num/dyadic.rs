@@ -30,6 +30,29 @@ impl Dyadic {
         }
     }
 
+    /// The number rounded to one double, to within a unit in the last place; infinite or zero beyond its
+    /// range.
+    pub fn estimate(&self) -> f64 {
+        let (leading, exponent) = self.leading();
+        scaled(leading, exponent)
+    }
+
+    /// The quotient of two numbers, rounded to within two units in the last place.
+    pub fn quotient(&self, divisor: &Self) -> f64 {
+        let ((leading, exponent), (by, by_exponent)) = (self.leading(), divisor.leading());
+        scaled(leading / by, exponent - by_exponent)
+    }
+
+    /// The number as a double, at most 2^128 in magnitude, times a power of two.
+    fn leading(&self) -> (f64, i64) {
+        let Some((&high, lower)) = self.limbs.split_last() else { return (0.0, 0) };
+        let (magnitude, below) = match lower.split_last() {
+            Some((&low, below)) => ((u128::from(high) << 64 | u128::from(low)) as f64, below.len()),
+            None => (high as f64, 0),
+        };
+        (if self.negative { -magnitude } else { magnitude }, self.exponent + 64 * below as i64)
+    }
+
     /// The mantissa shifted so that it counts units of `2^exponent`, which is no larger than its own.
     fn limbs_at(&self, exponent: i64) -> Vec<u64> {
         let shift = (self.exponent - exponent) as u64;
@@ -72,6 +95,17 @@ impl Dyadic {
             _ => Self::trimmed(self.negative, subtract(&a, &b), exponent),
         }
     }
+}
+
+/// `x * 2^exponent`, in steps that neither overflow nor underflow before the product does.
+fn scaled(mut x: f64, exponent: i64) -> f64 {
+    let mut left = exponent.clamp(-4000, 4000) as i32;
+    while left != 0 {
+        let step = left.clamp(-900, 900);
+        x *= 2f64.powi(step);
+        left -= step;
+    }
+    x
 }
 
 fn limb(limbs: &[u64], i: usize) -> u64 {

@@ -31,6 +31,9 @@ pub enum Flaw {
     NotDelaunay(CellId, usize),
     /// Level 4: an edge is constrained on one side only.
     OneSided(CellId, usize),
+    /// Level 4: a piece of a constraint, between these vertices, was left out when its crossings did not come
+    /// to an end.
+    Missing(VertexId, VertexId),
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {

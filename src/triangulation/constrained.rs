@@ -45,6 +45,8 @@ pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     pub(super) waiting: Vec<[VertexId; 2]>,
     /// Vertices added where segments cross.
     pub(super) crossings: Vec<VertexId>,
+    /// Pieces of segments that are not there, because their crossings did not come to an end.
+    pub(super) left_out: Vec<[VertexId; 2]>,
     pub(super) scratch: Scratch,
 }
 
@@ -63,6 +65,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             inner: Triangulation::new(geometry),
             waiting: Vec::new(),
             crossings: Vec::new(),
+            left_out: Vec::new(),
             scratch: Scratch::default(),
         }
     }
@@ -185,7 +188,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             self.is_constrained(cell, i) != self.is_constrained(beside, self.tds().index_of_neighbor(beside, cell))
         };
         let edges = self.tds().cells().flat_map(|cell| (0..3).map(move |i| (cell, i)));
-        edges.filter(|&(cell, i)| one_sided(cell, i)).map(|(cell, i)| Flaw::OneSided(cell, i)).collect()
+        let one_sided = edges.filter(|&(cell, i)| one_sided(cell, i)).map(|(cell, i)| Flaw::OneSided(cell, i));
+        one_sided.chain(self.left_out.iter().map(|&[a, b]| Flaw::Missing(a, b))).collect()
     }
 }
 

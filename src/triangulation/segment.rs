@@ -40,16 +40,18 @@ enum Met {
     Wall(CellId, usize),
 }
 
-/// Pieces of pieces: each level of crossings moves a line by a rounding at the most. Never seen to
-/// matter; a piece that exceeds it is left out.
-const MAX_DEPTH: u32 = 256;
-
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// Puts in the segment between two vertices. The triangulation spans the plane.
+    ///
+    /// A crossing may move both lines by a rounding, and so make them cross others, pieces of which wait
+    /// here. [`Crossing`] sees to it that this comes to an end; how soon cannot be told, so that there is a
+    /// limit, far beyond what a segment can cross: every constraint once. Beyond it pieces are left out,
+    /// and the check names them.
     pub(super) fn force(&mut self, a: VertexId, b: VertexId) {
-        let mut pieces = vec![(a, b, 0)];
-        while let Some((a, b, depth)) = pieces.pop() {
-            if a == b || depth > MAX_DEPTH {
+        let mut crossings_left = 1000 + 4 * self.vertex_count();
+        let mut pieces = vec![(a, b)];
+        while let Some((a, b)) = pieces.pop() {
+            if a == b {
                 continue;
             }
             match self.trace(a, b) {
@@ -57,9 +59,11 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                     self.retriangulate(a, v);
                     self.set_wall(a, v, true);
                     self.settle();
-                    pieces.push((v, b, depth));
+                    pieces.push((v, b));
                 }
+                Met::Wall(..) if crossings_left == 0 => self.left_out.push([a, b]),
                 Met::Wall(cell, i) => {
+                    crossings_left -= 1;
                     let (c, d) = (self.tds().vertex(cell, ccw(i)), self.tds().vertex(cell, cw(i)));
                     let x =
                         self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
@@ -72,7 +76,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                     if self.vertex_count() > before {
                         self.crossings.push(v);
                     }
-                    pieces.extend([(v, b, depth + 1), (a, v, depth + 1), (v, d, depth + 1), (c, v, depth + 1)]);
+                    pieces.extend([(v, b), (a, v), (v, d), (c, v)]);
                 }
             }
         }

@@ -22,9 +22,29 @@ impl Random {
         self.below(end as u64) as usize
     }
 
+    /// From `-n` to `n`.
+    pub(crate) fn around(&mut self, n: i64) -> i64 {
+        self.below(2 * n as u64 + 1) as i64 - n
+    }
+
+    /// From 0 up to, but not, 1; with all the bits that there are.
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Any of the items.
+    pub(crate) fn pick<T: Copy>(&mut self, items: &[T]) -> T {
+        items[self.index(items.len())]
+    }
+
     pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i as u64 + 1) as usize);
         }
     }
+}
+
+/// The `n`-th double after `x`, or before it.
+pub(crate) fn ulps(x: f64, n: i64) -> f64 {
+    (0..n.abs()).fold(x, |x, _| if n > 0 { x.next_up() } else { x.next_down() })
 }
