@@ -8,8 +8,7 @@
 use super::definition::Datum;
 
 /// EPSG's name of a geographic system, code of its datum, and Esri's names: after `GCS_`, at the beginning of projected
-/// systems, after `D_`. Source: ArcGIS REST documentation, "Geographic coordinate systems"
-/// (<https://developers.arcgis.com/rest/services-reference/enterprise/geographic-coordinate-systems/>).
+/// systems, after `D_`. As the `.prj` files have them that ArcGIS writes; not checked against a list of Esri's.
 const WELL_KNOWN: &[(&str, u32, &str, &str, &str)] = &[
     ("WGS 84", 6326, "WGS_1984", "WGS_1984", "WGS_1984"),
     ("WGS 72", 6322, "WGS_1972", "WGS_1972", "WGS_1972"),

@@ -54,7 +54,7 @@ pub(super) fn vertical_datum(code: u32) -> Option<&'static str> {
 }
 
 /// Vertical datums of many files that no compound definition of the crate holds and whose system is called otherwise
-/// (EPSG registry, <https://epsg.org>).
+/// (names of the EPSG registry).
 const VERTICAL_DATUMS: &[(u32, &str)] = &[
     (1039, "New Zealand Vertical Datum 2009"),
     (1089, "Mean Lower Low Water"),

@@ -34,8 +34,8 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Clip to a rectangle
     ///
     /// Points in a buffer around it (as wide as the longest edge allowed, or 100 metres) are used
-    /// too, so that the surface does not depend on the cut; then it is clipped. In the units of the
-    /// coordinate system of the result; with commas or blanks between the values.
+    /// too, so that triangles near the cut are those of the whole data; then it is clipped. In the units of
+    /// the coordinate system of the result; with commas or blanks between the values.
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Surface")]
     pub(in crate::cli) bounds: Option<Corners>,
 

@@ -4,8 +4,8 @@ use super::record::Oddities;
 
 type Triangle = [[f64; 3]; 3];
 
-/// Rings with more vertices are left out, as the method's time grows with the square.
-const MAX_RING: usize = 4_000;
+/// Rings with more vertices are left out: at worst the method's time grows with the cube, a second or so here.
+const MAX_RING: usize = 1_000;
 
 // Part types (ESRI Shapefile Technical Description, 1998, page 20).
 const STRIP: i32 = 0;
