@@ -32,7 +32,8 @@ use crate::num::{Dyadic, Expansion, Number, Sign};
 
 /// A polynomial whose sign answers a question.
 pub trait Predicate {
-    /// Degree in the differences.
+    /// Degree in the differences: 5 at the most, with fewer than 2^7 terms, which is what the arithmetics are
+    /// proven for.
     const DEGREE: i32;
 
     /// Number of coordinate axes.
@@ -56,10 +57,16 @@ pub struct Range {
 
 /// Where `f64` neither overflows nor underflows in any predicate of this crate: `2^-160..=2^200`.
 ///
-/// Coordinates are multiples of `2^-160 / 2^52 = 2^-212`, so are their differences, and terms of
-/// degree 5 (in-sphere, the highest) are multiples of `2^-1060 > 2^-1074`: no error term is lost.
-/// Upwards, 2^7 terms of `(2^201)^5` stay below `2^1024`, splitting for exact products included,
-/// since no factor of a product is larger than `2^804`.
+/// *Downwards.* Coordinates are multiples of `2^-160 / 2^52 = 2^-212`, and so are their differences; what is
+/// computed of degree `d`, rounded or not, is a multiple of `2^(-212 d)`, which for degree 5 (in-sphere, the
+/// highest) is `2^-1060 > 2^-1074`. A rounding thus happens only to what is larger than its unit by 53 bits: it
+/// is never one of a subnormal number, terms that carry one are no less than `2^-1007`, and an
+/// error bound relative to them is there, too. The error terms of exact products are multiples of
+/// `2^-1060` themselves; none is lost.
+///
+/// *Upwards.* Fewer than 2^7 terms of differences up to `2^201` stay below `2^(5 * 201 + 7) = 2^1012`, and the
+/// components of an expansion below twice its value. The largest factor of a product is a volume of
+/// `6 (2^201)^3 < 2^606`, so that the splitting of factors, by `2^27 + 1`, does not come near an overflow.
 pub const RANGE: Range = Range { min: f64::from_bits((1023 - 160) << 52), max: f64::from_bits((1023 + 200) << 52) };
 
 impl Range {
