@@ -72,9 +72,9 @@ pub struct TinReport {
     pub faces_clipped: usize,
 }
 
-/// Zero has one sign only: places are compared bit by bit when sorted.
+/// Zero has one sign only: places are compared bit by bit when sorted, and of two zeros neither is the lower.
 fn tidy([x, y, z]: [f64; 3]) -> [f64; 3] {
-    [x + 0.0, y + 0.0, z]
+    [x + 0.0, y + 0.0, z + 0.0]
 }
 
 impl TinBuilder {
