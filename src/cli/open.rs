@@ -161,14 +161,14 @@ pub(super) fn raster_facts(path: &Path) -> Result<RasterFacts> {
 /// A raster that is open.
 enum Raster {
     GeoTiff(Box<GeoTiffReader>),
-    Gdal(gdal::Raster),
+    Gdal(Box<gdal::Raster>),
 }
 
 impl Raster {
     fn open(path: &Path) -> Result<Self> {
         match raster::open(path) {
             Ok(reader) => Ok(Raster::GeoTiff(Box::new(reader))),
-            Err(error) if gdal_may_help(&error) => gdal::open_raster(path).map(Raster::Gdal),
+            Err(error) if gdal_may_help(&error) => gdal::open_raster(path).map(|raster| Raster::Gdal(Box::new(raster))),
             Err(error) => Err(error),
         }
     }
