@@ -61,11 +61,13 @@
 //! | [`data`] | plain records between formats and algorithms |
 //! | [`geometry`] | what a triangulation asks of points |
 //! | [`tds`] | combinatorics, without coordinates |
+//! | [`arrangement`] | segments that cross, rounded so that they meet at common ends only |
 //! | [`triangulation`] | location, insertion, kinds, checks |
 //! | [`terrain`] | TIN, contours, DEM, hillshade |
 //! | [`io`] | formats: LAS, GeoTIFF, shapefile, PLY and others |
 //! | `cli` | the command line; not for other programs |
 
+pub mod arrangement;
 #[doc(hidden)] // the program as a function: no part of what the library promises
 pub mod cli;
 pub mod crs;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 const FLOORS: [&[&str]; 6] = [
     &["error", "num"],
     &["kernel", "crs", "data"],
-    &["geometry", "tds"],
+    &["arrangement", "geometry", "tds"],
     &["triangulation"],
     &["terrain", "io"],
     &["cli"],

@@ -5,7 +5,7 @@ use crate::num::{Dyadic, Expansion, Number};
 
 /// `a b - c d`
 #[inline(always)]
-fn cross<T: Number>(a: &T, b: &T, c: &T, d: &T) -> T {
+pub(super) fn cross<T: Number>(a: &T, b: &T, c: &T, d: &T) -> T {
     a.clone() * b.clone() - c.clone() * d.clone()
 }
 
@@ -16,7 +16,7 @@ fn square<T: Number>(a: &T) -> T {
 
 /// `p - q`, axis by axis.
 #[inline(always)]
-fn minus<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T) -> [T; D] {
+pub(super) fn minus<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T) -> [T; D] {
     std::array::from_fn(|axis| difference(p[axis], q[axis]))
 }
 

@@ -19,11 +19,13 @@
 
 mod adaptive;
 mod formula;
+mod rounding;
 
 pub use adaptive::{ErrorBound, OnLattice};
 pub use formula::{
     CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
+pub use rounding::{CornerSide, CrossingSide};
 
 use std::fmt::Debug;
 use std::marker::PhantomData;

@@ -1,0 +1,149 @@
+//! Which boxes overlap: a packed R-tree, built once.
+//!
+//! Boxes are sorted into vertical slabs and within each by height (sort-tile-recursive: Leutenegger, Lopez and
+//! Edgington 1997), and every [`FAN`] of them in a row get a box around them, and so on up.
+
+/// Children of a node.
+const FAN: usize = 8;
+
+/// A box in plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Box2 {
+    pub(super) min: [f64; 2],
+    pub(super) max: [f64; 2],
+}
+
+impl Box2 {
+    const NOTHING: Self = Box2 { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+
+    pub(super) fn around([p, q]: [[f64; 2]; 2]) -> Self {
+        Box2 { min: [p[0].min(q[0]), p[1].min(q[1])], max: [p[0].max(q[0]), p[1].max(q[1])] }
+    }
+
+    /// Grown by this much on each axis. Outward roundings keep it a superset.
+    pub(super) fn grown(self, by: [f64; 2]) -> Self {
+        let axis = |k: usize| ((self.min[k] - by[k]).next_down(), (self.max[k] + by[k]).next_up());
+        let [(x0, x1), (y0, y1)] = [axis(0), axis(1)];
+        Box2 { min: [x0, y0], max: [x1, y1] }
+    }
+
+    fn with(self, other: &Self) -> Self {
+        Box2 {
+            min: [self.min[0].min(other.min[0]), self.min[1].min(other.min[1])],
+            max: [self.max[0].max(other.max[0]), self.max[1].max(other.max[1])],
+        }
+    }
+
+    #[inline(always)]
+    fn overlaps(&self, other: &Self) -> bool {
+        // Without branches: all four are cheaper than a misprediction.
+        (self.min[0] <= other.max[0])
+            & (other.min[0] <= self.max[0])
+            & (self.min[1] <= other.max[1])
+            & (other.min[1] <= self.max[1])
+    }
+
+    /// On one axis, halved so that it does not overflow.
+    fn center(&self, axis: usize) -> f64 {
+        self.min[axis] / 2.0 + self.max[axis] / 2.0
+    }
+}
+
+/// The tree over numbered boxes.
+#[derive(Debug, Clone)]
+pub(super) struct BoxTree {
+    /// The boxes' numbers in the order of the leaves.
+    order: Vec<u32>,
+    /// The boxes in that order, then the level of those around each [`FAN`] of them, and so on.
+    levels: Vec<Vec<Box2>>,
+}
+
+impl BoxTree {
+    pub(super) fn new(boxes: &[Box2]) -> Self {
+        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        let by_center = |axis: usize| move |&i: &u32, &j: &u32| {
+            boxes[i as usize].center(axis).total_cmp(&boxes[j as usize].center(axis)).then(i.cmp(&j))
+        };
+        order.sort_unstable_by(by_center(0));
+        let slab = FAN * ((boxes.len() as f64 / FAN as f64).sqrt().ceil() as usize).max(1);
+        order.chunks_mut(slab).for_each(|slab| slab.sort_unstable_by(by_center(1)));
+        let mut levels = vec![order.iter().map(|&i| boxes[i as usize]).collect::<Vec<Box2>>()];
+        while let Some(below) = levels.last().filter(|level| level.len() > 1) {
+            let above = below.chunks(FAN).map(|chunk| chunk.iter().fold(Box2::NOTHING, |sum, b| sum.with(b))).collect();
+            levels.push(above);
+        }
+        BoxTree { order, levels }
+    }
+
+    /// The box's number at each place of the leaves.
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Calls with the number of every box that overlaps this one.
+    pub(super) fn overlapping(&self, with: &Box2, mut visit: impl FnMut(u32)) {
+        self.overlapping_from(0, with, &mut visit);
+    }
+
+    /// The same with those leaves only that stand at `first` or behind.
+    pub(super) fn overlapping_from(&self, first: usize, with: &Box2, visit: &mut impl FnMut(u32)) {
+        let top = self.levels.len() - 1;
+        if !self.levels[top].first().is_some_and(|root| root.overlaps(with)) {
+            return;
+        }
+        // Fewer than 12 levels number all of 32 bits.
+        let mut stack = [(top, 0usize); 12 * FAN];
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let (level, node) = stack[height];
+            if level == 0 {
+                if node >= first {
+                    visit(self.order[node]);
+                }
+                continue;
+            }
+            // A node's leaves are FAN^level in a row.
+            let below = &self.levels[level - 1];
+            let width = FAN.pow(level as u32 - 1);
+            for child in (node * FAN..below.len().min((node + 1) * FAN)).rev() {
+                if (child + 1) * width > first && below[child].overlaps(with) {
+                    stack[height] = (level - 1, child);
+                    height += 1;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_overlaps_are_found_once() {
+        let mut state = 1u64;
+        let mut below = |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % n) as f64
+        };
+        for count in [0, 1, 7, 8, 9, 64, 65, 700] {
+            let mut boxed = || Box2::around([[below(20), below(20)], [below(20), below(20)]]);
+            let boxes: Vec<Box2> = (0..count).map(|_| boxed()).collect();
+            let tree = BoxTree::new(&boxes);
+            for query in &boxes {
+                let mut found = Vec::new();
+                tree.overlapping(query, |i| found.push(i));
+                found.sort_unstable();
+                let all: Vec<u32> = (0..count as u32).filter(|&i| boxes[i as usize].overlaps(query)).collect();
+                assert_eq!(found, all);
+            }
+            let mut pairs = 0;
+            for (at, &i) in tree.order().iter().enumerate() {
+                tree.overlapping_from(at + 1, &boxes[i as usize], &mut |_| pairs += 1);
+            }
+            let all = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
+            assert_eq!(pairs, all.filter(|&(i, j)| boxes[i].overlaps(&boxes[j])).count());
+        }
+    }
+}

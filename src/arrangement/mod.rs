@@ -1,0 +1,407 @@
+//! Segments that cross, made into segments that meet at common ends only: snap rounding.
+//!
+//! Where two segments cross, coordinates of doubles do not reach: the place must be rounded, both lines bend there a
+//! little, and may so cross others anew. *Snap rounding* (Hobby 1999; Guibas and Marimont 1998) ends that at once:
+//! the crossings of the **original** segments are rounded, once, to the centers of the pixels of a grid; and every
+//! segment that meets the pixel of such a center, or of an end of a segment, is led through that center. Then no two
+//! of the pieces cross.
+//!
+//! *Why.* Let a piece lead from center `A` to center `B`, and let `C` be a center in whose pixel the segment `s` has
+//! no point. `A` and `B` lie in `s - Q`, where `Q` is a pixel around zero, and so does all of `A B`, since that set is
+//! convex; `C` does not. On its way from `s` to `A B` the line therefore never passes over a center that it is not
+//! led through, and lines that do not cross at first can cross at last only by passing over an end of one of them.
+//!
+//! *The grid.* The unit on each axis is that of the last place of the largest coordinate there, of all ends of
+//! segments. Ends that are multiples of it are centers of pixels themselves, pixels do not overlap, and the argument
+//! above holds without a gap: **no point of a line is displaced by more than half a unit on each axis**. Ends may be
+//! finer than the grid, when coordinates near zero and large ones come together. Such an end keeps its place and has a
+//! pixel around itself; a crossing in it is rounded to the end. Pixels may then overlap, and where ends (or an end
+//! and a crossing) lie less than a unit apart, pieces may cross after all, within a unit or two of them. That is left
+//! to the caller.
+//!
+//! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
+//! however close it passes by an end: nothing forces it.
+//!
+//! The result is a function of the set of segments: no order shows.
+
+mod boxes;
+mod pixel;
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::kernel::{Adaptive, Exact, Kernel, Orientation2};
+use crate::num::Sign;
+use boxes::{Box2, BoxTree};
+use pixel::{Grid, is_ordinary};
+
+type Place = [f64; 2];
+type Segment = [Place; 2];
+
+/// Two segments that cross in their interiors, by their numbers, and the site to which the crossing was rounded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Crossing {
+    /// The segments, the smaller number first.
+    pub segments: [u32; 2],
+    /// The site.
+    pub site: u32,
+}
+
+/// The arrangement of some segments, rounded.
+///
+/// *Sites* are numbered: first the places that were given, then those that were added.
+#[derive(Debug, Clone)]
+pub struct Arrangement {
+    unit: [f64; 2],
+    on_grid: bool,
+    added: Vec<Place>,
+    crossings: Vec<Crossing>,
+    /// Of the segments that are led through sites between their ends.
+    chains: HashMap<u32, Range<u32>>,
+    chain_sites: Vec<u32>,
+}
+
+impl Arrangement {
+    /// Arranges segments between places, given by their numbers below `places`, which are all different. Of the places
+    /// that are no end of a segment, those count that lie exactly on a segment that is bent: it is led through them.
+    ///
+    /// All coordinates are finite. Segments are different; one from a place to itself is none.
+    ///
+    /// # Complexity
+    /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at the
+    /// worst, for long lines side by side across the axes.
+    pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> Self {
+        let largest = segments.iter().flatten().fold([0.0f64; 2], |largest, &i| {
+            let p = place(i);
+            [largest[0].max(p[0].abs()), largest[1].max(p[1].abs())]
+        });
+        // Half of the smallest subnormal number is none: away from there, by a power of two.
+        const UP: f64 = f64::from_bits((1023 + 400) << 52);
+        let scale: Place = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
+        let grid = Grid::of_magnitudes([largest[0] * scale[0], largest[1] * scale[1]]);
+        let place = |i: u32| {
+            let p = place(i);
+            [p[0] * scale[0], p[1] * scale[1]]
+        };
+        let segments: Vec<[u32; 2]> = segments.to_vec();
+        let ends = segments.iter().flatten().map(|&i| place(i));
+        let mut arrangement = if is_ordinary(&grid, ends) {
+            Builder::new(grid, places, &place, &segments).run::<Adaptive>()
+        } else {
+            Builder::new(grid, places, &place, &segments).run::<Exact>()
+        };
+        for axis in 0..2 {
+            arrangement.unit[axis] /= scale[axis];
+            arrangement.added.iter_mut().for_each(|p| p[axis] /= scale[axis]);
+        }
+        arrangement
+    }
+
+    /// The grid's unit on each axis: a power of two.
+    pub fn unit(&self) -> [f64; 2] {
+        self.unit
+    }
+
+    /// Whether all ends of segments are multiples of the unit, so that the pieces are proven not to cross.
+    pub fn is_on_grid(&self) -> bool {
+        self.on_grid
+    }
+
+    /// The sites that were added: distinct, in lexicographic order.
+    pub fn added(&self) -> &[Place] {
+        &self.added
+    }
+
+    /// Every pair of segments that cross in their interiors, in order.
+    pub fn crossings(&self) -> &[Crossing] {
+        &self.crossings
+    }
+
+    /// The sites that a segment is led through between its ends, in the order from its first to its second. (Beside
+    /// them, it passes exactly through the places that lie on its pieces.)
+    pub fn chain(&self, segment: u32) -> &[u32] {
+        self.chains.get(&segment).map_or(&[], |range| &self.chain_sites[range.start as usize..range.end as usize])
+    }
+}
+
+/// A segment that is led through a site.
+#[derive(Debug, Clone, Copy)]
+struct Pass {
+    segment: u32,
+    site: u32,
+    /// Whether the site lies on the segment exactly.
+    exact: bool,
+}
+
+struct Builder<'a, F> {
+    grid: Grid,
+    places: usize,
+    place: &'a F,
+    ends: &'a [[u32; 2]],
+    segments: Vec<Segment>,
+    added: Vec<Place>,
+}
+
+impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
+    fn new(grid: Grid, places: usize, place: &'a F, ends: &'a [[u32; 2]]) -> Self {
+        let segments = ends.iter().map(|&[a, b]| [place(a), place(b)]).collect();
+        Builder { grid, places, place, ends, segments, added: Vec::new() }
+    }
+
+    fn run<K: Kernel>(mut self) -> Arrangement {
+        let tree = self.tree(0..self.segments.len() as u32);
+        let pairs = self.crossing_pairs::<K>(&tree);
+        let vertices = if pairs.is_empty() { Vec::new() } else { self.vertices() };
+        let crossings = self.round::<K>(pairs, &vertices);
+        let passes = if crossings.is_empty() { Vec::new() } else { self.lead::<K>(&tree, &crossings, vertices) };
+        self.collect(crossings, passes)
+    }
+
+    fn site(&self, site: u32) -> Place {
+        match (site as usize).checked_sub(self.places) {
+            None => (self.place)(site),
+            Some(added) => self.added[added],
+        }
+    }
+
+    /// A tree over some segments, by their position in the list.
+    fn tree(&self, segments: impl Iterator<Item = u32>) -> BoxTree {
+        let boxes: Vec<Box2> = segments.map(|i| Box2::around(self.segments[i as usize])).collect();
+        BoxTree::new(&boxes)
+    }
+
+    /// The ends of all segments, each once.
+    fn vertices(&self) -> Vec<u32> {
+        let mut vertices: Vec<u32> = self.ends.iter().flatten().copied().collect();
+        vertices.par_sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+
+    /// Phase 1: the pairs of segments that cross in their interiors.
+    fn crossing_pairs<K: Kernel>(&self, tree: &BoxTree) -> Vec<[u32; 2]> {
+        let of_leaf = |(at, &i): (usize, &u32)| {
+            let mut found = Vec::new();
+            let s = self.segments[i as usize];
+            tree.overlapping_from(at + 1, &Box2::around(s), &mut |j| {
+                if cross::<K>(s, self.segments[j as usize]) {
+                    found.push([i.min(j), i.max(j)]);
+                }
+            });
+            found
+        };
+        let mut pairs: Vec<[u32; 2]> =
+            tree.order().par_iter().enumerate().with_min_len(256).flat_map_iter(of_leaf).collect();
+        pairs.par_sort_unstable();
+        pairs
+    }
+
+    /// Phase 2: the site of each crossing. An end in whose pixel it lies; else the center of its pixel.
+    fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>, vertices: &[u32]) -> Vec<Crossing> {
+        enum Rounded {
+            ToVertex(u32),
+            ToCenter(Place),
+        }
+        let cells = Cells::new(self.grid, vertices, self.place);
+        let round = |&segments: &[u32; 2]| {
+            let [ab, cd] = segments.map(|i| self.segments[i as usize]);
+            let center = self.grid.crossing::<K>(ab, cd);
+            let holds = |&v: &u32| self.grid.crossing_in::<K>(ab, cd, (self.place)(v));
+            // Of several the first in plan, whatever their numbers.
+            let by_place = |&u: &u32, &v: &u32| lexicographic((self.place)(u), (self.place)(v));
+            match cells.near(center).filter(holds).min_by(by_place) {
+                Some(vertex) => Rounded::ToVertex(vertex),
+                None => Rounded::ToCenter(center),
+            }
+        };
+        let rounded: Vec<Rounded> = pairs.par_iter().with_min_len(256).map(round).collect();
+        let mut centers: Vec<(Place, u32)> = Vec::new();
+        let mut crossings = Vec::with_capacity(pairs.len());
+        for (segments, rounded) in pairs.into_iter().zip(rounded) {
+            let site = match rounded {
+                Rounded::ToVertex(vertex) => vertex,
+                Rounded::ToCenter(center) => {
+                    centers.push((center, crossings.len() as u32));
+                    u32::MAX
+                }
+            };
+            crossings.push(Crossing { segments, site });
+        }
+        centers.par_sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
+        for (center, crossing) in centers {
+            if self.added.last() != Some(&center) {
+                self.added.push(center);
+            }
+            crossings[crossing as usize].site = (self.places + self.added.len() - 1) as u32;
+        }
+        crossings
+    }
+
+    /// Phase 3: leads the segments that cross others through all sites whose pixels they meet; and, as long as there
+    /// are any, those that meet a pixel by which another was bent.
+    fn lead<K: Kernel>(&self, tree: &BoxTree, crossings: &[Crossing], vertices: Vec<u32>) -> Vec<Pass> {
+        let mut is_hot = vec![false; self.places + self.added.len()];
+        let mut sites = vertices;
+        sites.extend((self.places..self.places + self.added.len()).map(|site| site as u32));
+        sites.iter().for_each(|&site| is_hot[site as usize] = true);
+        let mut is_active = vec![false; is_hot.len()];
+        let mut is_led = vec![false; self.segments.len()];
+        let mut led: Vec<(BoxTree, Vec<u32>)> = Vec::new();
+        let mut fresh: Vec<u32> = crossings.iter().flat_map(|crossing| crossing.segments).collect();
+        fresh.par_sort_unstable();
+        fresh.dedup();
+        let mut passes = Vec::new();
+        while !fresh.is_empty() {
+            fresh.iter().for_each(|&i| is_led[i as usize] = true);
+            led.push((self.tree(fresh.iter().copied()), std::mem::take(&mut fresh)));
+            let newest = &led[led.len() - 1..];
+            let before = passes.len();
+            self.pass::<K>(&sites, newest, &mut passes);
+            // Places that lie on a segment that may bend are kept on it.
+            let cold = (0..self.places as u32).into_par_iter().with_min_len(4096);
+            let on = |&site: &u32| !is_hot[site as usize] && self.is_on_one::<K>(site, newest);
+            let heated: Vec<u32> = cold.filter(on).collect();
+            heated.iter().for_each(|&site| is_hot[site as usize] = true);
+            self.pass::<K>(&heated, &led, &mut passes);
+            sites.extend(heated);
+            // What was bent may bend others.
+            let mut bent_by: Vec<u32> = passes[before..].iter().filter(|pass| !pass.exact).map(|pass| pass.site).collect();
+            bent_by.retain(|&site| !std::mem::replace(&mut is_active[site as usize], true));
+            for site in bent_by {
+                let at = self.site(site);
+                tree.overlapping(&Box2::around([at, at]).grown(self.grid.half), |i| {
+                    let hit = !is_led[i as usize] && self.meets::<K>(i, site, at);
+                    fresh.extend(hit.then_some(i));
+                });
+            }
+            fresh.sort_unstable();
+            fresh.dedup();
+        }
+        passes
+    }
+
+    /// Whether a segment meets the pixel of a site that is no end of it.
+    fn meets<K: Kernel>(&self, segment: u32, site: u32, at: Place) -> bool {
+        !self.ends[segment as usize].contains(&site) && self.grid.hits::<K>(self.segments[segment as usize], at)
+    }
+
+    /// Adds what passes through these sites among the segments of some trees.
+    fn pass<K: Kernel>(&self, sites: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
+        let of_site = |&site: &u32| {
+            let at = self.site(site);
+            let around = Box2::around([at, at]).grown(self.grid.half);
+            let mut found = Vec::new();
+            for (tree, members) in trees {
+                tree.overlapping(&around, |member| {
+                    let segment = members[member as usize];
+                    if self.meets::<K>(segment, site, at) {
+                        let [a, b] = self.segments[segment as usize];
+                        let exact = K::sign(&Orientation2([a, b, at])) == Sign::Zero;
+                        found.push(Pass { segment, site, exact });
+                    }
+                });
+            }
+            found
+        };
+        passes.par_extend(sites.par_iter().with_min_len(256).flat_map_iter(of_site));
+    }
+
+    /// Whether a place lies on a segment of the trees exactly.
+    fn is_on_one<K: Kernel>(&self, site: u32, trees: &[(BoxTree, Vec<u32>)]) -> bool {
+        let at = self.site(site);
+        let mut is_on = false;
+        for (tree, members) in trees {
+            tree.overlapping(&Box2::around([at, at]), |member| {
+                let [a, b] = self.segments[members[member as usize] as usize];
+                is_on = is_on || K::sign(&Orientation2([a, b, at])) == Sign::Zero;
+            });
+        }
+        is_on
+    }
+
+    /// Phase 4: the sites of each segment, in order.
+    fn collect(self, crossings: Vec<Crossing>, mut passes: Vec<Pass>) -> Arrangement {
+        // Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
+        // column from one side to the other.
+        let along = |pass: &Pass| {
+            let [a, b] = self.segments[pass.segment as usize];
+            let at = self.site(pass.site);
+            let [dx, dy] = [0, 1].map(|k| b[k] / self.grid.unit[k] - a[k] / self.grid.unit[k]);
+            let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
+            [first, second].map(|k| if a[k] <= b[k] { at[k] } else { -at[k] })
+        };
+        passes.par_sort_unstable_by(|p, q| {
+            p.segment.cmp(&q.segment).then_with(|| lexicographic(along(p), along(q)))
+        });
+        // A site beyond an end, which is possible off the grid only, would lead the line back.
+        passes.retain(|pass| {
+            let [a, b] = self.ends[pass.segment as usize].map(|site| along(&Pass { site, ..*pass }));
+            lexicographic(a, along(pass)).is_lt() && lexicographic(along(pass), b).is_lt()
+        });
+        let mut chains = HashMap::new();
+        let mut from = 0;
+        for chunk in passes.chunk_by(|p, q| p.segment == q.segment) {
+            let to = from + chunk.len() as u32;
+            chains.insert(chunk[0].segment, from..to);
+            from = to;
+        }
+        let on_grid = self.ends.iter().flatten().all(|&i| self.grid.holds((self.place)(i)));
+        Arrangement {
+            unit: self.grid.unit,
+            on_grid,
+            added: self.added,
+            crossings,
+            chains,
+            chain_sites: passes.into_iter().map(|pass| pass.site).collect(),
+        }
+    }
+}
+
+/// Whether two segments cross in their interiors.
+#[inline]
+fn cross<K: Kernel>([a, b]: Segment, [c, d]: Segment) -> bool {
+    let apart = |p, q, r, s| K::sign(&Orientation2([p, q, r])) * K::sign(&Orientation2([p, q, s])) == Sign::Negative;
+    apart(a, b, c, d) && apart(c, d, a, b)
+}
+
+fn lexicographic(p: Place, q: Place) -> std::cmp::Ordering {
+    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+}
+
+/// Vertices by the square of pixels that they lie in.
+struct Cells {
+    grid: Grid,
+    first: HashMap<[i64; 2], u32>,
+    /// Vertices, each with the position of the next in its cell.
+    chained: Vec<(u32, u32)>,
+}
+
+impl Cells {
+    /// 2^10 pixels on a side: nearly always a neighborhood of one pixel lies in one of them.
+    const SHIFT: u32 = 10;
+    const LAST: u32 = u32::MAX;
+
+    fn new(grid: Grid, vertices: &[u32], place: impl Fn(u32) -> Place) -> Self {
+        let mut first = HashMap::with_capacity(vertices.len());
+        let mut chained = Vec::with_capacity(vertices.len());
+        for (at, &vertex) in vertices.iter().enumerate() {
+            let cell = grid.pixel(place(vertex)).map(|steps| steps >> Self::SHIFT);
+            let next = first.insert(cell, at as u32).unwrap_or(Self::LAST);
+            chained.push((vertex, next));
+        }
+        Cells { grid, first, chained }
+    }
+
+    /// All vertices within a unit of a place, and more.
+    fn near(&self, place: Place) -> impl Iterator<Item = u32> + '_ {
+        let [i, j] = self.grid.pixel(place);
+        let range = |steps: i64| (steps - 2) >> Self::SHIFT..=(steps + 2) >> Self::SHIFT;
+        let cells = range(i).flat_map(move |x| range(j).map(move |y| [x, y]));
+        cells.flat_map(|cell| {
+            let next = |&at: &u32| Some(self.chained[at as usize].1).filter(|&next| next != Self::LAST);
+            std::iter::successors(self.first.get(&cell).copied(), next).map(|at| self.chained[at as usize].0)
+        })
+    }
+}
