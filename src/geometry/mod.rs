@@ -29,7 +29,7 @@ mod terrain;
 pub(crate) use perturbation::{in_sphere, in_sphere_of_flat};
 pub use plane::Plane;
 pub use space::Space;
-pub use terrain::Terrain;
+pub use terrain::{Terrain, height_along};
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
@@ -133,13 +133,34 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     fn coordinates(&self, p: &Self::Point) -> Self::Coordinates;
 }
 
-/// A geometry of the plane that can make points where segments cross and clone them with new places.
-/// What constrained triangulations need beyond predicates.
-pub trait Crossing: Geometry<3> {
+/// A geometry of the plane that can make points where segments meet: what constrained triangulations need
+/// beyond predicates.
+///
+/// # Laws
+/// - The predicates of the geometry are those of the points' plans.
+/// - `plan` of `meet` is the place that was asked for.
+/// - `meet` does not depend on the order of the segments, nor of their ends.
+///
+/// # Models
+/// [`Plane`], [`Terrain`].
+pub trait Crossing: Coordinates<3> {
+    /// The point's coordinates in the plane, exactly.
+    fn plan(&self, p: &Self::Point) -> [f64; 2];
+
+    /// A point at a place at which segments meet that pass by it no further away than a rounding.
+    fn meet(&self, place: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;
+
     /// The point where segments `a b` and `c d` cross in their interiors, rounded; or an end of one of them
-    /// that is so near to the other that rounding may hide on which side of it the end lies. Must not
-    /// depend on the order of the two segments, nor of their ends.
-    fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point;
+    /// that is so near to the other that rounding may hide on which side of it the end lies.
+    fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point {
+        let place = crossed::place(ab.map(|p| self.plan(p)), cd.map(|p| self.plan(p)));
+        // Nearer to zero than any coordinate that is admitted: zero lies between the ends, too.
+        let place = std::array::from_fn(|axis| {
+            let alone = std::array::from_fn(|k| if k == axis { place[axis] } else { 0.0 });
+            if self.admits(&self.meet(alone, &[ab, cd])) { place[axis] } else { 0.0 }
+        });
+        self.meet(place, &[ab, cd])
+    }
 }
 
 /// Lexicographic order of coordinates.

@@ -1,7 +1,6 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::crossed::Crossed;
 use super::{Coordinates, Crossing, Geometry, lexicographic};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
@@ -44,7 +43,12 @@ impl<K: Kernel> Coordinates<3> for Plane<K> {
 }
 
 impl<K: Kernel> Crossing for Plane<K> {
-    fn crossing(&self, ab: [&[f64; 2]; 2], cd: [&[f64; 2]; 2]) -> [f64; 2] {
-        Crossed::new(ab, cd, |p| *p).place::<K>(|p| *p)
+    #[inline]
+    fn plan(&self, p: &[f64; 2]) -> [f64; 2] {
+        *p
+    }
+
+    fn meet(&self, place: [f64; 2], _: &[[&[f64; 2]; 2]]) -> [f64; 2] {
+        place
     }
 }

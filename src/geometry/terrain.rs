@@ -1,7 +1,6 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::crossed::Crossed;
 use super::{Coordinates, Crossing, Geometry, lexicographic};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
@@ -52,11 +51,24 @@ impl<K: Kernel> Coordinates<3> for Terrain<K> {
 }
 
 impl<K: Kernel> Crossing for Terrain<K> {
-    fn crossing(&self, ab: [&[f64; 3]; 2], cd: [&[f64; 3]; 2]) -> [f64; 3] {
-        let crossed = Crossed::new(ab, cd, plan);
-        let [x, y] = crossed.place::<K>(plan);
-        let height = |[p, q]: [&[f64; 3]; 2], along: f64| p[2] + along * (q[2] - p[2]);
-        let z = height(crossed.ab, crossed.along_ab).min(height(crossed.cd, crossed.along_cd));
-        [x, y, z]
+    #[inline]
+    fn plan(&self, p: &[f64; 3]) -> [f64; 2] {
+        plan(p)
     }
+
+    fn meet(&self, [x, y]: [f64; 2], segments: &[[&[f64; 3]; 2]]) -> [f64; 3] {
+        let heights = segments.iter().map(|&[p, q]| height_along(*p, *q, [x, y]));
+        [x, y, heights.fold(f64::NAN, f64::min)]
+    }
+}
+
+/// The height of a segment where it passes by a place in plan; the same for either order of its ends.
+pub fn height_along(p: [f64; 3], q: [f64; 3], [x, y]: [f64; 2]) -> f64 {
+    let (p, q) = if lexicographic(plan(&p), plan(&q)).is_gt() { (q, p) } else { (p, q) };
+    // In parts of the longer side: squares of extreme magnitudes are none.
+    let [dx, dy] = [0, 1].map(|k| q[k] / 2.0 - p[k] / 2.0);
+    let longer = dx.abs().max(dy.abs());
+    let [ux, uy] = [dx / longer, dy / longer];
+    let along = ((x / 2.0 - p[0] / 2.0) / longer * ux + (y / 2.0 - p[1] / 2.0) / longer * uy) / (ux * ux + uy * uy);
+    if along.is_nan() { p[2].min(q[2]) } else { p[2] + along.clamp(0.0, 1.0) * (q[2] - p[2]) }
 }

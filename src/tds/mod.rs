@@ -394,6 +394,12 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
         })
     }
 
+    /// The ends of the edge opposite vertex `i` of a cell, which has it on its left from the first to the second.
+    #[inline(always)]
+    pub fn edge_ends(&self, cell: CellId, i: usize) -> [VertexId; 2] {
+        [self.vertex(cell, ccw(i)), self.vertex(cell, cw(i))]
+    }
+
     /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the
     /// vertex opposite), if there is such an edge. Time proportional to the degree of `a`.
     pub fn edge(&self, a: VertexId, b: VertexId) -> Option<(CellId, usize)> {

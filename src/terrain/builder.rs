@@ -4,10 +4,11 @@ use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Terrain};
 use crate::kernel::{RANGE, Range};
 use crate::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, spatial_order};
+use crate::triangulation::{ConstrainedDelaunay, OnCrossing, Refused, Rounding, VertexLines, spatial_order};
 
 use super::clip::Clip;
-use super::{DuplicateRule, Tin};
+use super::crossings::settle_heights;
+use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin};
 
 /// Collects points and lines and makes a [`Tin`] of them.
 ///
@@ -30,6 +31,12 @@ use super::{DuplicateRule, Tin};
 pub struct TinBuilder {
     /// Which height stands where several points share one place.
     pub duplicates: DuplicateRule,
+    /// Whether breaklines may cross between their vertices.
+    pub on_crossing: OnCrossing,
+    /// Which height stands where they do.
+    pub crossing_heights: CrossingRule,
+    /// Heights that differ by no more than this, in their units, are not worth a word.
+    pub crossing_tolerance: f64,
     /// Faces that can be reached from outside over unconstrained edges longer than this (in plan, in
     /// the units of the data) are left out; `None` keeps the whole convex hull.
     pub max_edge: Option<f64>,
@@ -62,6 +69,10 @@ pub struct TinReport {
     pub constrained_edges: usize,
     /// Vertices added where breaklines cross between their own.
     pub crossings: usize,
+    /// How these were rounded; `None` if no breaklines cross.
+    pub rounding: Option<Rounding>,
+    /// Where crossing breaklines differ in height by more than the tolerance, from west to east.
+    pub crossing_heights: Vec<CrossingHeights>,
     /// Vertices of the surface.
     pub vertices: usize,
     /// Triangles of the surface.
@@ -140,8 +151,9 @@ impl TinBuilder {
 
         // One vertex for each place, in spatial order.
         let (vertices, line_vertices) = self.merge(&mut report)?;
-        let mut triangulation = ConstrainedDelaunay::from_sorted(geometry, vertices)
-            .map_err(|refused| Error::limit(refused.to_string()))?;
+        let lines = lines_of(&line_vertices, &self.line_ends);
+        let (mut triangulation, _) =
+            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, lines, self.on_crossing).map_err(not_built)?;
         if triangulation.dimension() < 2 {
             let what = match triangulation.vertex_count() {
                 0 | 1 => "fewer than two distinct points do".to_owned(),
@@ -151,11 +163,10 @@ impl TinBuilder {
                 .cure("check the inputs, the classes (--class) and the bounds"));
         }
 
-        // The segments in an order of their own, whatever the order of the lines.
-        for [a, b] in sorted_segments(&line_vertices, &self.line_ends) {
-            triangulation.insert_segment(a, b);
-        }
         report.crossings = triangulation.crossings().len();
+        report.rounding = triangulation.rounding();
+        report.crossing_heights =
+            settle_heights(&mut triangulation, self.crossing_heights, self.crossing_tolerance)?;
         report.constrained_edges = triangulation.constrained_edges().count();
 
         let mut tin = Tin::new(triangulation, self.crs.take());
@@ -204,6 +215,23 @@ impl TinBuilder {
             vertices.push([x, y, self.duplicates.choose(&mut heights)]);
         }
         Ok((vertices, line_vertices))
+    }
+}
+
+/// The vertices of each line.
+fn lines_of(vertices: &[VertexId], line_ends: &[usize]) -> VertexLines {
+    let starts = std::iter::once(&0).chain(line_ends);
+    starts.zip(line_ends).map(|(&start, &end)| vertices[start..end].into()).collect()
+}
+
+#[cold]
+fn not_built(refused: Refused) -> Error {
+    match refused {
+        Refused::Crossing { segments: [(line, _), (other, _)], place: [x, y] } => {
+            Error::format(format!("breaklines {line} and {other} cross at {x} {y}, where neither has a vertex"))
+                .cure("mend the lines, or let them be split there with --on-crossing split")
+        }
+        refused => Error::limit(refused.to_string()),
     }
 }
 

@@ -31,6 +31,7 @@
 mod builder;
 mod clip;
 pub mod contour;
+mod crossings;
 mod duplicates;
 mod grid_surface;
 mod hillshade;
@@ -42,6 +43,7 @@ mod tin;
 
 pub use builder::{TinBuilder, TinReport};
 pub use contour::{Contours, contours};
+pub use crossings::{CrossingHeights, CrossingRule};
 pub use duplicates::DuplicateRule;
 pub use grid_surface::GridSurface;
 pub use hillshade::{Hillshade, Light};

@@ -1,10 +1,11 @@
 use std::ops::Deref;
 
 use crate::geometry::{Coordinates, Crossing};
-use crate::tds::{CellId, Tds, VertexId, ccw, cw};
+use crate::tds::{CellId, Tds, VertexId};
 
+use super::lines::Lines;
 use super::segment::Scratch;
-use super::{Flaw, Level, Location, Refused, Triangulation, bulk, spatial_order};
+use super::{Flaw, Level, Location, Refused, Rounding, Triangulation, bulk};
 
 /// Which edges of a triangle are constraints: bit `i` is set for the one opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,6 +48,9 @@ pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     pub(super) crossings: Vec<VertexId>,
     /// Pieces of segments that are not there, because their crossings did not come to an end.
     pub(super) left_out: Vec<[VertexId; 2]>,
+    /// The input lines, and their ways.
+    pub(super) lines: Lines,
+    pub(super) rounding: Option<Rounding>,
     pub(super) scratch: Scratch,
 }
 
@@ -66,6 +70,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             waiting: Vec::new(),
             crossings: Vec::new(),
             left_out: Vec::new(),
+            lines: Lines::default(),
+            rounding: None,
             scratch: Scratch::default(),
         }
     }
@@ -88,7 +94,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         let split = match location {
             Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
                 let i = touching.trailing_zeros() as usize;
-                let ends = [self.tds().vertex(cell, ccw(i)), self.tds().vertex(cell, cw(i))];
+                let ends = self.tds().edge_ends(cell, i);
                 self.tds().cell_data(cell).has(i).then_some(ends)
             }
             _ => None,
@@ -97,6 +103,9 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         let vertex = self.inner.insert_at(p, location, V::default(), passes, |walls, i| walls.only(i));
         for end in split.into_iter().flatten() {
             self.set_wall(vertex, end, true);
+        }
+        if let Some([a, b]) = split {
+            self.lines.split(a, b, vertex);
         }
         vertex
     }
@@ -148,7 +157,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     pub fn constrained_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
         self.tds().cells().filter(|_| self.dimension() == 2).flat_map(move |cell| {
             (0..3).filter(move |&i| self.is_constrained(cell, i)).filter_map(move |i| {
-                let (a, b) = (self.tds().vertex(cell, ccw(i)), self.tds().vertex(cell, cw(i)));
+                let [a, b] = self.tds().edge_ends(cell, i);
                 (a < b).then_some([a, b]) // the cell on the other side has it as `b a`
             })
         })
@@ -226,19 +235,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// # Complexity
     /// O(n log n), on all threads.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
-        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
-        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
-        let mut sites: Vec<G::Point> = Vec::with_capacity(points.len());
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for index in order {
-            let p = points[index as usize];
-            if sites.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
-                sites.push(p);
-            }
-            vertices[index as usize] = VertexId::new(sites.len() - 1);
-        }
+        let (sites, vertices) = Self::sites(&geometry, points)?;
         Ok((Self::from_sorted(geometry, sites)?, vertices))
     }
 }

@@ -34,14 +34,20 @@ mod check;
 mod constrained;
 mod crossed;
 mod delaunay;
+mod lines;
 mod locate;
+mod nesting;
+mod network;
 mod segment;
 mod sort;
 
 pub use check::{Flaw, Level};
 pub use constrained::{ConstrainedDelaunay, Walls};
 pub use delaunay::Delaunay;
+pub use lines::{LineId, LineTag};
 pub use locate::Location;
+pub(crate) use network::VertexLines;
+pub use network::{OnCrossing, Rounding};
 pub use sort::spatial_order;
 
 use std::fmt;
@@ -51,13 +57,34 @@ use crate::num::Sign;
 use crate::tds::{CellId, Tds, VertexId, Zone};
 
 /// A point that a triangulation cannot take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refused {
     /// The point at this position has a coordinate that is not finite, or whose magnitude is outside
     /// of what the arithmetic is proven for (see [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
     Coordinate(usize),
     /// There are more points than 32-bit numbers can count with their cells: the limit is 2^31 - 2.
     TooMany,
+    /// A line names a point that does not exist.
+    Index {
+        /// The line, by its position.
+        line: usize,
+        /// The number it names.
+        index: u32,
+    },
+    /// Two segments cross, and [`OnCrossing::Reject`] was asked for.
+    Crossing {
+        /// Each line by its position, and the segment in it.
+        segments: [(usize, usize); 2],
+        /// Where, rounded.
+        place: [f64; 2],
+    },
+    /// The ends of a ring are apart.
+    Open {
+        /// The ring, by its position.
+        ring: usize,
+        /// Its first and its last point.
+        gap: [[f64; 2]; 2],
+    },
 }
 
 impl fmt::Display for Refused {
@@ -67,6 +94,14 @@ impl fmt::Display for Refused {
                 write!(f, "point {index} has a coordinate that is not finite or too large or small to compute with")
             }
             Refused::TooMany => write!(f, "more than {MAX_VERTICES} points"),
+            Refused::Index { line, index } => write!(f, "line {line} names point {index}, which does not exist"),
+            Refused::Crossing { segments: [(line, segment), (other, crossed)], place: [x, y] } => write!(
+                f,
+                "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}"
+            ),
+            Refused::Open { ring, gap: [[x0, y0], [x1, y1]] } => {
+                write!(f, "ring {ring} is not closed: it begins at {x0} {y0} and ends at {x1} {y1}")
+            }
         }
     }
 }

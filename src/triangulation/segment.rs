@@ -14,6 +14,7 @@ use crate::geometry::{Crossing, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
+use super::lines::undirected;
 use super::{ConstrainedDelaunay, Walls};
 
 /// Buffers of the segment insertion, kept from one to the next.
@@ -54,17 +55,27 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             if a == b {
                 continue;
             }
+            if self.wall_up(a, b) {
+                continue;
+            }
+            if let Some(&between) = self.lines.splits.get(&undirected(a, b)) {
+                pieces.extend([(between, b), (a, between)]);
+                continue;
+            }
             match self.trace(a, b) {
                 Met::Vertex(v) => {
                     self.retriangulate(a, v);
                     self.set_wall(a, v, true);
                     self.settle();
-                    pieces.push((v, b));
+                    if v != b {
+                        self.lines.split(a, b, v);
+                        pieces.push((v, b));
+                    }
                 }
                 Met::Wall(..) if crossings_left == 0 => self.left_out.push([a, b]),
                 Met::Wall(cell, i) => {
                     crossings_left -= 1;
-                    let (c, d) = (self.tds().vertex(cell, ccw(i)), self.tds().vertex(cell, cw(i)));
+                    let [c, d] = self.tds().edge_ends(cell, i);
                     let x =
                         self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
                     self.set_wall(c, d, false);
@@ -76,10 +87,27 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                     if self.vertex_count() > before {
                         self.crossings.push(v);
                     }
+                    for [p, q] in [[a, b], [c, d]] {
+                        if v != p && v != q {
+                            self.lines.split(p, q, v);
+                        }
+                    }
                     pieces.extend([(v, b), (a, v), (v, d), (c, v)]);
                 }
             }
         }
+    }
+
+    /// Makes an edge a constraint, if it is there.
+    fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
+        let Some((cell, i)) = self.inner.tds.edge(a, b) else { return false };
+        let beside = self.inner.tds.neighbor(cell, i);
+        let j = self.inner.tds.index_of_neighbor(beside, cell);
+        for (cell, i) in [(cell, i), (beside, j)] {
+            let data = self.inner.tds.cell_data_mut(cell);
+            *data = data.with(i, true);
+        }
+        true
     }
 
     #[inline]
@@ -199,7 +227,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                 if crossed.contains(&Some(outside)) {
                     continue; // the corridor goes on there
                 }
-                let edge = [tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i))];
+                let edge = tds.edge_ends(cell, i);
                 let j = tds.index_of_neighbor(outside, cell);
                 // The corridor may touch itself around the tip of a spike; both sides are then ours.
                 let own = scratch.open.remove(&[edge[1], edge[0]]).is_some();

@@ -1,0 +1,160 @@
+//! Who is who among the lines of a constrained triangulation.
+
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+use crate::geometry::Crossing;
+use crate::tds::{Id, VertexId};
+
+use super::ConstrainedDelaunay;
+
+/// Marks numbers of lines.
+#[derive(Debug)]
+pub enum LineTag {}
+
+/// The number of a line: its position among those that were given.
+pub type LineId = Id<LineTag>;
+
+/// The input lines, and the way that each takes in the triangulation.
+///
+/// A line is kept as the vertices that it was given by. What lies between two of them is told by two tables that hold
+/// nothing for a segment that is one edge: through which sites a segment is led, and at which vertex an edge was split. So
+/// a line takes 16 bytes, and 4 for each of its vertices; a segment that crosses others about 40 more, and 4 for each
+/// site on it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lines {
+    /// By their ids.
+    pub(super) given: Vec<Option<Box<[VertexId]>>>,
+    /// Of segments, from the smaller vertex to the larger: the sites between.
+    pub(super) led: HashMap<[VertexId; 2], Box<[VertexId]>>,
+    /// Of pieces: the vertex on which they were split.
+    pub(super) splits: HashMap<[VertexId; 2], VertexId>,
+    /// The lines on each edge, sorted; made when it is first asked for.
+    on_edges: OnceLock<Vec<([VertexId; 2], LineId)>>,
+}
+
+/// The same key for both directions.
+#[inline]
+pub(super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}
+
+impl Lines {
+    /// Forgets what was derived. After every change.
+    pub(super) fn touch(&mut self) {
+        self.on_edges.take();
+    }
+
+    /// Puts down that the edge was split.
+    pub(super) fn split(&mut self, a: VertexId, b: VertexId, at: VertexId) {
+        self.splits.insert(undirected(a, b), at);
+        self.touch();
+    }
+
+    /// Adds the way of a segment to `chain`, without its start.
+    pub(super) fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+        let mut at = a;
+        let mut steps = |site: VertexId| {
+            self.walk_piece(at, site, chain);
+            at = site;
+        };
+        if let Some(sites) = self.led.get(&undirected(a, b)) {
+            if a < b {
+                sites.iter().for_each(|&site| steps(site));
+            } else {
+                sites.iter().rev().for_each(|&site| steps(site));
+            }
+        }
+        steps(b);
+    }
+
+    /// The same for a piece, which is led through nothing but may have been split.
+    pub(super) fn walk_piece(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+        let mut at = a;
+        let mut ahead = vec![b];
+        while let Some(&next) = ahead.last() {
+            match self.splits.get(&undirected(at, next)) {
+                Some(&between) => ahead.push(between),
+                None => {
+                    if next != at {
+                        chain.push(next);
+                    }
+                    at = next;
+                    ahead.pop();
+                }
+            }
+        }
+    }
+
+    fn chain(&self, line: LineId) -> Vec<VertexId> {
+        let Some(vertices) = self.given.get(line.index()).and_then(Option::as_deref) else { return Vec::new() };
+        let mut chain: Vec<VertexId> = vertices.first().copied().into_iter().collect();
+        for pair in vertices.windows(2).filter(|pair| pair[0] != pair[1]) {
+            self.walk(pair[0], pair[1], &mut chain);
+        }
+        chain
+    }
+
+    fn on_edges(&self) -> &[([VertexId; 2], LineId)] {
+        self.on_edges.get_or_init(|| {
+            let mut on_edges = Vec::new();
+            for line in (0..self.given.len()).map(LineId::new) {
+                on_edges.extend(self.chain(line).windows(2).map(|pair| (undirected(pair[0], pair[1]), line)));
+            }
+            on_edges.sort_unstable();
+            on_edges.dedup();
+            on_edges
+        })
+    }
+}
+
+/// Lines by their ids.
+impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+    /// The ids of all lines, in order.
+    pub fn lines(&self) -> impl Iterator<Item = LineId> + '_ {
+        let given = self.lines.given.iter().enumerate();
+        given.filter(|(_, line)| line.is_some()).map(|(index, _)| LineId::new(index))
+    }
+
+    /// The vertices that a line was given by, in order: where several points were given for one site, its vertex.
+    /// Empty for a line that does not exist.
+    pub fn line_vertices(&self, line: LineId) -> &[VertexId] {
+        self.lines.given.get(line.index()).and_then(Option::as_deref).unwrap_or_default()
+    }
+
+    /// The vertices of a line in the triangulation, in order: those that it was given by, and those that it meets on
+    /// its way. Between each two of them there is a constrained edge. Empty for a line that does not exist.
+    ///
+    /// # Complexity
+    /// Linear in the length of the result.
+    pub fn chain(&self, line: LineId) -> Vec<VertexId> {
+        self.lines.chain(line)
+    }
+
+    /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it is
+    /// one edge.
+    pub fn way(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
+        let mut chain = Vec::new();
+        self.lines.walk(a, b, &mut chain);
+        chain.pop();
+        chain
+    }
+
+    /// The ids of all lines that run along the edge between two vertices, in order.
+    ///
+    /// # Complexity
+    /// A binary search; the first call after a change takes O(n log n) for n edges of lines, and 12 bytes for each of
+    /// them while the triangulation stays as it is.
+    pub fn lines_through(&self, a: VertexId, b: VertexId) -> impl ExactSizeIterator<Item = LineId> + '_ {
+        let on_edges = self.lines.on_edges();
+        let edge = undirected(a, b);
+        let first = on_edges.partition_point(|(e, _)| *e < edge);
+        let count = on_edges[first..].partition_point(|(e, _)| *e == edge);
+        on_edges[first..first + count].iter().map(|&(_, line)| line)
+    }
+
+    /// Whether a vertex was added where lines cross, rather than given.
+    pub fn is_added(&self, vertex: VertexId) -> bool {
+        self.crossings.binary_search(&vertex).is_ok()
+    }
+}

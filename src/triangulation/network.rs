@@ -1,0 +1,223 @@
+//! Points and lines, triangulated at once.
+//!
+//! 1. Points on one site become one vertex; vertices are numbered along a space filling curve.
+//! 2. The lines' segments, each once, are [arranged](crate::arrangement): crossings of the originals are rounded, once,
+//!    and segments led through the sites of their pixels.
+//! 3. All sites are triangulated in bulk, and the pieces of the segments forced in. They do not cross, on the grid.
+//!
+//! Every step depends on the set of points and segments only.
+
+use crate::arrangement::Arrangement;
+use crate::geometry::{Coordinates, Crossing};
+use crate::tds::VertexId;
+
+use super::lines::undirected;
+use super::{ConstrainedDelaunay, Refused, spatial_order};
+
+/// What becomes of lines that cross between their vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OnCrossing {
+    /// Nothing is triangulated; the first crossing is told.
+    Reject,
+    /// They get a common vertex, rounded to the grid.
+    #[default]
+    Split,
+}
+
+/// How the crossings of lines were rounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rounding {
+    /// The unit of the grid, on each axis: the last place of the largest coordinate of a line's vertex.
+    pub unit: [f64; 2],
+    /// Whether all vertices of lines lie on the grid. Then no line is displaced by more than half a unit on
+    /// each axis, proven.
+    pub on_grid: bool,
+}
+
+/// Lines as vertices in a row each.
+pub(crate) type VertexLines = Vec<Box<[VertexId]>>;
+
+impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+    /// Triangulates many points and lines. A line is a list of points, by their positions; it may touch itself and
+    /// others, overlap, repeat, cross, close, double back. Returns the vertex of each point beside; points on one
+    /// site share theirs (the first of them stands). The lines' ids are their positions.
+    ///
+    /// The triangulation is a function of the set of points and the set of segments.
+    ///
+    /// # Errors
+    /// The first point that is refused, the first line that names no point, or, under
+    /// [`OnCrossing::Reject`], two segments that cross; by their positions.
+    ///
+    /// # Complexity
+    /// O(n log n), on all threads, and for each segment the square of the triangles that it crosses.
+    pub fn from_lines<L: AsRef<[u32]>>(
+        geometry: G,
+        points: &[G::Point],
+        lines: &[L],
+        on_crossing: OnCrossing,
+    ) -> Result<(Self, Vec<VertexId>), Refused> {
+        for (line, indexes) in lines.iter().enumerate() {
+            if let Some(&index) = indexes.as_ref().iter().find(|&&i| i as usize >= points.len()) {
+                return Err(Refused::Index { line, index });
+            }
+        }
+        let (sites, mut vertices) = Self::sites(&geometry, points)?;
+        let named = |line: &L| line.as_ref().iter().map(|&i| vertices[i as usize]).collect();
+        let lines = lines.iter().map(named).collect();
+        let (triangulation, renumbered) = Self::from_sorted_lines(geometry, sites, lines, on_crossing)?;
+        if let Some(renumbered) = renumbered {
+            vertices.iter_mut().for_each(|v| *v = renumbered[v.index()]);
+        }
+        Ok((triangulation, vertices))
+    }
+
+    /// Triangulates points that are all different and in spatial order, and lines through them. Where vertices had to
+    /// be added, the new number of each point is returned.
+    pub(crate) fn from_sorted_lines(
+        geometry: G,
+        mut sites: Vec<G::Point>,
+        mut lines: VertexLines,
+        on_crossing: OnCrossing,
+    ) -> Result<(Self, Option<Vec<VertexId>>), Refused> {
+        if let Some(bad) = sites.iter().position(|p| !geometry.admits(p)) {
+            return Err(Refused::Coordinate(bad));
+        }
+        let segments = segments_of(&lines);
+        let arrangement = Arrangement::new(sites.len(), |i| geometry.plan(&sites[i as usize]), &segments);
+        if let (OnCrossing::Reject, Some(first)) = (on_crossing, arrangement.crossings().first()) {
+            let [i, j] = first.segments.map(|i| segments[i as usize]);
+            let place = geometry.crossing(
+                i.map(|site| &sites[site as usize]),
+                j.map(|site| &sites[site as usize]),
+            );
+            let segments = [i, j].map(|segment| find(&lines, segment));
+            return Err(Refused::Crossing { segments, place: geometry.plan(&place) });
+        }
+        let (renumbered, added) = add_sites(&geometry, &mut sites, &arrangement, &segments)?;
+        let vertex = |site: u32| match &renumbered {
+            Some(renumbered) => renumbered[site as usize],
+            None => VertexId::new(site as usize),
+        };
+        if let Some(renumbered) = &renumbered {
+            lines.iter_mut().flatten().for_each(|v| *v = renumbered[v.index()]);
+        }
+
+        let mut triangulation = Self::from_sorted(geometry, sites)?;
+        let mut pieces = Vec::with_capacity(segments.len());
+        for (i, &[a, b]) in segments.iter().enumerate() {
+            let between = arrangement.chain(i as u32);
+            let mut at = a;
+            for &site in between.iter().chain([&b]) {
+                pieces.push(undirected(vertex(at), vertex(site)));
+                at = site;
+            }
+            if !between.is_empty() {
+                let [a, b] = [a, b].map(vertex);
+                let mut sites: Box<[VertexId]> = between.iter().map(|&site| vertex(site)).collect();
+                if a > b {
+                    sites.reverse();
+                }
+                triangulation.lines.led.insert(undirected(a, b), sites);
+            }
+        }
+        triangulation.lines.given = lines.into_iter().map(Some).collect();
+        triangulation.crossings = added;
+        if !arrangement.crossings().is_empty() {
+            triangulation.rounding = Some(Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
+        }
+        drop(arrangement);
+        pieces.sort_unstable();
+        pieces.dedup();
+        for [a, b] in pieces {
+            triangulation.insert_segment(a, b);
+        }
+        Ok((triangulation, renumbered))
+    }
+
+    /// The distinct sites of points in spatial order, and of each point the number of its site.
+    pub(super) fn sites(geometry: &G, points: &[G::Point]) -> Result<(Vec<G::Point>, Vec<VertexId>), Refused> {
+        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
+            return Err(Refused::Coordinate(bad));
+        }
+        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
+        let mut sites: Vec<G::Point> = Vec::with_capacity(points.len());
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        for index in order {
+            let p = points[index as usize];
+            if sites.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
+                sites.push(p);
+            }
+            vertices[index as usize] = VertexId::new(sites.len() - 1);
+        }
+        Ok((sites, vertices))
+    }
+
+    /// How the crossings of lines were rounded; `None` if none cross.
+    pub fn rounding(&self) -> Option<Rounding> {
+        self.rounding
+    }
+}
+
+/// Each segment of the lines once, from the smaller number to the larger, in order.
+fn segments_of(lines: &VertexLines) -> Vec<[u32; 2]> {
+    let pairs = lines.iter().flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
+    let mut segments: Vec<[u32; 2]> =
+        pairs.map(|pair| undirected(pair[0], pair[1]).map(|v| v.index() as u32)).collect();
+    segments.sort_unstable();
+    segments.dedup();
+    segments
+}
+
+/// The first line with a segment, and its position in the line.
+fn find(lines: &VertexLines, segment: [u32; 2]) -> (usize, usize) {
+    let segment = segment.map(|site| VertexId::new(site as usize));
+    let in_line = |line: &[VertexId]| line.windows(2).position(|pair| undirected(pair[0], pair[1]) == segment);
+    let mut found = lines.iter().enumerate().filter_map(|(i, line)| Some((i, in_line(line)?)));
+    found.next().unwrap_or_default()
+}
+
+/// Puts the added sites among the given ones, which come in spatial order, as points of the geometry. Returns the number
+/// of every site then, if there were any to add; and the numbers of those that are new.
+fn add_sites<G: Crossing + Coordinates<3>>(
+    geometry: &G,
+    sites: &mut Vec<G::Point>,
+    arrangement: &Arrangement,
+    segments: &[[u32; 2]],
+) -> Result<(Option<Vec<VertexId>>, Vec<VertexId>), Refused> {
+    if arrangement.added().is_empty() {
+        return Ok((None, Vec::new()));
+    }
+    let given = sites.len() as u32;
+    let mut through: Vec<(u32, u32)> = Vec::new();
+    for segment in 0..segments.len() as u32 {
+        let added = arrangement.chain(segment).iter().filter(|&&site| site >= given);
+        through.extend(added.map(|&site| (site, segment)));
+    }
+    through.sort_unstable();
+    let mut met = Vec::new();
+    let mut rest = through.as_slice();
+    for (i, &place) in arrangement.added().iter().enumerate() {
+        let (here, others) = rest.split_at(rest.partition_point(|&(site, _)| site as usize <= given as usize + i));
+        rest = others;
+        met.clear();
+        met.extend(here.iter().map(|&(_, segment)| segments[segment as usize].map(|end| sites[end as usize])));
+        let segments: Vec<[&G::Point; 2]> = met.iter().map(|ends| ends.each_ref()).collect();
+        let p = geometry.meet(place, &segments);
+        sites.push(p);
+    }
+    let order = spatial_order(sites.len(), |i| geometry.coordinates(&sites[i]))?;
+    let mut all: Vec<G::Point> = Vec::with_capacity(sites.len());
+    let mut renumbered = vec![VertexId::INFINITE; sites.len()];
+    let mut added = Vec::new();
+    for index in order {
+        // Equal places are in the order of their numbers: what was given stands.
+        let p = sites[index as usize];
+        if all.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
+            added.extend((index >= given).then(|| VertexId::new(all.len())));
+            all.push(p);
+        }
+        renumbered[index as usize] = VertexId::new(all.len() - 1);
+    }
+    *sites = all;
+    Ok((Some(renumbered), added))
+}
