@@ -61,8 +61,10 @@ pub(super) struct BoxTree {
 impl BoxTree {
     pub(super) fn new(boxes: &[Box2]) -> Self {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-        let by_center = |axis: usize| move |&i: &u32, &j: &u32| {
-            boxes[i as usize].center(axis).total_cmp(&boxes[j as usize].center(axis)).then(i.cmp(&j))
+        let by_center = |axis: usize| {
+            move |&i: &u32, &j: &u32| {
+                boxes[i as usize].center(axis).total_cmp(&boxes[j as usize].center(axis)).then(i.cmp(&j))
+            }
         };
         order.sort_unstable_by(by_center(0));
         let slab = FAN * ((boxes.len() as f64 / FAN as f64).sqrt().ceil() as usize).max(1);

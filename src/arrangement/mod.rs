@@ -56,6 +56,7 @@ pub struct Crossing {
 pub struct Arrangement {
     unit: [f64; 2],
     on_grid: bool,
+    places: usize,
     added: Vec<Place>,
     crossings: Vec<Crossing>,
     /// Of the segments that are led through sites between their ends.
@@ -124,6 +125,25 @@ impl Arrangement {
     pub fn chain(&self, segment: u32) -> &[u32] {
         self.chains.get(&segment).map_or(&[], |range| &self.chain_sites[range.start as usize..range.end as usize])
     }
+
+    /// Of every added site, the segments that are led through it: pairs of site and segment, in order.
+    pub fn through_added(&self) -> Vec<(u32, u32)> {
+        let given = self.places as u32;
+        let mut through = Vec::new();
+        for (&segment, range) in &self.chains {
+            let sites = &self.chain_sites[range.start as usize..range.end as usize];
+            through.extend(sites.iter().filter(|&&site| site >= given).map(|&site| (site, segment)));
+        }
+        through.par_sort_unstable();
+        through
+    }
+}
+
+/// The part for one site of such pairs.
+pub fn through_site(through: &[(u32, u32)], site: u32) -> &[(u32, u32)] {
+    let first = through.partition_point(|&(other, _)| other < site);
+    let count = through[first..].partition_point(|&(other, _)| other == site);
+    &through[first..first + count]
 }
 
 /// A segment that is led through a site.
@@ -267,7 +287,8 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             self.pass::<K>(&heated, &led, &mut passes);
             sites.extend(heated);
             // What was bent may bend others.
-            let mut bent_by: Vec<u32> = passes[before..].iter().filter(|pass| !pass.exact).map(|pass| pass.site).collect();
+            let mut bent_by: Vec<u32> =
+                passes[before..].iter().filter(|pass| !pass.exact).map(|pass| pass.site).collect();
             bent_by.retain(|&site| !std::mem::replace(&mut is_active[site as usize], true));
             for site in bent_by {
                 let at = self.site(site);
@@ -325,21 +346,31 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     fn collect(self, crossings: Vec<Crossing>, mut passes: Vec<Pass>) -> Arrangement {
         // Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
         // column from one side to the other.
-        let along = |pass: &Pass| {
-            let [a, b] = self.segments[pass.segment as usize];
-            let at = self.site(pass.site);
+        let along = |segment: u32, site: u32| {
+            let [a, b] = self.segments[segment as usize];
+            let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
+            let at = self.site(site);
             let [dx, dy] = [0, 1].map(|k| b[k] / self.grid.unit[k] - a[k] / self.grid.unit[k]);
             let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
             [first, second].map(|k| if a[k] <= b[k] { at[k] } else { -at[k] })
         };
         passes.par_sort_unstable_by(|p, q| {
-            p.segment.cmp(&q.segment).then_with(|| lexicographic(along(p), along(q)))
+            let by_place = || lexicographic(along(p.segment, p.site), along(q.segment, q.site));
+            p.segment.cmp(&q.segment).then_with(by_place)
         });
-        // A site beyond an end, which is possible off the grid only, would lead the line back.
+        // An end of another segment that is finer than the grid may stand beyond our own end.
         passes.retain(|pass| {
-            let [a, b] = self.ends[pass.segment as usize].map(|site| along(&Pass { site, ..*pass }));
-            lexicographic(a, along(pass)).is_lt() && lexicographic(along(pass), b).is_lt()
+            let [a, b] = self.ends[pass.segment as usize].map(|end| along(pass.segment, end));
+            let (first, last) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
+            let at = along(pass.segment, pass.site);
+            pass.site as usize >= self.places || lexicographic(first, at).is_lt() && lexicographic(at, last).is_lt()
         });
+        for chain in passes.chunk_by_mut(|p, q| p.segment == q.segment) {
+            let [a, b] = self.segments[chain[0].segment as usize];
+            if lexicographic(a, b).is_gt() {
+                chain.reverse();
+            }
+        }
         let mut chains = HashMap::new();
         let mut from = 0;
         for chunk in passes.chunk_by(|p, q| p.segment == q.segment) {
@@ -351,6 +382,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         Arrangement {
             unit: self.grid.unit,
             on_grid,
+            places: self.places,
             added: self.added,
             crossings,
             chains,

@@ -110,9 +110,7 @@ impl Grid {
     pub(super) fn crossing_in<K: Kernel>(&self, ab: [[f64; 2]; 2], cd: [[f64; 2]; 2], center: [f64; 2]) -> bool {
         let turn = K::sign(&Orientation2([cd[0], cd[1], ab[0]]));
         (0..2).all(|along| {
-            let side = |offset| {
-                turn * K::sign(&CrossingSide { ab, cd, along, center: center[along], offset })
-            };
+            let side = |offset| turn * K::sign(&CrossingSide { ab, cd, along, center: center[along], offset });
             side(-self.half[along]) != Sign::Negative && side(self.half[along]) == Sign::Negative
         })
     }

@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use super::{CellId, Tds, VertexId};
 
 /// What is wrong with a complex of cells.
@@ -26,7 +28,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let mut flaws = Vec::new();
         for cell in self.cells() {
             let vertices = self.cell_vertices(cell);
-            let exists = |v: VertexId| v == VertexId::INFINITE || v.index() < self.vertex_count();
+            let exists = |v: VertexId| v == VertexId::INFINITE || self.is_vertex(v);
             let sound = vertices.iter().enumerate().all(|(i, &v)| exists(v) && !vertices[..i].contains(&v))
                 && self.cell_neighbors(cell).iter().all(|&n| self.is_used(n) && n != cell);
             if !sound {
@@ -45,10 +47,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 }
             }
         }
-        for vertex in self.vertices().chain([VertexId::INFINITE]) {
+        let holes: HashSet<VertexId> = self.unused_vertices.iter().copied().collect();
+        for vertex in (0..self.vertex_slots()).map(VertexId::new).chain([VertexId::INFINITE]) {
             let sound = match self.cell_of(vertex) {
-                Some(cell) => self.is_used(cell) && self.cell_vertices(cell).contains(&vertex),
-                None => self.dimension() == -1,
+                Some(cell) => {
+                    self.is_used(cell) && self.cell_vertices(cell).contains(&vertex) && !holes.contains(&vertex)
+                }
+                None if vertex == VertexId::INFINITE => self.dimension() == -1,
+                None => holes.contains(&vertex),
             };
             if !sound {
                 flaws.push(Flaw::CellOfVertex(vertex));
@@ -91,14 +97,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             return Vec::new();
         }
         let mut flaws = Vec::new();
-        let mut degree = vec![0u32; self.vertex_count() + 1];
-        let slot = |v: VertexId| if v == VertexId::INFINITE { self.vertex_count() } else { v.index() };
+        let mut degree = vec![0u32; self.vertex_slots() + 1];
+        let slot = |v: VertexId| if v == VertexId::INFINITE { self.vertex_slots() } else { v.index() };
         for cell in self.cells() {
             for &vertex in self.cell_vertices(cell) {
                 degree[slot(vertex)] += 1;
             }
         }
-        let mut reached = std::collections::HashSet::new();
+        let mut reached = HashSet::new();
         let mut stack = Vec::new();
         for vertex in self.vertices().chain([VertexId::INFINITE]) {
             reached.clear();
@@ -115,7 +121,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 flaws.push(Flaw::NotManifold(vertex));
             }
         }
-        let mut faces = vec![std::collections::HashSet::new(); width - 1];
+        let mut faces = vec![HashSet::new(); width - 1];
         if width > 2 {
             for cell in self.cells() {
                 let mut vertices = self.cell_vertices(cell).to_vec();

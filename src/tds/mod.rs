@@ -16,17 +16,20 @@
 //! |---|---|
 //! | the corners and neighbors of a cell | [`Tds::cell_vertices`], [`Tds::cell_neighbors`]; one: [`Tds::vertex`], [`Tds::neighbor`] |
 //! | the same cell as its neighbor sees it | [`Tds::index_of_neighbor`] |
+//! | all vertices | [`Tds::vertices`] |
 //! | all cells, with or without the infinite ones | [`Tds::cells`], [`Tds::is_infinite`] |
 //! | the triangles around a vertex, an edge | [`Tds::around`], [`Tds::edge`] |
 //! | whether it is a sphere | [`Tds::check_links`], [`Tds::check_manifold`] |
 //!
-//! A number of a removed cell is used again; vertices are never removed. Numbers stay within 32 bits:
+//! Removed cells and vertices leave holes in the numbers, which the next ones fill: an array indexed by
+//! vertex has [`Tds::vertex_slots`] places, one by cell [`Tds::cell_slots`]. Numbers stay within 32 bits:
 //! there are at most 2^32 - 3 cells. Asking for what does not exist panics, like an index.
 //! Readers cannot change who is whose neighbor: that is left to
 //! [`triangulation`](crate::triangulation).
 
 mod check;
 mod id;
+mod remove;
 mod zone;
 
 pub use check::Flaw;
@@ -53,9 +56,11 @@ pub struct Tds<const N: usize, V = (), C = ()> {
     cell_data: Vec<C>,
     /// Numbers of removed cells, reused from the end.
     unused: Vec<CellId>,
-    /// A cell of each finite vertex.
+    /// A cell of each finite vertex; `NONE` where the number is a hole.
     vertex_cell: Vec<CellId>,
     vertex_data: Vec<V>,
+    /// Numbers of removed vertices, reused from the end.
+    unused_vertices: Vec<VertexId>,
     infinite_cell: CellId,
 }
 
@@ -75,6 +80,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             unused: Vec::new(),
             vertex_cell: Vec::new(),
             vertex_data: Vec::new(),
+            unused_vertices: Vec::new(),
             infinite_cell: CellId::NONE,
         }
     }
@@ -114,6 +120,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// Finite vertices.
     pub fn vertex_count(&self) -> usize {
+        self.vertex_cell.len() - self.unused_vertices.len()
+    }
+
+    /// One more than the largest number that a vertex has had: vertices are numbered below this, with gaps
+    /// once some have been removed.
+    #[inline]
+    pub fn vertex_slots(&self) -> usize {
         self.vertex_cell.len()
     }
 
@@ -129,8 +142,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 
     /// The finite vertices, in order of their numbers.
-    pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + use<N, V, C> {
-        (0..self.vertex_cell.len()).map(VertexId::new)
+    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+        (0..self.vertex_cell.len()).map(VertexId::new).filter(|&v| self.is_vertex(v))
+    }
+
+    /// Whether the number stands for a finite vertex.
+    #[inline]
+    pub fn is_vertex(&self, vertex: VertexId) -> bool {
+        self.vertex_cell.get(vertex.index()).is_some_and(|&cell| cell != CellId::NONE)
     }
 
     /// All cells, the infinite ones included, in order of their numbers.
@@ -193,7 +212,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.links[cell.index()].vertices.contains(&VertexId::INFINITE)
     }
 
-    /// A cell that has this vertex; `None` for the infinite vertex of an empty complex.
+    /// A cell that has this vertex; `None` for the infinite vertex of an empty complex, and for a hole.
     #[inline]
     pub fn cell_of(&self, vertex: VertexId) -> Option<CellId> {
         let cell = if vertex == VertexId::INFINITE { self.infinite_cell } else { self.vertex_cell[vertex.index()] };
@@ -224,6 +243,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// Adds a vertex that no cell has yet.
     pub(crate) fn add_vertex(&mut self, data: V) -> VertexId {
+        if let Some(vertex) = self.unused_vertices.pop() {
+            self.vertex_data[vertex.index()] = data;
+            return vertex;
+        }
         self.vertex_cell.push(CellId::NONE);
         self.vertex_data.push(data);
         VertexId::new(self.vertex_cell.len() - 1)
@@ -247,8 +270,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
+    /// Gives back the number of a cell that no other is a neighbor of any more.
     #[inline]
-    fn remove_cell(&mut self, cell: CellId) {
+    pub(crate) fn remove_cell(&mut self, cell: CellId) {
         self.links[cell.index()] = Links::UNUSED;
         self.unused.push(cell);
     }

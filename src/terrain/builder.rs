@@ -165,8 +165,7 @@ impl TinBuilder {
 
         report.crossings = triangulation.crossings().len();
         report.rounding = triangulation.rounding();
-        report.crossing_heights =
-            settle_heights(&mut triangulation, self.crossing_heights, self.crossing_tolerance)?;
+        report.crossing_heights = settle_heights(&mut triangulation, self.crossing_heights, self.crossing_tolerance)?;
         report.constrained_edges = triangulation.constrained_edges().count();
 
         let mut tin = Tin::new(triangulation, self.crs.take());

@@ -89,7 +89,6 @@ impl Clip {
             line_ends.push(line.len());
         }
         let heights: Vec<Option<f64>> = line.iter().map(|&[x, y]| tin.elevation(x, y)).collect();
-        let first_new = tin.triangulation.vertex_count();
         // Without heights at first, so that a crossing takes that of the breakline it crosses. Places that
         // the arithmetic does not admit are far outside of any data.
         let vertices: Vec<VertexId> = line
@@ -107,11 +106,10 @@ impl Clip {
             }
         }
         // Where the clip line crosses itself: between its neighbors.
-        for vertex in (first_new..tin.triangulation.vertex_count()).map(VertexId::new) {
-            if tin.triangulation.point(vertex)[2].is_nan() {
-                let z = mean_around(tin, vertex);
-                set_height(tin, vertex, z);
-            }
+        let is_bare = |&vertex: &VertexId| tin.triangulation.point(vertex)[2].is_nan();
+        for vertex in tin.triangulation.tds().vertices().filter(is_bare).collect::<Vec<_>>() {
+            let z = mean_around(tin, vertex);
+            set_height(tin, vertex, z);
         }
     }
 }

@@ -100,9 +100,7 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>) -> Vec<Pass> {
         }
     }
     // A line that passes twice keeps both of its heights; equal ones are one.
-    passes.sort_by(|p, q| {
-        p.vertex.cmp(&q.vertex).then(p.line.cmp(&q.line)).then(p.height.total_cmp(&q.height))
-    });
+    passes.sort_by(|p, q| p.vertex.cmp(&q.vertex).then(p.line.cmp(&q.line)).then(p.height.total_cmp(&q.height)));
     passes.dedup_by(|p, q| p.vertex == q.vertex && p.line == q.line && p.height == q.height);
     passes
 }

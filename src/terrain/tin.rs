@@ -105,7 +105,7 @@ impl Tin {
     /// Vertices and faces of the surface.
     pub(super) fn count(&self) -> (usize, usize) {
         let tds = self.triangulation.tds();
-        let mut used = vec![false; tds.vertex_count()];
+        let mut used = vec![false; tds.vertex_slots()];
         let mut faces = 0;
         for index in (0..self.inside.len()).filter(|&i| self.inside[i]) {
             faces += 1;
@@ -128,7 +128,7 @@ pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
 
 impl Surface for Tin {
     fn vertex_count(&self) -> usize {
-        self.triangulation.vertex_count()
+        self.triangulation.tds().vertex_slots()
     }
 
     fn position(&self, vertex: u32) -> [f64; 3] {

@@ -1,3 +1,4 @@
+use std::collections::HashSet;
 use std::ops::Deref;
 
 use crate::geometry::{Coordinates, Crossing};
@@ -51,6 +52,10 @@ pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     /// The input lines, and their ways.
     pub(super) lines: Lines,
     pub(super) rounding: Option<Rounding>,
+    /// Vertices that have come with lines, and go with them.
+    pub(super) lent: HashSet<VertexId>,
+    /// Whether pieces crossed that had been arranged: possible off the grid only.
+    pub(super) tangled: bool,
     pub(super) scratch: Scratch,
 }
 
@@ -72,6 +77,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             left_out: Vec::new(),
             lines: Lines::default(),
             rounding: None,
+            lent: HashSet::new(),
+            tangled: false,
             scratch: Scratch::default(),
         }
     }

@@ -12,7 +12,7 @@ use super::{Refused, Triangulation, spatial_order};
 /// points have equal triangulations.
 #[derive(Debug, Clone)]
 pub struct Delaunay<G: Geometry<N>, const N: usize, V = ()> {
-    inner: Triangulation<G, N, V>,
+    pub(super) inner: Triangulation<G, N, V>,
 }
 
 impl<G: Geometry<N>, const N: usize, V> Deref for Delaunay<G, N, V> {

@@ -6,11 +6,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::arrangement::Arrangement;
+use crate::arrangement::{Arrangement, through_site};
 use crate::geometry::{Coordinates, Crossing};
 use crate::tds::VertexId;
 
-use super::lines::{Lines, undirected};
+use super::lines::undirected;
 use super::{ConstrainedDelaunay, LineId, Refused, Rounding, spatial_order};
 
 /// A piece of a line between two sites.
@@ -100,39 +100,166 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             self.waiting = self.segments();
             return;
         }
-        // Vertices that nothing has given but lines that are gone.
-        let used: HashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
-        let mut leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
-
-        // The new arrangement, over the given vertices in spatial order.
-        let is_given = |v: &VertexId| self.crossings.binary_search(v).is_err() && !leaving.contains(v);
-        let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
-        let mut number: HashMap<VertexId, u32> = HashMap::new();
-        for (i, v) in given.iter().enumerate().filter(|(_, v)| used.contains(v)) {
-            number.insert(*v, i as u32);
+        let was_tangled = std::mem::take(&mut self.tangled);
+        self.rearrange_keeping(|_| !was_tangled);
+        if self.tangled && !was_tangled {
+            // Pieces that cross are put in by an order of their own, all of them.
+            self.tangled = false;
+            self.rearrange_keeping(|_| false);
         }
-        let segments = self.segments();
-        let numbered: Vec<[u32; 2]> = segments.iter().map(|segment| segment.map(|v| number[&v])).collect();
-        let geometry = &self.inner.geometry;
-        let plan = |v: VertexId| geometry.plan(&self.inner.points[v.index()]);
-        let arrangement = Arrangement::new(given.len(), |i| plan(given[i as usize]), &numbered);
-
-        // Sites that stay keep their vertices; others come, or go.
-        let mut at_place: HashMap<[u64; 2], VertexId> =
-            self.crossings.iter().map(|&v| (plan(v).map(f64::to_bits), v)).collect();
-        let added: Vec<Option<VertexId>> =
-            arrangement.added().iter().map(|place| at_place.remove(&place.map(f64::to_bits))).collect();
-        leaving.extend(at_place.into_values());
-        self.clear_all_of(&leaving, &arrangement, &added, &given, &segments);
     }
 
-    /// Each segment of the lines once.
-    fn segments(&self) -> Vec<[VertexId; 2]> {
+    /// `may_stay` tells which pieces that are there need not be put in anew.
+    fn rearrange_keeping(&mut self, may_stay: impl Fn(Piece) -> bool) {
+        // Phase 1: the new arrangement.
+        let used: HashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
+        let mut leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
+        self.lent.retain(|v| used.contains(v));
+        let segments = self.segments();
+        let (arrangement, given) = self.arrange(&segments, &leaving);
+
+        // Phase 2: sites that stay keep their vertices, others go.
+        let mut at_place: HashMap<[u64; 2], VertexId> =
+            self.crossings.iter().map(|&v| (key(self.plan_of(v)), v)).collect();
+        let mut sites: Vec<Option<VertexId>> = given.into_iter().map(Some).collect();
+        sites.extend(arrangement.added().iter().map(|&place| at_place.remove(&key(place))));
+        leaving.extend(at_place.into_values());
+
+        // Phase 3: which pieces are there.
+        let mut splits = HashMap::new();
+        let mut kept = HashSet::new();
+        let mut way = Vec::new();
+        for (i, &[a, b]) in segments.iter().enumerate() {
+            let mut from = Some(a);
+            for to in arrangement.chain(i as u32).iter().map(|&site| sites[site as usize]).chain([Some(b)]) {
+                let ends = from.zip(to).filter(|&(from, to)| may_stay(undirected(from, to)));
+                from = to;
+                let Some((from, to)) = ends else { continue };
+                way.clear();
+                way.push(from);
+                self.lines.walk_piece(from, to, &mut way);
+                let is_there = way.windows(2).all(|edge| self.is_wall(edge[0], edge[1]));
+                if is_there && !way.iter().any(|v| leaving.contains(v)) {
+                    kept.extend(way.windows(2).map(|edge| undirected(edge[0], edge[1])));
+                    self.lines.copy_splits(from, to, &mut splits);
+                }
+            }
+        }
+
+        // Phase 4: the rest is taken out.
+        let constrained: Vec<Piece> = self.constrained_edges().collect();
+        for [a, b] in constrained.into_iter().filter(|edge| !kept.contains(edge)) {
+            self.clear_wall(a, b);
+        }
+        self.lines.splits = splits;
+        self.lines.led.clear();
+        self.left_out.clear();
+        self.crossings.retain(|v| !leaving.contains(v));
+        let mut leaving: Vec<VertexId> = leaving.into_iter().collect();
+        leaving.sort_unstable();
+        for vertex in leaving {
+            self.remove_free(vertex);
+        }
+        if self.dimension() < 2 {
+            self.waiting = segments;
+            return;
+        }
+
+        // Phase 5: new sites and pieces are put in.
+        let through = arrangement.through_added();
+        let first_added = sites.len() - arrangement.added().len();
+        for (i, &place) in arrangement.added().iter().enumerate() {
+            let passing = through_site(&through, (first_added + i) as u32);
+            let site = &mut sites[first_added + i];
+            let ends: Vec<[G::Point; 2]> =
+                passing.iter().map(|&(_, i)| segments[i as usize].map(|v| *self.point(v))).collect();
+            let ends: Vec<[&G::Point; 2]> = ends.iter().map(|ends| ends.each_ref()).collect();
+            let p = self.inner.geometry.meet(place, &ends);
+            match *site {
+                Some(vertex) => self.replace_point(vertex, p),
+                None => {
+                    let count = self.vertex_count();
+                    let vertex = self.insert_near(p, None);
+                    self.crossings.extend((self.vertex_count() > count).then_some(vertex));
+                    *site = Some(vertex);
+                }
+            }
+        }
+        self.crossings.sort_unstable();
+        let mut pieces = Vec::new();
+        for (i, &[a, b]) in segments.iter().enumerate() {
+            let chain = arrangement.chain(i as u32);
+            let between: Box<[VertexId]> = chain.iter().filter_map(|&site| sites[site as usize]).collect();
+            let mut at = a;
+            for &site in between.iter().chain([&b]) {
+                pieces.push(undirected(at, site));
+                at = site;
+            }
+            if !between.is_empty() {
+                self.lines.led.insert([a, b], between);
+            }
+        }
+        self.rounding = (!arrangement.crossings().is_empty())
+            .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
+        let rank = self.ranks();
+        pieces.sort_unstable_by_key(|piece| {
+            let [p, q] = piece.map(|v| rank[v.index()]);
+            [p.min(q), p.max(q)]
+        });
+        pieces.dedup();
+        for [a, b] in pieces {
+            self.insert_segment(a, b);
+        }
+        self.crossings.sort_unstable();
+        self.lines.touch();
+    }
+
+    /// Arranges segments over the vertices that were given and do not leave; these are returned.
+    fn arrange(&self, segments: &[Piece], leaving: &HashSet<VertexId>) -> (Arrangement, Vec<VertexId>) {
+        let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
+        let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
+        let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
+        let numbered: Vec<[u32; 2]> = segments.iter().map(|segment| segment.map(number)).collect();
+        let (geometry, points) = (&self.inner.geometry, &self.inner.points);
+        let place = |i: u32| geometry.plan(&points[given[i as usize].index()]);
+        let arrangement = Arrangement::new(given.len(), place, &numbered);
+        (arrangement, given)
+    }
+
+    fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
+        self.inner.geometry.plan(self.point(vertex))
+    }
+
+    /// Each segment of the lines once, in order of the vertices.
+    fn segments(&self) -> Vec<Piece> {
         let lines = self.lines.given.iter().flatten();
         let pairs = lines.flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
-        let mut segments: Vec<[VertexId; 2]> = pairs.map(|pair| undirected(pair[0], pair[1])).collect();
+        let mut segments: Vec<Piece> = pairs.map(|pair| undirected(pair[0], pair[1])).collect();
         segments.sort_unstable();
         segments.dedup();
         segments
     }
+
+    /// Whether there is a constraint on the edge between two vertices.
+    fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
+        self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
+    }
+
+    /// The position of every vertex along the curve, by number: as bulk construction would number them.
+    fn ranks(&self) -> Vec<u32> {
+        let vertices: Vec<VertexId> = self.tds().vertices().collect();
+        let mut ranks = vec![0; self.tds().vertex_slots()];
+        let (geometry, points) = (&self.inner.geometry, &self.inner.points);
+        let place = |i: usize| geometry.coordinates(&points[vertices[i].index()]);
+        // There are not more of them than before.
+        for (rank, i) in spatial_order(vertices.len(), place).into_iter().flatten().enumerate() {
+            ranks[vertices[i as usize].index()] = rank as u32;
+        }
+        ranks
+    }
+}
+
+/// Equal places have equal keys: coordinates of vertices have one zero only.
+fn key(place: [f64; 2]) -> [u64; 2] {
+    place.map(|x| (x + 0.0).to_bits())
 }

@@ -86,6 +86,17 @@ impl Lines {
         }
     }
 
+    /// Adds what this table tells of a piece to another one.
+    pub(super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut HashMap<[VertexId; 2], VertexId>) {
+        let mut pieces = vec![undirected(a, b)];
+        while let Some([a, b]) = pieces.pop() {
+            if let Some(&between) = self.splits.get(&[a, b]) {
+                to.insert([a, b], between);
+                pieces.extend([undirected(a, between), undirected(between, b)]);
+            }
+        }
+    }
+
     fn chain(&self, line: LineId) -> Vec<VertexId> {
         let Some(vertices) = self.given.get(line.index()).and_then(Option::as_deref) else { return Vec::new() };
         let mut chain: Vec<VertexId> = vertices.first().copied().into_iter().collect();

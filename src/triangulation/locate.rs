@@ -50,25 +50,22 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// answer, and so has this.
     pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
         let start = near.filter(|&c| self.tds.is_used(c)).or(self.last.filter(|&c| self.tds.is_used(c)));
-        match self.dimension() {
-            -1 => return Location::OutsideAffineHull,
-            0 => {
-                return match self.geometry.compare(q, &self.points[0]) {
-                    std::cmp::Ordering::Equal => Location::Vertex(VertexId::new(0)),
-                    _ => Location::OutsideAffineHull,
-                };
-            }
-            _ => {}
-        }
         let Some(mut cell) = start.or_else(|| self.tds.cell_of(VertexId::INFINITE)) else {
             return Location::OutsideAffineHull;
         };
-        if !self.is_full() && self.leaves_flat(q) {
-            return Location::OutsideAffineHull;
-        }
         let width = self.tds.cell_vertices(cell).len();
         if let Some(infinite) = self.tds.index_of(cell, VertexId::INFINITE) {
             cell = self.tds.neighbor(cell, infinite);
+        }
+        if width == 1 {
+            let only = self.tds.vertex(cell, 0);
+            return match self.geometry.compare(q, self.point(only)) {
+                std::cmp::Ordering::Equal => Location::Vertex(only),
+                _ => Location::OutsideAffineHull,
+            };
+        }
+        if !self.is_full() && self.leaves_flat(cell, q) {
+            return Location::OutsideAffineHull;
         }
         let mut dice = Dice(0x9E37_79B9);
         let mut from = None;
@@ -100,9 +97,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         }
     }
 
-    /// Whether `q` lies outside of the line or plane of all points.
-    fn leaves_flat(&self, q: &G::Point) -> bool {
-        let Some(cell) = self.finite_cells().next() else { return true };
+    /// Whether `q` lies outside of the line or plane of all points, which a finite cell spans.
+    fn leaves_flat(&self, cell: CellId, q: &G::Point) -> bool {
         let mut simplex = self.flat_with(cell, usize::MAX, q);
         simplex.push(q);
         let sign = match <[&G::Point; N]>::try_from(simplex) {

@@ -21,23 +21,26 @@
 //! |---|---|
 //! | triangulate many points at once | [`Delaunay::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
+//! | take points out again | [`Delaunay::remove`], [`ConstrainedDelaunay::remove_free`]; in the plane |
 //! | add a line | [`ConstrainedDelaunay::insert_polyline`], [`ConstrainedDelaunay::insert_segment`] |
 //! | find where a place lies | [`Triangulation::locate`] |
 //! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
-//! All questions take `&self`. Points and constraints cannot be removed, and there is no weighted
-//! (regular) kind.
+//! All questions take `&self`. In space points cannot be removed, and there is no weighted (regular) kind.
 
 mod bulk;
 mod check;
 mod constrained;
 mod crossed;
 mod delaunay;
+mod edit;
+mod flip;
 mod lines;
 mod locate;
 mod nesting;
 mod network;
+mod remove;
 mod segment;
 mod sort;
 
@@ -95,10 +98,9 @@ impl fmt::Display for Refused {
             }
             Refused::TooMany => write!(f, "more than {MAX_VERTICES} points"),
             Refused::Index { line, index } => write!(f, "line {line} names point {index}, which does not exist"),
-            Refused::Crossing { segments: [(line, segment), (other, crossed)], place: [x, y] } => write!(
-                f,
-                "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}"
-            ),
+            Refused::Crossing { segments: [(line, segment), (other, crossed)], place: [x, y] } => {
+                write!(f, "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}")
+            }
             Refused::Open { ring, gap: [[x0, y0], [x1, y1]] } => {
                 write!(f, "ring {ring} is not closed: it begins at {x0} {y0} and ends at {x1} {y1}")
             }
@@ -154,7 +156,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         &self.points[vertex.index()]
     }
 
-    /// All points, in the order of their vertices.
+    /// All points, in the order of their vertices' numbers. Where a [vertex](Tds::is_vertex) has been removed,
+    /// its point is still there.
     pub fn points(&self) -> &[G::Point] {
         &self.points
     }
@@ -258,8 +261,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
         let vertex = self.tds.add_vertex(data);
-        if vertex.index() == self.points.len() {
-            self.points.push(p); // else a bulk construction has put it there
+        match self.points.get_mut(vertex.index()) {
+            Some(place) => *place = p, // the hole of a removed one; or a bulk construction has put it there
+            None => self.points.push(p),
         }
         vertex
     }

@@ -7,7 +7,7 @@
 //!
 //! Every step depends on the set of points and segments only.
 
-use crate::arrangement::Arrangement;
+use crate::arrangement::{Arrangement, through_site};
 use crate::geometry::{Coordinates, Crossing};
 use crate::tds::VertexId;
 
@@ -86,10 +86,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let arrangement = Arrangement::new(sites.len(), |i| geometry.plan(&sites[i as usize]), &segments);
         if let (OnCrossing::Reject, Some(first)) = (on_crossing, arrangement.crossings().first()) {
             let [i, j] = first.segments.map(|i| segments[i as usize]);
-            let place = geometry.crossing(
-                i.map(|site| &sites[site as usize]),
-                j.map(|site| &sites[site as usize]),
-            );
+            let place = geometry.crossing(i.map(|site| &sites[site as usize]), j.map(|site| &sites[site as usize]));
             let segments = [i, j].map(|segment| find(&lines, segment));
             return Err(Refused::Crossing { segments, place: geometry.plan(&place) });
         }
@@ -188,17 +185,10 @@ fn add_sites<G: Crossing + Coordinates<3>>(
         return Ok((None, Vec::new()));
     }
     let given = sites.len() as u32;
-    let mut through: Vec<(u32, u32)> = Vec::new();
-    for segment in 0..segments.len() as u32 {
-        let added = arrangement.chain(segment).iter().filter(|&&site| site >= given);
-        through.extend(added.map(|&site| (site, segment)));
-    }
-    through.sort_unstable();
+    let through = arrangement.through_added();
     let mut met = Vec::new();
-    let mut rest = through.as_slice();
     for (i, &place) in arrangement.added().iter().enumerate() {
-        let (here, others) = rest.split_at(rest.partition_point(|&(site, _)| site as usize <= given as usize + i));
-        rest = others;
+        let here = through_site(&through, given + i as u32);
         met.clear();
         met.extend(here.iter().map(|&(_, segment)| segments[segment as usize].map(|end| sites[end as usize])));
         let segments: Vec<[&G::Point; 2]> = met.iter().map(|ends| ends.each_ref()).collect();

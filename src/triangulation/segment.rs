@@ -30,7 +30,7 @@ pub(super) struct Scratch {
     /// Constraints that stick into the corridor without being crossed.
     spikes: Vec<[VertexId; 2]>,
     /// Triangles whose edges may have to be flipped.
-    unsettled: Vec<CellId>,
+    pub(super) unsettled: Vec<CellId>,
 }
 
 /// How a trace ended.
@@ -75,6 +75,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                 Met::Wall(..) if crossings_left == 0 => self.left_out.push([a, b]),
                 Met::Wall(cell, i) => {
                     crossings_left -= 1;
+                    self.tangled = true;
                     let [c, d] = self.tds().edge_ends(cell, i);
                     let x =
                         self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
@@ -288,52 +289,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         }
     }
 
-    /// Flips edges until no vertex sees another in its circle (Lawson 1977), starting from the cells in
-    /// `unsettled`.
+    /// Restores the law, starting from the cells in `unsettled`.
     pub(super) fn settle(&mut self) {
-        while let Some(cell) = self.scratch.unsettled.pop() {
-            if self.tds().is_infinite(cell) {
-                continue;
-            }
-            let flippable = (0..3).find(|&i| {
-                let beside = self.tds().neighbor(cell, i);
-                if self.is_constrained(cell, i) || self.tds().is_infinite(beside) {
-                    return false;
-                }
-                let far = self.tds().vertex(beside, self.tds().index_of_neighbor(beside, cell));
-                in_sphere(&self.inner.geometry, self.inner.simplex(cell), self.point(far))
-            });
-            if let Some(i) = flippable {
-                let beside = self.tds().neighbor(cell, i);
-                self.flip(cell, i);
-                self.scratch.unsettled.extend([cell, beside]);
-            }
-        }
-    }
-
-    /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.
-    fn flip(&mut self, cell: CellId, i: usize) {
-        let tds = &mut self.inner.tds;
-        let beside = tds.neighbor(cell, i);
-        let j = tds.index_of_neighbor(beside, cell);
-        // cell = (p, q, r), beside = (s, r, q), the edge q r becomes p s.
-        let (p, q, r) = (tds.vertex(cell, i), tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
-        let s = tds.vertex(beside, j);
-        let side = |tds: &crate::tds::Tds<3, V, Walls>, of: CellId, k: usize| {
-            let outside = tds.neighbor(of, k);
-            (outside, tds.index_of_neighbor(outside, of), tds.cell_data(of).has(k))
-        };
-        let pq = side(tds, cell, cw(i));
-        let rp = side(tds, cell, ccw(i));
-        let sr = side(tds, beside, cw(j));
-        let qs = side(tds, beside, ccw(j));
-        tds.set_corners(cell, [p, q, s]);
-        tds.set_corners(beside, [p, s, r]);
-        for (of, k, (outside, back, _)) in [(cell, 2, pq), (cell, 0, qs), (beside, 0, sr), (beside, 1, rp)] {
-            tds.link(of, k, outside, back);
-        }
-        tds.link(cell, 1, beside, 2);
-        *tds.cell_data_mut(cell) = Walls::default().with(2, pq.2).with(0, qs.2);
-        *tds.cell_data_mut(beside) = Walls::default().with(0, sr.2).with(1, rp.2);
+        self.inner.settle(&mut self.scratch.unsettled);
     }
 }

@@ -1,0 +1,96 @@
+use crate::geometry::{Geometry, in_sphere};
+use crate::tds::{CellId, Tds, ccw, cw};
+
+use super::{Triangulation, Walls};
+
+/// What a triangle knows of its edges, which is handed on when triangles are exchanged.
+pub(super) trait EdgeData: Copy + Default {
+    /// Whether the edge opposite vertex `i` must stay.
+    fn is_wall(self, i: usize) -> bool;
+
+    /// The same with the edge opposite vertex `i` set as told.
+    fn with_wall(self, i: usize, wall: bool) -> Self;
+}
+
+/// Of a triangulation without constraints.
+impl EdgeData for () {
+    #[inline(always)]
+    fn is_wall(self, _: usize) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn with_wall(self, _: usize, _: bool) {}
+}
+
+impl EdgeData for Walls {
+    #[inline(always)]
+    fn is_wall(self, i: usize) -> bool {
+        self.has(i)
+    }
+
+    #[inline(always)]
+    fn with_wall(self, i: usize, wall: bool) -> Self {
+        self.with(i, wall)
+    }
+}
+
+#[expect(private_bounds, reason = "the methods are private, too")]
+impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
+    /// Flips edges that are no walls until no vertex sees another in its circle (Lawson 1977), starting from
+    /// these cells; none is left in the list.
+    pub(super) fn settle(&mut self, unsettled: &mut Vec<CellId>) {
+        while let Some(cell) = unsettled.pop() {
+            if self.tds.is_infinite(cell) {
+                continue;
+            }
+            let flippable = (0..3).find(|&i| {
+                let beside = self.tds.neighbor(cell, i);
+                if self.tds.cell_data(cell).is_wall(i) || self.tds.is_infinite(beside) {
+                    return false;
+                }
+                let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
+                in_sphere(&self.geometry, self.simplex(cell), self.point(far))
+            });
+            if let Some(i) = flippable {
+                let beside = self.tds.neighbor(cell, i);
+                self.flip(cell, i);
+                unsettled.extend([cell, beside]);
+            }
+        }
+    }
+
+    /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.
+    fn flip(&mut self, cell: CellId, i: usize) {
+        let tds = &mut self.tds;
+        let beside = tds.neighbor(cell, i);
+        let j = tds.index_of_neighbor(beside, cell);
+        // cell = (p, q, r), beside = (s, r, q), the edge q r becomes p s.
+        let (p, q, r) = (tds.vertex(cell, i), tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
+        let s = tds.vertex(beside, j);
+        let side = |tds: &Tds<3, V, C>, of: CellId, k: usize| {
+            let outside = tds.neighbor(of, k);
+            (outside, tds.index_of_neighbor(outside, of))
+        };
+        let pq = side(tds, cell, cw(i));
+        let rp = side(tds, cell, ccw(i));
+        let sr = side(tds, beside, cw(j));
+        let qs = side(tds, beside, ccw(j));
+        tds.set_corners(cell, [p, q, s]);
+        tds.set_corners(beside, [p, s, r]);
+        tds.link(cell, 1, beside, 2);
+        self.renew_edges(cell, [(2, pq), (0, qs)]);
+        self.renew_edges(beside, [(0, sr), (1, rp)]);
+    }
+
+    /// Forgets what a cell knew of its edges, and makes it the neighbor of others across some of them (given
+    /// with the index of the edge there), with what those know.
+    pub(super) fn renew_edges<const K: usize>(&mut self, cell: CellId, edges: [(usize, (CellId, usize)); K]) {
+        let mut data = C::default();
+        for (i, (beside, j)) in edges {
+            self.tds.link(cell, i, beside, j);
+            data = data.with_wall(i, self.tds.cell_data(beside).is_wall(j));
+        }
+        *self.tds.cell_data_mut(cell) = data;
+    }
+}
