@@ -59,7 +59,7 @@ pub struct Arrangement {
     places: usize,
     added: Vec<Place>,
     crossings: Vec<Crossing>,
-    /// Of the segments that are led through sites between their ends.
+    /// Of the segments that may bend: the sites between their ends.
     chains: HashMap<u32, Range<u32>>,
     chain_sites: Vec<u32>,
 }
@@ -120,6 +120,12 @@ impl Arrangement {
         &self.crossings
     }
 
+    /// Whether a segment crosses others, or comes near what they are bent by; so that it is led through all sites whose
+    /// pixels it meets, and through the places on it.
+    pub fn is_led(&self, segment: u32) -> bool {
+        self.chains.contains_key(&segment)
+    }
+
     /// The sites that a segment is led through between its ends, in the order from its first to its second. (Beside
     /// them, it passes exactly through the places that lie on its pieces.)
     pub fn chain(&self, segment: u32) -> &[u32] {
@@ -175,8 +181,8 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         let pairs = self.crossing_pairs::<K>(&tree);
         let vertices = if pairs.is_empty() { Vec::new() } else { self.vertices() };
         let crossings = self.round::<K>(pairs, &vertices);
-        let passes = if crossings.is_empty() { Vec::new() } else { self.lead::<K>(&tree, &crossings, vertices) };
-        self.collect(crossings, passes)
+        let (led, passes) = self.lead::<K>(&tree, &crossings, vertices);
+        self.collect(crossings, &led, passes)
     }
 
     fn site(&self, site: u32) -> Place {
@@ -261,7 +267,10 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
 
     /// Phase 3: leads the segments that cross others through all sites whose pixels they meet; and, as long as there
     /// are any, those that meet a pixel by which another was bent.
-    fn lead<K: Kernel>(&self, tree: &BoxTree, crossings: &[Crossing], vertices: Vec<u32>) -> Vec<Pass> {
+    fn lead<K: Kernel>(&self, tree: &BoxTree, crossings: &[Crossing], vertices: Vec<u32>) -> (Vec<u32>, Vec<Pass>) {
+        if crossings.is_empty() {
+            return (Vec::new(), Vec::new());
+        }
         let mut is_hot = vec![false; self.places + self.added.len()];
         let mut sites = vertices;
         sites.extend((self.places..self.places + self.added.len()).map(|site| site as u32));
@@ -300,7 +309,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             fresh.sort_unstable();
             fresh.dedup();
         }
-        passes
+        (led.into_iter().flat_map(|(_, members)| members).collect(), passes)
     }
 
     /// Whether a segment meets the pixel of a site that is no end of it.
@@ -343,7 +352,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     }
 
     /// Phase 4: the sites of each segment, in order.
-    fn collect(self, crossings: Vec<Crossing>, mut passes: Vec<Pass>) -> Arrangement {
+    fn collect(self, crossings: Vec<Crossing>, led: &[u32], mut passes: Vec<Pass>) -> Arrangement {
         // Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
         // column from one side to the other.
         let along = |segment: u32, site: u32| {
@@ -371,7 +380,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
                 chain.reverse();
             }
         }
-        let mut chains = HashMap::new();
+        let mut chains: HashMap<u32, Range<u32>> = led.iter().map(|&segment| (segment, 0..0)).collect();
         let mut from = 0;
         for chunk in passes.chunk_by(|p, q| p.segment == q.segment) {
             let to = from + chunk.len() as u32;

@@ -2,7 +2,7 @@ use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{self, CellId, VertexId};
 
-use super::Triangulation;
+use super::{LineId, Triangulation};
 
 /// How far a check goes. Each level assumes the ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,6 +31,8 @@ pub enum Flaw {
     NotDelaunay(CellId, usize),
     /// Level 4: an edge is constrained on one side only.
     OneSided(CellId, usize),
+    /// Level 4: between these two vertices of a line's chain there is no constrained edge.
+    Line(LineId, VertexId, VertexId),
     /// Level 4: a piece of a constraint, between these vertices, was left out when its crossings did not come
     /// to an end.
     Missing(VertexId, VertexId),

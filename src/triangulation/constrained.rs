@@ -36,10 +36,13 @@ impl Walls {
 /// of a triangle's circumscribed circle unless a constraint stands between them (Lee and Lin 1986;
 /// Chew 1989).
 ///
-/// Segments may touch, overlap, repeat and cross. One that runs through a vertex is split there; where
-/// two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it (for
-/// [`Terrain`](crate::geometry::Terrain): the lower of the two heights). Pieces of a line that crosses
-/// others may so be off by the rounding of those vertices.
+/// What is constrained are *lines*: points in a row, which may touch, overlap, repeat, cross and close. Each keeps an
+/// [id](LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is split there;
+/// where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines bend no further than
+/// the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is proven.
+///
+/// The triangulation is a function of the set of points and the set of lines' segments, whether they came at once
+/// ([`from_lines`](Self::from_lines)), one by one or with others that have been removed since.
 #[derive(Debug, Clone)]
 pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     pub(super) inner: Triangulation<G, 3, V, Walls>,
@@ -83,18 +86,6 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         }
     }
 
-    /// Adds a point; the vertex that is there already, if the site is taken. On a constraint, the
-    /// constraint is split.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or out of range; nothing has changed then.
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
-        self.inner.admit(&p)?;
-        let vertex = self.insert_near(p, None);
-        self.insert_waiting();
-        Ok(vertex)
-    }
-
     pub(super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
         let location = self.inner.locate(&p, near);
         // The ends of a constraint that the point splits.
@@ -117,32 +108,18 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         vertex
     }
 
-    /// Adds the constraint between two vertices, with all that it meets on its way.
+    /// Forces the edge between two vertices, with all that it meets on its way. Where it crosses a constraint, a vertex is
+    /// added at once.
     ///
     /// # Complexity
     /// Quadratic in the number of triangles that one piece crosses (in practice a few), and a vertex
     /// insertion for each constraint that it crosses.
-    pub fn insert_segment(&mut self, a: VertexId, b: VertexId) {
+    pub(crate) fn insert_segment(&mut self, a: VertexId, b: VertexId) {
         if self.dimension() < 2 {
             self.waiting.push([a, b]);
         } else {
             self.force(a, b);
         }
-    }
-
-    /// Adds points and the constraints between consecutive ones; returns their vertices.
-    ///
-    /// # Errors
-    /// The position of the first point that is refused; nothing has changed then.
-    pub fn insert_polyline(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, Refused> {
-        if let Some(bad) = points.iter().position(|p| self.inner.admit(p).is_err()) {
-            return Err(Refused::Coordinate(bad));
-        }
-        let vertices = points.iter().map(|&p| self.insert(p)).collect::<Result<Vec<_>, _>>()?;
-        for pair in vertices.windows(2) {
-            self.insert_segment(pair[0], pair[1]);
-        }
-        Ok(vertices)
     }
 
     /// Puts in what could not be while all points were collinear.
@@ -158,6 +135,11 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     #[inline]
     pub fn is_constrained(&self, cell: CellId, i: usize) -> bool {
         self.tds().cell_data(cell).has(i)
+    }
+
+    /// Whether there is a constraint on the edge between two vertices.
+    pub(super) fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
+        self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
     }
 
     /// Each constrained edge once, as the pair of its vertices, the smaller first.
@@ -205,7 +187,13 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         };
         let edges = self.tds().cells().flat_map(|cell| (0..3).map(move |i| (cell, i)));
         let one_sided = edges.filter(|&(cell, i)| one_sided(cell, i)).map(|(cell, i)| Flaw::OneSided(cell, i));
-        one_sided.chain(self.left_out.iter().map(|&[a, b]| Flaw::Missing(a, b))).collect()
+        let left_out = self.left_out.iter().map(|&[a, b]| Flaw::Missing(a, b));
+        let broken = self.lines().flat_map(|line| {
+            let chain = self.chain(line);
+            let gap = |pair: &&[VertexId]| !self.is_wall(pair[0], pair[1]);
+            chain.windows(2).filter(gap).map(|pair| Flaw::Line(line, pair[0], pair[1])).collect::<Vec<_>>()
+        });
+        one_sided.chain(left_out).chain(broken).collect()
     }
 }
 

@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::arrangement::{Arrangement, through_site};
 use crate::geometry::{Coordinates, Crossing};
+use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::lines::undirected;
@@ -17,6 +18,40 @@ use super::{ConstrainedDelaunay, LineId, Refused, Rounding, spatial_order};
 type Piece = [VertexId; 2];
 
 impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+    /// Adds a point; the vertex that is there already, if the site is taken. On a constraint, the
+    /// constraint is split.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or out of range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// A walk and time proportional to the number of triangles replaced; and a look at every segment that crosses others,
+    /// if there are any: one that the point lies on exactly is led through it from now on.
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
+        self.inner.admit(&p)?;
+        let is_led = self.lies_on_led(&p);
+        let vertex = self.insert_near(p, None);
+        self.lent.remove(&vertex);
+        if let Ok(at) = self.crossings.binary_search(&vertex) {
+            self.crossings.remove(at);
+        }
+        if is_led || self.tangled {
+            self.rearrange();
+        }
+        self.insert_waiting();
+        Ok(vertex)
+    }
+
+    /// Whether a point lies exactly on a segment that is led through sites.
+    fn lies_on_led(&self, p: &G::Point) -> bool {
+        let geometry = &self.inner.geometry;
+        self.lines.led.keys().any(|&[a, b]| {
+            let (a, b) = (self.point(a), self.point(b));
+            geometry.side_of_sphere_in_flat(&[a, b], p) == Sign::Positive
+                && geometry.orientation([a, b, p]) == Sign::Zero
+        })
+    }
+
     /// Adds lines through points; their vertices, where they are new, come and go with them. Returns their ids.
     ///
     /// # Errors
@@ -100,6 +135,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             self.waiting = self.segments();
             return;
         }
+        self.waiting.clear();
         let was_tangled = std::mem::take(&mut self.tangled);
         self.rearrange_keeping(|_| !was_tangled);
         if self.tangled && !was_tangled {
@@ -192,20 +228,23 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             let between: Box<[VertexId]> = chain.iter().filter_map(|&site| sites[site as usize]).collect();
             let mut at = a;
             for &site in between.iter().chain([&b]) {
-                pieces.push(undirected(at, site));
+                pieces.push([at, site]);
                 at = site;
             }
-            if !between.is_empty() {
+            if arrangement.is_led(i as u32) {
                 self.lines.led.insert([a, b], between);
             }
         }
         self.rounding = (!arrangement.crossings().is_empty())
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         let rank = self.ranks();
-        pieces.sort_unstable_by_key(|piece| {
-            let [p, q] = piece.map(|v| rank[v.index()]);
-            [p.min(q), p.max(q)]
-        });
+        let rank_of = |v: VertexId| rank[v.index()];
+        for [p, q] in &mut pieces {
+            if rank_of(*p) > rank_of(*q) {
+                std::mem::swap(p, q);
+            }
+        }
+        pieces.sort_unstable_by_key(|piece| piece.map(rank_of));
         pieces.dedup();
         for [a, b] in pieces {
             self.insert_segment(a, b);
@@ -238,11 +277,6 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         segments.sort_unstable();
         segments.dedup();
         segments
-    }
-
-    /// Whether there is a constraint on the edge between two vertices.
-    fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
-        self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
     }
 
     /// The position of every vertex along the curve, by number: as bulk construction would number them.

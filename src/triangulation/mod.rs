@@ -22,7 +22,9 @@
 //! | triangulate many points at once | [`Delaunay::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
 //! | take points out again | [`Delaunay::remove`], [`ConstrainedDelaunay::remove_free`]; in the plane |
-//! | add a line | [`ConstrainedDelaunay::insert_polyline`], [`ConstrainedDelaunay::insert_segment`] |
+//! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
+//! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
+//! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |
 //! | find where a place lies | [`Triangulation::locate`] |
 //! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |

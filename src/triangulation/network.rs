@@ -9,6 +9,7 @@
 
 use crate::arrangement::{Arrangement, through_site};
 use crate::geometry::{Coordinates, Crossing};
+use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::lines::undirected;
@@ -84,11 +85,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         let segments = segments_of(&lines);
         let arrangement = Arrangement::new(sites.len(), |i| geometry.plan(&sites[i as usize]), &segments);
-        if let (OnCrossing::Reject, Some(first)) = (on_crossing, arrangement.crossings().first()) {
-            let [i, j] = first.segments.map(|i| segments[i as usize]);
-            let place = geometry.crossing(i.map(|site| &sites[site as usize]), j.map(|site| &sites[site as usize]));
-            let segments = [i, j].map(|segment| find(&lines, segment));
-            return Err(Refused::Crossing { segments, place: geometry.plan(&place) });
+        if on_crossing == OnCrossing::Reject {
+            reject(&geometry, &sites, &lines, &arrangement, &segments)?;
         }
         let (renumbered, added) = add_sites(&geometry, &mut sites, &arrangement, &segments)?;
         let vertex = |site: u32| match &renumbered {
@@ -108,7 +106,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
                 pieces.push(undirected(vertex(at), vertex(site)));
                 at = site;
             }
-            if !between.is_empty() {
+            if arrangement.is_led(i as u32) {
                 let [a, b] = [a, b].map(vertex);
                 let mut sites: Box<[VertexId]> = between.iter().map(|&site| vertex(site)).collect();
                 if a > b {
@@ -153,6 +151,26 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     pub fn rounding(&self) -> Option<Rounding> {
         self.rounding
     }
+}
+
+/// Refuses crossings, but those at which there is a vertex on both segments already.
+fn reject<G: Crossing>(
+    geometry: &G,
+    sites: &[G::Point],
+    lines: &VertexLines,
+    arrangement: &Arrangement,
+    segments: &[[u32; 2]],
+) -> Result<(), Refused> {
+    for crossing in arrangement.crossings() {
+        let ends = crossing.segments.map(|i| segments[i as usize]);
+        let [ab, cd] = ends.map(|ends| ends.map(|site| &sites[site as usize]));
+        let is_on = |[p, q]: [&G::Point; 2], x| geometry.orientation([p, q, x]) == Sign::Zero;
+        if sites.get(crossing.site as usize).is_none_or(|x| !is_on(ab, x) || !is_on(cd, x)) {
+            let place = geometry.plan(&geometry.crossing(ab, cd));
+            return Err(Refused::Crossing { segments: ends.map(|segment| find(lines, segment)), place });
+        }
+    }
+    Ok(())
 }
 
 /// Each segment of the lines once, from the smaller number to the larger, in order.

@@ -1,0 +1,185 @@
+//! Lines with ids: whatever is added, removed, divided and joined, the triangulation is that of what is left.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use breakline::geometry::Plane;
+use breakline::tds::VertexId;
+use breakline::triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing, Refused};
+use common::random::{Random, ulps};
+
+type Point = [f64; 2];
+type Constrained = ConstrainedDelaunay<Plane>;
+type Bits = [u64; 2];
+
+fn bits(p: &Point) -> Bits {
+    p.map(|x| (x + 0.0).to_bits())
+}
+
+/// What can be seen of a triangulation whatever its numbers: triangles, constrained edges, and the lines' chains.
+fn seen(t: &Constrained, lines: &[LineId]) -> (BTreeSet<Vec<Bits>>, BTreeSet<Vec<Bits>>, Vec<Vec<Bits>>) {
+    let at = |v: &VertexId| bits(t.point(*v));
+    let sorted = |vertices: &[VertexId]| {
+        let mut places: Vec<Bits> = vertices.iter().map(at).collect();
+        places.sort_unstable();
+        places
+    };
+    let triangles = t.finite_cells().map(|cell| sorted(t.tds().cell_vertices(cell))).collect();
+    let edges = t.constrained_edges().map(|edge| sorted(&edge)).collect();
+    (triangles, edges, lines.iter().map(|&line| t.chain(line).iter().map(at).collect()).collect())
+}
+
+fn built(points: &[Point], lines: &[Vec<Point>]) -> (Constrained, Vec<LineId>) {
+    let mut all = points.to_vec();
+    let indexed: Vec<Vec<u32>> = lines
+        .iter()
+        .map(|line| {
+            let from = all.len() as u32;
+            all.extend(line);
+            (from..all.len() as u32).collect()
+        })
+        .collect();
+    let (t, _) = Constrained::from_lines(Plane::default(), &all, &indexed, OnCrossing::Split).unwrap();
+    let ids = t.lines().collect();
+    (t, ids)
+}
+
+/// Adds and removes lines and points at random, and compares with what is built at once.
+fn edits(seed: u64, rounds: usize, place: impl Fn(&mut Random) -> Point) {
+    let mut random = Random(seed);
+    for round in 0..rounds {
+        let mut points: Vec<Point> = (0..3 + random.index(6)).map(|_| place(&mut random)).collect();
+        let mut t = Constrained::from_points(Plane::default(), &points).unwrap().0;
+        let mut lines: Vec<(LineId, Vec<Point>)> = Vec::new();
+        for step in 0..12 {
+            match random.below(5) {
+                0 | 1 => {
+                    let count = 1 + random.index(2);
+                    let line = |random: &mut Random| (0..2 + random.index(3)).map(|_| place(random)).collect();
+                    let new: Vec<Vec<Point>> = (0..count).map(|_| line(&mut random)).collect();
+                    let ids = t.insert_lines(&new).unwrap();
+                    lines.extend(ids.into_iter().zip(new));
+                }
+                2 if !lines.is_empty() => {
+                    let (line, _) = lines.remove(random.index(lines.len()));
+                    assert!(t.remove_line(line));
+                    assert!(!t.remove_line(line));
+                    assert_eq!(t.chain(line), []);
+                }
+                3 if !lines.is_empty() => {
+                    let at = random.index(lines.len());
+                    let vertex = random.index(lines[at].1.len());
+                    if let Some(rest) = t.split_line(lines[at].0, vertex) {
+                        let tail = lines[at].1[vertex..].to_vec();
+                        lines[at].1.truncate(vertex + 1);
+                        lines.push((rest, tail));
+                    }
+                    let (i, j) = (random.index(lines.len()), random.index(lines.len()));
+                    if t.join_lines(lines[i].0, lines[j].0) {
+                        let tail = lines[j].1[1..].to_vec();
+                        lines[i].1.extend(tail);
+                        lines.remove(j);
+                    }
+                }
+                _ => {
+                    let p = place(&mut random);
+                    points.push(p);
+                    t.insert(p).unwrap();
+                }
+            }
+            let (ids, drawn): (Vec<LineId>, Vec<Vec<Point>>) = lines.iter().cloned().unzip();
+            let (fresh, fresh_ids) = built(&points, &drawn);
+            assert_eq!(t.check(Level::Law), [], "round {round}, step {step}: {points:?} {drawn:?}");
+            assert_eq!(fresh.check(Level::Law), [], "round {round}, step {step}: {points:?} {drawn:?}");
+            if fresh.dimension() == 2 {
+                assert_eq!(
+                    seen(&t, &ids),
+                    seen(&fresh, &fresh_ids),
+                    "round {round}, step {step}: {points:?} {drawn:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn edits_on_tiny_grids() {
+    edits(1, 300, |random| [random.below(5) as f64, random.below(5) as f64]);
+}
+
+#[test]
+fn edits_in_centimetres_far_away() {
+    edits(2, 150, |random| [500_000.0 + random.below(300) as f64 * 0.01, 4_649_000.0 + random.below(8) as f64 * 0.01]);
+}
+
+#[test]
+fn edits_a_rounding_apart() {
+    edits(3, 300, |random| [ulps(500_000.37, random.around(3)), ulps(4_649_000.12, random.around(3))]);
+}
+
+#[test]
+fn edits_off_the_grid() {
+    // Fine coordinates beside coarse ones.
+    edits(4, 300, |random| {
+        let fine = |random: &mut Random| ulps(0.5, random.around(3)) * if random.below(4) == 0 { 64.0 } else { 1.0 };
+        [fine(random), fine(random)]
+    });
+    edits(5, 150, |random| [random.unit() - 0.5, random.unit() - 0.5]);
+}
+
+#[test]
+fn lines_know_their_edges_and_edges_their_lines() {
+    let points = [[0.0, 0.0], [4.0, 0.0], [2.0, 0.0], [2.0, 3.0], [2.0, -3.0], [0.0, 4.0], [4.0, 4.0]];
+    // Along the axis, again and backwards as far as the middle, and across it.
+    let lines: [&[u32]; 3] = [&[0, 1], &[2, 0], &[3, 4]];
+    let (t, v) = Constrained::from_lines(Plane::default(), &points, &lines, OnCrossing::Split).unwrap();
+    let ids: Vec<LineId> = t.lines().collect();
+    assert_eq!(t.chain(ids[0]), [v[0], v[2], v[1]]);
+    assert_eq!(t.chain(ids[1]), [v[2], v[0]]);
+    assert_eq!(t.chain(ids[2]), [v[3], v[2], v[4]]);
+    assert_eq!(t.line_vertices(ids[0]), [v[0], v[1]]);
+    assert!(t.lines_through(v[0], v[2]).eq([ids[0], ids[1]]));
+    assert!(t.lines_through(v[2], v[1]).eq([ids[0]]));
+    assert!(t.lines_through(v[5], v[6]).eq([]));
+    assert!(!t.is_added(v[2]) && t.crossings().is_empty());
+}
+
+#[test]
+fn a_crossing_is_rejected_by_name() {
+    let points = [[0.0, 0.0], [4.0, 4.0], [9.0, 9.0], [0.0, 4.0], [4.0, 0.0]];
+    let lines: [&[u32]; 2] = [&[3, 4], &[2, 1, 0]];
+    let refused = Constrained::from_lines(Plane::default(), &points, &lines, OnCrossing::Reject).unwrap_err();
+    let Refused::Crossing { mut segments, place } = refused else { panic!("{refused}") };
+    segments.sort_unstable();
+    assert_eq!((segments, place), ([(0, 0), (1, 1)], [2.0, 2.0]));
+    let out = Constrained::from_lines(Plane::default(), &points, &[[0, 9]], OnCrossing::Split).unwrap_err();
+    assert_eq!(out, Refused::Index { line: 0, index: 9 });
+    // Touching is not crossing, and where there is a point already nothing is split that would not be anyway.
+    for points in [&points[..], &[[0.0, 0.0], [2.0, 2.0], [9.0, 9.0], [0.0, 4.0], [4.0, 0.0]]] {
+        let lines: [&[u32]; 2] = [&[0, 1, 2], &[3, 1]];
+        assert!(Constrained::from_lines(Plane::default(), points, &lines, OnCrossing::Reject).is_ok());
+        let lines: [&[u32]; 2] = [&[0, 2], &[3, 4]];
+        let at_point = points[1] == [2.0, 2.0];
+        let built = Constrained::from_lines(Plane::default(), points, &lines, OnCrossing::Reject);
+        assert_eq!(built.is_ok(), at_point);
+    }
+}
+
+/// A square with a hole and an island in it.
+#[test]
+fn nesting_counts_the_lines_from_outside() {
+    let square = |r: f64| vec![[-r, -r], [r, -r], [r, r], [-r, r], [-r, -r]];
+    let (t, ids) = built(&[[-9.0, 0.0], [9.0, 0.0]], &[square(1.0), square(3.0), square(6.0)]);
+    let levels = t.nesting();
+    for cell in t.finite_cells() {
+        let corners = t.tds().corners(cell).map(|v| *t.point(v));
+        let middle = [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / 3.0);
+        let far = middle[0].abs().max(middle[1].abs());
+        let level = [6.0, 3.0, 1.0].iter().filter(|&&r| far < r).count() as u32;
+        assert_eq!(levels[cell.index()], level, "{middle:?}");
+    }
+    assert!(t.nesting_of([ids[1]]).unwrap().iter().all(|&level| level <= 1));
+    let (t, ids) = built(&[], &[vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]], vec![[4.0, 4.0], [0.5, 0.0]]]);
+    assert!(matches!(t.nesting_of(ids), Err(Refused::Open { gap: [_, _], .. })));
+}
