@@ -1,7 +1,10 @@
 //! What the integration tests share.
 #![allow(dead_code, unreachable_pub)]
 
+pub(crate) mod case;
+pub(crate) mod judge;
 pub(crate) mod random;
+pub(crate) mod subject;
 
 use std::path::{Path, PathBuf};
 
