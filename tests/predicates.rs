@@ -8,8 +8,8 @@ mod common;
 
 use breakline::geometry::{Crossing, Geometry, Plane};
 use breakline::kernel::{
-    Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, InCircle, InCircleOfPlane, InSphere, Kernel,
-    OnLattice, Orientation2, Orientation3, Predicate, RANGE, crossing, twice_area,
+    Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, FlooredErrorBound, InCircle, InCircleOfPlane,
+    InSphere, Kernel, OnLattice, Orientation2, Orientation3, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
 use breakline::num::Sign;
 use common::random::{Random, ulps};
@@ -121,6 +121,8 @@ struct Tally {
     ties: usize,
     by_error_bound: usize,
     on_lattice: usize,
+    by_floored: usize,
+    scaled: usize,
 }
 
 fn certain<F: Filter, P: Predicate>(predicate: &P, expected: Sign, context: &impl std::fmt::Debug) -> usize {
@@ -136,6 +138,9 @@ impl Tally {
         self.asked += 1;
         self.ties += usize::from(expected == Sign::Zero);
         assert_eq!(Exact::sign(&predicate), expected, "{points:?}");
+        assert_eq!(Wide::sign(&predicate), expected, "{points:?}");
+        self.by_floored += certain::<FlooredErrorBound, P>(&predicate, expected, &points);
+        self.scaled += certain::<Scaled<Adaptive>, P>(&predicate, expected, &points);
         self.on_lattice += certain::<OnLattice, P>(&predicate, expected, &points);
         if points.iter().flatten().all(|&x| RANGE.admits(x)) {
             assert_eq!(Adaptive::sign(&predicate), expected, "{points:?}");
@@ -178,6 +183,7 @@ fn ordinary_points_end_in_the_first_filter() {
     let mut random = Random(1);
     for tally in ask_all(1500, || random.unit()) {
         assert!(tally.by_error_bound * 1000 >= tally.asked * 999, "{tally:?}");
+        assert!(tally.by_floored >= tally.by_error_bound, "{tally:?}");
     }
     let mut random = Random(2);
     for tally in ask_all(1500, || 500_000.0 + 0.001 * random.below(1_000_000) as f64) {
@@ -281,7 +287,7 @@ fn the_whole_range() {
     assert!(RANGE.admits(min) && RANGE.admits(-max) && RANGE.admits(-0.0));
 }
 
-/// Where only the exact kernel is proven, and the lattice.
+/// Where only some kernels are proven.
 #[test]
 fn every_finite_number() {
     let mut random = Random(12);
@@ -290,6 +296,43 @@ fn every_finite_number() {
     ask_all(250, || 5e-324 * random.around(3) as f64);
     ask_all(250, || f64::MAX / 4.0 * random.around(3) as f64);
     ask_all(250, || Some(f64::from_bits(random.next())).filter(|x| x.is_finite()).unwrap_or(0.0));
+}
+
+/// Exponents for which products underflow, overflow, or nearly do, alone and beside each other.
+#[test]
+fn the_edges_of_floating_point() {
+    let mut random = Random(16);
+    let power = |exponent: i64| 2f64.powi((exponent / 2) as i32) * 2f64.powi((exponent - exponent / 2) as i32);
+    let edges = [-1074, -1000, -700, -540, -512, -358, -270, -215, -200, -161, -160, -107, 0, 200, 255, 340, 511, 1000];
+    for _ in 0..20 {
+        let exponents = [random.pick(&edges), random.pick(&edges), random.pick(&edges)];
+        ask_all(12, || {
+            let unit = power(random.pick(&exponents) + random.around(1));
+            let fraction = random.unit();
+            unit * (1.0 + random.pick(&[0.0, 0.5, fraction])) * random.pick(&[-1.0, 0.0, 1.0])
+        });
+    }
+    // Steps of one size around an origin of another: differences smaller than any coordinate.
+    for &exponent in &edges {
+        let unit = power(exponent);
+        let origin = random.pick(&[0.0, power((exponent + 50).min(1020)), power((exponent + 20).min(1020))]);
+        ask_all(12, || origin + unit * random.around(4) as f64);
+    }
+}
+
+/// All of one size, anywhere: a power of two brings them where floating point is certain.
+#[test]
+fn one_size_is_scaled() {
+    for scale in [1e300, f64::MAX / 2.0, 1e-300] {
+        let mut random = Random(17);
+        for tally in ask_all(200, || scale * (random.unit() - 0.5)) {
+            assert_eq!(tally.scaled, tally.asked, "{tally:?}");
+        }
+    }
+    let mut random = Random(18);
+    for tally in ask_all(200, || 5e-324 * random.around(1 << 40) as f64) {
+        assert_eq!(tally.scaled, tally.asked, "{tally:?}");
+    }
 }
 
 #[test]
@@ -355,8 +398,13 @@ fn circles_in_planes_in_space() {
             let expected = turn * judge(points);
             ties += usize::from(expected == Sign::Zero);
             let predicate = InCircleOfPlane { points, axes };
-            let signs = [Exact::sign(&predicate), Adaptive::sign(&predicate), Expansions::sign(&predicate)];
-            assert_eq!(signs, [expected; 3], "{predicate:?}");
+            let signs = [
+                Exact::sign(&predicate),
+                Adaptive::sign(&predicate),
+                Expansions::sign(&predicate),
+                Wide::sign(&predicate),
+            ];
+            assert_eq!(signs, [expected; 4], "{predicate:?}");
             certain::<ErrorBound, _>(&predicate, expected, &predicate);
             certain::<OnLattice, _>(&predicate, expected, &predicate);
         }

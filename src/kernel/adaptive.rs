@@ -14,6 +14,20 @@ impl Filter for ErrorBound {
     }
 }
 
+/// [`ErrorBound`] for every finite coordinate: it gives up where differences are so small that products might underflow,
+/// and on zeros.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FlooredErrorBound;
+
+impl Filter for FlooredErrorBound {
+    const RANGE: Range = Range::FINITE;
+
+    #[inline(always)]
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        predicate.value(Bounded::floored_difference).sign()
+    }
+}
+
 /// Integers, where the coordinates of this one question lie on a coarse enough common grid.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OnLattice;

@@ -10,6 +10,7 @@
 //! | [`Exact`] | arbitrary precision | the judge in tests; any finite coordinates |
 //! | [`Expansions`] | sums of `f64` | exact within [`RANGE`], never filtered |
 //! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then expansions | the default |
+//! | [`Wide`] | as `Adaptive`, on scaled coordinates if need be, or arbitrary precision | any finite coordinates, fast |
 //!
 //! New ones are combined with [`Filtered`]: a quick [`Filter`] that may give up, before a sure
 //! kernel.
@@ -20,12 +21,14 @@
 mod adaptive;
 mod formula;
 mod rounding;
+mod scaled;
 
-pub use adaptive::{ErrorBound, OnLattice};
+pub use adaptive::{ErrorBound, FlooredErrorBound, OnLattice};
 pub use formula::{
     CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
 pub use rounding::{CornerSide, CrossingSide};
+pub use scaled::Scaled;
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -169,5 +172,9 @@ impl Kernel for Expansions {
     }
 }
 
-/// The default: as fast as floating point where that is certain, exact everywhere.
+/// The default: as fast as floating point where that is certain, exact everywhere within [`RANGE`].
 pub type Adaptive = Filtered<ErrorBound, Filtered<OnLattice, Expansions>>;
+
+/// For every finite coordinate, from `5e-324` to `1.8e308`: nearly as fast as [`Adaptive`] within its range, and where a
+/// power of two brings the coordinates of a question there.
+pub type Wide = Filtered<FlooredErrorBound, Filtered<OnLattice, Filtered<Scaled<Adaptive>, Exact>>>;

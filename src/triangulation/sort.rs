@@ -24,7 +24,10 @@ fn spread_by_two(x: u32) -> u64 {
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     axes: usize,
+    /// Times `unit`.
     min: [f64; 3],
+    /// A power of two that brings the extent to where it and its inverse are numbers: 1, but at the extremes.
+    unit: f64,
     scale: f64,
 }
 
@@ -47,17 +50,23 @@ impl Curve {
                 max[axis] = max[axis].max(x);
             }
         }
-        // One scale for all axes: cubes, not boxes. Halved first, as the extent may overflow.
-        let extent = (0..axes).map(|axis| max[axis] / 2.0 - min[axis] / 2.0).fold(0.0, f64::max) * 2.0;
-        let scale = (f64::from(Self::bits(axes)).exp2() - 1.0) / extent;
-        let scale = if scale.is_finite() && extent.is_finite() { scale } else { 0.0 };
-        Curve { axes, min, scale }
+        // One scale for all axes: cubes, not boxes.
+        let extent = |unit: f64| (0..axes).map(|axis| max[axis] * unit - min[axis] * unit).fold(0.0, f64::max);
+        let unit = match extent(1.0) {
+            f64::INFINITY => 0.5,
+            // Where this makes a coordinate infinite, all are equal on that axis.
+            tiny if tiny < 2f64.powi(-900) => 2f64.powi(900),
+            _ => 1.0,
+        };
+        let scale = (f64::from(Self::bits(axes)).exp2() - 1.0) / extent(unit);
+        let scale = if scale.is_finite() { scale } else { 0.0 };
+        Curve { axes, min: min.map(|x| x * unit), unit, scale }
     }
 
     /// Where a point lies on the curve. A larger coordinate never has the smaller bits.
     #[inline]
     pub(super) fn key(&self, point: &[f64]) -> u64 {
-        let step = |axis: usize| ((point[axis] - self.min[axis]) * self.scale) as u64;
+        let step = |axis: usize| ((point[axis] * self.unit - self.min[axis]) * self.scale) as u64;
         match self.axes {
             1 => step(0),
             2 => spread_by_two(step(0) as u32) << 1 | spread_by_two(step(1) as u32),
