@@ -13,11 +13,13 @@
 //!
 //! *The grid.* The unit on each axis is that of the last place of the largest coordinate there, of all ends of
 //! segments. Ends that are multiples of it are centers of pixels themselves, pixels do not overlap, and the argument
-//! above holds without a gap: **no point of a line is displaced by more than half a unit on each axis**. Ends may be
-//! finer than the grid, when coordinates near zero and large ones come together. Such an end keeps its place and has a
-//! pixel around itself; a crossing in it is rounded to the end. Pixels may then overlap, and where ends (or an end
-//! and a crossing) lie less than a unit apart, pieces may cross after all, within a unit or two of them. That is left
-//! to the caller.
+//! above holds without a gap: **no point of a line is displaced by more than half a unit on each axis**.
+//!
+//! Ends may be finer than that, when coordinates near zero and large ones come together. The grid is then that of the doubles
+//! themselves, whose steps shrink towards zero, so that ends still are centers and pixels still do not overlap. The
+//! bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero without
+//! meeting it: there pieces may cross after all (and where ends lie closer together than 2^-60 of the unit, which is the
+//! smallest step). That is left to the caller.
 //!
 //! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
 //! however close it passes by an end: nothing forces it.
@@ -32,7 +34,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::kernel::{Adaptive, Exact, Kernel, Orientation2};
+use crate::kernel::{Adaptive, Kernel, Orientation2, Wide};
 use crate::num::Sign;
 use boxes::{Box2, BoxTree};
 use pixel::{Grid, is_ordinary};
@@ -80,18 +82,17 @@ impl Arrangement {
         });
         // Half of the smallest subnormal number is none: away from there, by a power of two.
         const UP: f64 = f64::from_bits((1023 + 400) << 52);
+        const SMALLEST: f64 = f64::from_bits(1);
         let scale: Place = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
-        let grid = Grid::of_magnitudes([largest[0] * scale[0], largest[1] * scale[1]]);
-        let place = |i: u32| {
-            let p = place(i);
-            [p[0] * scale[0], p[1] * scale[1]]
-        };
-        let segments: Vec<[u32; 2]> = segments.to_vec();
-        let ends = segments.iter().flatten().map(|&i| place(i));
-        let mut arrangement = if is_ordinary(&grid, ends) {
-            Builder::new(grid, places, &place, &segments).run::<Adaptive>()
+        // Zero has one sign only.
+        let scaled = |p: Place| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
+        let place = |i: u32| scaled(place(i));
+        let ends = || segments.iter().flatten().map(|&i| place(i));
+        let grid = Grid::through(scaled(largest), scaled([SMALLEST; 2]), ends());
+        let mut arrangement = if is_ordinary(&grid, ends()) {
+            Builder::new(grid, places, &place, segments).run::<Adaptive>()
         } else {
-            Builder::new(grid, places, &place, &segments).run::<Exact>()
+            Builder::new(grid, places, &place, segments).run::<Wide>()
         };
         for axis in 0..2 {
             arrangement.unit[axis] /= scale[axis];
@@ -301,7 +302,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             bent_by.retain(|&site| !std::mem::replace(&mut is_active[site as usize], true));
             for site in bent_by {
                 let at = self.site(site);
-                tree.overlapping(&Box2::around([at, at]).grown(self.grid.half), |i| {
+                tree.overlapping(&self.grid.around(at), |i| {
                     let hit = !is_led[i as usize] && self.meets::<K>(i, site, at);
                     fresh.extend(hit.then_some(i));
                 });
@@ -321,7 +322,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     fn pass<K: Kernel>(&self, sites: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
         let of_site = |&site: &u32| {
             let at = self.site(site);
-            let around = Box2::around([at, at]).grown(self.grid.half);
+            let around = self.grid.around(at);
             let mut found = Vec::new();
             for (tree, members) in trees {
                 tree.overlapping(&around, |member| {
@@ -387,7 +388,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             chains.insert(chunk[0].segment, from..to);
             from = to;
         }
-        let on_grid = self.ends.iter().flatten().all(|&i| self.grid.holds((self.place)(i)));
+        let on_grid = self.grid.is_even();
         Arrangement {
             unit: self.grid.unit,
             on_grid,

@@ -3,15 +3,19 @@
 use crate::kernel::{CornerSide, CrossingSide, Kernel, Orientation2, Predicate, RANGE};
 use crate::num::{Dyadic, Sign};
 
-/// A power of two on each axis: crossings are rounded to multiples of it.
+use super::boxes::Box2;
+use super::{Place, Segment};
+
+/// The places to which crossings are rounded: on each axis the numbers of doubles, but none closer together than the
+/// *finest* unit, and none further apart than the *unit*; both are powers of two.
 ///
-/// A *pixel* is the half-open rectangle of this size around a place: it holds its left and its lower border.
-/// Those around multiples of the unit tile the plane.
+/// If the two are equal it is a grid of equal steps. The *pixel* of such a place is what is nearer to it than to its neighbors,
+/// a half-open rectangle: it holds its left and its lower border. These tile the plane. A place in between has a pixel of
+/// that size around itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
     pub(super) unit: [f64; 2],
-    /// Half of it, the reach of a pixel.
-    pub(super) half: [f64; 2],
+    finest: [f64; 2],
 }
 
 /// The unit in the last place of a number.
@@ -21,23 +25,56 @@ fn last_place(x: f64) -> f64 {
     if x < f64::MAX / 2.0 { x.next_up() - x } else { x - x.next_down() }
 }
 
+/// Beyond this many bits below the unit, doubles near zero are finer than anything needs.
+const DEPTH: f64 = f64::from_bits((1023 - 60) << 52);
+
 impl Grid {
-    /// The finest on which every number up to these magnitudes has a neighbor at each multiple.
-    pub(super) fn of_magnitudes(largest: [f64; 2]) -> Self {
-        let unit = largest.map(last_place);
-        Grid { unit, half: unit.map(|u| u / 2.0) }
+    /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles.
+    /// No step is smaller than `smallest`, unless all are.
+    pub(super) fn through(largest: Place, smallest: Place, mut places: impl Iterator<Item = Place>) -> Self {
+        let last = largest.map(last_place);
+        let unit = [0, 1].map(|k| last[k].max(smallest[k]));
+        let even = Grid { unit, finest: unit };
+        if places.all(|place| even.holds(place)) {
+            return even;
+        }
+        let lower = [0, 1].map(|k| (2.0 * RANGE.min).max(smallest[k]));
+        Grid { unit, finest: [0, 1].map(|k| (unit[k] * DEPTH).max(lower[k]).min(unit[k])) }
+    }
+
+    /// Whether all steps are equal.
+    pub(super) fn is_even(&self) -> bool {
+        self.unit == self.finest
+    }
+
+    /// How far the pixel around a value reaches down on an axis.
+    #[inline(always)]
+    fn down(&self, axis: usize, x: f64) -> f64 {
+        (x - x.next_down()).clamp(self.finest[axis], self.unit[axis]) / 2.0
+    }
+
+    /// How far it reaches up.
+    #[inline(always)]
+    fn up(&self, axis: usize, x: f64) -> f64 {
+        (x.next_up() - x).clamp(self.finest[axis], self.unit[axis]) / 2.0
+    }
+
+    /// A box around the pixel of a place.
+    pub(super) fn around(&self, place: Place) -> Box2 {
+        let halves = [0, 1].map(|k| self.down(k, place[k]).max(self.up(k, place[k])));
+        Box2::around([place, place]).grown(halves)
     }
 
     /// Whether a place is a multiple of the unit on both axes.
-    pub(super) fn holds(&self, place: [f64; 2]) -> bool {
+    fn holds(&self, place: Place) -> bool {
         (0..2).all(|k| {
             let steps = place[k] / self.unit[k]; // at most 2^53, and exact unless it vanishes
             steps == steps.trunc() && steps * self.unit[k] == place[k]
         })
     }
 
-    /// Of a place within the magnitudes: the number of its pixel on each axis.
-    pub(super) fn pixel(&self, place: [f64; 2]) -> [i64; 2] {
+    /// Of a place within the magnitudes: the number of the unit that it is nearest to, on each axis.
+    pub(super) fn pixel(&self, place: Place) -> [i64; 2] {
         std::array::from_fn(|k| {
             // Floor first: adding a half to a large odd number would round.
             let steps = place[k] / self.unit[k];
@@ -51,10 +88,10 @@ impl Grid {
     /// Of two convex sets without a common point, a line along a side of one of them keeps them apart: a side of the pixel
     /// or the segment. That the pixel lacks two of its sides makes no difference: it is the union of growing
     /// closed rectangles.
-    pub(super) fn hits<K: Kernel>(&self, [a, b]: [[f64; 2]; 2], center: [f64; 2]) -> bool {
+    pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Place) -> bool {
         let within = |k: usize| {
             let (low, high) = if a[k] < b[k] { (a[k], b[k]) } else { (b[k], a[k]) };
-            reaches(high, center[k], -self.half[k]) && !reaches(low, center[k], self.half[k])
+            reaches(high, center[k], -self.down(k, center[k])) && !reaches(low, center[k], self.up(k, center[k]))
         };
         if !within(0) || !within(1) {
             return false;
@@ -63,37 +100,41 @@ impl Grid {
         if rightward == 0.0 || upward == 0.0 {
             return true; // along an axis, the intervals have said all
         }
-        let [hx, hy] = self.half;
+        let [left, down] = [0, 1].map(|k| -self.down(k, center[k]));
+        let [right, up] = [0, 1].map(|k| self.up(k, center[k]));
         let side = |offset| K::sign(&CornerSide { segment: [a, b], center, offset });
         // The two corners furthest to the left and to the right of the line; of all four only the lower left one is
         // part of the pixel.
         if (rightward > 0.0) == (upward > 0.0) {
-            side([-hx, hy]) * side([hx, -hy]) == Sign::Negative
+            side([left, up]) * side([right, down]) == Sign::Negative
         } else {
-            match side([-hx, -hy]) {
+            match side([left, down]) {
                 Sign::Zero => true,
-                lower_left => lower_left * side([hx, hy]) == Sign::Negative,
+                lower_left => lower_left * side([right, up]) == Sign::Negative,
             }
         }
     }
 
     /// Where two segments cross in their interiors, rounded to the grid: the center of the pixel that the crossing lies
     /// in, exactly.
-    pub(super) fn crossing<K: Kernel>(&self, ab: [[f64; 2]; 2], cd: [[f64; 2]; 2]) -> [f64; 2] {
+    pub(super) fn crossing<K: Kernel>(&self, ab: Segment, cd: Segment) -> Place {
         let turn = K::sign(&Orientation2([cd[0], cd[1], ab[0]]));
         std::array::from_fn(|along| self.round::<K>(ab, cd, turn, along))
     }
 
-    fn round<K: Kernel>(&self, ab: [[f64; 2]; 2], cd: [[f64; 2]; 2], turn: Sign, along: usize) -> f64 {
-        let (unit, half) = (self.unit[along], self.half[along]);
+    fn round<K: Kernel>(&self, ab: Segment, cd: Segment, turn: Sign, along: usize) -> f64 {
         let side = |center: f64, offset: f64| turn * K::sign(&CrossingSide { ab, cd, along, center, offset });
-        let nearest = |x: f64| (x / unit).round() * unit;
+        let nearest = |x: f64| {
+            let step = 2.0 * self.up(along, x);
+            (x / step).round() * step
+        };
         let mut center = nearest(estimate(ab, cd, along));
         for tries in 0.. {
-            if side(center, -half) == Sign::Negative {
-                center -= unit;
-            } else if side(center, half) != Sign::Negative {
-                center += unit;
+            let (down, up) = (self.down(along, center), self.up(along, center));
+            if side(center, -down) == Sign::Negative {
+                center -= 2.0 * down;
+            } else if side(center, up) != Sign::Negative {
+                center += 2.0 * up;
             } else {
                 break;
             }
@@ -107,18 +148,19 @@ impl Grid {
     }
 
     /// Whether the crossing of two segments lies in the pixel around a place.
-    pub(super) fn crossing_in<K: Kernel>(&self, ab: [[f64; 2]; 2], cd: [[f64; 2]; 2], center: [f64; 2]) -> bool {
+    pub(super) fn crossing_in<K: Kernel>(&self, ab: Segment, cd: Segment, center: Place) -> bool {
         let turn = K::sign(&Orientation2([cd[0], cd[1], ab[0]]));
         (0..2).all(|along| {
             let side = |offset| turn * K::sign(&CrossingSide { ab, cd, along, center: center[along], offset });
-            side(-self.half[along]) != Sign::Negative && side(self.half[along]) == Sign::Negative
+            let (down, up) = (self.down(along, center[along]), self.up(along, center[along]));
+            side(-down) != Sign::Negative && side(up) == Sign::Negative
         })
     }
 }
 
 /// About where segments cross, on one axis.
-fn estimate([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2], along: usize) -> f64 {
-    let area = |p: [f64; 2]| (d[0] - c[0]) * (p[1] - c[1]) - (d[1] - c[1]) * (p[0] - c[0]);
+fn estimate([a, b]: Segment, [c, d]: Segment, along: usize) -> f64 {
+    let area = |p: Place| (d[0] - c[0]) * (p[1] - c[1]) - (d[1] - c[1]) * (p[0] - c[0]);
     let (at_a, at_b) = (area(a), area(b));
     let fraction = at_a / (at_a - at_b);
     let fraction = if (0.0..=1.0).contains(&fraction) { fraction } else { 0.5 };
@@ -127,7 +169,7 @@ fn estimate([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2], along: usize) -> f64 {
 }
 
 /// What [`CrossingSide`] divides by.
-fn divisor([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Dyadic {
+fn divisor([a, b]: Segment, [c, d]: Segment) -> Dyadic {
     let [turn_a, turn_b] = [a, b].map(|p| Orientation2([c, d, p]).value(Dyadic::difference));
     turn_a - turn_b
 }
@@ -145,6 +187,6 @@ fn reaches(x: f64, center: f64, offset: f64) -> bool {
 }
 
 /// Whether the fast kernels are right for these magnitudes, the halves of units included.
-pub(super) fn is_ordinary(grid: &Grid, places: impl Iterator<Item = [f64; 2]>) -> bool {
-    grid.half.iter().all(|&half| RANGE.admits(half)) && places.flatten().all(|x| RANGE.admits(x))
+pub(super) fn is_ordinary(grid: &Grid, places: impl Iterator<Item = Place>) -> bool {
+    grid.finest.iter().all(|&step| RANGE.admits(step / 2.0)) && places.flatten().all(|x| RANGE.admits(x))
 }

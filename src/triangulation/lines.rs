@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use crate::geometry::Crossing;
+use crate::num::Sign;
 use crate::tds::{Id, VertexId};
 
 use super::ConstrainedDelaunay;
@@ -96,20 +97,31 @@ impl Lines {
             }
         }
     }
+}
 
-    fn chain(&self, line: LineId) -> Vec<VertexId> {
-        let Some(vertices) = self.given.get(line.index()).and_then(Option::as_deref) else { return Vec::new() };
-        let mut chain: Vec<VertexId> = vertices.first().copied().into_iter().collect();
-        for pair in vertices.windows(2).filter(|pair| pair[0] != pair[1]) {
-            self.walk(pair[0], pair[1], &mut chain);
+/// Lines by their ids.
+impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+    /// Adds the way of a segment to `chain`, without its start.
+    fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+        if self.dimension() == 2 {
+            return self.lines.walk(a, b, chain);
         }
-        chain
+        // No edge could be split where all points are collinear.
+        let first = chain.len();
+        let ends = [a, b].map(|v| self.point(v));
+        let is_between = |&v: &VertexId| self.geometry().side_of_sphere_in_flat(&ends, self.point(v)) == Sign::Positive;
+        chain.extend(self.tds().vertices().filter(is_between));
+        chain[first..].sort_unstable_by(|&u, &v| self.geometry().compare(self.point(u), self.point(v)));
+        if self.geometry().compare(ends[0], ends[1]).is_gt() {
+            chain[first..].reverse();
+        }
+        chain.push(b);
     }
 
     fn on_edges(&self) -> &[([VertexId; 2], LineId)] {
-        self.on_edges.get_or_init(|| {
+        self.lines.on_edges.get_or_init(|| {
             let mut on_edges = Vec::new();
-            for line in (0..self.given.len()).map(LineId::new) {
+            for line in self.lines() {
                 on_edges.extend(self.chain(line).windows(2).map(|pair| (undirected(pair[0], pair[1]), line)));
             }
             on_edges.sort_unstable();
@@ -117,10 +129,7 @@ impl Lines {
             on_edges
         })
     }
-}
 
-/// Lines by their ids.
-impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// The ids of all lines, in order.
     pub fn lines(&self) -> impl Iterator<Item = LineId> + '_ {
         let given = self.lines.given.iter().enumerate();
@@ -139,14 +148,19 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// # Complexity
     /// Linear in the length of the result.
     pub fn chain(&self, line: LineId) -> Vec<VertexId> {
-        self.lines.chain(line)
+        let vertices = self.line_vertices(line);
+        let mut chain: Vec<VertexId> = vertices.first().copied().into_iter().collect();
+        for pair in vertices.windows(2).filter(|pair| pair[0] != pair[1]) {
+            self.walk(pair[0], pair[1], &mut chain);
+        }
+        chain
     }
 
     /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it is
     /// one edge.
     pub fn way(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
         let mut chain = Vec::new();
-        self.lines.walk(a, b, &mut chain);
+        self.walk(a, b, &mut chain);
         chain.pop();
         chain
     }
@@ -157,7 +171,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// A binary search; the first call after a change takes O(n log n) for n edges of lines, and 12 bytes for each of
     /// them while the triangulation stays as it is.
     pub fn lines_through(&self, a: VertexId, b: VertexId) -> impl ExactSizeIterator<Item = LineId> + '_ {
-        let on_edges = self.lines.on_edges();
+        let on_edges = self.on_edges();
         let edge = undirected(a, b);
         let first = on_edges.partition_point(|(e, _)| *e < edge);
         let count = on_edges[first..].partition_point(|(e, _)| *e == edge);

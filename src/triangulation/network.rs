@@ -165,7 +165,11 @@ fn reject<G: Crossing>(
         let ends = crossing.segments.map(|i| segments[i as usize]);
         let [ab, cd] = ends.map(|ends| ends.map(|site| &sites[site as usize]));
         let is_on = |[p, q]: [&G::Point; 2], x| geometry.orientation([p, q, x]) == Sign::Zero;
-        if sites.get(crossing.site as usize).is_none_or(|x| !is_on(ab, x) || !is_on(cd, x)) {
+        let [chain, other] = crossing.segments.map(|i| arrangement.chain(i));
+        let is_vertex = |site: &u32| {
+            other.contains(site) && sites.get(*site as usize).is_some_and(|x| is_on(ab, x) && is_on(cd, x))
+        };
+        if !chain.iter().any(is_vertex) {
             let place = geometry.plan(&geometry.crossing(ab, cd));
             return Err(Refused::Crossing { segments: ends.map(|segment| find(lines, segment)), place });
         }

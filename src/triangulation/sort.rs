@@ -98,7 +98,7 @@ pub fn spatial_order<A: AsRef<[f64]>>(
     order.par_sort_unstable_by(|&(key_a, a), &(key_b, b)| {
         key_a.cmp(&key_b).then_with(|| {
             let (p, q) = (coordinates(a as usize), coordinates(b as usize));
-            let by_place = p.as_ref().iter().zip(q.as_ref()).map(|(x, y)| x.total_cmp(y));
+            let by_place = p.as_ref().iter().zip(q.as_ref()).map(|(x, y)| (x + 0.0).total_cmp(&(y + 0.0)));
             by_place.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then).then(a.cmp(&b))
         })
     });
