@@ -21,7 +21,7 @@
 //! |---|---|
 //! | triangulate many points at once | [`Delaunay::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
-//! | take points out again | [`Delaunay::remove`], [`ConstrainedDelaunay::remove_free`]; in the plane |
+//! | take points out again | [`Delaunay::remove`], in the plane |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
 //! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |

@@ -188,8 +188,9 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// Takes out a vertex that no constraint ends in or runs through, and returns its point; `None` if one does,
     /// or if there is no such vertex. The result is the triangulation of the other points with the same
-    /// constraints. Numbers and time as in [`Delaunay::remove`].
-    pub fn remove_free(&mut self, vertex: VertexId) -> Option<G::Point> {
+    /// constraints. Numbers and time as in [`Delaunay::remove`]. The tables of [lines](super::lines::Lines) must not name it
+    /// any more when its number is used again.
+    pub(super) fn remove_free(&mut self, vertex: VertexId) -> Option<G::Point> {
         if !self.tds().is_vertex(vertex) || self.is_on_constraint(vertex) {
             return None;
         }
@@ -214,11 +215,11 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     }
 
     /// Takes the constraint off the edge between two vertices, which then is there only if the law wants it.
-    /// Says whether there was one.
+    /// Says whether there was one. What the tables of lines tell of it is left to the caller.
     ///
     /// # Complexity
     /// Linear in the degree of `a` and in the number of flips.
-    pub fn clear_wall(&mut self, a: VertexId, b: VertexId) -> bool {
+    pub(super) fn clear_wall(&mut self, a: VertexId, b: VertexId) -> bool {
         let Some((cell, i)) = self.tds().edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i)) else {
             let waiting = self.waiting.len();
             self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);
@@ -231,3 +232,6 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;
