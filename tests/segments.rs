@@ -22,9 +22,7 @@ const NEAR: Point = [1.3, 2.7];
 
 fn built(points: &[Point], segments: &[Segment]) -> Constrained {
     let (mut t, _) = Constrained::from_points(Plane::default(), points).unwrap();
-    for segment in segments {
-        t.insert_polyline(segment).unwrap();
-    }
+    t.insert_lines(segments).unwrap();
     t
 }
 
@@ -233,8 +231,7 @@ fn drawn_again_they_change_nothing() {
         let mut t = built(&points, &segments);
         let before = t.vertex_count();
         for &[a, b] in &segments {
-            t.insert_polyline(&[a, b]).unwrap();
-            t.insert_polyline(&[b, a]).unwrap();
+            t.insert_lines(&[[a, b], [b, a]]).unwrap();
         }
         assert_eq!(t.vertex_count(), before, "{segments:?}");
         assert_eq!(t.check(Level::Law), []);
@@ -247,11 +244,11 @@ fn one_segment_crosses_a_thousand() {
     let walls: Vec<Segment> = (1..=1000).map(|i| [[f64::from(i), -1.0], [f64::from(i), 2.0]]).collect();
     let mut t = built(&[], &walls);
     let level = [[0.0, 0.0], [1001.0, 0.0]];
-    t.insert_polyline(&level).unwrap();
+    t.insert_lines(&[level]).unwrap();
     assert_eq!(t.crossings().len(), 1000);
     assert!(covers_exactly(&t, &[level]));
     let slanted = [[1001.0, 0.3], [0.0, 1.4]];
-    t.insert_polyline(&slanted).unwrap();
+    t.insert_lines(&[slanted]).unwrap();
     assert_eq!(t.crossings().len(), 2000);
     assert!(covers(&t, &[slanted], 1e-12));
     assert!(covers_exactly(&t, &[level]));
@@ -262,7 +259,7 @@ fn one_segment_crosses_a_thousand() {
 fn repeated_vertices_and_spikes_in_a_polyline() {
     let chain = [[0.0, 0.0], [4.0, 0.0], [4.0, 0.0], [2.0, 0.0], [8.0, 0.0], [8.0, 4.0], [8.0, -4.0], [8.0, 4.0]];
     let mut t = built(&[[5.0, 5.0], [0.0, 9.0]], &[]);
-    t.insert_polyline(&chain).unwrap();
+    t.insert_lines(&[chain]).unwrap();
     assert_eq!(t.check(Level::Law), []);
     assert_eq!(t.constrained_edges().count(), 5);
     assert_eq!(t.crossings(), []);
@@ -275,7 +272,7 @@ fn crossings_at_the_ends_of_floating_point() {
         let mut t: Constrained<Exact> = ConstrainedDelaunay::new(Plane::default());
         let segments = [[[-1.0, -0.5], [1.0, 0.5]], [[-1.0, 0.75], [0.5, -1.0]], [[-0.3, -1.0], [-0.3, 1.0]]];
         for segment in segments {
-            t.insert_polyline(&segment.map(|p| p.map(|x| x * scale))).unwrap();
+            t.insert_lines(&[segment.map(|p| p.map(|x| x * scale))]).unwrap();
         }
         assert_eq!(t.check(Level::Law), []);
         t.crossings().iter().map(|&v| t.point(v).map(|x| x / scale)).collect()

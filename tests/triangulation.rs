@@ -158,9 +158,7 @@ fn constraints_hold_and_do_not_depend_on_their_order() {
         }
         let build = |points: &[[f64; 2]], segments: &[[[f64; 2]; 2]]| {
             let (mut t, _) = ConstrainedDelaunay::from_points(Plane::default(), points).unwrap();
-            for &[a, b] in segments {
-                t.insert_polyline(&[a, b]).unwrap();
-            }
+            t.insert_lines(segments).unwrap();
             t
         };
         let first: ConstrainedDelaunay<Plane> = build(&points, &segments);
@@ -216,7 +214,7 @@ fn wild_crossings_leave_a_valid_triangulation() {
             };
             let pair = [point(&mut random), point(&mut random)];
             segments.push(pair);
-            t.insert_polyline(&pair).unwrap();
+            t.insert_lines(&[pair]).unwrap();
             assert_eq!(t.check(Level::Law), [], "{segments:?}");
         }
     }
@@ -256,15 +254,15 @@ fn bulk_and_one_by_one_agree() {
 #[test]
 fn points_fall_on_constraints() {
     let mut t: ConstrainedDelaunay<Terrain> = ConstrainedDelaunay::new(Terrain::default());
-    t.insert_polyline(&[[0.0, 0.0, 1.0], [8.0, 0.0, 1.0], [8.0, 8.0, 1.0], [0.0, 8.0, 1.0], [0.0, 0.0, 1.0]]).unwrap();
-    t.insert_polyline(&[[0.0, 0.0, 1.0], [8.0, 8.0, 9.0]]).unwrap();
+    t.insert_lines(&[[[0.0, 0.0, 1.0], [8.0, 0.0, 1.0], [8.0, 8.0, 1.0], [0.0, 8.0, 1.0], [0.0, 0.0, 1.0]]]).unwrap();
+    t.insert_lines(&[[[0.0, 0.0, 1.0], [8.0, 8.0, 9.0]]]).unwrap();
     for p in [[4.0, 4.0, 0.0], [4.0, 0.0, 0.0], [2.0, 2.0, 0.0], [1.0, 7.0, 0.0]] {
         t.insert(p).unwrap();
         assert_eq!(t.check(Level::Law), []);
     }
     assert_eq!(t.constrained_edges().count(), 5 + 3);
     // A level line at 3 crosses the diagonal, which rises from 0 at (4, 4) to 1 at (8, 8).
-    t.insert_polyline(&[[5.0, 1.0, 3.0], [5.0, 7.0, 3.0]]).unwrap();
+    t.insert_lines(&[[[5.0, 1.0, 3.0], [5.0, 7.0, 3.0]]]).unwrap();
     let crossing = t.crossings();
     assert_eq!(crossing.len(), 1);
     assert_eq!(t.point(crossing[0])[..2], [5.0, 5.0]);
@@ -315,11 +313,8 @@ fn crossings_in_the_last_bits_come_to_an_end() {
         for _ in 0..10 {
             let mut t: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
             for _ in 0..lines {
-                let [a, b] = [0, 1].map(|_| {
-                    let p = [0, 1].map(|_| 1.0 + random.below(steps) as f64 * f64::EPSILON);
-                    t.insert(p).unwrap()
-                });
-                t.insert_segment(a, b);
+                let ends = [0, 1].map(|_| [0, 1].map(|_| 1.0 + random.below(steps) as f64 * f64::EPSILON));
+                t.insert_lines(&[ends]).unwrap();
             }
             assert_eq!(t.check(Level::Law), []);
         }

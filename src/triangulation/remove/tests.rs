@@ -46,7 +46,8 @@ fn lies_on([a, b]: &[Point; 2], p: &Point) -> bool {
 fn walled(points: &[Point], walls: &[[Point; 2]]) -> Constrained {
     let (mut t, _) = Constrained::from_points(Plane::default(), points).unwrap();
     for wall in walls {
-        t.insert_polyline(wall).unwrap();
+        let [a, b] = wall.map(|p| t.insert(p).unwrap());
+        t.insert_segment(a, b);
     }
     t
 }
@@ -168,7 +169,8 @@ fn walls_wait_while_all_is_on_a_line() {
     let points = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
     let mut t = walled(&points, &[]);
     let apex = t.insert([1.0, 5.0]).unwrap();
-    t.insert_polyline(&[points[1], points[3]]).unwrap();
+    let [second, last] = [points[1], points[3]].map(|p| t.insert(p).unwrap());
+    t.insert_segment(second, last);
     assert_eq!(t.constrained_edges().count(), 2);
     assert_eq!(t.remove_free(apex), Some([1.0, 5.0]));
     assert_eq!((t.dimension(), t.constrained_edges().count()), (1, 0));
