@@ -4,7 +4,7 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use breakline::geometry::Plane;
+use breakline::geometry::{Plane, distance_to_segment};
 use breakline::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing, Refused};
 use common::random::{Random, ulps};
@@ -164,6 +164,57 @@ fn a_crossing_is_rejected_by_name() {
         let built = Constrained::from_lines(Plane::default(), points, &lines, OnCrossing::Reject);
         assert_eq!(built.is_ok(), at_point);
     }
+}
+
+/// A zigzag beside an island in one of its bays, and one beside nothing.
+#[test]
+fn simplified_lines_cross_no_other() {
+    let zigzag: Vec<Point> = (0..9).map(|i| [f64::from(i), f64::from(i % 2)]).collect();
+    let island = vec![[2.9, 0.4], [3.1, 0.4], [3.0, 0.6], [2.9, 0.4]];
+    let frame = [[-9.0, -9.0], [20.0, -9.0], [20.0, 9.0], [-9.0, 9.0]];
+    for (others, tolerance, left) in [(vec![], 0.5, 9), (vec![], 1.0, 2), (vec![island.clone()], 1.0, 3)] {
+        let (mut t, _) = built(&frame, &[]);
+        let line = t.insert_lines(&[zigzag.clone()]).unwrap()[0];
+        let others = t.insert_lines(&others).unwrap();
+        let gone = t.simplify_line(line, tolerance);
+        assert_eq!((t.line_vertices(line).len(), gone), (left, 9 - left), "{tolerance} {}", others.len());
+        assert_eq!(t.crossings(), []);
+        assert_eq!(t.check(Level::Law), []);
+        let lines: Vec<LineId> = t.lines().collect();
+        let drawn: Vec<Vec<Point>> =
+            lines.iter().map(|&l| t.line_vertices(l).iter().map(|&v| *t.point(v)).collect()).collect();
+        let (fresh, ids) = built(&frame, &drawn);
+        assert_eq!(seen(&t, &lines), seen(&fresh, &ids));
+    }
+}
+
+/// Random lines, made simpler one after the other: no two of them cross that did not before, and none is further off than
+/// it may be.
+#[test]
+fn simplification_keeps_the_topology() {
+    let mut random = Random(6);
+    let mut taken = 0;
+    for _ in 0..200 {
+        let mut lines: Vec<Vec<Point>> = Vec::new();
+        for i in 0..4 {
+            let height = |random: &mut Random| f64::from(3 * i) + random.below(7) as f64 * 0.5;
+            lines.push((0..12).map(|x| [f64::from(x), height(&mut random)]).collect());
+        }
+        let (mut t, _) = built(&[[-5.0, -5.0], [20.0, -5.0], [20.0, 25.0], [-5.0, 25.0]], &[]);
+        let ids = t.insert_lines(&lines).unwrap();
+        let before = t.crossings().len();
+        for (&line, drawn) in ids.iter().zip(&lines) {
+            taken += t.simplify_line(line, 0.75);
+            let left: Vec<Point> = t.line_vertices(line).iter().map(|&v| *t.point(v)).collect();
+            for p in drawn {
+                let far = left.windows(2).map(|pair| distance_to_segment(*p, [pair[0], pair[1]]));
+                assert!(far.fold(f64::INFINITY, f64::min) <= 0.75 + 1e-12, "{lines:?}");
+            }
+        }
+        assert!(t.crossings().len() <= before, "{lines:?}");
+        assert_eq!(t.check(Level::Law), [], "{lines:?}");
+    }
+    assert!(taken > 500, "{taken}");
 }
 
 /// A square with a hole and an island in it.

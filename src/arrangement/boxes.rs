@@ -3,8 +3,9 @@
 //! Boxes are sorted into vertical slabs and within each by height (sort-tile-recursive: Leutenegger, Lopez and
 //! Edgington 1997), and every [`FAN`] of them in a row get a box around them, and so on up.
 
-/// Children of a node.
-const FAN: usize = 8;
+/// Children of a node: a power of two.
+const FAN: usize = 1 << FAN_BITS;
+const FAN_BITS: usize = 3;
 
 /// A box in plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,27 +91,27 @@ impl BoxTree {
     /// The same with those leaves only that stand at `first` or behind.
     pub(super) fn overlapping_from(&self, first: usize, with: &Box2, visit: &mut impl FnMut(u32)) {
         let top = self.levels.len() - 1;
-        if !self.levels[top].first().is_some_and(|root| root.overlaps(with)) {
+        let is_in = |root: &Box2| root.overlaps(with) && (top > 0 || first == 0);
+        if !self.levels[top].first().is_some_and(is_in) {
             return;
         }
         // Fewer than 12 levels number all of 32 bits.
-        let mut stack = [(top, 0usize); 12 * FAN];
+        let mut stack = [(top as u32, 0u32); 12 * FAN];
         let mut height = 1;
         while height > 0 {
             height -= 1;
-            let (level, node) = stack[height];
+            let (level, node) = (stack[height].0 as usize, stack[height].1 as usize);
             if level == 0 {
-                if node >= first {
-                    visit(self.order[node]);
-                }
+                visit(self.order[node]);
                 continue;
             }
-            // A node's leaves are FAN^level in a row.
             let below = &self.levels[level - 1];
-            let width = FAN.pow(level as u32 - 1);
-            for child in (node * FAN..below.len().min((node + 1) * FAN)).rev() {
-                if (child + 1) * width > first && below[child].overlaps(with) {
-                    stack[height] = (level - 1, child);
+            let row = node * FAN..below.len().min((node + 1) * FAN);
+            // A node's leaves are FAN^level in a row.
+            let skipped = (first >> (FAN_BITS * (level - 1))).saturating_sub(row.start);
+            for (child, boxed) in row.clone().zip(&below[row]).skip(skipped) {
+                if boxed.overlaps(with) {
+                    stack[height] = (level as u32 - 1, child as u32);
                     height += 1;
                 }
             }

@@ -29,10 +29,10 @@
 mod boxes;
 mod pixel;
 
-use std::collections::HashMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::kernel::{Adaptive, Kernel, Orientation2, Wide};
 use crate::num::Sign;
@@ -62,7 +62,7 @@ pub struct Arrangement {
     added: Vec<Place>,
     crossings: Vec<Crossing>,
     /// Of the segments that may bend: the sites between their ends.
-    chains: HashMap<u32, Range<u32>>,
+    chains: FxHashMap<u32, Range<u32>>,
     chain_sites: Vec<u32>,
 }
 
@@ -381,7 +381,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
                 chain.reverse();
             }
         }
-        let mut chains: HashMap<u32, Range<u32>> = led.iter().map(|&segment| (segment, 0..0)).collect();
+        let mut chains: FxHashMap<u32, Range<u32>> = led.iter().map(|&segment| (segment, 0..0)).collect();
         let mut from = 0;
         for chunk in passes.chunk_by(|p, q| p.segment == q.segment) {
             let to = from + chunk.len() as u32;
@@ -415,7 +415,7 @@ fn lexicographic(p: Place, q: Place) -> std::cmp::Ordering {
 /// Vertices by the square of pixels that they lie in.
 struct Cells {
     grid: Grid,
-    first: HashMap<[i64; 2], u32>,
+    first: FxHashMap<[i64; 2], u32>,
     /// Vertices, each with the position of the next in its cell.
     chained: Vec<(u32, u32)>,
 }
@@ -426,7 +426,7 @@ impl Cells {
     const LAST: u32 = u32::MAX;
 
     fn new(grid: Grid, vertices: &[u32], place: impl Fn(u32) -> Place) -> Self {
-        let mut first = HashMap::with_capacity(vertices.len());
+        let mut first = FxHashMap::with_capacity_and_hasher(vertices.len(), Default::default());
         let mut chained = Vec::with_capacity(vertices.len());
         for (at, &vertex) in vertices.iter().enumerate() {
             let cell = grid.pixel(place(vertex)).map(|steps| steps >> Self::SHIFT);

@@ -131,18 +131,18 @@ impl Grid {
         let mut center = nearest(estimate(ab, cd, along));
         for tries in 0.. {
             let (down, up) = (self.down(along, center), self.up(along, center));
-            if side(center, -down) == Sign::Negative {
-                center -= 2.0 * down;
+            let step = if side(center, -down) == Sign::Negative {
+                -2.0 * down
             } else if side(center, up) != Sign::Negative {
-                center += 2.0 * up;
+                2.0 * up
             } else {
                 break;
-            }
-            if tries == 3 {
-                // The estimate was far off: a small angle. The exact way there, rounded, leaves a step or two.
-                let beside = CrossingSide { ab, cd, along, center, offset: 0.0 }.value(Dyadic::difference);
-                center = nearest(center + beside.quotient(&divisor(ab, cd)));
-            }
+            };
+            // An estimate is a step or two off, unless the angle is small: then the exact way is gone, rounded, as often as
+            // it is longer than a step or two.
+            let exact = || CrossingSide { ab, cd, along, center, offset: 0.0 }.value(Dyadic::difference);
+            let way = if tries < 2 { step } else { exact().quotient(&divisor(ab, cd)) };
+            center = if way.abs() <= 1.5 * step.abs() { center + step } else { nearest(center + way) };
         }
         center + 0.0 // zero has one sign only
     }

@@ -27,7 +27,7 @@ mod space;
 mod terrain;
 
 pub(crate) use perturbation::{in_sphere, in_sphere_of_flat};
-pub use plane::Plane;
+pub use plane::{Plane, distance_to_segment};
 pub use space::Space;
 pub use terrain::{Terrain, height_along};
 

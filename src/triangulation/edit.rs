@@ -6,6 +6,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use rustc_hash::FxHashMap;
+
 use crate::arrangement::{Arrangement, through_site};
 use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
@@ -162,7 +164,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         leaving.extend(at_place.into_values());
 
         // Phase 3: which pieces are there.
-        let mut splits = HashMap::new();
+        let mut splits = FxHashMap::default();
         let mut kept = HashSet::new();
         let mut way = Vec::new();
         for (i, &[a, b]) in segments.iter().enumerate() {

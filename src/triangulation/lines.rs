@@ -1,7 +1,8 @@
 //! Who is who among the lines of a constrained triangulation.
 
-use std::collections::HashMap;
 use std::sync::OnceLock;
+
+use rustc_hash::FxHashMap;
 
 use crate::geometry::Crossing;
 use crate::num::Sign;
@@ -27,9 +28,9 @@ pub(super) struct Lines {
     /// By their ids.
     pub(super) given: Vec<Option<Box<[VertexId]>>>,
     /// Of segments, from the smaller vertex to the larger: the sites between.
-    pub(super) led: HashMap<[VertexId; 2], Box<[VertexId]>>,
+    pub(super) led: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
     /// Of pieces: the vertex on which they were split.
-    pub(super) splits: HashMap<[VertexId; 2], VertexId>,
+    pub(super) splits: FxHashMap<[VertexId; 2], VertexId>,
     /// The lines on each edge, sorted; made when it is first asked for.
     on_edges: OnceLock<Vec<([VertexId; 2], LineId)>>,
 }
@@ -88,7 +89,7 @@ impl Lines {
     }
 
     /// Adds what this table tells of a piece to another one.
-    pub(super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut HashMap<[VertexId; 2], VertexId>) {
+    pub(super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
         let mut pieces = vec![undirected(a, b)];
         while let Some([a, b]) = pieces.pop() {
             if let Some(&between) = self.splits.get(&[a, b]) {

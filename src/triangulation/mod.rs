@@ -44,6 +44,7 @@ mod nesting;
 mod network;
 mod remove;
 mod segment;
+mod simplify;
 mod sort;
 
 pub use check::{Flaw, Level};

@@ -1,0 +1,109 @@
+//! Fewer vertices on a line, and no other line crossed.
+
+use std::collections::HashSet;
+
+use crate::geometry::{Coordinates, Crossing, distance_to_segment};
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId};
+
+use super::{ConstrainedDelaunay, LineId};
+
+impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+    /// Takes vertices out of a line, in plan, as long as every one of them lies within `tolerance` of the piece that
+    /// stands for it, and no line comes to lie on its other side: the triangle between the line and its shortcut is free
+    /// of other vertices of lines. Ends stay, and vertices that are shared with other lines or used twice. Vertices that had
+    /// come with the line go. Returns how many were taken out of the line.
+    ///
+    /// Vertices are tried from the first on, each with all that were taken out beside it (after the vertex removal of
+    /// Dyken, Dæhlen and Sevaldrud 2009).
+    ///
+    /// # Complexity
+    /// For each vertex the triangles beside the shortcut, and the vertices that it replaces; then as for
+    /// [`insert_lines`](Self::insert_lines).
+    pub fn simplify_line(&mut self, line: LineId, tolerance: f64) -> usize {
+        let vertices = self.line_vertices(line).to_vec();
+        if vertices.len() < 3 || self.dimension() < 2 {
+            return 0;
+        }
+        let mut seen = HashSet::new();
+        let twice: HashSet<VertexId> = vertices.iter().copied().filter(|&v| !seen.insert(v)).collect();
+        let mut gone = HashSet::new();
+        let mut kept = vec![vertices[0]];
+        // What was taken out since the last vertex that is kept.
+        let mut skipped: Vec<VertexId> = Vec::new();
+        for pair in vertices[1..].windows(2) {
+            let (from, at, to) = (kept[kept.len() - 1], pair[0], pair[1]);
+            skipped.push(at);
+            let ends = [from, to].map(|v| self.geometry().plan(self.point(v)));
+            let is_near = |&v: &VertexId| distance_to_segment(self.geometry().plan(self.point(v)), ends) <= tolerance;
+            if !twice.contains(&at)
+                && from != to
+                && skipped.iter().all(is_near)
+                && self.is_of_one_line(at, line)
+                && self.is_free([from, at, to], &gone)
+            {
+                gone.insert(at);
+            } else {
+                kept.push(at);
+                skipped.clear();
+            }
+        }
+        kept.extend(vertices.last());
+        if !gone.is_empty() {
+            self.lines.given[line.index()] = Some(kept.into());
+            self.rearrange();
+        }
+        gone.len()
+    }
+
+    /// Whether all constrained edges at a vertex belong to this line and to no other.
+    fn is_of_one_line(&self, vertex: VertexId, line: LineId) -> bool {
+        let mut edges = self.tds().around(vertex).flat_map(|cell| *self.tds().corners(cell));
+        edges.all(|other| {
+            other == vertex
+                || other == VertexId::INFINITE
+                || !self.is_wall(vertex, other)
+                || self.lines_through(vertex, other).eq([line])
+        })
+    }
+
+    /// Whether no vertex of a line lies in a triangle or on its border, but its corners and those that are gone.
+    fn is_free(&self, [a, b, c]: [VertexId; 3], gone: &HashSet<VertexId>) -> bool {
+        let turn =
+            |p: VertexId, q: VertexId, r: VertexId| self.geometry().orientation([p, q, r].map(|v| self.point(v)));
+        let corners = match turn(a, b, c) {
+            Sign::Positive => [a, b, c],
+            Sign::Negative => [a, c, b],
+            // Straight on nothing changes; a spike that comes back is kept.
+            Sign::Zero => {
+                let [a, b, c] = [a, b, c].map(|v| self.point(v));
+                return self.geometry().side_of_sphere_in_flat(&[a, c], b) == Sign::Positive;
+            }
+        };
+        let beyond = |triangle: [VertexId; 3], points: [VertexId; 3]| {
+            (0..3).any(|i| points.iter().all(|&p| turn(triangle[i], triangle[(i + 1) % 3], p) != Sign::Positive))
+        };
+        let holds = |p: VertexId| (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], p) != Sign::Negative);
+        let mut seen: HashSet<CellId> = HashSet::new();
+        let mut open: Vec<CellId> = self.tds().around(b).collect();
+        while let Some(cell) = open.pop() {
+            let theirs = *self.tds().corners(cell);
+            if self.tds().is_infinite(cell) || !seen.insert(cell) || beyond(corners, theirs) || beyond(theirs, corners)
+            {
+                continue;
+            }
+            let blocks = |&v: &VertexId| !corners.contains(&v) && !gone.contains(&v) && self.is_on_line(v) && holds(v);
+            if theirs.iter().any(blocks) {
+                return false;
+            }
+            open.extend(self.tds().cell_neighbors(cell));
+        }
+        true
+    }
+
+    fn is_on_line(&self, vertex: VertexId) -> bool {
+        self.tds()
+            .around(vertex)
+            .any(|cell| (0..3).any(|i| self.tds().vertex(cell, i) != vertex && self.is_constrained(cell, i)))
+    }
+}
