@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 use crate::data::Surface;
 use crate::geometry::Plane;
+use crate::kernel::Wide;
 use crate::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::ConstrainedDelaunay;
 
@@ -47,8 +48,8 @@ pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
         [x + 0.0, y + 0.0]
     };
     let ends: Vec<[f64; 2]> = border.iter().flat_map(|&(_, c, i)| [place(c[ccw(i)]), place(c[cw(i)])]).collect();
-    let Ok((mut t, vertices)) = ConstrainedDelaunay::<_>::from_points(Plane::default(), &ends) else {
-        return Vec::new(); // coordinates out of range are flaws of their own
+    let Ok((mut t, vertices)) = ConstrainedDelaunay::<_>::from_points(Plane::<Wide>::default(), &ends) else {
+        return Vec::new(); // coordinates that are not finite are flaws of their own
     };
     for edge in vertices.chunks_exact(2) {
         t.insert_segment(edge[0], edge[1]);
@@ -64,7 +65,7 @@ pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
 }
 
 /// The parts of the plane that directed edges wind around more than once, one place for each.
-fn covered_twice(t: &ConstrainedDelaunay<Plane>, edges: &[VertexId]) -> Vec<Overlap> {
+fn covered_twice(t: &ConstrainedDelaunay<Plane<Wide>>, edges: &[VertexId]) -> Vec<Overlap> {
     // By how much the winding number grows from the right of an edge to its left.
     let mut steps: HashMap<[VertexId; 2], i64> = HashMap::new();
     for edge in edges.chunks_exact(2) {

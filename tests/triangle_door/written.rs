@@ -281,16 +281,21 @@ fn points_that_span_no_area_have_no_triangle() {
 }
 
 #[test]
-fn the_exact_kernel_takes_every_finite_coordinate() {
+fn every_finite_coordinate_is_taken_by_what_is_exact() {
     let folder = folder_with(&[
         ("big.node", "4 2\n1 0 0\n2 1e300 0\n3 1.5e300 1.25e300\n4 0 1.7e308\n"),
         ("small.node", "4 2\n1 0 0\n2 1e-310 0\n3 1.5e-310 1.25e-310\n4 0 5e-324\n"),
         ("plain.node", "4 2\n1 0 0\n2 4 0\n3 3 4\n4 1 5\n"),
     ]);
     for input in ["big.node", "small.node", "plain.node"] {
-        run(&folder, &format!("triangulate {input} -o out.ele --kernel exact --overwrite")).ends(0, &["triangles   2"]);
+        for kernel in ["exact", "adaptive"] {
+            run(&folder, &format!("triangulate {input} -o out.ele --kernel {kernel} --overwrite"))
+                .ends(0, &["triangles   2"]);
+        }
     }
     run(&folder, "triangulate plain.node -o out.ele --kernel fast --overwrite").ends(0, &["triangles   2"]);
+    let said = ["error: big.node: line 3: vertex 2 is at 1e300 0.0, expected coordinates of 0 or between", "hint: "];
+    run(&folder, "triangulate big.node -o fast.ele --kernel fast").ends(1, &said);
 }
 
 #[test]

@@ -131,7 +131,7 @@ pub(in crate::cli) enum KernelArg {
     /// Exact, as fast as floating point where that is certain
     #[default]
     Adaptive,
-    /// Exact, for any finite coordinate, and slow
+    /// Exact, with numbers of any length, and slow
     Exact,
     /// Plain floating point, for experiments: a wrong result is an error, and it may not come to an end
     Fast,

@@ -16,7 +16,7 @@ use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::contain;
 use crate::io::triangle::{LineGraph, Triangulated};
-use crate::kernel::{Adaptive, Exact, Fast, Kernel, Range};
+use crate::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
 use crate::triangulation::{OnCrossing, Refused};
 
 /// Whose format an output has.
@@ -92,7 +92,8 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
 /// Triangulates with the arithmetic that was asked for.
 fn build(graph: &LineGraph, args: &TriangulateArgs, path: &Path) -> Result<Built> {
     let built = match args.kernel {
-        KernelArg::Adaptive => build_with::<Adaptive>(graph, args),
+        KernelArg::Adaptive if is_ordinary(graph) => build_with::<Adaptive>(graph, args),
+        KernelArg::Adaptive => build_with::<Wide>(graph, args),
         KernelArg::Exact => build_with::<Exact>(graph, args),
         KernelArg::Fast => contain(|| build_with::<Fast>(graph, args)).ok_or_else(|| {
             Error::limit("plain floating point contradicts itself on these points")
@@ -105,6 +106,11 @@ fn build(graph: &LineGraph, args: &TriangulateArgs, path: &Path) -> Result<Built
         refuse_flaws(&built).map_err(|e| e.in_file(path))?;
     }
     Ok(built)
+}
+
+/// Whether no coordinate is so large or small that the default arithmetic would need wider numbers.
+fn is_ordinary(graph: &LineGraph) -> bool {
+    graph.nodes.points.as_flattened().iter().all(|&x| Adaptive::RANGE.admits(x))
 }
 
 fn build_with<K: Kernel>(graph: &LineGraph, args: &TriangulateArgs) -> std::result::Result<Built, Refused> {
@@ -123,13 +129,13 @@ fn build_with<K: Kernel>(graph: &LineGraph, args: &TriangulateArgs) -> std::resu
 fn explained(refused: Refused, graph: &LineGraph, path: &Path) -> Error {
     match refused {
         Refused::Coordinate(i) => {
-            let ([x, y], Range { min, max }) = (graph.nodes.points[i], Adaptive::RANGE);
+            let ([x, y], Range { min, max }) = (graph.nodes.points[i], Fast::RANGE);
             let number = i + graph.nodes.first_number as usize;
             let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
             Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
                 .in_file(&graph.node_file)
                 .at(format!("line {}", graph.node_lines[i]))
-                .cure("add --kernel exact, which takes any finite coordinate")
+                .cure("leave out --kernel fast: the others take any finite coordinate")
         }
         Refused::Crossing { segments, place: [x, y] } => {
             let mut positions = segments.map(|(line, _)| line);
