@@ -82,6 +82,18 @@ fn obj_gives_the_same_doubles_back() {
 }
 
 #[test]
+fn off_gives_the_same_doubles_back() {
+    let folder = folder();
+    let [off, obj] = ["field.off", "field.obj"].map(|name| folder.path().join(name));
+    let field = field(40);
+    mesh::write(&off, &field).unwrap();
+    mesh::write(&obj, &field).unwrap();
+    assert_eq!(content(&mesh::read(&off).unwrap()), content(&mesh::read(&obj).unwrap()));
+    let text = std::fs::read_to_string(&off).unwrap();
+    assert!(text.starts_with("OFF\n1600 3042 0\n512000.1 5403000.7 250\n"));
+}
+
+#[test]
 fn stl_counts_from_an_origin_that_stands_beside_it() {
     let folder = folder();
     let path = folder.path().join("field.stl");
@@ -116,7 +128,7 @@ fn the_coordinate_system_comes_along() {
         let vertices = (0..9).map(|v| plain.position(v)).collect();
         let faces = (0..8).map(|f| plain.face(f).unwrap()).collect();
         let with = Mesh::new(vertices, faces, &[], Some(system.clone())).unwrap();
-        for name in ["a.ply", "a.obj"] {
+        for name in ["a.ply", "a.obj", "a.off"] {
             let path = folder.path().join(name);
             mesh::write(&path, &with).unwrap();
             let back = mesh::read(&path).unwrap();
@@ -164,6 +176,13 @@ fn foreign_files_are_read() {
     assert_eq!(content(&square(FOREIGN[5], "f.obj").unwrap()), expected);
     let back = "v 0 0 1\nv 1 0 2\nv 1 1 3\nv 0 1 4\nf -4 -3 -2\nf -4/5 -2/5 -1/5\n";
     assert_eq!(content(&square(back, "g.obj").unwrap()), expected);
+    for off in [
+        "OFF 4 2 0\n# a comment\n0 0 1\n1 0 2\n1 1 3\n0 1 4\n3 0 1 2 255 0 0\n3 2 3 0\n",
+        "OFF\r\n4 1 4\r\n0 0 1\r\n1 0 2\r\n\r\n1 1 3 # here\r\n0 1 4\r\n4 0 1 2 3",
+        "COFF\n4 2 0\n0 0 1 9 9 9 9\n1e0 0 2 9 9 9 9\n1 1 3 9 9 9 9\n0 1 4 9 9 9 9\n3 2 1 0\n3 0 2 3\n",
+    ] {
+        assert_eq!(content(&square(off, "h.off").unwrap()), expected);
+    }
     let error = square(FOREIGN[4], "e.obj").unwrap_err().to_string();
     assert!(error.ends_with("e.obj: line 1: '-9999999999' names no vertex (the first is 1)"), "{error}");
 }
@@ -292,6 +311,22 @@ fn errors_name_the_value_and_the_place() {
     assert_eq!(message("odd.obj", b"v 0 0 0\n"), "there are no faces ('f a b c' lines)");
     let beyond = message("odd.obj", b"v 0 0 0\nf 1 2 3\n");
     assert_eq!(beyond, "line 2: a face names vertex 1, but there are 1 vertices");
+    let off = |rest: &str| message("odd.off", format!("OFF\n3 1 0\n0 0 0\n1 0 0\n{rest}").as_bytes());
+    assert_eq!(off("0 1 0\n3 0 1 3\n"), "line 6: a face names vertex 3, but there are 3 vertices");
+    assert_eq!(off("0 1 0\n2 0 1\n"), "line 6: a face has 2 corners, expected 3 or more");
+    assert_eq!(off("0 1 0\n99999999999 0 1\n"), "line 6: there is no vertex number");
+    assert_eq!(off("0 1 inf\n"), "line 5: the z coordinate is inf, expected a finite number");
+    assert_eq!(off("0 1 0\n"), "line 5: the file ends where face 0 of 1 is expected");
+    assert_eq!(
+        off("0 1 0\n3 0 1 2\n3 0 1 2\n"),
+        "line 7: '3' stands behind the last face, expected the end of the file"
+    );
+    assert_eq!(
+        message("odd.off", b"OFF\n99999999999999 1 0\n0 0 0\n"),
+        "line 3: the file ends where vertex 1 of 99999999999999 is expected"
+    );
+    assert_eq!(message("odd.off", b"4OFF\n"), "line 1: '4OFF' is a kind of OFF file that is not read");
+    assert_eq!(message("odd.off", b"solid\n"), "line 1: the file begins with 'solid', not with 'OFF'");
     assert_eq!(message("odd.stl", b""), "STL meshes are not read: they have no exact coordinates");
     assert_eq!(message("odd.dxf", b""), "the file's extension names no mesh format");
     assert!(mesh::read(Path::new("nowhere.ply")).unwrap_err().to_string().starts_with("nowhere.ply: "));

@@ -1,16 +1,22 @@
 use super::args::CheckArgs;
-use super::plan::SurfacePlan;
+use super::plan::{From, SurfacePlan};
 use super::summary::SurfaceFacts;
 use super::talk::Talk;
 use super::{Exit, gather, open, print};
 use crate::error::Result;
 
-/// Lists the flaws of a TIN.
+/// Lists the flaws of a TIN, or of a mesh that may be none.
 pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
-    let gathered = gather::surface(&mut plan, talk)?;
+    let (gathered, flaws) = match &plan.from {
+        From::Mesh(path) => gather::mesh_with_flaws(path, &plan.wish, talk)?,
+        From::Points(_) | From::Raster(_) => {
+            let gathered = gather::surface(&mut plan, talk)?;
+            let flaws = open::flaws(gathered.surface.as_ref(), &[]);
+            (gathered, flaws)
+        }
+    };
     let surface = gathered.surface.as_ref();
-    let flaws = open::flaws(surface);
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }

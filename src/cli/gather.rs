@@ -65,6 +65,16 @@ pub(super) fn ground(plan: &mut SurfacePlan, talk: &Talk) -> Result<Ground> {
     }
 }
 
+/// The triangles of a mesh whatever is wrong with them, and what that is.
+///
+/// # Errors
+/// If it cannot be read.
+pub(super) fn mesh_with_flaws(path: &Path, wish: &Wish, talk: &Talk) -> Result<(Gathered, Vec<String>)> {
+    let (mesh, flaws) = open::mesh_with_flaws(path)?;
+    let crs = one_system(path, mesh.crs(), wish, talk)?;
+    Ok((Gathered { surface: Box::new(Relabeled { surface: mesh, crs }), made: Made::default() }, flaws))
+}
+
 /// The same for verbs that need triangles.
 ///
 /// # Errors

@@ -17,6 +17,7 @@ mod inputs;
 mod lines;
 mod open;
 mod outputs;
+mod overlaps;
 mod plan;
 mod point_files;
 mod raster;
@@ -26,6 +27,7 @@ mod summary;
 mod systems;
 mod talk;
 mod tin;
+mod triangulate;
 mod units;
 
 use std::ffi::OsString;
@@ -94,6 +96,7 @@ fn dispatch(verb: &Verb, how: &TalkArgs, talk: &Talk) -> Result<Exit> {
     match verb {
         Verb::Info(args) => info::run(args, talk),
         Verb::Tin(args) => tin::run(args, talk),
+        Verb::Triangulate(args) => triangulate::run(args, talk),
         Verb::Dem(args) => dem::run(args, talk),
         Verb::Contour(args) => contour::run(args, talk),
         Verb::Hillshade(args) => hillshade::run(args, talk),

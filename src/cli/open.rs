@@ -1,16 +1,19 @@
 //! The one place where the command line meets readers, writers and verbs of the library.
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::crs::{Crs, Transform};
-use crate::data::{BlockSource, Frame, Grid, Layer, Mesh, PointSource, Surface};
+use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointSource, Surface, Triangles};
 use crate::error::{Error, Kind, Result};
 use crate::io::contours::{self, ContourSummary};
 use crate::io::geotiff::{self, CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
 use crate::io::mesh::{self, MeshSummary};
+use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{gdal, layer, png, points, proj, raster};
-use crate::terrain::{self, Dem, GridSurface, Levels};
+use crate::terrain::{self, Dem, GridSurface, Levels, SurfaceFlaw};
+
+use super::overlaps::overlaps;
 
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +45,7 @@ pub(super) fn content(path: &Path) -> Content {
     let file = layer::split(&path.to_string_lossy()).0;
     let extension = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match extension.as_str() {
-        "ply" | "obj" | "stl" => Content::Mesh,
+        "ply" | "obj" | "off" | "stl" | "ele" => Content::Mesh,
         "tif" | "tiff" | "vrt" | "img" | "hgt" | "dem" | "dt0" | "dt1" | "dt2" => Content::Raster,
         // Points as text, or a grid.
         "asc" if head.to_ascii_lowercase().starts_with(b"ncols") => Content::Raster,
@@ -190,9 +193,46 @@ pub(super) fn raster_place(path: &Path) -> Result<(Frame, Option<Crs>)> {
     }
 }
 
-/// A mesh as this program writes it.
+/// A mesh that is a surface.
 pub(super) fn mesh(path: &Path) -> Result<Mesh> {
     mesh::read(path)
+}
+
+/// The triangles of a mesh, whether they are a surface or not, linked as far as they can be; and what is wrong with
+/// them, one line each.
+pub(super) fn mesh_with_flaws(path: &Path) -> Result<(Mesh, Vec<String>)> {
+    flaws_of(mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
+}
+
+/// The same, with only what is wrong with the links.
+pub(super) fn linked_mesh(path: &Path) -> Result<(Mesh, Vec<LinkFlaw>)> {
+    Mesh::link(mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
+}
+
+/// The same for triangles at hand.
+pub(super) fn flaws_of(triangles: Triangles) -> Result<(Mesh, Vec<String>)> {
+    let (mesh, links) = Mesh::link(triangles)?;
+    let mut texts: Vec<String> = links.iter().map(ToString::to_string).collect();
+    texts.extend(flaws(&mesh, &links));
+    Ok((mesh, texts))
+}
+
+/// What a `.node` or a `.poly` file holds.
+pub(super) fn line_graph(path: &Path) -> Result<LineGraph> {
+    triangle::read(path)
+}
+
+/// Writes files of Triangle, all or none.
+pub(super) fn write_triangulated(targets: &[PathBuf], triangulated: &Triangulated) -> Result<()> {
+    triangle::write(targets, triangulated)
+}
+
+/// The triangles as a surface of height 0.
+pub(super) fn flat_mesh(triangulated: &Triangulated) -> Result<Mesh> {
+    let vertices = triangulated.nodes.points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+    let edges: Vec<[u32; 2]> = triangulated.segments.iter().map(|edge| edge.ends).collect();
+    let edges = if triangulated.triangles.is_empty() { &[] } else { edges.as_slice() };
+    Mesh::new(vertices, triangulated.triangles.clone(), edges, None)
 }
 
 /// What takes coordinates from one system to the other; needs the feature `proj`.
@@ -210,9 +250,16 @@ pub(super) fn dem<'a>(surface: &'a dyn Surface, frame: Frame) -> Result<Box<dyn 
     Ok(Box::new(Dem::new(surface, frame)?))
 }
 
-/// What is wrong with a surface, one line each.
-pub(super) fn flaws(surface: &dyn Surface) -> Vec<String> {
-    terrain::surface_flaws(surface).iter().map(ToString::to_string).collect()
+/// What is wrong with a surface, knowing what is wrong with its links; one line each.
+pub(super) fn flaws(surface: &dyn Surface, links: &[LinkFlaw]) -> Vec<String> {
+    let found = terrain::surface_flaws(surface);
+    let mut texts: Vec<String> = found.iter().map(ToString::to_string).collect();
+    // Whether faces overlap can be told of those that are linked and turn the right way.
+    let is_folded = links.iter().any(|flaw| matches!(flaw, LinkFlaw::Folded { .. }));
+    if !is_folded && found.iter().all(|flaw| matches!(flaw, SurfaceFlaw::NotDelaunay(..))) {
+        texts.extend(overlaps(surface).iter().map(ToString::to_string));
+    }
+    texts
 }
 
 /// Writes heights as GeoTIFF.

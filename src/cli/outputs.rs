@@ -45,7 +45,7 @@ pub(super) fn resolve<F: Copy>(
             let missing = std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
             return Err(Error::from(missing).in_file(path).cure(format!("mkdir -p {}", folder.display())));
         }
-        for file in files_of(path, format) {
+        for file in with_companions(path, format) {
             if inputs.contains(&identity(&file)) {
                 return Err(Error::usage("the output is one of the inputs")
                     .in_file(&file)
@@ -61,7 +61,12 @@ pub(super) fn resolve<F: Copy>(
     Ok(targets)
 }
 
-fn files_of<F>(path: &Path, format: &Format<F>) -> Vec<PathBuf> {
+/// The file that is written to a target, and those that come with it.
+pub(super) fn files_of<F>(path: &Path, formats: &[Format<F>]) -> Vec<PathBuf> {
+    find(path, formats).map_or_else(|_| vec![path.to_path_buf()], |format| with_companions(path, format))
+}
+
+fn with_companions<F>(path: &Path, format: &Format<F>) -> Vec<PathBuf> {
     let beside = format.companions.iter().map(|extension| path.with_extension(extension));
     std::iter::once(path.to_path_buf()).chain(beside).collect()
 }

@@ -9,6 +9,7 @@ use crate::error::Result;
 const FORMATS: &[Format<()>] = &[
     Format { extension: "ply", kind: (), companions: &[] },
     Format { extension: "obj", kind: (), companions: &[] },
+    Format { extension: "off", kind: (), companions: &[] },
     Format { extension: "stl", kind: (), companions: &["stl.origin.txt"] },
 ];
 

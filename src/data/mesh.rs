@@ -1,4 +1,4 @@
-use super::Surface;
+use super::{LinkFlaw, Surface, Triangles};
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::kernel::{Adaptive, Exact, Kernel, Orientation2};
@@ -67,9 +67,13 @@ impl Mesh {
         crs: Option<Crs>,
     ) -> Result<Self> {
         check_numbers(&vertices, &faces)?;
+        check_values(&vertices, &faces)?;
         turn_counter_clockwise(&vertices, &mut faces)?;
         let edges = EdgeTable::new(vertices.len(), &faces);
-        let neighbors = edges.neighbors(&faces)?;
+        let neighbors = match edges.neighbors(&faces) {
+            (neighbors, flaws) if flaws.is_empty() => neighbors,
+            (_, flaws) => return Err(folded(flaws[0])),
+        };
         let mut constrained = vec![[false; 3]; faces.len()];
         for &edge in constrained_edges {
             let found = edges.find(edge);
@@ -82,6 +86,46 @@ impl Mesh {
             }
         }
         Ok(Mesh { vertices, faces, neighbors, constrained, crs })
+    }
+
+    /// Links triangles as far as they can be linked, for whoever wants to know what is wrong with them: a
+    /// side where faces fold has no neighbor. Only a mesh that is clockwise as a whole is turned.
+    ///
+    /// # Errors
+    /// If a face names a vertex that does not exist, or there are more than can be numbered.
+    ///
+    /// # Complexity
+    /// That of [`new`](Self::new).
+    pub fn link(triangles: Triangles) -> Result<(Self, Vec<LinkFlaw>)> {
+        let Triangles { vertices, mut faces, constrained_edges, neighbors: stated, crs } = triangles;
+        check_numbers(&vertices, &faces)?;
+        let is_turned = is_clockwise(&vertices, &faces);
+        if is_turned {
+            faces.iter_mut().for_each(|face| face.swap(1, 2));
+        }
+        let edges = EdgeTable::new(vertices.len(), &faces);
+        let (neighbors, folds) = edges.neighbors(&faces);
+        let mut flaws: Vec<LinkFlaw> = folds;
+        let mut constrained = vec![[false; 3]; faces.len()];
+        for &edge in &constrained_edges {
+            let halves = edges.find(edge);
+            if halves.is_empty() {
+                flaws.push(LinkFlaw::NoEdge(edge));
+            }
+            halves.iter().for_each(|half| constrained[half.face()][half.side()] = true);
+        }
+        for (face, mut stated) in (0u32..).zip(stated.into_iter().flatten()).take(faces.len()) {
+            if is_turned {
+                stated.swap(1, 2);
+            }
+            for (corner, stated) in stated.into_iter().enumerate() {
+                let found = Some(neighbors[face as usize][corner]).filter(|&n| n != NONE);
+                if stated != found {
+                    flaws.push(LinkFlaw::Neighbor { face, corner, stated, found });
+                }
+            }
+        }
+        Ok((Mesh { vertices, faces, neighbors, constrained, crs }, flaws))
     }
 }
 
@@ -96,20 +140,33 @@ fn check_numbers(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
             NONE / 3 - 1
         )));
     }
+    for (i, face) in faces.iter().enumerate() {
+        if let Some(v) = face.iter().find(|&&v| v as usize >= vertices.len()) {
+            let count = vertices.len();
+            return Err(Error::format(format!("face {i} names vertex {v}, but there are {count} vertices")));
+        }
+    }
+    Ok(())
+}
+
+fn check_values(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
     if let Some(i) = vertices.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
         let [x, y, z] = vertices[i];
         return Err(Error::format(format!("vertex {i} is at {x} {y} {z}, expected finite coordinates")));
     }
-    for (i, &[a, b, c]) in faces.iter().enumerate() {
-        if let Some(&v) = [a, b, c].iter().find(|&&v| v as usize >= vertices.len()) {
-            let count = vertices.len();
-            return Err(Error::format(format!("face {i} names vertex {v}, but there are {count} vertices")));
-        }
-        if a == b || b == c || c == a {
-            return Err(Error::format(format!("face {i} names one vertex twice: {a} {b} {c}")));
-        }
+    if let Some(i) = faces.iter().position(|&[a, b, c]| a == b || b == c || c == a) {
+        let [a, b, c] = faces[i];
+        return Err(Error::format(format!("face {i} names one vertex twice: {a} {b} {c}")));
     }
     Ok(())
+}
+
+/// Whether there are clockwise faces and no counter-clockwise ones.
+fn is_clockwise(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> bool {
+    let places = faces.iter().map(|face| face.map(|v| vertices[v as usize]));
+    let finite = places.filter(|places| places.iter().all(|[x, y, _]| x.is_finite() && y.is_finite()));
+    let mut signs = finite.map(orientation).filter(|sign| *sign != Sign::Zero).peekable();
+    signs.peek().is_some() && signs.all(|sign| sign == Sign::Negative)
 }
 
 fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]]) -> Result<()> {
@@ -189,24 +246,32 @@ impl EdgeTable {
         EdgeTable { first, halves }
     }
 
-    fn neighbors(&self, faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>> {
+    /// The face beyond each side, and where that cannot be told. Sides where faces fold have no neighbor.
+    fn neighbors(&self, faces: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<LinkFlaw>) {
         let mut neighbors = vec![[NONE; 3]; faces.len()];
+        let mut flaws = Vec::new();
         for range in self.first.windows(2) {
             let around = &self.halves[range[0] as usize..range[1] as usize];
             for twins in around.chunk_by(|a, b| a.high == b.high) {
-                for (i, one) in twins.iter().enumerate() {
-                    // Of three faces at an edge, two start at the same end.
-                    for other in &twins[i + 1..] {
-                        if one.start(faces) == other.start(faces) {
-                            return Err(folded(*one, *other, faces));
-                        }
+                // Of three faces at an edge, two start at the same end.
+                let folded = twins.iter().enumerate().find_map(|(i, one)| {
+                    let other = twins[i + 1..].iter().find(|other| other.start(faces) == one.start(faces))?;
+                    Some(LinkFlaw::Folded {
+                        faces: [one.face() as u32, other.face() as u32],
+                        edge: [one.start(faces), faces[one.face()][(one.side() + 2) % 3]],
+                    })
+                });
+                match (folded, twins) {
+                    (Some(flaw), _) => flaws.push(flaw),
+                    (None, [one, other]) => {
                         neighbors[one.face()][one.side()] = other.face() as u32;
                         neighbors[other.face()][other.side()] = one.face() as u32;
                     }
+                    _ => {}
                 }
             }
         }
-        Ok(neighbors)
+        (neighbors, flaws)
     }
 
     fn find(&self, [a, b]: [u32; 2]) -> &[HalfEdge] {
@@ -222,11 +287,8 @@ impl EdgeTable {
 }
 
 #[cold]
-fn folded(one: HalfEdge, other: HalfEdge, faces: &[[u32; 3]]) -> Error {
-    let (f, g) = (one.face(), other.face());
-    let (a, b) = (one.start(faces), faces[f][(one.side() + 2) % 3]);
-    Error::format(format!("faces {f} and {g} lie on the same side of their edge {a} {b}"))
-        .cure("a surface has one height per place: remove overhangs and repeated faces")
+fn folded(flaw: LinkFlaw) -> Error {
+    Error::format(flaw.to_string()).cure("a surface has one height per place: remove overhangs and repeated faces")
 }
 
 /// Positive if three places turn counter-clockwise in plan, zero if they are in line. Exact for all
@@ -304,9 +366,9 @@ mod tests {
         refuses(square(), vec![[0, 1, 4]], &[], "face 0 names vertex 4, but there are 4 vertices");
         refuses(square(), vec![[0, 1, 0]], &[], "face 0 names one vertex twice: 0 1 0");
         let twice = vec![[0, 1, 2], [1, 0, 2]];
-        refuses(square(), twice, &[], "faces 0 and 1 lie on the same side of their edge 0 1");
+        refuses(square(), twice, &[], "faces 0 and 1: both run the same way along their edge 0 1");
         let three = vec![[0, 1, 2], [0, 2, 3], [1, 3, 0], [2, 3, 0]];
-        refuses(square(), three, &[], "faces 0 and 2 lie on the same side of their edge 0 1");
+        refuses(square(), three, &[], "faces 0 and 2: both run the same way along their edge 0 1");
         let flat = vec![[0.0, 0.0, 0.0], [0.1, 0.1, 5.0], [0.3, 0.3, 0.0]];
         refuses(flat, vec![[0, 1, 2]], &[], "face 0 (0 1 2) has no area in plan");
         refuses(square(), vec![[0, 1, 2]], &[[0, 3]], "the constrained edge 0 3 is no edge of a face");

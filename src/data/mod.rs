@@ -11,7 +11,7 @@
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], with its place: [`Frame`] | [`BlockSource`], asked by [`Window`] |
-//! | triangles | [`Mesh`] | [`Surface`] |
+//! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked | [`Surface`] |
 //! | a box | [`Bounds`] | |
 //!
 //! Conventions: x to the east, y to the north, z up, in the units of the coordinate system that comes
@@ -29,6 +29,7 @@ mod mesh;
 mod points;
 mod shape;
 mod surface;
+mod triangles;
 
 pub use bounds::Bounds;
 pub use contour_line::ContourLine;
@@ -39,3 +40,4 @@ pub(crate) use mesh::orientation;
 pub use points::{PointBatch, PointFlags, PointInfo, PointSource};
 pub use shape::{Layer, Shape, ShapeKind};
 pub use surface::Surface;
+pub use triangles::{LinkFlaw, Triangles};

@@ -14,7 +14,7 @@ thread_local! {
 /// is held back for the calling thread alone: the first use puts a hook before the one in place, and
 /// that hook still gets every other panic. What `decode` was writing to is to be thrown away when
 /// this returns `None`.
-pub(in crate::io) fn contain<T>(decode: impl FnOnce() -> T) -> Option<T> {
+pub(crate) fn contain<T>(decode: impl FnOnce() -> T) -> Option<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let previous = take_hook();

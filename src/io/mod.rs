@@ -7,6 +7,7 @@
 //! | a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
 //! | to write a raster | | [`geotiff::write()`]; a picture: [`png::write_gray`] |
 //! | a mesh, to read or to write | [`mesh::read`], [`mesh::write`] | |
+//! | points and segments in the plane, and their triangulation, in Triangle's files | | [`triangle::read`], [`triangle::write`] |
 //! | to write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`] |
 //! | to write other shapes | | [`shapefile::write_layer`] |
 //! | other coordinates | | [`proj::transform`] |
@@ -32,6 +33,7 @@
 
 mod contain;
 pub mod contours;
+mod decimal;
 pub mod gdal;
 pub mod geojson;
 pub mod geotiff;
@@ -43,8 +45,11 @@ pub mod png;
 pub mod points;
 pub mod proj;
 pub mod raster;
+mod rows;
 pub mod shapefile;
 pub mod text;
+pub mod triangle;
 mod world_file;
 
+pub(crate) use contain::contain;
 pub use output::Output;

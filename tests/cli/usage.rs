@@ -7,7 +7,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
     let folder = folder_with(&[]);
     let run = run_in(&folder, &["--help"]);
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
-    for verb in ["info", "tin", "dem", "contour", "hillshade", "check", "demo"] {
+    for verb in ["info", "tin", "triangulate", "dem", "contour", "hillshade", "check", "demo"] {
         assert!(run.stdout.contains(&format!("\n  {verb} ")), "{verb}");
         let long = run_in(&folder, &[verb, "--help"]);
         assert_eq!(long.code, 0);
@@ -27,14 +27,17 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
         (&["tim"], "unrecognized subcommand"),
         (&["tin"], "required"),
         (&["tin", "a.xyz"], "--output"),
+        (&["triangulate", "a.xyz", "-o", "t.tif"], ".node, .ele, .poly, .edge, .neigh, .off, .obj, .ply"),
+        (&["triangulate", "a.xyz", "-o", "t.ele", "--on-crossing", "ignore"], "split, reject"),
+        (&["triangulate", "a.xyz", "-o", "t.ele", "--kernel", "wide"], "adaptive, exact, fast"),
         (&["tin", "a.xyz", "-o", "t.ply", "--max-edge", "-3"], "--max-edge"),
         (&["tin", "a.xyz", "-o", "t.ply", "--max-edge", "all"], "`none`"),
         (&["tin", "a.xyz", "-o", "t.ply", "--bounds", "3,0,1,2"], "xmin < xmax"),
         (&["tin", "a.xyz", "-o", "t.ply", "--class", "2,300"], "300"),
         (&["tin", "a.xyz", "-o", "t.ply", "--duplicates", "newest"], "lowest, highest, mean, first, last"),
         (&["tin", "a.xyz", "-o", "t.ply", "--a-srs", "EPSG:nonsense"], "--a-srs"),
-        (&["tin", "a.xyz", "-o", "t.dxf"], ".ply, .obj, .stl"),
-        (&["tin", "a.xyz", "-o", "t"], ".ply, .obj, .stl"),
+        (&["tin", "a.xyz", "-o", "t.dxf"], ".ply, .obj, .off, .stl"),
+        (&["tin", "a.xyz", "-o", "t"], ".ply, .obj, .off, .stl"),
         (&["dem", "a.xyz", "-o", "t.png"], ".tif"),
         (&["contour", "a.xyz", "-o", "t.dwg"], ".shp, .geojson"),
         (&["hillshade", "a.xyz", "-o", "t.jpg"], ".tif, .tiff, .png"),

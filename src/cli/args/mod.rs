@@ -11,7 +11,8 @@ use clap::{Args, Parser, Subcommand};
 pub(super) use parse::{Corners, EdgeLength, join_corners};
 pub(super) use surface::{DuplicatesArg, SurfaceArgs};
 pub(super) use verbs::{
-    CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs, TinArgs,
+    CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OnCrossingArg,
+    OutputArgs, TinArgs, TriangulateArgs,
 };
 
 /// Lidar and breaklines to TIN, DEM, contours and mesh
@@ -62,6 +63,7 @@ pub(super) struct TalkArgs {
 pub(super) enum Verb {
     Info(InfoArgs),
     Tin(TinArgs),
+    Triangulate(TriangulateArgs),
     Dem(DemArgs),
     Contour(ContourArgs),
     Hillshade(HillshadeArgs),

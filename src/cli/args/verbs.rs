@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::SurfaceArgs;
 use super::parse::{Corners, altitude, finite, positive};
@@ -65,7 +65,7 @@ pub(in crate::cli) struct InfoArgs {
 ///
 /// Every breakline is there, edge by edge; between them the triangulation is Delaunay, and the same
 /// whatever the order of the input. Formats: .ply (binary, with breaklines and coordinate system;
-/// what `dem`, `contour`, `hillshade`, `check` and `info` read back), .obj, .stl (from a local
+/// what `dem`, `contour`, `hillshade`, `check` and `info` read back), .obj, .off, .stl (from a local
 /// origin, which is printed and written beside it).
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
@@ -76,6 +76,65 @@ pub(in crate::cli) struct TinArgs {
     pub(in crate::cli) surface: SurfaceArgs,
     #[command(flatten)]
     pub(in crate::cli) output: OutputArgs,
+}
+
+/// Triangulate points and segments of the plane, with Triangle's files
+///
+/// Reads a .node or .poly file of Triangle (Shewchuk) and writes its constrained Delaunay triangulation;
+/// points are added only where segments cross. Of a .poly with segments, what is outside of its outer
+/// boundary or in a hole is eaten away; regional attributes go to the triangles. Vertices keep their
+/// numbers, attributes and markers; those at the place of an earlier one have no triangle.
+///
+/// An .ele comes with its .node (and, of a .poly, its .poly) beside it, as Triangle writes them; .poly
+/// and .edge come with their .node. Of x.poly, write x.1.ele: inputs are never replaced.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline triangulate plate.poly -o plate.1.ele -o plate.1.neigh
+  breakline triangulate points.node -o points.1.ele -o points.off
+  breakline check plate.1.ele")]
+pub(in crate::cli) struct TriangulateArgs {
+    /// A .node or .poly file
+    #[arg(value_name = "IN")]
+    pub(in crate::cli) input: PathBuf,
+    #[command(flatten)]
+    pub(in crate::cli) output: OutputArgs,
+
+    /// Keep the whole convex hull
+    ///
+    /// Holes are eaten away all the same. Without segments the hull is always kept.
+    #[arg(long, help_heading = "Triangulation")]
+    pub(in crate::cli) convex: bool,
+
+    /// What to do where two segments cross between their ends
+    #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Triangulation")]
+    pub(in crate::cli) on_crossing: OnCrossingArg,
+
+    /// The arithmetic that decides on which side a point lies
+    #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]
+    pub(in crate::cli) kernel: KernelArg,
+}
+
+/// What to do where two segments cross.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(in crate::cli) enum OnCrossingArg {
+    /// Add a vertex
+    #[default]
+    Split,
+    /// End with an error that names both
+    Reject,
+}
+
+/// The arithmetic of the predicates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(in crate::cli) enum KernelArg {
+    /// Exact, as fast as floating point where that is certain
+    #[default]
+    Adaptive,
+    /// Exact, with numbers of any length, and slow
+    Exact,
+    /// Plain floating point, for experiments: a wrong result is an error, and it may not come to an end
+    Fast,
 }
 
 /// Write a DEM: heights of the TIN at the centers of cells
@@ -169,12 +228,15 @@ pub(in crate::cli) struct HillshadeArgs {
 
 /// Prove a TIN right, or list its flaws
 ///
-/// Looks at a mesh from a file, or at the TIN of points and breaklines: links, manifold and Euler's
-/// formula, orientation, Delaunay between breaklines. Exit code 1 when there is any flaw.
+/// Looks at a mesh from a file (.ply, .obj, .off, or .ele with its .node), or at the TIN of points and
+/// breaklines: links, manifold, orientation without overlaps, Delaunay between breaklines. The breaklines of an
+/// .ele are the segments of the .poly beside it. Flaws count vertices, faces and edges from 0. Exit code 1
+/// when there is any.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
-  breakline check ground.ply")]
+  breakline check ground.ply
+  breakline check plate.1.ele")]
 pub(in crate::cli) struct CheckArgs {
     #[command(flatten)]
     pub(in crate::cli) surface: SurfaceArgs,

@@ -7,9 +7,10 @@ use crate::data::Surface;
 use crate::error::Result;
 
 pub(super) fn sheet(path: &Path) -> Result<Sheet> {
-    let mesh = open::mesh(path)?;
+    let (mesh, flaws) = open::linked_mesh(path)?;
     let facts = SurfaceFacts::of(&mesh);
-    let mut sheet = Sheet::default();
+    let no_surface = flaws.first().map(|flaw| format!("this is no surface: {flaw}; `breakline check` lists all flaws"));
+    let mut sheet = Sheet::with_warnings(no_surface.into_iter().collect());
     sheet.silent("kind", "mesh");
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
     sheet.plain("format", format!("TIN, {extension}"));

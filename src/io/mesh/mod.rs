@@ -1,10 +1,12 @@
-//! Triangle meshes: PLY, OBJ and STL.
+//! Triangle meshes: PLY, OBJ, OFF and STL; to read, Triangle's `.ele` too.
 //!
 //! | format | coordinates | breaklines, coordinate system | read |
 //! |---|---|---|---|
 //! | PLY | doubles | yes | yes |
 //! | OBJ | decimals that give the same doubles back | coordinate system, as a comment | yes |
+//! | OFF | the same | the same | yes |
 //! | STL | 32-bit floats from a local origin | no | no |
+//! | `.ele` with its `.node` | the same as OBJ; heights are 0 | breaklines | yes; to write, see [`triangle`](super::triangle) |
 //!
 //! Vertices and faces come in the order of the surface, which for a TIN is a function of its points and
 //! lines: along a curve, so that neighbors stand near each other. Vertices without a face are not written.
@@ -18,23 +20,26 @@
 //!
 //! The coordinate system stands in the header as WKT, in lines `comment crs TEXT`. Some readers take
 //! no line over 1024 bytes, so that the text is cut into lines of about 200; it is what follows
-//! `crs ` in all of them, joined. The OBJ comments are alike, with `# crs `. Readers also take a code
+//! `crs ` in all of them, joined. The OBJ comments are alike, with `# crs `, and so are those of OFF. Readers also take a code
 //! there, as in `EPSG:25832`.
 
 mod crs_text;
 mod listing;
 mod obj;
+mod off;
 mod ply;
 mod polygon;
 mod stl;
+mod text;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use listing::Listing;
 
-use crate::data::{Mesh, Surface};
+use crate::data::{Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
+use crate::io::triangle;
 
 /// A mesh format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,8 +48,12 @@ pub enum Format {
     Ply,
     /// Wavefront, `.obj`.
     Obj,
+    /// Object file format, `.off`.
+    Off,
     /// Stereolithography, `.stl`.
     Stl,
+    /// Elements of Triangle, `.ele`.
+    Ele,
 }
 
 impl Format {
@@ -54,7 +63,9 @@ impl Format {
         match extension.as_str() {
             "ply" => Some(Format::Ply),
             "obj" => Some(Format::Obj),
+            "off" => Some(Format::Off),
             "stl" => Some(Format::Stl),
+            "ele" => Some(Format::Ele),
             _ => None,
         }
     }
@@ -84,7 +95,10 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
     let origin = match format {
         Format::Ply => ply::write(target, &mesh, surface.crs()).map(|()| None),
         Format::Obj => obj::write(target, &mesh, surface.crs()).map(|()| None),
+        Format::Off => off::write(target, &mesh, surface.crs()).map(|()| None),
         Format::Stl => stl::write(target, &mesh).map(Some),
+        Format::Ele => Err(Error::unsupported("a surface is not written as .ele, which has no heights")
+            .cure("use .ply, .obj, .off or .stl")),
     };
     Ok(MeshSummary {
         vertices: mesh.vertex_count,
@@ -94,7 +108,7 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
     })
 }
 
-/// Reads a PLY or OBJ file, own or foreign. Polygons are divided into triangles.
+/// Reads a mesh that is a surface, own or foreign, of any format but STL. Polygons are divided into triangles.
 ///
 /// The file is held in memory while it is read.
 ///
@@ -102,16 +116,29 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
 /// If the file is damaged, is no surface ([`Mesh::new`] says what is none), has no faces or polygons
 /// that are far from convex, or the format is not one that is read.
 pub fn read(path: &Path) -> Result<Mesh> {
+    let Triangles { vertices, faces, constrained_edges, crs, .. } = read_triangles(path)?;
+    Mesh::new(vertices, faces, &constrained_edges, crs).map_err(|e| e.in_file(path))
+}
+
+/// Reads the triangles of a mesh, whether they are a surface or not: for a check, say.
+///
+/// # Errors
+/// As [`read`], but for what is no surface.
+pub fn read_triangles(path: &Path) -> Result<Triangles> {
     let read = || {
         let format = Format::of(path).ok_or_else(|| unknown(path))?;
         if format == Format::Stl {
             return Err(Error::unsupported("STL meshes are not read: they have no exact coordinates")
                 .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
         }
+        if format == Format::Ele {
+            return triangle::read_triangles(path);
+        }
         let mut bytes = Vec::new();
         std::fs::File::open(path)?.read_to_end(&mut bytes)?;
         match format {
             Format::Ply => ply::read(&bytes),
+            Format::Off => off::read(&bytes),
             _ => obj::read(&bytes),
         }
     };
@@ -120,5 +147,5 @@ pub fn read(path: &Path) -> Result<Mesh> {
 
 #[cold]
 fn unknown(path: &Path) -> Error {
-    Error::usage("the file's extension names no mesh format").in_file(path).cure("use .ply, .obj or .stl")
+    Error::usage("the file's extension names no mesh format").in_file(path).cure("use .ply, .obj, .off or .stl")
 }

@@ -3,17 +3,13 @@
 use std::io::Write;
 use std::path::Path;
 
-use rayon::prelude::*;
-
 use super::listing::Listing;
+use super::text::write_lines;
 use super::{crs_text, polygon};
 use crate::crs::Crs;
-use crate::data::Mesh;
+use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::Output;
-
-/// Lines that one task writes; as many tasks as there are cores run at a time.
-const LINES: usize = 1 << 14;
 
 /// Writes `v x y z` and `f a b c`, numbered from 1. The decimals are the fewest that give the same
 /// double back.
@@ -32,35 +28,9 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
     output.commit()
 }
 
-fn write_lines<T: Copy + Sync>(
-    output: &mut Output,
-    mut items: impl Iterator<Item = T>,
-    line: impl Fn(&mut Vec<u8>, T) -> std::io::Result<()> + Sync,
-) -> Result<()> {
-    let mut batch = Vec::new();
-    loop {
-        batch.clear();
-        batch.extend(items.by_ref().take(LINES * rayon::current_num_threads()));
-        if batch.is_empty() {
-            return Ok(());
-        }
-        let texts: Vec<std::io::Result<Vec<u8>>> = batch
-            .par_chunks(LINES)
-            .map(|chunk| {
-                let mut text = Vec::with_capacity(chunk.len() * 40);
-                chunk.iter().try_for_each(|&item| line(&mut text, item))?;
-                Ok(text)
-            })
-            .collect();
-        for text in texts {
-            output.write_all(&text?)?;
-        }
-    }
-}
-
 /// Reads `v` and `f` lines (with texture and normal numbers, and numbers from the end), and comments
 /// that begin with `crs`. Everything else is passed over.
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh> {
+pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut vertices = Vec::new();
     // Faces may come before their vertices, and are put together at the end.
     let mut corners = Vec::new();
@@ -90,7 +60,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh> {
         let place = |e: Error| e.at(format!("line {number}"));
         polygon::add_polygon(&vertices, &corners[range], &mut faces).map_err(place)?;
     }
-    Mesh::new(vertices, faces, &[], crs_text::parse(&crs)?)
+    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
 }
 
 /// Lines that end in a backslash are continued by the next. Numbered from 1, by the first line of each.

@@ -16,7 +16,7 @@ use header::{Element, Header, Property};
 use super::listing::Listing;
 use super::{crs_text, polygon};
 use crate::crs::Crs;
-use crate::data::Mesh;
+use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::Output;
 
@@ -60,7 +60,7 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
 }
 
 /// Reads the elements `vertex`, `face` and `constrained_edge`, whatever their order and types.
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh> {
+pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let header = Header::read(bytes)?;
     let has = |name: &str| header.elements.iter().any(|e| e.name == name && e.count > 0);
     if !has("face") {
@@ -89,7 +89,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh> {
         polygon::add_polygon(&vertices, corners, &mut faces).map_err(|e| e.at(format!("face {i}")))?;
         start = end;
     }
-    Mesh::new(vertices, faces, &edges, crs_text::parse(&header.crs)?)
+    let crs = crs_text::parse(&header.crs)?;
+    Ok(Triangles { vertices, faces, constrained_edges: edges, neighbors: None, crs })
 }
 
 fn read_vertices(body: &mut Body, element: &Element) -> Result<Vec<[f64; 3]>> {

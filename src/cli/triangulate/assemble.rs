@@ -1,0 +1,127 @@
+//! From a triangulation to what Triangle's files hold: numbers of vertices, attributes, boundary markers.
+
+use std::collections::HashMap;
+
+use super::build::Built;
+use crate::io::triangle::{Edge, LineGraph, Nodes, Triangulated};
+
+/// Puts together what is kept.
+pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attributes: &[f64]) -> Triangulated {
+    let mut nodes = graph.nodes.clone();
+    let node_of = number_nodes(graph, built, &mut nodes);
+    let markers = mark_walls(graph, built);
+    let marker_of = |ends: [u32; 2]| markers.get(&sorted(ends)).copied().unwrap_or(0);
+
+    let mut new_number = vec![None; is_kept.len()];
+    let kept = (0..is_kept.len()).filter(|&face| is_kept[face]);
+    for (new, face) in (0u32..).zip(kept.clone()) {
+        new_number[face] = Some(new);
+    }
+    let mut triangulated =
+        Triangulated { holes: graph.holes.clone(), regions: graph.regions.clone(), ..Default::default() };
+    let mut rim = Vec::new();
+    for face in kept {
+        let this = &built.faces[face];
+        let neighbors = this.neighbors.map(|beside| beside.and_then(|beside| new_number[beside as usize]));
+        triangulated.triangles.push(this.corners.map(|v| node_of[v as usize]));
+        triangulated.neighbors.push(neighbors);
+        triangulated.attributes.extend(attributes.get(face));
+        for (i, beside) in neighbors.into_iter().enumerate() {
+            if beside.is_some_and(|beside| Some(beside) < new_number[face]) {
+                continue; // told from the other side
+            }
+            let ends = [this.corners[(i + 1) % 3], this.corners[(i + 2) % 3]];
+            let mut edge = Edge { ends: ends.map(|v| node_of[v as usize]), marker: marker_of(ends) };
+            if beside.is_none() {
+                rim.extend(edge.ends);
+                edge.marker = if edge.marker == 0 { 1 } else { edge.marker };
+            }
+            triangulated.edges.push(edge);
+            if this.is_wall[i] || beside.is_none() {
+                triangulated.segments.push(edge);
+            }
+        }
+    }
+    if built.faces.is_empty() {
+        triangulated.segments = collinear_segments(built, &node_of, &marker_of);
+    }
+
+    // Its own marker first, then that of a segment, then 1 on the rim.
+    for (segment, chain) in graph.segments.iter().zip(&built.chains) {
+        for &v in chain {
+            set_if_zero(&mut nodes.markers[node_of[v as usize] as usize], segment.marker);
+        }
+    }
+    rim.into_iter().for_each(|node| set_if_zero(&mut nodes.markers[node as usize], 1));
+    triangulated.nodes = nodes;
+    triangulated
+}
+
+/// Numbers the vertices: where points share a place, the first of them stands. Adds those that are no
+/// point of the input, with attributes as they are there on the first segment through them.
+fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32> {
+    let mut node_of = vec![None; built.vertices.len()];
+    for (node, &vertex) in (0u32..).zip(&built.vertex_of) {
+        node_of[vertex as usize].get_or_insert(node);
+    }
+    let mut segment_of = vec![None; built.vertices.len()];
+    for (segment, chain) in graph.segments.iter().zip(&built.chains) {
+        chain.iter().for_each(|&vertex| _ = segment_of[vertex as usize].get_or_insert(segment));
+    }
+    let numbered = node_of.into_iter().enumerate().map(|(vertex, node)| {
+        node.unwrap_or_else(|| {
+            let at = built.vertices[vertex];
+            let attributes = match segment_of[vertex] {
+                Some(segment) => attributes_between(nodes, segment.ends.map(|end| end as usize), at),
+                None => vec![0.0; nodes.attribute_count],
+            };
+            nodes.points.push(at);
+            nodes.attributes.extend(attributes);
+            nodes.markers.push(0);
+            nodes.points.len() as u32 - 1
+        })
+    });
+    numbered.collect()
+}
+
+/// Linear between two vertices, at a place on the way.
+fn attributes_between(nodes: &Nodes, [a, b]: [usize; 2], at: [f64; 2]) -> Vec<f64> {
+    let (from, to) = (nodes.points[a], nodes.points[b]);
+    // Halves, so that no way is longer than a double can say.
+    let way = [0, 1].map(|axis| to[axis] / 2.0 - from[axis] / 2.0);
+    let axis = usize::from(way[1].abs() > way[0].abs());
+    let along = ((at[axis] / 2.0 - from[axis] / 2.0) / way[axis]).clamp(0.0, 1.0);
+    let values = nodes.attributes_of(a).iter().zip(nodes.attributes_of(b));
+    values.map(|(from, to)| if from == to { *from } else { from * (1.0 - along) + to * along }).collect()
+}
+
+/// The marker of each piece of a segment: that of the first segment through it that has one.
+fn mark_walls(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
+    let mut markers = HashMap::new();
+    for (segment, chain) in graph.segments.iter().zip(&built.chains).filter(|(segment, _)| segment.marker != 0) {
+        for pair in chain.windows(2) {
+            markers.entry(sorted([pair[0], pair[1]])).or_insert(segment.marker);
+        }
+    }
+    markers
+}
+
+/// Without triangles all segments are kept; each piece once.
+fn collinear_segments(built: &Built, node_of: &[u32], marker_of: &impl Fn([u32; 2]) -> i32) -> Vec<Edge> {
+    let mut pieces: Vec<[u32; 2]> =
+        built.chains.iter().flat_map(|chain| chain.windows(2).map(|pair| sorted([pair[0], pair[1]]))).collect();
+    pieces.sort_unstable();
+    pieces.dedup();
+    let edge = |ends: [u32; 2]| Edge { ends: ends.map(|v| node_of[v as usize]), marker: marker_of(ends) };
+    pieces.into_iter().map(edge).collect()
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+fn set_if_zero(marker: &mut i32, value: i32) {
+    if *marker == 0 {
+        *marker = value;
+    }
+}

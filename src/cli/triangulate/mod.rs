@@ -1,0 +1,232 @@
+//! The door for users of Triangle: its files in, its files out.
+
+mod assemble;
+mod build;
+mod eaten;
+
+use std::path::{Path, PathBuf};
+
+use self::build::{Built, Place};
+use self::eaten::Outside;
+use super::args::{KernelArg, OnCrossingArg, TriangulateArgs};
+use super::outputs::{self, Format, Target};
+use super::talk::Talk;
+use super::{Exit, inputs, open};
+use crate::data::Triangles;
+use crate::error::{Error, Result};
+use crate::io::contain;
+use crate::io::triangle::{LineGraph, Triangulated};
+use crate::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
+use crate::triangulation::{OnCrossing, Refused};
+
+/// Whose format an output has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Family {
+    Triangle,
+    Mesh,
+}
+
+const MESHES: [Format<Family>; 3] = [
+    Format { extension: "off", kind: Family::Mesh, companions: &[] },
+    Format { extension: "obj", kind: Family::Mesh, companions: &[] },
+    Format { extension: "ply", kind: Family::Mesh, companions: &[] },
+];
+
+/// What is written of a `.poly`: as Triangle does, an `.ele` comes with the segments.
+const OF_POLY: &[Format<Family>] = &formats(&["node", "poly"]);
+const OF_NODE: &[Format<Family>] = &formats(&["node"]);
+
+const fn formats(beside_ele: &'static [&'static str]) -> [Format<Family>; 8] {
+    let [off, obj, ply] = MESHES;
+    let kind = Family::Triangle;
+    [
+        Format { extension: "node", kind, companions: &[] },
+        Format { extension: "ele", kind, companions: beside_ele },
+        Format { extension: "poly", kind, companions: &["node"] },
+        Format { extension: "edge", kind, companions: &["node"] },
+        Format { extension: "neigh", kind, companions: &[] },
+        off,
+        obj,
+        ply,
+    ]
+}
+
+/// Triangulates what a `.node` or `.poly` file holds.
+pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
+    let path = &args.input;
+    inputs::require([path])?;
+    let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
+    let formats = if is_poly { OF_POLY } else { OF_NODE };
+    // A .poly may have its vertices beside it.
+    let mut read = vec![path.clone()];
+    read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
+    let targets = outputs::resolve(&args.output, formats, &read)?;
+    let graph = open::line_graph(path)?;
+    graph.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
+    if graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute)) {
+        talk.warning(format_args!(
+            "{}: largest areas of regions are not used: no vertex is added for them",
+            path.display()
+        ));
+    }
+
+    let built = build(&graph, args, path)?;
+    tell_places(&built, &graph, path, talk);
+    let outside = if args.convex || graph.segments.is_empty() { Outside::Keep } else { Outside::Eat };
+    let is_kept = eaten::kept(&built, &graph, outside);
+    let attributes = eaten::attributes(&built, &graph, &is_kept);
+    let triangulated = assemble::assemble(&graph, &built, &is_kept, &attributes);
+    if triangulated.triangles.is_empty() && !built.faces.is_empty() {
+        return Err(Error::format("no triangle is left: all can be reached from outside or from a hole")
+            .in_file(path)
+            .cure("close the outer boundary with segments, or add --convex to keep the hull"));
+    }
+    let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&targets, formats, family));
+    write(&meshes, &files, &triangulated)?;
+    tell(&graph, &built, &triangulated, talk);
+    outputs::tell(&files, talk);
+    outputs::tell(&meshes, talk);
+    Ok(Exit::Done)
+}
+
+/// Triangulates with the arithmetic that was asked for.
+fn build(graph: &LineGraph, args: &TriangulateArgs, path: &Path) -> Result<Built> {
+    let built = match args.kernel {
+        KernelArg::Adaptive if is_ordinary(graph) => build_with::<Adaptive>(graph, args),
+        KernelArg::Adaptive => build_with::<Wide>(graph, args),
+        KernelArg::Exact => build_with::<Exact>(graph, args),
+        KernelArg::Fast => contain(|| build_with::<Fast>(graph, args)).ok_or_else(|| {
+            Error::limit("plain floating point contradicts itself on these points")
+                .in_file(path)
+                .cure("leave out --kernel fast")
+        })?,
+    };
+    let built = built.map_err(|refused| explained(refused, graph, path))?;
+    if args.kernel == KernelArg::Fast {
+        refuse_flaws(&built).map_err(|e| e.in_file(path))?;
+    }
+    Ok(built)
+}
+
+/// Whether no coordinate is so large or small that the default arithmetic would need wider numbers.
+fn is_ordinary(graph: &LineGraph) -> bool {
+    graph.nodes.points.as_flattened().iter().all(|&x| Adaptive::RANGE.admits(x))
+}
+
+fn build_with<K: Kernel>(graph: &LineGraph, args: &TriangulateArgs) -> std::result::Result<Built, Refused> {
+    let segments: Vec<[u32; 2]> = graph.segments.iter().map(|segment| segment.ends).collect();
+    let holes = graph.holes.iter().map(|hole| hole.at);
+    let places: Vec<[f64; 2]> = holes.chain(graph.regions.iter().map(|region| region.at)).collect();
+    let on_crossing = match args.on_crossing {
+        OnCrossingArg::Split => OnCrossing::Split,
+        OnCrossingArg::Reject => OnCrossing::Reject,
+    };
+    build::build::<K>(&graph.nodes.points, &segments, &places, on_crossing)
+}
+
+/// With the numbers and lines of the file.
+#[cold]
+fn explained(refused: Refused, graph: &LineGraph, path: &Path) -> Error {
+    match refused {
+        Refused::Coordinate(i) => {
+            let ([x, y], Range { min, max }) = (graph.nodes.points[i], Fast::RANGE);
+            let number = i + graph.nodes.first_number as usize;
+            let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
+            Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
+                .in_file(&graph.node_file)
+                .at(format!("line {}", graph.node_lines[i]))
+                .cure("leave out --kernel fast: the others take any finite coordinate")
+        }
+        Refused::Crossing { segments, place: [x, y] } => {
+            let mut positions = segments.map(|(line, _)| line);
+            positions.sort_unstable();
+            let [one, other] = positions.map(|i| &graph.segments[i]);
+            Error::format(format!("segments {} and {} cross at {x:?} {y:?}", one.number, other.number))
+                .in_file(path)
+                .at(format!("lines {} and {}", one.line, other.line))
+                .cure("divide both at a vertex there, or use --on-crossing split")
+        }
+        _ => Error::limit(refused.to_string()).in_file(&graph.node_file),
+    }
+}
+
+/// What is not exact may come out wrong.
+fn refuse_flaws(built: &Built) -> Result<()> {
+    let triangles = Triangles {
+        vertices: built.vertices.iter().map(|&[x, y]| [x, y, 0.0]).collect(),
+        faces: built.faces.iter().map(|face| face.corners).collect(),
+        constrained_edges: built
+            .chains
+            .iter()
+            .flat_map(|chain| chain.windows(2).map(|pair| [pair[0], pair[1]]))
+            .collect(),
+        ..Triangles::default()
+    };
+    match open::flaws_of(triangles)?.1.first() {
+        None => Ok(()),
+        Some(flaw) => Err(Error::limit(format!("plain floating point gave a wrong triangulation ({flaw})"))
+            .cure("leave out --kernel fast")),
+    }
+}
+
+/// Says which holes and regions cannot be told apart.
+fn tell_places(built: &Built, graph: &LineGraph, path: &Path, talk: &Talk) {
+    let holes = graph.holes.iter().map(|hole| ("hole", hole.line));
+    let listed = holes.chain(graph.regions.iter().map(|region| ("region", region.line)));
+    for ((what, line), place) in listed.zip(&built.places) {
+        let why = match place {
+            Place::Face(_) => continue,
+            Place::Wall => "lies on a segment, and which side is meant cannot be told",
+            Place::Outside => "lies outside of the convex hull",
+        };
+        talk.warning(format_args!("{}: line {line}: the {what} {why}; it is not used", path.display()));
+    }
+}
+
+/// All files of a family that are written, with what comes with them; each once.
+fn files(targets: &[Target<Family>], formats: &[Format<Family>], family: Family) -> Vec<Target<Family>> {
+    let mut files: Vec<Target<Family>> = Vec::new();
+    for target in targets.iter().filter(|target| target.kind == family) {
+        for path in outputs::files_of(&target.path, formats) {
+            let file = Target { path, kind: family };
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+    }
+    files
+}
+
+/// Writes the meshes one by one, the files of Triangle all or none.
+fn write(meshes: &[Target<Family>], files: &[Target<Family>], triangulated: &Triangulated) -> Result<()> {
+    if !meshes.is_empty() {
+        let mesh = open::flat_mesh(triangulated)?;
+        for target in meshes {
+            open::write_mesh(&target.path, &mesh).map_err(|e| e.in_file(&target.path))?;
+        }
+    }
+    let paths: Vec<PathBuf> = files.iter().map(|file| file.path.clone()).collect();
+    open::write_triangulated(&paths, triangulated)
+}
+
+/// Says what went in and what came out.
+fn tell(graph: &LineGraph, built: &Built, triangulated: &Triangulated, talk: &Talk) {
+    let given = graph.nodes.points.len();
+    let added = triangulated.nodes.points.len() - given;
+    let doubled = given + added - built.vertices.len();
+    talk.line(format_args!("vertices    {} ({given} in, {added} added where segments cross)", given + added));
+    if doubled > 0 {
+        talk.line(format_args!("            {doubled} at the place of an earlier one, without a triangle"));
+    }
+    let walls = triangulated.segments.len();
+    talk.line(format_args!(
+        "segments    {} in, {walls} constrained edges out, the boundary among them",
+        graph.segments.len()
+    ));
+    let (all, kept) = (built.faces.len(), triangulated.triangles.len());
+    let eaten = if kept < all { format!(" ({} outside or in holes eaten away)", all - kept) } else { String::new() };
+    talk.line(format_args!("triangles   {kept}{eaten}"));
+    if all == 0 {
+        talk.warning("all vertices are on one line or at one place: there is no triangle");
+    }
+}

@@ -1,0 +1,91 @@
+//! OFF, the object file format of Geomview: vertices and faces as text.
+//!
+//! `OFF`, then the numbers of vertices, faces and edges, then a line `x y z` for each vertex and a line
+//! `count v1 v2 ...` for each face, counted from 0. Comments begin with `#`. What may stand behind the
+//! numbers of a line (colors, normals) is passed over.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::listing::Listing;
+use super::text::write_lines;
+use super::{crs_text, polygon};
+use crate::crs::Crs;
+use crate::data::Triangles;
+use crate::error::{Error, Result};
+use crate::io::Output;
+use crate::io::decimal::Decimal;
+use crate::io::rows::{Row, Rows, shown};
+
+/// Writes vertices, faces and the coordinate system. The number of edges, which no reader uses, is 0.
+pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
+    let mut output = Output::create(target)?;
+    writeln!(output, "OFF")?;
+    for line in crs_text::lines(crs) {
+        writeln!(output, "# crs {line}")?;
+    }
+    writeln!(output, "{} {} 0", mesh.vertex_count, mesh.face_count)?;
+    write_lines(&mut output, mesh.vertices(), |text, p| {
+        let [x, y, z] = p.map(Decimal);
+        writeln!(text, "{x} {y} {z}")
+    })?;
+    write_lines(&mut output, mesh.faces(), |text, [a, b, c]| writeln!(text, "3 {a} {b} {c}"))?;
+    output.commit()
+}
+
+/// Reads plain OFF and its kinds with colors and normals.
+pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
+    let mut rows = Rows::new(bytes);
+    let [vertex_count, face_count] = read_header(&mut rows)?;
+    let mut vertices = Vec::with_capacity(vertex_count.min(bytes.len() / SHORTEST));
+    for i in 0..vertex_count {
+        let mut row = rows.expect(|| format!("vertex {i} of {vertex_count}"), "X Y Z")?;
+        vertices.push([row.finite("x coordinate")?, row.finite("y coordinate")?, row.finite("z coordinate")?]);
+    }
+    let mut faces = Vec::with_capacity(face_count.min(bytes.len() / SHORTEST));
+    let mut corners = Vec::new();
+    for i in 0..face_count {
+        let mut row = rows.expect(|| format!("face {i} of {face_count}"), "COUNT V1 V2 V3 ...")?;
+        let count: usize = row.within("number of corners")?;
+        corners.clear();
+        for _ in 0..count {
+            corners.push(row.within("vertex number")?);
+        }
+        polygon::add_polygon(&vertices, &corners, &mut faces).map_err(|e| e.at(format!("line {}", row.line)))?;
+    }
+    rows.end("the last face")?;
+    if faces.is_empty() {
+        return Err(Error::format("there are no faces: the file is a point cloud"));
+    }
+    let comments = bytes.split(|&b| b == b'\n').filter_map(|line| line.strip_prefix(b"# crs "));
+    let crs: String = comments.map(|text| String::from_utf8_lossy(text).trim_end_matches('\r').to_owned()).collect();
+    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
+}
+
+/// Bytes that a vertex or a face takes at least, so that no more room is made than there can be of them.
+const SHORTEST: usize = 6;
+
+/// The numbers of vertices and faces, in the line of the keyword or in the next.
+fn read_header(rows: &mut Rows) -> Result<[usize; 2]> {
+    const COUNTS: &str = "VERTICES FACES EDGES";
+    let mut row = rows.expect(|| "the keyword OFF".to_owned(), "OFF")?;
+    let keyword = row.word().unwrap_or_default();
+    match keyword {
+        b"OFF" | b"COFF" | b"NOFF" | b"CNOFF" | b"STOFF" => {}
+        _ if keyword.ends_with(b"OFF") => {
+            let kind = shown(keyword);
+            return Err(Error::unsupported(format!("'{kind}' is a kind of OFF file that is not read"))
+                .at(format!("line {}", row.line))
+                .cure("save it as plain OFF"));
+        }
+        _ => return Err(row.wrong(format!("the file begins with '{}', not with 'OFF'", shown(keyword)))),
+    }
+    if row.has_more() {
+        return counts(row);
+    }
+    counts(rows.expect(|| "the number of vertices".to_owned(), COUNTS)?)
+}
+
+fn counts(mut row: Row) -> Result<[usize; 2]> {
+    Ok([row.within("number of vertices")?, row.within("number of faces")?])
+}

@@ -1,0 +1,203 @@
+//! Tables of numbers in text: numbered lines of words, without comments.
+
+use std::str::FromStr;
+
+use crate::error::{Error, Result};
+
+/// The lines of a text that hold anything but a comment (`#` to the end of the line).
+pub(super) struct Rows<'a> {
+    rest: &'a [u8],
+    line: usize,
+}
+
+/// A line of words, which are separated by blanks or commas. Words are taken from its start.
+pub(super) struct Row<'a> {
+    rest: &'a [u8],
+    /// Counted from 1.
+    pub(super) line: usize,
+    /// How such a line is to read.
+    pattern: &'static str,
+}
+
+impl<'a> Rows<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Rows { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), line: 0 }
+    }
+
+    /// How much of the text is left.
+    pub(super) fn bytes_left(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// The next line, which is to read like `pattern`.
+    ///
+    /// # Errors
+    /// If the text ends; the message says what of.
+    pub(super) fn expect(&mut self, what: impl FnOnce() -> String, pattern: &'static str) -> Result<Row<'a>> {
+        self.next(pattern).ok_or_else(|| {
+            Error::format(format!("the file ends where {} is expected", what()))
+                .at(format!("line {}", self.line.max(1)))
+                .cure(format!("get the whole file, or correct the count; the line is to read '{pattern}'"))
+        })
+    }
+
+    /// The next line, if there is one, which is to read like `pattern`.
+    pub(super) fn next(&mut self, pattern: &'static str) -> Option<Row<'a>> {
+        while !self.rest.is_empty() {
+            let end = self.rest.iter().position(|&b| b == b'\n').unwrap_or(self.rest.len());
+            let line = &self.rest[..end];
+            self.rest = self.rest.get(end + 1..).unwrap_or_default();
+            self.line += 1;
+            let mut row = Row { rest: line, line: self.line, pattern };
+            if let Some(comment) = line.iter().position(|&b| b == b'#') {
+                row.rest = &line[..comment];
+            }
+            if row.clone_of_rest().word().is_some() {
+                return Some(row);
+            }
+        }
+        None
+    }
+
+    /// # Errors
+    /// If there are more lines: a count before them lies. `last` is what should have been the last.
+    pub(super) fn end(mut self, last: &str) -> Result<()> {
+        match self.next("") {
+            None => Ok(()),
+            Some(mut row) => {
+                let word = row.word().map(shown).unwrap_or_default();
+                Err(Error::format(format!("'{word}' stands behind {last}, expected the end of the file"))
+                    .at(format!("line {}", row.line))
+                    .cure("correct the count in the line before that list, or remove what is behind it"))
+            }
+        }
+    }
+}
+
+impl<'a> Row<'a> {
+    fn clone_of_rest(&self) -> Row<'a> {
+        Row { ..*self }
+    }
+
+    /// The next word.
+    pub(super) fn word(&mut self) -> Option<&'a [u8]> {
+        let is_blank = |b: u8| b.is_ascii_whitespace() || b == b',';
+        let start = self.rest.iter().position(|&b| !is_blank(b))?;
+        let length = self.rest[start..].iter().position(|&b| is_blank(b)).unwrap_or(self.rest.len() - start);
+        let word = &self.rest[start..start + length];
+        self.rest = &self.rest[start + length..];
+        Some(word)
+    }
+
+    /// Whether there are words left.
+    pub(super) fn has_more(&self) -> bool {
+        self.clone_of_rest().word().is_some()
+    }
+
+    /// The next word as a whole number; `1.0` and `1e0` are such, too.
+    ///
+    /// # Errors
+    /// If there is none or it is something else.
+    pub(super) fn whole(&mut self, what: &str) -> Result<i64> {
+        let word = self.some(what)?;
+        if let Some(number) = parse(word) {
+            return Ok(number);
+        }
+        let whole = parse::<f64>(word).filter(|number| number.fract() == 0.0 && number.abs() < 1e15);
+        let number = whole.ok_or_else(|| self.wrong(format!("'{}' is no whole number for the {what}", shown(word))))?;
+        Ok(number as i64)
+    }
+
+    /// The same, within what a type holds: a count is no negative number.
+    ///
+    /// # Errors
+    /// As [`whole`](Self::whole).
+    pub(super) fn within<T: TryFrom<i64>>(&mut self, what: &str) -> Result<T> {
+        let number = self.whole(what)?;
+        T::try_from(number).map_err(|_| self.wrong(format!("{number} is out of range for the {what}")))
+    }
+
+    /// The same where the line has another word, `default` where it does not.
+    ///
+    /// # Errors
+    /// As [`whole`](Self::whole).
+    pub(super) fn within_or<T: TryFrom<i64>>(&mut self, what: &str, default: T) -> Result<T> {
+        if self.has_more() { self.within(what) } else { Ok(default) }
+    }
+
+    /// The next word as a finite number.
+    ///
+    /// # Errors
+    /// If there is none or it is something else.
+    pub(super) fn finite(&mut self, what: &str) -> Result<f64> {
+        let word = self.some(what)?;
+        let number: f64 =
+            parse(word).ok_or_else(|| self.wrong(format!("'{}' is no number for the {what}", shown(word))))?;
+        if !number.is_finite() {
+            return Err(self.wrong(format!("the {what} is {}, expected a finite number", shown(word))));
+        }
+        Ok(number)
+    }
+
+    fn some(&mut self, what: &str) -> Result<&'a [u8]> {
+        self.word().ok_or_else(|| self.wrong(format!("there is no {what}")))
+    }
+
+    /// An error in this line, with how it is to read as the cure.
+    #[cold]
+    pub(super) fn wrong(&self, message: String) -> Error {
+        let cure = format!("correct the line; it is to read '{}'", self.pattern);
+        Error::format(message).at(format!("line {}", self.line)).cure(cure)
+    }
+}
+
+fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A word as messages show it.
+pub(super) fn shown(word: &[u8]) -> String {
+    let printable = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    String::from_utf8_lossy(word).chars().take(40).map(printable).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_and_blank_lines_are_no_rows() {
+        let mut rows = Rows::new(b"\xef\xbb\xbf# title\r\n\n  \t\r\n 1, 2.5 # a comment\r\n,,\n3e0 x");
+        let mut row = rows.next("N X").unwrap();
+        assert_eq!((row.line, row.whole("n").unwrap(), row.finite("x").unwrap()), (4, 1, 2.5));
+        assert!(!row.has_more());
+        assert_eq!(row.finite("y").unwrap_err().to_string(), "line 4: there is no y");
+        let mut row = rows.next("N X").unwrap();
+        assert_eq!((row.line, row.within::<u32>("n").unwrap()), (6, 3));
+        let error = row.finite("x").unwrap_err();
+        assert_eq!(error.to_string(), "line 6: 'x' is no number for the x");
+        assert_eq!(error.cure_text(), Some("correct the line; it is to read 'N X'"));
+        assert_eq!(
+            rows.expect(|| "vertex 2".into(), "N").err().unwrap().to_string(),
+            "line 6: the file ends where vertex 2 is expected"
+        );
+    }
+
+    #[test]
+    fn numbers_that_are_none_are_named() {
+        let read = |text: &str| {
+            let mut rows = Rows::new(text.as_bytes());
+            let mut row = rows.next("N").unwrap();
+            let whole = row.clone_of_rest().within::<u32>("n").map_err(|e| e.to_string());
+            (whole, row.finite("n").map_err(|e| e.to_string()))
+        };
+        assert_eq!(read("7"), (Ok(7), Ok(7.0)));
+        assert_eq!(read("1.5").0, Err("line 1: '1.5' is no whole number for the n".into()));
+        assert_eq!(read("-1").0, Err("line 1: -1 is out of range for the n".into()));
+        assert_eq!(read("4294967296").0, Err("line 1: 4294967296 is out of range for the n".into()));
+        for odd in ["nan", "inf", "-Infinity", "1e999"] {
+            assert_eq!(read(odd).1, Err(format!("line 1: the n is {odd}, expected a finite number")));
+            assert!(read(odd).0.is_err());
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! `.ele`: triangles.
+//!
+//! | line | holds |
+//! |---|---|
+//! | first | number of triangles, vertices of each (3, or 6 with the middles of the edges), number of attributes |
+//! | each of the others | triangle number, vertices, attributes |
+//!
+//! Middles of edges and attributes are read and not used.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::{Numbering, Triangulated, bytes_of, edge, neigh, node, poly, room};
+use crate::data::Triangles;
+use crate::error::Result;
+use crate::io::decimal::Decimal;
+use crate::io::rows::Rows;
+
+const COUNTS: &str = "TRIANGLES 3 ATTRIBUTES";
+const TRIANGLE: &str = "NUMBER VERTEX VERTEX VERTEX ATTRIBUTES";
+
+pub(super) fn read_file(path: &Path) -> Result<Triangles> {
+    let nodes = node::read_beside(path)?.nodes;
+    let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
+    let bytes = bytes_of(path)?;
+    let faces = read(&bytes, numbering).map_err(|e| e.in_file(path))?;
+    let beside = |extension: &str| Some(path.with_extension(extension)).filter(|path| path.exists());
+    let segments = match beside("poly") {
+        Some(path) => poly::read_segments_alone(&path, numbering)?,
+        None => None,
+    };
+    let constrained_edges = match (segments, beside("edge")) {
+        // Segments among points on one line have no triangles beside them.
+        _ if faces.is_empty() => Vec::new(),
+        (Some(segments), _) => segments.into_iter().map(|segment| segment.ends).collect(),
+        (None, Some(path)) => edge::read_marked(&path, numbering)?,
+        (None, None) => Vec::new(),
+    };
+    let neighbors = match beside("neigh") {
+        Some(path) => Some(neigh::read_file(&path, numbering.first, faces.len())?),
+        None => None,
+    };
+    let vertices = nodes.points.into_iter().map(|[x, y]| [x, y, 0.0]).collect();
+    Ok(Triangles { vertices, faces, constrained_edges, neighbors, crs: None })
+}
+
+fn read(bytes: &[u8], numbering: Numbering) -> Result<Vec<[u32; 3]>> {
+    let mut rows = Rows::new(bytes);
+    let mut header = rows.expect(|| "the number of triangles".to_owned(), COUNTS)?;
+    let count: usize = header.within("number of triangles")?;
+    let corner_count: usize = header.within_or("number of vertices of a triangle", 3)?;
+    if corner_count != 3 && corner_count != 6 {
+        return Err(header.wrong(format!("a triangle has {corner_count} vertices, expected 3 or 6")));
+    }
+    let attribute_count: usize = header.within_or("number of attributes", 0)?;
+    let mut faces = Vec::with_capacity(room(count, &rows));
+    for i in 0..count {
+        let mut row = rows.expect(|| format!("triangle {} of {count}", i + 1), TRIANGLE)?;
+        row.whole("triangle number")?;
+        let mut face = [0; 3];
+        for corner in &mut face {
+            *corner = numbering.vertex(&mut row, "corner")?;
+        }
+        for _ in 3..corner_count {
+            numbering.vertex(&mut row, "middle of an edge")?;
+        }
+        for _ in 0..attribute_count {
+            row.finite("attribute")?;
+        }
+        faces.push(face);
+    }
+    rows.end("the last triangle")?;
+    Ok(faces)
+}
+
+pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {
+    let first = triangulated.nodes.first_number;
+    let attribute_count = usize::from(!triangulated.attributes.is_empty());
+    writeln!(out, "{}  3  {attribute_count}", triangulated.triangles.len())?;
+    for (i, corners) in triangulated.triangles.iter().enumerate() {
+        let [a, b, c] = corners.map(|v| v + first);
+        write!(out, "{:4}    {a}  {b}  {c}", i + first as usize)?;
+        match triangulated.attributes.get(i) {
+            Some(&value) => writeln!(out, "    {}", Decimal(value))?,
+            None => writeln!(out)?,
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! `.neigh`: who is beside whom among the triangles of an `.ele` file.
+//!
+//! | line | holds |
+//! |---|---|
+//! | first | number of triangles, neighbors of each (3) |
+//! | each of the others | triangle number, the triangles opposite its corners, -1 for none |
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::{Triangulated, bytes_of, room};
+use crate::error::{Error, Result};
+use crate::io::rows::Rows;
+
+const COUNTS: &str = "TRIANGLES 3";
+const NEIGHBORS: &str = "NUMBER NEIGHBOR NEIGHBOR NEIGHBOR, -1 for none";
+
+pub(super) fn read_file(path: &Path, first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {
+    let bytes = bytes_of(path)?;
+    read(&bytes, first, triangle_count).map_err(|e: Error| e.in_file(path))
+}
+
+fn read(bytes: &[u8], first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {
+    let mut rows = Rows::new(bytes);
+    let mut header = rows.expect(|| "the number of triangles".to_owned(), COUNTS)?;
+    let count: usize = header.within("number of triangles")?;
+    if count != triangle_count {
+        return Err(header.wrong(format!("there are {count} triangles, but the .ele file has {triangle_count}")));
+    }
+    let mut neighbors = Vec::with_capacity(room(count, &rows));
+    for i in 0..count {
+        let mut row = rows.expect(|| format!("triangle {} of {count}", i + 1), NEIGHBORS)?;
+        row.whole("triangle number")?;
+        let mut around = [None; 3];
+        for beside in &mut around {
+            let number = row.whole("neighbor")?;
+            if number != -1 {
+                let position = number.checked_sub(i64::from(first)).and_then(|position| u32::try_from(position).ok());
+                let there = position.filter(|&position| (position as usize) < count);
+                *beside = Some(there.ok_or_else(|| {
+                    let last = count as i64 + i64::from(first) - 1;
+                    row.wrong(format!("the neighbor is triangle {number}, but they are numbered {first} to {last}"))
+                })?);
+            }
+        }
+        neighbors.push(around);
+    }
+    rows.end("the last triangle")?;
+    Ok(neighbors)
+}
+
+pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {
+    let first = triangulated.nodes.first_number;
+    writeln!(out, "{}  3", triangulated.neighbors.len())?;
+    for (number, around) in (first as usize..).zip(&triangulated.neighbors) {
+        let [a, b, c] = around.map(|beside| beside.map_or(-1, |beside| i64::from(beside) + i64::from(first)));
+        writeln!(out, "{number:4}    {a}  {b}  {c}")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,101 @@
+//! `.node`: vertices.
+//!
+//! | line | holds |
+//! |---|---|
+//! | first | number of vertices, dimension (2), number of attributes, number of boundary markers (0 or 1) |
+//! | each of the others | vertex number, x, y, attributes, boundary marker |
+//!
+//! What is missing at the end of the first line is 2, 0 and 0.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::{LineGraph, Nodes, Surplus, Triangulated, bytes_of, room};
+use crate::error::{Error, Result};
+use crate::io::decimal::Decimal;
+use crate::io::rows::Rows;
+
+const COUNTS: &str = "VERTICES 2 ATTRIBUTES MARKERS";
+const VERTEX: &str = "NUMBER X Y ATTRIBUTES MARKER, the last two as many as the first line announces";
+
+/// What a file or a part of one holds.
+pub(super) struct Listed {
+    pub(super) nodes: Nodes,
+    pub(super) lines: Vec<usize>,
+    pub(super) surplus: Surplus,
+}
+
+pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
+    let bytes = bytes_of(path)?;
+    let read = || {
+        let mut rows = Rows::new(&bytes);
+        let listed = read(&mut rows)?;
+        rows.end("the last vertex")?;
+        Ok(listed)
+    };
+    let Listed { nodes, lines, surplus } = read().map_err(|e: Error| e.in_file(path))?;
+    let warnings = surplus.warning().into_iter().collect();
+    Ok(LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, warnings, ..Default::default() })
+}
+
+/// Reads the file that has the vertices of another one.
+pub(super) fn read_beside(path: &Path) -> Result<LineGraph> {
+    read_file(&path.with_extension("node")).map_err(|e| match e.cure_text() {
+        Some(_) => e,
+        None => e.cure(format!("{} needs its vertices beside it", path.display())),
+    })
+}
+
+/// Reads the vertices that follow, with the line that counts them.
+pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
+    let mut header = rows.expect(|| "the number of vertices".to_owned(), COUNTS)?;
+    let count: usize = header.within("number of vertices")?;
+    let dimension = header.within_or("dimension", 2)?;
+    if dimension != 2 {
+        return Err(header.wrong(format!("the dimension is {dimension}, expected 2")));
+    }
+    let attribute_count: usize = header.within_or("number of attributes", 0)?;
+    let marker_count: usize = header.within_or("number of boundary markers", 0)?;
+    if marker_count > 1 {
+        return Err(header.wrong(format!("the number of boundary markers is {marker_count}, expected 0 or 1")));
+    }
+    let room = room(count, rows);
+    let mut nodes = Nodes { attribute_count, ..Nodes::default() };
+    nodes.points.reserve_exact(room);
+    nodes.markers.reserve_exact(room);
+    let mut lines = Vec::with_capacity(room);
+    let mut surplus = Surplus::default();
+    for i in 0..count {
+        let mut row = rows.expect(|| format!("vertex {} of {count}", i + 1), VERTEX)?;
+        let number = row.whole("vertex number")?;
+        if i == 0 {
+            nodes.first_number = u32::try_from(number)
+                .ok()
+                .filter(|&first| first <= 1)
+                .ok_or_else(|| row.wrong(format!("the first vertex has the number {number}, expected 0 or 1")))?;
+        }
+        let expected = i as i64 + i64::from(nodes.first_number);
+        if number != expected {
+            return Err(row.wrong(format!("vertex number {number} is out of sequence, expected {expected}")));
+        }
+        nodes.points.push([row.finite("x coordinate")?, row.finite("y coordinate")?]);
+        for _ in 0..attribute_count {
+            nodes.attributes.push(row.finite("attribute")?);
+        }
+        nodes.markers.push(if marker_count == 1 { row.within("boundary marker")? } else { 0 });
+        surplus.look(&row);
+        lines.push(row.line);
+    }
+    Ok(Listed { nodes, lines, surplus })
+}
+
+pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {
+    let nodes = &triangulated.nodes;
+    writeln!(out, "{}  2  {}  1", nodes.points.len(), nodes.attribute_count)?;
+    for (i, ([x, y], marker)) in nodes.points.iter().zip(&nodes.markers).enumerate() {
+        write!(out, "{:4}    {}  {}", i + nodes.first_number as usize, Decimal(*x), Decimal(*y))?;
+        nodes.attributes_of(i).iter().try_for_each(|&value| write!(out, "  {}", Decimal(value)))?;
+        writeln!(out, "    {marker}")?;
+    }
+    Ok(())
+}
