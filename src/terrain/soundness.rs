@@ -1,5 +1,6 @@
 use crate::data::Surface;
 use crate::geometry::{Geometry, Terrain};
+use crate::kernel::Wide;
 use crate::num::Sign;
 
 /// What is wrong with a surface of triangles, found with exact predicates.
@@ -49,7 +50,7 @@ fn faces(surface: &dyn Surface) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
 }
 
 fn bad_vertices(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    let geometry: Terrain = Terrain::default();
+    let geometry = Terrain::<Wide>::default();
     let bad = |v: u32| {
         let p = surface.position(v);
         !geometry.admits(&p) || !p[2].is_finite()
@@ -85,7 +86,7 @@ fn bad_links(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
 }
 
 fn bad_orientations(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    let geometry: Terrain = Terrain::default();
+    let geometry = Terrain::<Wide>::default();
     let turned = |corners: [u32; 3]| {
         let points = corners.map(|v| surface.position(v));
         geometry.orientation(points.each_ref()) != Sign::Positive
@@ -123,7 +124,7 @@ fn bad_fans(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
 }
 
 fn bad_circles(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    let geometry: Terrain = Terrain::default();
+    let geometry = Terrain::<Wide>::default();
     let mut flaws = Vec::new();
     for (face, corners) in faces(surface) {
         let points = corners.map(|v| surface.position(v));
