@@ -19,7 +19,7 @@
 //! themselves, whose steps shrink towards zero, so that ends still are centers and pixels still do not overlap. The
 //! bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero without
 //! meeting it: there pieces may cross after all (and where ends lie closer together than 2^-60 of the unit, which is the
-//! smallest step). That is left to the caller.
+//! smallest step). The pieces are then arranged [again](Arrangement::again), with up to another half unit of displacement.
 //!
 //! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
 //! however close it passes by an end: nothing forces it.
@@ -101,6 +101,58 @@ impl Arrangement {
         arrangement
     }
 
+    /// Arranges the pieces of an arrangement of these segments: where they cross, which they can off the even grid only, they
+    /// are split by the same rule, and displaced by up to another half a unit.
+    ///
+    /// Done again and again, it comes to an end. Sites of a segment come in order on both axes, those of its pieces lie
+    /// between their ends, and there are finitely many places in a box. Of two pieces that cross at least one is divided:
+    /// they have no common end, so the site of the crossing is an end of one of them at most.
+    #[must_use]
+    pub fn again(mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> Self {
+        let row = |i: usize| {
+            let [a, b] = segments[i];
+            let sites = std::iter::once(a).chain(self.chain(i as u32).iter().copied()).chain([b]);
+            sites.collect::<Vec<u32>>()
+        };
+        let mut pieces: Vec<[u32; 2]> = (0..segments.len())
+            .flat_map(|i| {
+                row(i).windows(2).map(|ends| [ends[0].min(ends[1]), ends[0].max(ends[1])]).collect::<Vec<_>>()
+            })
+            .collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        let site = |i: u32| match (i as usize).checked_sub(self.places) {
+            None => place(i),
+            Some(added) => self.added[added],
+        };
+        let inner = Arrangement::new(self.places + self.added.len(), site, &pieces);
+        let mut chains = FxHashMap::default();
+        let mut chain_sites = Vec::new();
+        for i in 0..segments.len() {
+            let from = chain_sites.len() as u32;
+            let mut is_led = self.is_led(i as u32);
+            for ends in row(i).windows(2) {
+                let piece = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+                let at = pieces.partition_point(|other| *other < piece) as u32;
+                is_led |= inner.is_led(at);
+                let chain = inner.chain(at);
+                if ends[0] == piece[0] {
+                    chain_sites.extend(chain);
+                } else {
+                    chain_sites.extend(chain.iter().rev());
+                }
+                chain_sites.push(ends[1]);
+            }
+            chain_sites.truncate(chain_sites.len().saturating_sub(1).max(from as usize));
+            if is_led {
+                chains.insert(i as u32, from..chain_sites.len() as u32);
+            }
+        }
+        self.added.extend(inner.added);
+        (self.chains, self.chain_sites) = (chains, chain_sites);
+        self
+    }
+
     /// The grid's unit on each axis: a power of two.
     pub fn unit(&self) -> [f64; 2] {
         self.unit
@@ -111,7 +163,7 @@ impl Arrangement {
         self.on_grid
     }
 
-    /// The sites that were added: distinct, in lexicographic order.
+    /// The sites that were added: distinct.
     pub fn added(&self) -> &[Place] {
         &self.added
     }

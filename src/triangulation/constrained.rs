@@ -57,8 +57,10 @@ pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     pub(super) rounding: Option<Rounding>,
     /// Vertices that have come with lines, and go with them.
     pub(super) lent: HashSet<VertexId>,
-    /// Whether pieces crossed that had been arranged: possible off the grid only.
+    /// Whether pieces cross that were arranged: possible off the grid only, and until they are arranged again.
     pub(super) tangled: bool,
+    /// Whether pieces had to be arranged again.
+    pub(super) was_tangled: bool,
     pub(super) scratch: Scratch,
 }
 
@@ -82,6 +84,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             rounding: None,
             lent: HashSet::new(),
             tangled: false,
+            was_tangled: false,
             scratch: Scratch::default(),
         }
     }
@@ -119,6 +122,15 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             self.waiting.push([a, b]);
         } else {
             self.force(a, b);
+        }
+    }
+
+    /// Puts in the piece of a line that was arranged.
+    pub(super) fn insert_piece(&mut self, a: VertexId, b: VertexId) {
+        if self.dimension() < 2 {
+            self.waiting.push([a, b]);
+        } else {
+            self.join(a, b);
         }
     }
 

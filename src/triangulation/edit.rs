@@ -14,7 +14,7 @@ use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::lines::undirected;
-use super::{ConstrainedDelaunay, LineId, Refused, Rounding, spatial_order};
+use super::{ConstrainedDelaunay, LineId, Refused, Rounding};
 
 /// A piece of a line between two sites.
 type Piece = [VertexId; 2];
@@ -37,7 +37,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         if let Ok(at) = self.crossings.binary_search(&vertex) {
             self.crossings.remove(at);
         }
-        if is_led || self.tangled {
+        if is_led || self.was_tangled {
             self.rearrange();
         }
         self.insert_waiting();
@@ -138,39 +138,44 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             return;
         }
         self.waiting.clear();
-        let was_tangled = std::mem::take(&mut self.tangled);
-        self.rearrange_keeping(|_| !was_tangled);
-        if self.tangled && !was_tangled {
-            // Pieces that cross are put in by an order of their own, all of them.
-            self.tangled = false;
-            self.rearrange_keeping(|_| false);
+        let used: HashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
+        let leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
+        self.lent.retain(|v| used.contains(v));
+        let segments = self.segments();
+        let (mut arrangement, given) = self.arrange(&segments, &leaving);
+        self.carry_out(&arrangement, &given, &segments, leaving);
+        self.was_tangled = self.tangled;
+        while self.tangled {
+            arrangement = self.arrange_again(arrangement, &given, &segments);
+            self.carry_out(&arrangement, &given, &segments, HashSet::new());
         }
     }
 
-    /// `may_stay` tells which pieces that are there need not be put in anew.
-    fn rearrange_keeping(&mut self, may_stay: impl Fn(Piece) -> bool) {
-        // Phase 1: the new arrangement.
-        let used: HashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
-        let mut leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
-        self.lent.retain(|v| used.contains(v));
-        let segments = self.segments();
-        let (arrangement, given) = self.arrange(&segments, &leaving);
-
-        // Phase 2: sites that stay keep their vertices, others go.
+    /// Makes the triangulation that of an arrangement of segments over the given vertices, without those that leave; unless
+    /// pieces cross, which makes it tangled.
+    fn carry_out(
+        &mut self,
+        arrangement: &Arrangement,
+        given: &[VertexId],
+        segments: &[Piece],
+        mut leaving: HashSet<VertexId>,
+    ) {
+        self.tangled = false;
+        // Phase 1: sites that stay keep their vertices, others go.
         let mut at_place: HashMap<[u64; 2], VertexId> =
             self.crossings.iter().map(|&v| (key(self.plan_of(v)), v)).collect();
-        let mut sites: Vec<Option<VertexId>> = given.into_iter().map(Some).collect();
+        let mut sites: Vec<Option<VertexId>> = given.iter().copied().map(Some).collect();
         sites.extend(arrangement.added().iter().map(|&place| at_place.remove(&key(place))));
         leaving.extend(at_place.into_values());
 
-        // Phase 3: which pieces are there.
+        // Phase 2: which pieces are there.
         let mut splits = FxHashMap::default();
         let mut kept = HashSet::new();
         let mut way = Vec::new();
         for (i, &[a, b]) in segments.iter().enumerate() {
             let mut from = Some(a);
             for to in arrangement.chain(i as u32).iter().map(|&site| sites[site as usize]).chain([Some(b)]) {
-                let ends = from.zip(to).filter(|&(from, to)| may_stay(undirected(from, to)));
+                let ends = from.zip(to);
                 from = to;
                 let Some((from, to)) = ends else { continue };
                 way.clear();
@@ -184,7 +189,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             }
         }
 
-        // Phase 4: the rest is taken out.
+        // Phase 3: the rest is taken out.
         let constrained: Vec<Piece> = self.constrained_edges().collect();
         for [a, b] in constrained.into_iter().filter(|edge| !kept.contains(edge)) {
             self.clear_wall(a, b);
@@ -199,11 +204,11 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             self.remove_free(vertex);
         }
         if self.dimension() < 2 {
-            self.waiting = segments;
+            self.waiting = segments.to_vec();
             return;
         }
 
-        // Phase 5: new sites and pieces are put in.
+        // Phase 4: new sites and pieces are put in.
         let through = arrangement.through_added();
         let first_added = sites.len() - arrangement.added().len();
         for (i, &place) in arrangement.added().iter().enumerate() {
@@ -230,7 +235,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             let between: Box<[VertexId]> = chain.iter().filter_map(|&site| sites[site as usize]).collect();
             let mut at = a;
             for &site in between.iter().chain([&b]) {
-                pieces.push([at, site]);
+                pieces.push(undirected(at, site));
                 at = site;
             }
             if arrangement.is_led(i as u32) {
@@ -239,19 +244,11 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         self.rounding = (!arrangement.crossings().is_empty())
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
-        let rank = self.ranks();
-        let rank_of = |v: VertexId| rank[v.index()];
-        for [p, q] in &mut pieces {
-            if rank_of(*p) > rank_of(*q) {
-                std::mem::swap(p, q);
-            }
-        }
-        pieces.sort_unstable_by_key(|piece| piece.map(rank_of));
+        pieces.sort_unstable();
         pieces.dedup();
         for [a, b] in pieces {
-            self.insert_segment(a, b);
+            self.insert_piece(a, b);
         }
-        self.crossings.sort_unstable();
         self.lines.touch();
     }
 
@@ -267,6 +264,14 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         (arrangement, given)
     }
 
+    /// Arranges the pieces of an arrangement.
+    fn arrange_again(&self, arrangement: Arrangement, given: &[VertexId], segments: &[Piece]) -> Arrangement {
+        let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
+        let numbered: Vec<[u32; 2]> = segments.iter().map(|segment| segment.map(number)).collect();
+        let (geometry, points) = (&self.inner.geometry, &self.inner.points);
+        arrangement.again(|i| geometry.plan(&points[given[i as usize].index()]), &numbered)
+    }
+
     fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
         self.inner.geometry.plan(self.point(vertex))
     }
@@ -279,19 +284,6 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         segments.sort_unstable();
         segments.dedup();
         segments
-    }
-
-    /// The position of every vertex along the curve, by number: as bulk construction would number them.
-    fn ranks(&self) -> Vec<u32> {
-        let vertices: Vec<VertexId> = self.tds().vertices().collect();
-        let mut ranks = vec![0; self.tds().vertex_slots()];
-        let (geometry, points) = (&self.inner.geometry, &self.inner.points);
-        let place = |i: usize| geometry.coordinates(&points[vertices[i].index()]);
-        // There are not more of them than before.
-        for (rank, i) in spatial_order(vertices.len(), place).into_iter().flatten().enumerate() {
-            ranks[vertices[i as usize].index()] = rank as u32;
-        }
-        ranks
     }
 }
 

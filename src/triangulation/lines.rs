@@ -184,3 +184,19 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         self.crossings.binary_search(&vertex).is_ok()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the docs of [`Lines`] say.
+    #[test]
+    fn lines_are_small() {
+        assert_eq!(size_of::<Option<Box<[VertexId]>>>(), 16, "a line");
+        assert_eq!(size_of::<VertexId>(), 4, "a vertex of a line, a site on a segment");
+        assert_eq!(size_of::<([VertexId; 2], Box<[VertexId]>)>(), 24, "a segment that crosses others, in the table");
+        assert_eq!(size_of::<([VertexId; 2], VertexId)>(), 12, "an edge that was split, in the table");
+        assert_eq!(size_of::<([VertexId; 2], LineId)>(), 12, "a line on an edge, once that was asked for");
+        assert_eq!(size_of::<super::super::Walls>(), 1, "the flags of three edges, at each triangle");
+    }
+}

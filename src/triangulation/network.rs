@@ -124,7 +124,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         pieces.sort_unstable();
         pieces.dedup();
         for [a, b] in pieces {
-            triangulation.insert_segment(a, b);
+            triangulation.insert_piece(a, b);
+        }
+        if triangulation.tangled {
+            triangulation.rearrange();
         }
         Ok((triangulation, renumbered))
     }

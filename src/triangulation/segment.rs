@@ -42,7 +42,16 @@ enum Met {
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Puts in the segment between two vertices. The triangulation spans the plane.
+    /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Pieces that were arranged
+    /// meet no constraint between their ends, but off the grid; then the rest is not put in, and what we have is tangled.
+    pub(super) fn join(&mut self, a: VertexId, b: VertexId) {
+        self.force_until(a, b, |this, _, _, _| {
+            this.tangled = true;
+            Vec::new()
+        });
+    }
+
+    /// Puts in the segment between two vertices, in a triangulation that spans the plane, across constraints.
     ///
     /// A crossing may move both lines by a rounding, and so make them cross others, pieces of which wait
     /// here. [`Crossing`] sees to it that this comes to an end; how soon cannot be told, so that there is a
@@ -50,12 +59,27 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// and the check names them.
     pub(super) fn force(&mut self, a: VertexId, b: VertexId) {
         let mut crossings_left = 1000 + 4 * self.vertex_count();
+        self.force_until(a, b, |this, ends, cell, i| {
+            if crossings_left == 0 {
+                this.left_out.push(ends);
+                return Vec::new();
+            }
+            crossings_left -= 1;
+            this.cross(ends, cell, i)
+        });
+    }
+
+    /// Puts in a segment piece by piece; where one meets a constraint, `at_wall` says what to go on with, given the ends of
+    /// the piece and the wall.
+    fn force_until(
+        &mut self,
+        a: VertexId,
+        b: VertexId,
+        mut at_wall: impl FnMut(&mut Self, [VertexId; 2], CellId, usize) -> Vec<(VertexId, VertexId)>,
+    ) {
         let mut pieces = vec![(a, b)];
         while let Some((a, b)) = pieces.pop() {
-            if a == b {
-                continue;
-            }
-            if self.wall_up(a, b) {
+            if a == b || self.wall_up(a, b) {
                 continue;
             }
             if let Some(&between) = self.lines.splits.get(&undirected(a, b)) {
@@ -72,31 +96,30 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                         pieces.push((v, b));
                     }
                 }
-                Met::Wall(..) if crossings_left == 0 => self.left_out.push([a, b]),
-                Met::Wall(cell, i) => {
-                    crossings_left -= 1;
-                    self.tangled = true;
-                    let [c, d] = self.tds().edge_ends(cell, i);
-                    let x =
-                        self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
-                    self.set_wall(c, d, false);
-                    self.scratch.unsettled.extend([cell, self.tds().neighbor(cell, i)]);
-                    self.settle();
-                    let before = self.vertex_count();
-                    let near = self.tds().cell_of(c);
-                    let v = self.insert_near(x, near);
-                    if self.vertex_count() > before {
-                        self.crossings.push(v);
-                    }
-                    for [p, q] in [[a, b], [c, d]] {
-                        if v != p && v != q {
-                            self.lines.split(p, q, v);
-                        }
-                    }
-                    pieces.extend([(v, b), (a, v), (v, d), (c, v)]);
-                }
+                Met::Wall(cell, i) => pieces.extend(at_wall(self, [a, b], cell, i)),
             }
         }
+    }
+
+    /// Adds a vertex where a segment crosses a constraint, which is lifted; returns the pieces of both.
+    fn cross(&mut self, [a, b]: [VertexId; 2], cell: CellId, i: usize) -> Vec<(VertexId, VertexId)> {
+        let [c, d] = self.tds().edge_ends(cell, i);
+        let x = self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
+        self.set_wall(c, d, false);
+        self.scratch.unsettled.extend([cell, self.tds().neighbor(cell, i)]);
+        self.settle();
+        let before = self.vertex_count();
+        let near = self.tds().cell_of(c);
+        let v = self.insert_near(x, near);
+        if self.vertex_count() > before {
+            self.crossings.push(v);
+        }
+        for [p, q] in [[a, b], [c, d]] {
+            if v != p && v != q {
+                self.lines.split(p, q, v);
+            }
+        }
+        vec![(v, b), (a, v), (v, d), (c, v)]
     }
 
     /// Makes an edge a constraint, if it is there.
