@@ -37,7 +37,7 @@ use rustc_hash::FxHashMap;
 use crate::kernel::{Adaptive, Kernel, Orientation2, Wide};
 use crate::num::Sign;
 use boxes::{Box2, BoxTree};
-use pixel::{Grid, is_ordinary};
+use pixel::Grid;
 
 type Place = [f64; 2];
 type Segment = [Place; 2];
@@ -89,7 +89,7 @@ impl Arrangement {
         let place = |i: u32| scaled(place(i));
         let ends = || segments.iter().flatten().map(|&i| place(i));
         let grid = Grid::through(scaled(largest), scaled([SMALLEST; 2]), ends());
-        let mut arrangement = if is_ordinary(&grid, ends()) {
+        let mut arrangement = if grid.is_ordinary {
             Builder::new(grid, places, &place, segments).run::<Adaptive>()
         } else {
             Builder::new(grid, places, &place, segments).run::<Wide>()
@@ -210,7 +210,7 @@ pub fn through_site(through: &[(u32, u32)], site: u32) -> &[(u32, u32)] {
 struct Pass {
     segment: u32,
     site: u32,
-    /// Whether the site lies on the segment exactly.
+    /// Whether the site is known to lie on the segment exactly; of those that were added, none is.
     exact: bool,
 }
 
@@ -221,12 +221,24 @@ struct Builder<'a, F> {
     ends: &'a [[u32; 2]],
     segments: Vec<Segment>,
     added: Vec<Place>,
+    /// The segments whose crossing was rounded to an added site, site after site, and where those of each end.
+    crossed: Vec<u32>,
+    crossed_ends: Vec<u32>,
 }
 
 impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     fn new(grid: Grid, places: usize, place: &'a F, ends: &'a [[u32; 2]]) -> Self {
         let segments = ends.iter().map(|&[a, b]| [place(a), place(b)]).collect();
-        Builder { grid, places, place, ends, segments, added: Vec::new() }
+        Builder {
+            grid,
+            places,
+            place,
+            ends,
+            segments,
+            added: Vec::new(),
+            crossed: Vec::new(),
+            crossed_ends: Vec::new(),
+        }
     }
 
     fn run<K: Kernel>(mut self) -> Arrangement {
@@ -234,7 +246,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         let pairs = self.crossing_pairs::<K>(&tree);
         let vertices = if pairs.is_empty() { Vec::new() } else { self.vertices() };
         let crossings = self.round::<K>(pairs, &vertices);
-        let (led, passes) = self.lead::<K>(&tree, &crossings, vertices);
+        let (led, passes) = self.lead::<K>(&crossings, vertices);
         self.collect(crossings, &led, passes)
     }
 
@@ -312,6 +324,11 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         for (center, crossing) in centers {
             if self.added.last() != Some(&center) {
                 self.added.push(center);
+                self.crossed_ends.push(0);
+            }
+            self.crossed.extend(crossings[crossing as usize].segments);
+            if let Some(end) = self.crossed_ends.last_mut() {
+                *end = self.crossed.len() as u32;
             }
             crossings[crossing as usize].site = (self.places + self.added.len() - 1) as u32;
         }
@@ -320,7 +337,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
 
     /// Phase 3: leads the segments that cross others through all sites whose pixels they meet; and, as long as there
     /// are any, those that meet a pixel by which another was bent.
-    fn lead<K: Kernel>(&self, tree: &BoxTree, crossings: &[Crossing], vertices: Vec<u32>) -> (Vec<u32>, Vec<Pass>) {
+    fn lead<K: Kernel>(&self, crossings: &[Crossing], vertices: Vec<u32>) -> (Vec<u32>, Vec<Pass>) {
         if crossings.is_empty() {
             return (Vec::new(), Vec::new());
         }
@@ -352,11 +369,13 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             let mut bent_by: Vec<u32> =
                 passes[before..].iter().filter(|pass| !pass.exact).map(|pass| pass.site).collect();
             bent_by.retain(|&site| !std::mem::replace(&mut is_active[site as usize], true));
+            let straight: Vec<u32> = (0..self.segments.len() as u32).filter(|&i| !is_led[i as usize]).collect();
+            let rest = self.tree(straight.iter().copied());
             for site in bent_by {
                 let at = self.site(site);
-                tree.overlapping(&self.grid.around(at), |i| {
-                    let hit = !is_led[i as usize] && self.meets::<K>(i, site, at);
-                    fresh.extend(hit.then_some(i));
+                rest.overlapping(&self.grid.around(at), |member| {
+                    let i = straight[member as usize];
+                    fresh.extend(self.meets::<K>(i, site, at).then_some(i));
                 });
             }
             fresh.sort_unstable();
@@ -372,23 +391,35 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
 
     /// Adds what passes through these sites among the segments of some trees.
     fn pass<K: Kernel>(&self, sites: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
-        let of_site = |&site: &u32| {
-            let at = self.site(site);
-            let around = self.grid.around(at);
+        let of_sites = |sites: &[u32]| {
             let mut found = Vec::new();
-            for (tree, members) in trees {
-                tree.overlapping(&around, |member| {
-                    let segment = members[member as usize];
-                    if self.meets::<K>(segment, site, at) {
-                        let [a, b] = self.segments[segment as usize];
-                        let exact = K::sign(&Orientation2([a, b, at])) == Sign::Zero;
-                        found.push(Pass { segment, site, exact });
-                    }
-                });
+            for &site in sites {
+                let at = self.site(site);
+                let around = self.grid.around(at);
+                let crossed = self.crossed_at(site);
+                for (tree, members) in trees {
+                    tree.overlapping(&around, |member| {
+                        let segment = members[member as usize];
+                        if crossed.contains(&segment) {
+                            found.push(Pass { segment, site, exact: false });
+                        } else if self.meets::<K>(segment, site, at) {
+                            let [a, b] = self.segments[segment as usize];
+                            let exact = crossed.is_empty() && K::sign(&Orientation2([a, b, at])) == Sign::Zero;
+                            found.push(Pass { segment, site, exact });
+                        }
+                    });
+                }
             }
             found
         };
-        passes.par_extend(sites.par_iter().with_min_len(256).flat_map_iter(of_site));
+        passes.par_extend(sites.par_chunks(512).flat_map_iter(of_sites));
+    }
+
+    /// The segments whose crossings were rounded to an added site: they are led through it, no question.
+    fn crossed_at(&self, site: u32) -> &[u32] {
+        let Some(added) = (site as usize).checked_sub(self.places) else { return &[] };
+        let from = if added == 0 { 0 } else { self.crossed_ends[added - 1] as usize };
+        &self.crossed[from..self.crossed_ends[added] as usize]
     }
 
     /// Whether a place lies on a segment of the trees exactly.

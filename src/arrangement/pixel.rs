@@ -1,7 +1,7 @@
 //! The grid of rounding, and its pixels.
 
 use crate::kernel::{CornerSide, CrossingSide, Kernel, Orientation2, Predicate, RANGE};
-use crate::num::{Dyadic, Sign};
+use crate::num::{Dyadic, Pair, Sign};
 
 use super::boxes::Box2;
 use super::{Place, Segment};
@@ -16,6 +16,8 @@ use super::{Place, Segment};
 pub(super) struct Grid {
     pub(super) unit: [f64; 2],
     finest: [f64; 2],
+    /// Whether coordinates and steps are in the range of the fast kernels.
+    pub(super) is_ordinary: bool,
 }
 
 /// The unit in the last place of a number.
@@ -31,15 +33,17 @@ const DEPTH: f64 = f64::from_bits((1023 - 60) << 52);
 impl Grid {
     /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles.
     /// No step is smaller than `smallest`, unless all are.
-    pub(super) fn through(largest: Place, smallest: Place, mut places: impl Iterator<Item = Place>) -> Self {
+    pub(super) fn through(largest: Place, smallest: Place, places: impl Iterator<Item = Place> + Clone) -> Self {
         let last = largest.map(last_place);
         let unit = [0, 1].map(|k| last[k].max(smallest[k]));
-        let even = Grid { unit, finest: unit };
-        if places.all(|place| even.holds(place)) {
-            return even;
+        let mut grid = Grid { unit, finest: unit, is_ordinary: false };
+        if !places.clone().all(|place| grid.holds(place)) {
+            let lower = [0, 1].map(|k| (2.0 * RANGE.min).max(smallest[k]));
+            grid.finest = [0, 1].map(|k| (unit[k] * DEPTH).max(lower[k]).min(unit[k]));
         }
-        let lower = [0, 1].map(|k| (2.0 * RANGE.min).max(smallest[k]));
-        Grid { unit, finest: [0, 1].map(|k| (unit[k] * DEPTH).max(lower[k]).min(unit[k])) }
+        grid.is_ordinary =
+            grid.finest.iter().all(|&step| RANGE.admits(step / 2.0)) && places.flatten().all(|x| RANGE.admits(x));
+        grid
     }
 
     /// Whether all steps are equal.
@@ -118,8 +122,45 @@ impl Grid {
     /// Where two segments cross in their interiors, rounded to the grid: the center of the pixel that the crossing lies
     /// in, exactly.
     pub(super) fn crossing<K: Kernel>(&self, ab: Segment, cd: Segment) -> Place {
+        if let Some(center) = self.crossing_by_pairs(ab, cd) {
+            return center;
+        }
         let turn = K::sign(&Orientation2([cd[0], cd[1], ab[0]]));
         std::array::from_fn(|along| self.round::<K>(ab, cd, turn, along))
+    }
+
+    /// The same with twice the digits of a double, if the error leaves no doubt.
+    fn crossing_by_pairs(&self, [a, b]: Segment, [c, d]: Segment) -> Option<Place> {
+        if !self.is_ordinary {
+            return None;
+        }
+        let minus = |p: Place, q: Place| [0, 1].map(|k| Pair::difference(p[k], q[k]));
+        let ([ux, uy], [vx, vy], way) = (minus(d, c), minus(a, c), minus(a, b));
+        let products = [ux * vy, uy * vx, ux * way[1], uy * way[0]];
+        let [area, divisor] = [products[0] - products[1], products[2] - products[3]];
+        let fraction = area / divisor;
+        // Each area comes of two products and a difference; ten errors are more than all that they and the quotient have.
+        let error = |p: Pair, q: Pair| 10.0 * Pair::ERROR * (p.estimate().abs() + q.estimate().abs());
+        let divided = divisor.estimate().abs();
+        let doubt = error(products[2], products[3]);
+        if !(doubt < divided / 4.0) {
+            return None;
+        }
+        let of_fraction = 2.0 * (error(products[0], products[1]) + doubt) / divided + 10.0 * Pair::ERROR;
+        let mut center = [0.0; 2];
+        for (along, center) in center.iter_mut().enumerate() {
+            let x = Pair::difference(a[along], 0.0) - way[along] * fraction;
+            let doubt = of_fraction * way[along].estimate().abs() + 10.0 * Pair::ERROR * a[along].abs();
+            let step = 2.0 * self.up(along, x.estimate());
+            *center = (x.estimate() / step).round() * step + 0.0;
+            let beside = (x - Pair::difference(*center, 0.0)).estimate();
+            let inside =
+                -self.down(along, *center) + 2.0 * doubt < beside && beside < self.up(along, *center) - 2.0 * doubt;
+            if !inside {
+                return None;
+            }
+        }
+        Some(center)
     }
 
     fn round<K: Kernel>(&self, ab: Segment, cd: Segment, turn: Sign, along: usize) -> f64 {
@@ -184,9 +225,4 @@ fn reaches(x: f64, center: f64, offset: f64) -> bool {
     let back = way - x;
     let error = (x - (way - back)) - (center + back);
     error >= 0.0
-}
-
-/// Whether the fast kernels are right for these magnitudes, the halves of units included.
-pub(super) fn is_ordinary(grid: &Grid, places: impl Iterator<Item = Place>) -> bool {
-    grid.finest.iter().all(|&step| RANGE.admits(step / 2.0)) && places.flatten().all(|x| RANGE.admits(x))
 }

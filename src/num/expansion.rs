@@ -15,7 +15,7 @@ pub struct Expansion {
 
 /// `a + b` as the rounded sum and its error (Knuth).
 #[inline(always)]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
     let a_part = sum - b_part;
@@ -25,7 +25,7 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
 /// `a * b` as the rounded product and its error (Dekker's splitting: portable builds have no fused
 /// multiply-add, and its emulation is slow).
 #[inline(always)]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
+pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
     let split = |x: f64| {
         let c = SPLITTER * x;

@@ -9,6 +9,7 @@
 //! | `f64` | no | 1 | experiments, comparison |
 //! | [`Bounded`] | knows how wrong it may be | 2 | filter: nearly every call ends here |
 //! | `i128` | within its range, see [`lattice`] | 5 | coordinates on a common grid: ties are the rule there |
+//! | [`Pair`] | to twice the digits | 15 | places that are then rounded |
 //! | [`Expansion`] | within the exponents of f64 | 100 | what the filters leave open |
 //! | [`Dyadic`] | always | 500 | the judge, and magnitudes outside of everything else |
 
@@ -16,10 +17,12 @@ mod bounded;
 mod dyadic;
 mod expansion;
 pub mod lattice;
+mod pair;
 
 pub use bounded::Bounded;
 pub use dyadic::Dyadic;
 pub use expansion::Expansion;
+pub use pair::Pair;
 
 use std::ops::{Add, Mul, Neg, Sub};
 

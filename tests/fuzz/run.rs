@@ -16,7 +16,7 @@ use crate::shrink::shrink;
 use crate::tally::Tally;
 
 /// One set in so many is judged by what takes longer than to build it.
-const SAMPLE: u64 = 16;
+const SAMPLE: u64 = 64;
 
 /// Seeds that a thread takes at a time.
 const BATCH: u64 = 64;
