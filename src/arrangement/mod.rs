@@ -299,10 +299,17 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         let round = |&segments: &[u32; 2]| {
             let [ab, cd] = segments.map(|i| self.segments[i as usize]);
             let center = self.grid.crossing::<K>(ab, cd);
-            let holds = |&v: &u32| self.grid.crossing_in::<K>(ab, cd, (self.place)(v));
+            // Ends may be finer than the finest step. What lies beyond one would lead the line back.
+            let common = Box2::around(ab).common(&Box2::around(cd));
+            let holds = |&v: &u32| {
+                let at = (self.place)(v);
+                common.clamp(at) == at && self.grid.crossing_in::<K>(ab, cd, at)
+            };
             // Of several the first in plan, whatever their numbers.
             let by_place = |&u: &u32, &v: &u32| lexicographic((self.place)(u), (self.place)(v));
-            match cells.near(center).filter(holds).min_by(by_place) {
+            let center = common.clamp(center);
+            let end = || segments.iter().flat_map(|&i| self.ends[i as usize]).find(|&end| (self.place)(end) == center);
+            match cells.near(center).filter(holds).min_by(by_place).or_else(end) {
                 Some(vertex) => Rounded::ToVertex(vertex),
                 None => Rounded::ToCenter(center),
             }
@@ -436,7 +443,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     }
 
     /// Phase 4: the sites of each segment, in order.
-    fn collect(self, crossings: Vec<Crossing>, led: &[u32], mut passes: Vec<Pass>) -> Arrangement {
+    fn collect(self, crossings: Vec<Crossing>, led: &[u32], passes: Vec<Pass>) -> Arrangement {
         // Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
         // column from one side to the other.
         let along = |segment: u32, site: u32| {
@@ -447,29 +454,25 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
             [first, second].map(|k| if a[k] <= b[k] { at[k] } else { -at[k] })
         };
-        passes.par_sort_unstable_by(|p, q| {
-            let by_place = || lexicographic(along(p.segment, p.site), along(q.segment, q.site));
-            p.segment.cmp(&q.segment).then_with(by_place)
-        });
-        // An end of another segment that is finer than the grid may stand beyond our own end.
-        passes.retain(|pass| {
-            let [a, b] = self.ends[pass.segment as usize].map(|end| along(pass.segment, end));
-            let (first, last) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
-            let at = along(pass.segment, pass.site);
-            pass.site as usize >= self.places || lexicographic(first, at).is_lt() && lexicographic(at, last).is_lt()
-        });
-        for chain in passes.chunk_by_mut(|p, q| p.segment == q.segment) {
-            let [a, b] = self.segments[chain[0].segment as usize];
-            if lexicographic(a, b).is_gt() {
-                chain.reverse();
-            }
-        }
+        let mut ordered: Vec<(u32, Place, u32)> =
+            passes.par_iter().map(|&Pass { segment, site, .. }| (segment, along(segment, site), site)).collect();
+        drop(passes);
+        ordered.par_sort_unstable_by(|p, q| p.0.cmp(&q.0).then_with(|| lexicographic(p.1, q.1)));
         let mut chains: FxHashMap<u32, Range<u32>> = led.iter().map(|&segment| (segment, 0..0)).collect();
-        let mut from = 0;
-        for chunk in passes.chunk_by(|p, q| p.segment == q.segment) {
-            let to = from + chunk.len() as u32;
-            chains.insert(chunk[0].segment, from..to);
-            from = to;
+        let mut chain_sites = Vec::with_capacity(ordered.len());
+        for passes in ordered.chunk_by(|p, q| p.0 == q.0) {
+            let segment = passes[0].0;
+            let [a, b] = self.ends[segment as usize].map(|end| along(segment, end));
+            let (first, last) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
+            let from = chain_sites.len();
+            // An end of another segment that is finer than the finest step may stand beyond our own end.
+            let is_between = |at: Place| lexicographic(first, at).is_lt() && lexicographic(at, last).is_lt();
+            chain_sites.extend(passes.iter().filter(|&&(_, at, _)| is_between(at)).map(|&(_, _, site)| site));
+            let [a, b] = self.segments[segment as usize];
+            if lexicographic(a, b).is_gt() {
+                chain_sites[from..].reverse();
+            }
+            chains.insert(segment, from as u32..chain_sites.len() as u32);
         }
         let on_grid = self.grid.is_even();
         Arrangement {
@@ -479,7 +482,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             added: self.added,
             crossings,
             chains,
-            chain_sites: passes.into_iter().map(|pass| pass.site).collect(),
+            chain_sites,
         }
     }
 }

@@ -93,6 +93,9 @@ impl Grid {
     /// or the segment. That the pixel lacks two of its sides makes no difference: it is the union of growing
     /// closed rectangles.
     pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Place) -> bool {
+        if self.is_ordinary && self.is_far([a, b], center) {
+            return false;
+        }
         let within = |k: usize| {
             let (low, high) = if a[k] < b[k] { (a[k], b[k]) } else { (b[k], a[k]) };
             reaches(high, center[k], -self.down(k, center[k])) && !reaches(low, center[k], self.up(k, center[k]))
@@ -117,6 +120,16 @@ impl Grid {
                 lower_left => lower_left * side([right, up]) == Sign::Negative,
             }
         }
+    }
+
+    /// Whether a place is so far from the line through a segment that rounding cannot hide it.
+    #[inline(always)]
+    fn is_far(&self, [a, b]: Segment, center: Place) -> bool {
+        let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
+        let [left, right] = [ux * (center[1] - a[1]), uy * (center[0] - a[0])];
+        // Half a unit at the most on each axis; and four roundings, each of 2^-53, in either product.
+        let pixel = self.unit[0] * uy.abs() + self.unit[1] * ux.abs();
+        (left - right).abs() > pixel + 4.0 * f64::EPSILON * (left.abs() + right.abs())
     }
 
     /// Where two segments cross in their interiors, rounded to the grid: the center of the pixel that the crossing lies

@@ -43,6 +43,27 @@ impl Walls {
 ///
 /// The triangulation is a function of the set of points and the set of lines' segments, whether they came at once
 /// ([`from_lines`](Self::from_lines)), one by one or with others that have been removed since.
+///
+/// ```
+/// use breakline::geometry::Plane;
+/// use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
+///
+/// let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+/// let lines = [vec![0, 2], vec![1, 3, 0]];
+/// let geometry: Plane = Plane::default();
+/// let (mut t, v) = ConstrainedDelaunay::<_, ()>::from_lines(geometry, &points, &lines, OnCrossing::Split)?;
+///
+/// let ids: Vec<_> = t.lines().collect();
+/// let [from, crossing, to] = t.chain(ids[0])[..] else { panic!("they cross once") };
+/// assert_eq!((from, to), (v[0], v[2]));
+/// assert_eq!((*t.point(crossing), t.is_added(crossing)), ([2.0, 2.0], true));
+/// assert!(t.lines_through(crossing, v[3]).eq([ids[1]]));
+///
+/// t.remove_line(ids[1]);
+/// assert_eq!(t.chain(ids[0]), [v[0], v[2]]);
+/// assert!(t.check(Level::Law).is_empty());
+/// # Ok::<(), breakline::triangulation::Refused>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     pub(super) inner: Triangulation<G, 3, V, Walls>,
