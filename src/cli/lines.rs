@@ -8,12 +8,22 @@ use crate::error::{Error, Result};
 /// A polygon in plan: its rings.
 pub(super) type Rings = Vec<Vec<[f64; 2]>>;
 
+/// A line of a layer, and where it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Drawn {
+    /// The position of its record, counted from 0 as GIS count feature ids.
+    pub(super) fid: usize,
+    /// Which part or ring of several, counted from 1.
+    pub(super) part: Option<usize>,
+    pub(super) points: Vec<[f64; 3]>,
+}
+
 /// The lines of a layer, and the rings of its polygons, each with a height at every vertex.
 ///
 /// # Errors
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
 /// record and the vertex, counted from 1.
-pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Vec<[f64; 3]>>> {
+pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
     let mut lines = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
         let parts = match shape {
@@ -21,7 +31,13 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Vec<[f64; 3]>
             Shape::Null | Shape::Points(_) | Shape::Triangles(_) => continue,
         };
         check_heights(parts, layer).map_err(|e| at_record(e, path, record))?;
-        lines.extend(parts.iter().filter(|part| part.len() > 1).cloned());
+        let part = |number| (parts.len() > 1).then_some(number);
+        let drawn = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
+        lines.extend(drawn.map(|(number, points)| Drawn {
+            fid: record - 1,
+            part: part(number),
+            points: points.clone(),
+        }));
     }
     if lines.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
@@ -139,7 +155,16 @@ mod tests {
         let ring = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]];
         let line = vec![[5.0, 5.0, 1.0], [6.0, 5.0, 2.0]];
         let shapes = vec![Shape::Polygon(vec![ring.clone()]), Shape::Null, Shape::Lines(vec![line.clone()])];
-        assert_eq!(breaklines(&layer(shapes), Path::new("l")).unwrap(), [ring, line]);
+        let drawn = |fid, points| Drawn { fid, part: None, points };
+        assert_eq!(breaklines(&layer(shapes), Path::new("l")).unwrap(), [drawn(0, ring), drawn(2, line)]);
+    }
+
+    #[test]
+    fn parts_are_numbered_where_there_are_several() {
+        let part = |y: f64| vec![[0.0, y, 1.0], [1.0, y, 2.0]];
+        let shapes = vec![Shape::Lines(vec![part(0.0), vec![], part(1.0)])];
+        let lines = breaklines(&layer(shapes), Path::new("l")).unwrap();
+        assert_eq!(lines.iter().map(|line| (line.fid, line.part)).collect::<Vec<_>>(), [(0, Some(1)), (0, Some(3))]);
     }
 
     #[test]

@@ -8,6 +8,7 @@
 mod args;
 mod check;
 mod contour;
+mod crossings;
 mod dem;
 mod demo;
 mod gather;
