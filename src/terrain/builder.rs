@@ -190,7 +190,7 @@ impl TinBuilder {
         }
         let clip = Clip { polygons: self.boundaries, bounds: self.bounds };
         if !clip.is_everything() {
-            report.faces_clipped = clip.apply(&mut tin);
+            report.faces_clipped = clip.apply(&mut tin)?;
         }
         (report.vertices, report.triangles) = tin.count();
         tin.report = report;
@@ -268,7 +268,7 @@ fn not_built(refused: Refused, name: &dyn Fn(usize) -> String) -> Error {
 }
 
 #[cold]
-fn refused(p: [f64; 3]) -> Error {
+pub(super) fn refused(p: [f64; 3]) -> Error {
     if p.iter().all(|x| x.is_finite()) {
         let Range { min, max } = RANGE;
         return Error::limit(format!("{p:?} has a coordinate that is neither 0 nor between {min:.0e} and {max:.0e}"));
