@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::rings;
 use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
 
@@ -31,13 +32,7 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
             Shape::Null | Shape::Points(_) | Shape::Triangles(_) => continue,
         };
         check_heights(parts, layer).map_err(|e| at_record(e, path, record))?;
-        let part = |number| (parts.len() > 1).then_some(number);
-        let drawn = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
-        lines.extend(drawn.map(|(number, points)| Drawn {
-            fid: record - 1,
-            part: part(number),
-            points: points.clone(),
-        }));
+        lines.extend(drawn(parts, record - 1));
     }
     if lines.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
@@ -47,29 +42,43 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
     Ok(lines)
 }
 
-/// The polygons of a layer.
+/// The polygons of a layer, and one more of all its lines, if it has any, joined to rings.
 ///
 /// # Errors
-/// If there are none, or a coordinate is not finite.
+/// If there are none, a coordinate is not finite, or the lines leave a gap.
 pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
+    let mut lines = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
-        let Shape::Polygon(rings) = shape else { continue };
-        let mut flat = Vec::with_capacity(rings.len());
-        for ring in rings {
-            if let Some(vertex) = ring.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
-                return Err(at_record(not_finite(ring, vertex), path, record));
+        let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else { continue };
+        for part in parts {
+            if let Some(vertex) = part.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+                return Err(at_record(not_finite(part, vertex), path, record));
             }
-            flat.push(ring.iter().map(|p| [p[0], p[1]]).collect());
         }
-        polygons.push(flat);
+        match shape {
+            Shape::Polygon(_) => {
+                polygons.push(parts.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect());
+            }
+            _ => lines.extend(drawn(parts, record - 1)),
+        }
+    }
+    if !lines.is_empty() {
+        polygons.push(rings::close(&lines, path)?);
     }
     if polygons.is_empty() {
-        return Err(Error::format(format!("{} holds no polygons", kind_of(layer)))
+        return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
             .in_file(path)
-            .cure("a boundary is made of polygons; lines are given with --breaklines"));
+            .cure("a boundary is made of polygons, or of lines that close"));
     }
     Ok(polygons)
+}
+
+/// The parts that are lines, with their numbers.
+fn drawn(parts: &[Vec<[f64; 3]>], fid: usize) -> impl Iterator<Item = Drawn> {
+    let is_one_of_many = parts.len() > 1;
+    let lines = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
+    lines.map(move |(number, points)| Drawn { fid, part: is_one_of_many.then_some(number), points: points.clone() })
 }
 
 fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer) -> Result<()> {
@@ -105,7 +114,7 @@ fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
         .cure("repair the record or take it out")
 }
 
-fn at_record(error: Error, path: &Path, record: usize) -> Error {
+pub(super) fn at_record(error: Error, path: &Path, record: usize) -> Error {
     error.in_file(path).at(format!("record {record}"))
 }
 

@@ -23,6 +23,7 @@ mod plan;
 mod point_files;
 mod raster;
 mod relabeled;
+mod rings;
 mod roads;
 mod summary;
 mod systems;

@@ -63,7 +63,7 @@ impl SurfacePlan {
         };
         inputs::require(args.breaklines.iter().chain(&args.boundary))?;
         refuse_other_kinds("--breaklines takes lines or polygons", &args.breaklines)?;
-        refuse_other_kinds("--boundary takes polygons", &args.boundary)?;
+        refuse_other_kinds("--boundary takes polygons or closed lines", &args.boundary)?;
         let mut inputs = files.clone();
         inputs.extend(args.breaklines.iter().chain(&args.boundary).cloned());
         let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));

@@ -7,9 +7,11 @@
 //! 3. The rim, the bounds and each polygon are closed curves of constraints now: one flood over the faces tells in which
 //!    of them each lies.
 
+use std::cmp::Ordering;
+
 use crate::data::Bounds;
 use crate::error::Result;
-use crate::geometry::{Crossing, Geometry};
+use crate::geometry::{Crossing, Geometry, height_along};
 use crate::kernel::RANGE;
 use crate::tds::{VertexId, ccw, cw};
 
@@ -61,10 +63,7 @@ impl Clip {
     /// If a vertex of a polygon or a bound cannot be computed with.
     pub(super) fn apply(&self, tin: &mut Tin) -> Result<usize> {
         let rim = rim(tin);
-        for &[a, b] in &rim {
-            tin.triangulation.insert_segment(a, b);
-        }
-        let lines = self.insert(tin)?;
+        let lines = self.insert(tin, &rim)?;
         let rim = rim.iter().map(|edge| (SURFACE, edge.as_slice()));
         let curves = rim.chain(lines.iter().map(|(domain, line)| (*domain, line.as_slice())));
         let domains = Domains::new(&tin.triangulation, curves);
@@ -86,7 +85,7 @@ impl Clip {
     }
 
     /// Inserts the clip lines; returns their vertices, each line with the number of its domain.
-    fn insert(&self, tin: &mut Tin) -> Result<Vec<(usize, Vec<VertexId>)>> {
+    fn insert(&self, tin: &mut Tin, rim: &[[VertexId; 2]]) -> Result<Vec<(usize, Vec<VertexId>)>> {
         let mut line = Vec::new();
         let mut line_ends = Vec::new();
         let rings = self.rings();
@@ -99,13 +98,20 @@ impl Clip {
             line_ends.push(line.len());
         }
         let heights: Vec<Option<f64>> = line.iter().map(|&[x, y]| tin.elevation(x, y)).collect();
+        // A vertex on a line that is led may have the lines arranged anew: before there is any constraint that belongs to no
+        // line, and what was settled on crossings is put back.
+        let settled: Vec<[f64; 3]> =
+            tin.triangulation.crossings().iter().map(|&v| *tin.triangulation.point(v)).collect();
         // Without heights at first, so that a crossing takes that of the breakline it crosses.
         let mut vertices = Vec::with_capacity(line.len());
         for &[x, y] in &line {
             let vertex = tin.triangulation.insert([x, y, f64::NAN]);
             vertices.push(vertex.map_err(|_| refused([x, y, 0.0]).at("boundary"))?);
         }
-        for [a, b] in sorted_segments(&vertices, &line_ends) {
+        restore(tin, settled);
+        let is_there = |edge: &&[VertexId; 2]| edge.iter().all(|&v| tin.triangulation.tds().is_vertex(v));
+        let rim: Vec<[VertexId; 2]> = rim.iter().filter(is_there).copied().collect();
+        for &[a, b] in rim.iter().chain(&sorted_segments(&vertices, &line_ends)) {
             tin.triangulation.insert_segment(a, b);
         }
         for (&vertex, height) in vertices.iter().zip(heights) {
@@ -113,19 +119,62 @@ impl Clip {
                 set_height(tin, vertex, z);
             }
         }
-        // Where the clip line crosses itself: between its neighbors.
+        let starts = std::iter::once(&0).chain(&line_ends);
+        let runs: Vec<&[VertexId]> = starts.zip(&line_ends).map(|(&start, &end)| &vertices[start..end]).collect();
+        // Where the clip line crosses the rim or a breakline that it meets elsewhere too, and where it crosses itself.
+        let mut solid: Vec<&[VertexId]> = rim.iter().map(<[VertexId; 2]>::as_slice).collect();
+        solid.extend(tin.triangulation.lines().map(|line| tin.triangulation.line_vertices(line)));
+        let on_solid = heights_between(tin, &solid);
+        on_solid.into_iter().for_each(|(vertex, z)| set_height(tin, vertex, z));
+        heights_between(tin, &runs).into_iter().for_each(|(vertex, z)| set_height(tin, vertex, z));
+        // Outside of the data any will do.
         let is_bare = |&vertex: &VertexId| tin.triangulation.point(vertex)[2].is_nan();
         for vertex in tin.triangulation.tds().vertices().filter(is_bare).collect::<Vec<_>>() {
-            let z = mean_around(tin, vertex);
-            set_height(tin, vertex, z);
+            set_height(tin, vertex, 0.0);
         }
-        let starts = std::iter::once(&0).chain(&line_ends);
-        let runs = starts.zip(&line_ends).map(|(&start, &end)| vertices[start..end].to_vec());
-        Ok(rings.iter().map(|(domain, _)| *domain).zip(runs).collect())
+        Ok(rings.iter().zip(runs).map(|((domain, _), run)| (*domain, run.to_vec())).collect())
     }
 }
 
-/// The places between two others where the way crosses an edge of the surface that is no constraint, in
+/// Gives the crossings at these places their heights.
+fn restore(tin: &mut Tin, mut settled: Vec<[f64; 3]>) {
+    settled.sort_by(|p, q| lexicographic(*p, *q));
+    for vertex in tin.triangulation.crossings().to_vec() {
+        let p = *tin.triangulation.point(vertex);
+        if let Ok(at) = settled.binary_search_by(|q| lexicographic(*q, p)) {
+            tin.triangulation.replace_point(vertex, settled[at]);
+        }
+    }
+}
+
+/// The order of places in plan.
+fn lexicographic(p: [f64; 3], q: [f64; 3]) -> Ordering {
+    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+}
+
+/// The heights on lines at the vertices that have none, between those that have one: in between the lines lie in one
+/// triangle of the surface, so that all have the same height there but for a rounding. Sorted, the lowest first.
+fn heights_between(tin: &Tin, lines: &[&[VertexId]]) -> Vec<(VertexId, f64)> {
+    let triangulation = &tin.triangulation;
+    let mut heights = Vec::new();
+    for pair in lines.iter().flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]) {
+        let mut chain = vec![pair[0]];
+        chain.extend(triangulation.way(pair[0], pair[1]));
+        chain.push(pair[1]);
+        let known: Vec<usize> = (0..chain.len()).filter(|&i| !triangulation.point(chain[i])[2].is_nan()).collect();
+        for ends in known.windows(2) {
+            let [p, q] = [ends[0], ends[1]].map(|i| *triangulation.point(chain[i]));
+            heights.extend(chain[ends[0] + 1..ends[1]].iter().map(|&vertex| {
+                let [x, y, _] = *triangulation.point(vertex);
+                (vertex, height_along(p, q, [x, y]))
+            }));
+        }
+    }
+    heights.sort_by(|(u, low), (v, high)| u.cmp(v).then(low.total_cmp(high)));
+    heights
+}
+
+/// The places between two others where the way crosses an edge within the surface that is no constraint, in
 /// their order.
 fn crossings_between(tin: &Tin, [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> Vec<[f64; 2]> {
     let triangulation = &tin.triangulation;
@@ -136,7 +185,7 @@ fn crossings_between(tin: &Tin, [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> Vec<[
     let is_open = |&[c, d]: &[VertexId; 2]| {
         triangulation.tds().edge(c, d).is_some_and(|(cell, i)| {
             let beside = triangulation.tds().neighbor(cell, i);
-            !triangulation.is_constrained(cell, i) && (tin.inside[cell.index()] || tin.inside[beside.index()])
+            !triangulation.is_constrained(cell, i) && tin.inside[cell.index()] && tin.inside[beside.index()]
         })
     };
     let crossed = triangulation.edges_crossed(&a, &b).into_iter().filter(is_open);
@@ -154,14 +203,6 @@ fn set_height(tin: &mut Tin, vertex: VertexId, z: f64) {
     if known.is_nan() {
         tin.triangulation.replace_point(vertex, [x, y, z]);
     }
-}
-
-/// The mean height of the neighbors that have one; 0 if none has, which are outside of the data.
-fn mean_around(tin: &Tin, vertex: VertexId) -> f64 {
-    let tds = tin.triangulation.tds();
-    let corners = tds.around(vertex).flat_map(|cell| *tds.corners(cell)).filter(|&v| v != VertexId::INFINITE);
-    let heights: Vec<f64> = corners.map(|v| tin.triangulation.point(v)[2]).filter(|z| z.is_finite()).collect();
-    heights.iter().sum::<f64>() / heights.len().max(1) as f64
 }
 
 /// The edges between the surface and what is not part of it, in an order of their own.

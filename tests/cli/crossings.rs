@@ -12,7 +12,8 @@ const CROSSING: [&str; 2] = [
 fn layer(geometries: &[&str]) -> String {
     let features: Vec<String> =
         geometries.iter().map(|g| format!(r#"{{"type":"Feature","properties":{{}},"geometry":{g}}}"#)).collect();
-    format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","))
+    let crs = r#"{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}}"#;
+    format!(r#"{{"type":"FeatureCollection","crs":{crs},"features":[{}]}}"#, features.join(","))
 }
 
 /// In one file.
@@ -55,8 +56,8 @@ fn lines_that_differ_in_height_are_told_by_file_and_feature() {
     let folder = folder();
     let run = run_in(&folder, &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"]);
     run.works(&[
-        "note: crossings of breaklines are rounded to 4.4e-16 units; no line is moved by more than half of that",
-        "warning: breaklines meet with different heights at 2 places, by up to 10.5 units (at 1.5 1.5)",
+        "note: crossings of breaklines are rounded to 4.4e-16 m; no line is moved by more than half of that",
+        "warning: breaklines meet with different heights at 2 places, by up to 10.5 m (at 1.5 1.5)",
         "1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1; 20 stands",
         "3 3: 20 of l.geojson fid 0, 21 of l.geojson fid 1, part 2; 20 stands",
         "1 crossings between vertices",

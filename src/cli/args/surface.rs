@@ -28,7 +28,8 @@ pub(in crate::cli) struct SurfaceArgs {
 
     /// Polygons that the surface is clipped to (repeatable)
     ///
-    /// What is inside of any polygon stays. Heights on the boundary are those of the surface.
+    /// What is inside of any polygon stays. Heights on the boundary are those of the surface. Lines are
+    /// taken for one polygon if they close to rings, end to end, and otherwise refused with the gap.
     #[arg(long, value_name = "FILE", help_heading = "Surface")]
     pub(in crate::cli) boundary: Vec<PathBuf>,
 
