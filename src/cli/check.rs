@@ -1,4 +1,5 @@
 use super::args::CheckArgs;
+use super::outputs::{self, Existing};
 use super::plan::{From, SurfacePlan};
 use super::summary::SurfaceFacts;
 use super::talk::Talk;
@@ -8,6 +9,7 @@ use crate::error::Result;
 /// Lists the flaws of a TIN, or of a mesh that may be none.
 pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+    outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
     let (gathered, flaws) = match &plan.from {
         From::Mesh(path) => gather::mesh_with_flaws(path, &plan.wish, talk)?,
         From::Points(_) | From::Raster(_) => {

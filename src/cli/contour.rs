@@ -24,7 +24,7 @@ const DEFAULT_INTERVAL: f64 = 1.0;
 /// Draws contours of a TIN or of a DEM.
 pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
-    let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
+    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
     let levels = levels(args)?;
     let ground = gather::ground(&mut plan, talk)?;
     let crs = ground.crs();

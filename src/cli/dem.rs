@@ -16,7 +16,7 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     inputs::require(&args.frame.align_to)?;
     plan.inputs.extend(args.frame.align_to.clone());
-    let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
+    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
     let gathered = gather::surface(&mut plan, talk)?;
     let surface = gathered.surface.as_ref();
     let frame = raster::frame(&args.frame, SurfaceFacts::of(surface).extent, surface.crs(), talk)?;

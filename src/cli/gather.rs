@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::args::EdgeLength;
+use super::crossings::{self, LineNames};
 use super::lines::{self, Rings};
 use super::open;
+use super::outputs;
 use super::plan::{From, PointPlan, SurfacePlan};
 use super::point_files;
 use super::relabeled::Relabeled;
@@ -21,6 +23,9 @@ use crate::terrain::{Classes, Selection, SelectionReport, TinBuilder, TinReport}
 
 /// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
+
+/// What heights of breaklines that meet may differ by, unless something else is said: what a survey of edges is good for.
+const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 
 /// What the verbs work on.
 pub(super) enum Ground {
@@ -115,7 +120,11 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     let units = Units::of(crs.as_ref());
     let mut builder = TinBuilder::default();
     let rim = Rim::new(plan, &units, talk);
+    let default_tolerance = units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES);
     builder.duplicates = plan.duplicates;
+    builder.on_crossing = plan.on_crossing;
+    builder.crossing_heights = plan.crossing_heights;
+    builder.crossing_tolerance = plan.crossing_tolerance.unwrap_or(default_tolerance);
     builder.max_edge = rim.max_edge;
     builder.bounds = plan.bounds.map(|bounds| bounds.grown(0.0));
     builder.crs = crs;
@@ -123,17 +132,19 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     // Lines first: they are few, and what is wrong with them is known before the points are read.
     let mut made = Made::default();
     let mut line_extent = Bounds::default();
-    for ((path, layer), road) in breaklines.iter().zip(line_roads) {
+    let mut names = LineNames::new(&plan.breaklines);
+    for (file, ((path, layer), road)) in breaklines.iter().zip(line_roads).enumerate() {
         for mut line in lines::breaklines(layer, path)? {
-            roads.take(*road, &mut line).map_err(|e| e.in_file(path))?;
+            roads.take(*road, &mut line.points).map_err(|e| e.in_file(path))?;
             made.breaklines += 1;
-            line.iter().for_each(|&vertex| line_extent.add(vertex));
-            match plan.bounds {
-                Some(bounds) => {
-                    let window = bounds.grown(rim.buffer);
-                    lines::near(&line, &window).into_iter().for_each(|run| builder.add_breakline(run));
-                }
-                None => builder.add_breakline(&line),
+            line.points.iter().for_each(|&vertex| line_extent.add(vertex));
+            let runs = match plan.bounds {
+                Some(bounds) => lines::near(&line.points, &bounds.grown(rim.buffer)),
+                None => vec![line.points.as_slice()],
+            };
+            for run in runs {
+                builder.add_breakline(run);
+                names.add(file, &line);
             }
         }
     }
@@ -157,11 +168,16 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
 
     let bar = talk.spinner("triangulating");
     let start = Instant::now();
-    let tin = builder.build().map_err(|error| match plan.files.as_slice() {
-        [file] => error.in_file(file),
+    let tin = builder.build_named(&|line| names.tell(line)).map_err(|error| match plan.files.as_slice() {
+        [file] if plan.breaklines.is_empty() => error.in_file(file),
         _ => error,
     })?;
     bar.finish_and_clear();
+    crossings::tell(tin.report(), &names, &units, talk);
+    if let Some(report) = &plan.crossing_report {
+        crossings::write(report, &tin.report().crossing_heights, &names)?;
+        outputs::tell_file(report, talk);
+    }
     talk.detail(format_args!("triangulated in {}", seconds(start.elapsed())));
     if tin.report().triangles == 0 {
         return Err(no_triangle(tin.report(), &rim, &units));

@@ -24,7 +24,7 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     inputs::require(&args.frame.align_to)?;
     plan.inputs.extend(args.frame.align_to.clone());
-    let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
+    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
     match gather::ground(&mut plan, talk)? {
         Ground::Surface(gathered) => {
             let surface = gathered.surface.as_ref();

@@ -2,18 +2,29 @@
 
 use std::path::Path;
 
+use super::rings;
 use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
 
 /// A polygon in plan: its rings.
 pub(super) type Rings = Vec<Vec<[f64; 2]>>;
 
+/// A line of a layer, and where it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Drawn {
+    /// The position of its record, counted from 0 as GIS count feature ids.
+    pub(super) fid: usize,
+    /// Which part or ring of several, counted from 1.
+    pub(super) part: Option<usize>,
+    pub(super) points: Vec<[f64; 3]>,
+}
+
 /// The lines of a layer, and the rings of its polygons, each with a height at every vertex.
 ///
 /// # Errors
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
 /// record and the vertex, counted from 1.
-pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Vec<[f64; 3]>>> {
+pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
     let mut lines = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
         let parts = match shape {
@@ -21,7 +32,7 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Vec<[f64; 3]>
             Shape::Null | Shape::Points(_) | Shape::Triangles(_) => continue,
         };
         check_heights(parts, layer).map_err(|e| at_record(e, path, record))?;
-        lines.extend(parts.iter().filter(|part| part.len() > 1).cloned());
+        lines.extend(drawn(parts, record - 1));
     }
     if lines.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
@@ -31,29 +42,43 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Vec<[f64; 3]>
     Ok(lines)
 }
 
-/// The polygons of a layer.
+/// The polygons of a layer, and one more of all its lines, if it has any, joined to rings.
 ///
 /// # Errors
-/// If there are none, or a coordinate is not finite.
+/// If there are none, a coordinate is not finite, or the lines leave a gap.
 pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
+    let mut lines = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
-        let Shape::Polygon(rings) = shape else { continue };
-        let mut flat = Vec::with_capacity(rings.len());
-        for ring in rings {
-            if let Some(vertex) = ring.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
-                return Err(at_record(not_finite(ring, vertex), path, record));
+        let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else { continue };
+        for part in parts {
+            if let Some(vertex) = part.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+                return Err(at_record(not_finite(part, vertex), path, record));
             }
-            flat.push(ring.iter().map(|p| [p[0], p[1]]).collect());
         }
-        polygons.push(flat);
+        match shape {
+            Shape::Polygon(_) => {
+                polygons.push(parts.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect());
+            }
+            _ => lines.extend(drawn(parts, record - 1)),
+        }
+    }
+    if !lines.is_empty() {
+        polygons.push(rings::close(&lines, path)?);
     }
     if polygons.is_empty() {
-        return Err(Error::format(format!("{} holds no polygons", kind_of(layer)))
+        return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
             .in_file(path)
-            .cure("a boundary is made of polygons; lines are given with --breaklines"));
+            .cure("a boundary is made of polygons, or of lines that close"));
     }
     Ok(polygons)
+}
+
+/// The parts that are lines, with their numbers.
+fn drawn(parts: &[Vec<[f64; 3]>], fid: usize) -> impl Iterator<Item = Drawn> {
+    let is_one_of_many = parts.len() > 1;
+    let lines = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
+    lines.map(move |(number, points)| Drawn { fid, part: is_one_of_many.then_some(number), points: points.clone() })
 }
 
 fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer) -> Result<()> {
@@ -89,7 +114,7 @@ fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
         .cure("repair the record or take it out")
 }
 
-fn at_record(error: Error, path: &Path, record: usize) -> Error {
+pub(super) fn at_record(error: Error, path: &Path, record: usize) -> Error {
     error.in_file(path).at(format!("record {record}"))
 }
 
@@ -139,7 +164,16 @@ mod tests {
         let ring = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]];
         let line = vec![[5.0, 5.0, 1.0], [6.0, 5.0, 2.0]];
         let shapes = vec![Shape::Polygon(vec![ring.clone()]), Shape::Null, Shape::Lines(vec![line.clone()])];
-        assert_eq!(breaklines(&layer(shapes), Path::new("l")).unwrap(), [ring, line]);
+        let drawn = |fid, points| Drawn { fid, part: None, points };
+        assert_eq!(breaklines(&layer(shapes), Path::new("l")).unwrap(), [drawn(0, ring), drawn(2, line)]);
+    }
+
+    #[test]
+    fn parts_are_numbered_where_there_are_several() {
+        let part = |y: f64| vec![[0.0, y, 1.0], [1.0, y, 2.0]];
+        let shapes = vec![Shape::Lines(vec![part(0.0), vec![], part(1.0)])];
+        let lines = breaklines(&layer(shapes), Path::new("l")).unwrap();
+        assert_eq!(lines.iter().map(|line| (line.fid, line.part)).collect::<Vec<_>>(), [(0, Some(1)), (0, Some(3))]);
     }
 
     #[test]

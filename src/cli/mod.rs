@@ -8,6 +8,7 @@
 mod args;
 mod check;
 mod contour;
+mod crossings;
 mod dem;
 mod demo;
 mod gather;
@@ -22,6 +23,7 @@ mod plan;
 mod point_files;
 mod raster;
 mod relabeled;
+mod rings;
 mod roads;
 mod summary;
 mod systems;

@@ -1,14 +1,15 @@
 //! What the options of a surface mean.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::args::{Corners, DuplicatesArg, EdgeLength, SurfaceArgs};
+use super::args::{Corners, CrossingZArg, DuplicatesArg, EdgeLength, OnCrossingArg, SurfaceArgs};
 use super::inputs;
 use super::open::{self, Content, content};
 use super::systems::{self, Degrees, Wish};
 use super::talk::Talk;
 use crate::error::{Error, Result};
-use crate::terrain::{Classes, DuplicateRule};
+use crate::terrain::{Classes, CrossingRule, DuplicateRule};
+use crate::triangulation::OnCrossing;
 
 /// What a surface is made of, and how.
 #[derive(Debug)]
@@ -41,6 +42,11 @@ pub(super) struct PointPlan {
     /// As typed; the default depends on the coordinate system.
     pub(super) max_edge: Option<EdgeLength>,
     pub(super) duplicates: DuplicateRule,
+    pub(super) on_crossing: OnCrossing,
+    pub(super) crossing_heights: CrossingRule,
+    /// As typed; the default depends on the coordinate system.
+    pub(super) crossing_tolerance: Option<f64>,
+    pub(super) crossing_report: Option<PathBuf>,
 }
 
 impl SurfacePlan {
@@ -57,7 +63,7 @@ impl SurfacePlan {
         };
         inputs::require(args.breaklines.iter().chain(&args.boundary))?;
         refuse_other_kinds("--breaklines takes lines or polygons", &args.breaklines)?;
-        refuse_other_kinds("--boundary takes polygons", &args.boundary)?;
+        refuse_other_kinds("--boundary takes polygons or closed lines", &args.boundary)?;
         let mut inputs = files.clone();
         inputs.extend(args.breaklines.iter().chain(&args.boundary).cloned());
         let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));
@@ -78,6 +84,14 @@ impl SurfacePlan {
         };
         Ok(SurfacePlan { from, wish, inputs })
     }
+
+    /// The table of crossings that is written on the way.
+    pub(super) fn crossing_report(&self) -> Option<&Path> {
+        match &self.from {
+            From::Points(points) => points.crossing_report.as_deref(),
+            From::Mesh(_) | From::Raster(_) => None,
+        }
+    }
 }
 
 impl PointPlan {
@@ -93,6 +107,18 @@ impl PointPlan {
             DuplicatesArg::First => DuplicateRule::First,
             DuplicatesArg::Last => DuplicateRule::Last,
         };
+        let on_crossing = match args.on_crossing {
+            OnCrossingArg::Split => OnCrossing::Split,
+            OnCrossingArg::Reject => OnCrossing::Reject,
+        };
+        let crossing_heights = match args.crossing_z {
+            CrossingZArg::Lowest => CrossingRule::Choose(DuplicateRule::Lowest),
+            CrossingZArg::Highest => CrossingRule::Choose(DuplicateRule::Highest),
+            CrossingZArg::Mean => CrossingRule::Choose(DuplicateRule::Mean),
+            CrossingZArg::First => CrossingRule::Choose(DuplicateRule::First),
+            CrossingZArg::Last => CrossingRule::Choose(DuplicateRule::Last),
+            CrossingZArg::Error => CrossingRule::Refuse,
+        };
         PointPlan {
             files,
             classes,
@@ -101,6 +127,10 @@ impl PointPlan {
             bounds: args.bounds,
             max_edge: args.max_edge,
             duplicates,
+            on_crossing,
+            crossing_heights,
+            crossing_tolerance: args.crossing_tolerance,
+            crossing_report: args.crossing_report.clone(),
         }
     }
 }
@@ -120,7 +150,7 @@ fn refuse_other_kinds(wanted: &str, paths: &[PathBuf]) -> Result<()> {
 }
 
 /// A surface that is there already is taken as it is.
-fn refuse_building_options(args: &SurfaceArgs, path: &std::path::Path) -> Result<()> {
+fn refuse_building_options(args: &SurfaceArgs, path: &Path) -> Result<()> {
     let given = [
         (!args.breaklines.is_empty(), "--breaklines"),
         (!args.boundary.is_empty(), "--boundary"),
@@ -128,6 +158,10 @@ fn refuse_building_options(args: &SurfaceArgs, path: &std::path::Path) -> Result
         (args.max_edge.is_some(), "--max-edge"),
         (!args.class.is_empty(), "--class"),
         (args.duplicates != DuplicatesArg::default(), "--duplicates"),
+        (args.on_crossing != OnCrossingArg::default(), "--on-crossing"),
+        (args.crossing_z != CrossingZArg::default(), "--crossing-z"),
+        (args.crossing_tolerance.is_some(), "--crossing-tolerance"),
+        (args.crossing_report.is_some(), "--crossing-report"),
         (args.t_srs.is_some(), "--t-srs"),
     ];
     match given.iter().find(|(is_given, _)| *is_given) {

@@ -16,7 +16,7 @@ const FORMATS: &[Format<()>] = &[
 /// Builds a TIN and writes it as a mesh.
 pub(super) fn run(args: &TinArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
-    let targets = outputs::resolve(&args.output, FORMATS, &plan.inputs)?;
+    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
     let gathered = gather::surface(&mut plan, talk)?;
     let surface = gathered.surface.as_ref();
     for target in &targets {

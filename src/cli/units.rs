@@ -45,6 +45,14 @@ impl Units {
         }
     }
 
+    /// So many metres in units of the heights; the number itself where the unit is not known.
+    pub(super) fn height_of_metres(&self, metres: f64) -> f64 {
+        match &self.height {
+            Some(unit) if unit.factor > 0.0 => metres / unit.factor,
+            _ => metres,
+        }
+    }
+
     /// Whether the plan is in angles.
     pub(super) fn is_angular(&self) -> bool {
         self.is_angular
@@ -90,11 +98,13 @@ pub(super) fn thousandths(value: f64) -> String {
     neat((value * 1e3).round() / 1e3)
 }
 
-/// Two decimals for what is a measure of land, all that there are for what is small.
+/// Two decimals for what is a measure of land, three digits for what is small, two for what is hardly there.
 pub(super) fn number(value: f64) -> String {
     if value.abs() >= 1.0 || value == 0.0 {
         let text = format!("{value:.2}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else if value.abs() < 1e-6 {
+        format!("{value:.1e}")
     } else {
         let digits = 2 - value.abs().log10().floor() as i32;
         let scale = 10f64.powi(digits);

@@ -4,10 +4,10 @@ use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Terrain};
 use crate::kernel::{RANGE, Range};
 use crate::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, OnCrossing, Refused, Rounding, VertexLines, spatial_order};
+use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing, Refused, Rounding, VertexLines, spatial_order};
 
 use super::clip::Clip;
-use super::crossings::settle_heights;
+use super::crossings::{Pass, refuse, settle_heights};
 use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin};
 
 /// Collects points and lines and makes a [`Tin`] of them.
@@ -33,7 +33,7 @@ pub struct TinBuilder {
     pub duplicates: DuplicateRule,
     /// Whether breaklines may cross between their vertices.
     pub on_crossing: OnCrossing,
-    /// Which height stands where they do.
+    /// Which height stands where they do. (At a vertex that several were given by, `duplicates` holds.)
     pub crossing_heights: CrossingRule,
     /// Heights that differ by no more than this, in their units, are not worth a word.
     pub crossing_tolerance: f64,
@@ -71,7 +71,7 @@ pub struct TinReport {
     pub crossings: usize,
     /// How these were rounded; `None` if no breaklines cross.
     pub rounding: Option<Rounding>,
-    /// Where crossing breaklines differ in height by more than the tolerance, from west to east.
+    /// Where breaklines meet with heights that differ by more than the tolerance, from west to east.
     pub crossing_heights: Vec<CrossingHeights>,
     /// Vertices of the surface.
     pub vertices: usize,
@@ -131,12 +131,20 @@ impl TinBuilder {
     /// Makes the TIN.
     ///
     /// # Errors
-    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit numbers can count, or nothing
-    /// spans an area.
+    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit numbers can count, nothing
+    /// spans an area, or breaklines cross or differ in height where that is refused.
     ///
     /// # Complexity
     /// O(n log n) in practice; about 80 bytes a point beside the input.
-    pub fn build(mut self) -> Result<Tin> {
+    pub fn build(self) -> Result<Tin> {
+        self.build_named(&|line| format!("breakline {line}"))
+    }
+
+    /// Makes the TIN; errors call a breakline what `name` says of its position among those that were added.
+    ///
+    /// # Errors
+    /// Those of [`build`](TinBuilder::build).
+    pub fn build_named(mut self, name: &dyn Fn(usize) -> String) -> Result<Tin> {
         let mut report =
             TinReport { points: self.points.len(), breaklines: self.line_ends.len(), ..Default::default() };
         let geometry: Terrain = Terrain::default();
@@ -146,14 +154,18 @@ impl TinBuilder {
         }
         if let Some(at) = self.line_points.iter().position(bad) {
             let line = self.line_ends.partition_point(|&end| end <= at);
-            return Err(refused(self.line_points[at]).at(format!("breakline {line}")));
+            return Err(refused(self.line_points[at]).at(name(line)));
         }
 
         // One vertex for each place, in spatial order.
-        let (vertices, line_vertices) = self.merge(&mut report)?;
+        let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
         let lines = lines_of(&line_vertices, &self.line_ends);
-        let (mut triangulation, _) =
-            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, lines, self.on_crossing).map_err(not_built)?;
+        let (mut triangulation, renumbered) =
+            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, lines, self.on_crossing)
+                .map_err(|error| not_built(error, name))?;
+        if let Some(renumbered) = renumbered {
+            disputed.iter_mut().for_each(|pass| pass.vertex = renumbered[pass.vertex.index()]);
+        }
         if triangulation.dimension() < 2 {
             let what = match triangulation.vertex_count() {
                 0 | 1 => "fewer than two distinct points do".to_owned(),
@@ -165,7 +177,11 @@ impl TinBuilder {
 
         report.crossings = triangulation.crossings().len();
         report.rounding = triangulation.rounding();
-        report.crossing_heights = settle_heights(&mut triangulation, self.crossing_heights, self.crossing_tolerance)?;
+        report.crossing_heights =
+            settle_heights(&mut triangulation, disputed, self.crossing_heights, self.crossing_tolerance);
+        if self.crossing_heights == CrossingRule::Refuse {
+            refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
+        }
         report.constrained_edges = triangulation.constrained_edges().count();
 
         let mut tin = Tin::new(triangulation, self.crs.take());
@@ -174,16 +190,15 @@ impl TinBuilder {
         }
         let clip = Clip { polygons: self.boundaries, bounds: self.bounds };
         if !clip.is_everything() {
-            report.faces_clipped = clip.apply(&mut tin);
+            report.faces_clipped = clip.apply(&mut tin)?;
         }
         (report.vertices, report.triangles) = tin.count();
         tin.report = report;
         Ok(tin)
     }
 
-    /// Merges what shares a place, by the rules; returns the places in spatial order, and for each
-    /// vertex of a breakline its place. Takes the points.
-    fn merge(&mut self, report: &mut TinReport) -> Result<(Vec<[f64; 3]>, Vec<VertexId>)> {
+    /// Merges what shares a place, by the rules. Takes the points.
+    fn merge(&mut self, report: &mut TinReport) -> Result<Sites> {
         let mut all = std::mem::take(&mut self.points);
         let lines_from = all.len();
         all.reserve_exact(self.line_points.len());
@@ -192,6 +207,7 @@ impl TinBuilder {
         let place = |i: u32| [all[i as usize][0], all[i as usize][1]];
         let mut vertices = Vec::with_capacity(all.len());
         let mut line_vertices = vec![VertexId::INFINITE; all.len() - lines_from];
+        let mut disputed = Vec::new();
         let mut heights = Vec::new();
         for group in order.chunk_by(|&i, &j| place(i) == place(j)) {
             // Equal places are in the order of the input: points first, then lines.
@@ -211,10 +227,26 @@ impl TinBuilder {
             for &i in lines {
                 line_vertices[i as usize - lines_from] = VertexId::new(vertices.len());
             }
+            if !lines.is_empty() && heights.iter().any(|&z| z != heights[0]) {
+                disputed.extend(lines.iter().map(|&i| {
+                    let line = self.line_ends.partition_point(|&end| end <= i as usize - lines_from);
+                    Pass { vertex: VertexId::new(vertices.len()), line: LineId::new(line), height: all[i as usize][2] }
+                }));
+            }
             vertices.push([x, y, self.duplicates.choose(&mut heights)]);
         }
-        Ok((vertices, line_vertices))
+        Ok(Sites { vertices, line_vertices, disputed })
     }
+}
+
+/// The distinct places of points and lines.
+struct Sites {
+    /// In spatial order.
+    vertices: Vec<[f64; 3]>,
+    /// For each vertex of a breakline its place.
+    line_vertices: Vec<VertexId>,
+    /// The breaklines at places at which they have vertices of different heights.
+    disputed: Vec<Pass>,
 }
 
 /// The vertices of each line.
@@ -224,10 +256,11 @@ fn lines_of(vertices: &[VertexId], line_ends: &[usize]) -> VertexLines {
 }
 
 #[cold]
-fn not_built(refused: Refused) -> Error {
+fn not_built(refused: Refused, name: &dyn Fn(usize) -> String) -> Error {
     match refused {
         Refused::Crossing { segments: [(line, _), (other, _)], place: [x, y] } => {
-            Error::format(format!("breaklines {line} and {other} cross at {x} {y}, where neither has a vertex"))
+            let (line, other) = (name(line), name(other));
+            Error::format(format!("{line} and {other} cross at {x} {y} without a common vertex"))
                 .cure("mend the lines, or let them be split there with --on-crossing split")
         }
         refused => Error::limit(refused.to_string()),
@@ -235,7 +268,7 @@ fn not_built(refused: Refused) -> Error {
 }
 
 #[cold]
-fn refused(p: [f64; 3]) -> Error {
+pub(super) fn refused(p: [f64; 3]) -> Error {
     if p.iter().all(|x| x.is_finite()) {
         let Range { min, max } = RANGE;
         return Error::limit(format!("{p:?} has a coordinate that is neither 0 nor between {min:.0e} and {max:.0e}"));

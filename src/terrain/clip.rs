@@ -4,17 +4,25 @@
 //! 2. The clip line goes in as constraints, its vertices where they were given. Its heights are read off
 //!    the surface: at its vertices, and at new ones wherever it crosses an edge. Where it crosses a
 //!    breakline or the rim, the height of those stands.
-//! 3. The faces fall into regions that no constraint divides; of each, one point tells whether it lies
-//!    within the old rim, the bounds, and any of the polygons.
+//! 3. The rim, the bounds and each polygon are closed curves of constraints now: one flood over the faces tells in which
+//!    of them each lies.
 
-use geo::{Contains, Coord, LineString, Polygon};
+use std::cmp::Ordering;
 
 use crate::data::Bounds;
-use crate::geometry::{Crossing, Geometry};
-use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::error::Result;
+use crate::geometry::{Crossing, Geometry, height_along};
+use crate::kernel::RANGE;
+use crate::tds::{VertexId, ccw, cw};
 
 use super::Tin;
-use super::builder::sorted_segments;
+use super::builder::{refused, sorted_segments};
+use super::domains::{Domains, Region};
+
+/// The numbers of the domains: the old surface, the bounds, and from then on the polygons.
+const SURFACE: usize = 0;
+const BOUNDS: usize = 1;
+const POLYGONS: usize = 2;
 
 /// Polygons and a box; what lies in any of the polygons (in the plane, if there are none) and in the box
 /// stays.
@@ -29,58 +37,59 @@ impl Clip {
         self.polygons.is_empty() && self.bounds.is_none()
     }
 
-    /// The closed lines to insert.
-    fn rings(&self) -> Vec<Vec<[f64; 2]>> {
-        let mut rings: Vec<Vec<[f64; 2]>> = self.polygons.iter().flatten().cloned().collect();
-        rings.extend(
-            self.bounds.map(|Bounds { min, max }| {
-                vec![[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]]
-            }),
-        );
-        for ring in &mut rings {
-            ring.iter_mut().flatten().for_each(|x| *x += 0.0); // zero has one sign only
+    /// The closed lines to insert, each with the number of the domain that it bounds.
+    fn rings(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
+        let polygons = self.polygons.iter().enumerate();
+        let mut rings: Vec<(usize, Vec<[f64; 2]>)> =
+            polygons.flat_map(|(i, rings)| rings.iter().map(move |ring| (POLYGONS + i, ring.clone()))).collect();
+        if let Some(Bounds { min, max }) = self.bounds {
+            // What is wider than the arithmetic goes is wider than any data.
+            let within = |[x, y]: [f64; 2]| [x, y].map(|c| c.clamp(-RANGE.max, RANGE.max));
+            let corners = [[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]];
+            rings.push((BOUNDS, corners.map(within).to_vec()));
+        }
+        for (_, ring) in &mut rings {
+            // Zero has one sign only, and what is closer to it than the arithmetic goes is zero.
+            let tidy = |c: f64| if c.abs() < RANGE.min { 0.0 } else { c };
+            ring.iter_mut().flatten().for_each(|c| *c = tidy(*c));
             ring.extend(ring.first().copied());
         }
         rings
     }
 
     /// Clips the surface; returns the number of faces left out.
-    pub(super) fn apply(&self, tin: &mut Tin) -> usize {
+    ///
+    /// # Errors
+    /// If a vertex of a polygon or a bound cannot be computed with.
+    pub(super) fn apply(&self, tin: &mut Tin) -> Result<usize> {
         let rim = rim(tin);
-        let rim_places = rim.iter().map(|edge| edge.map(|v| plan(tin, v))).collect::<Vec<_>>();
-        for &[a, b] in &rim {
-            tin.triangulation.insert_segment(a, b);
-        }
-        self.insert(tin);
-        tin.include_all();
-        let before = tin.count().1;
-        let polygons: Vec<Vec<Polygon>> =
-            self.polygons.iter().map(|rings| rings.iter().map(|ring| polygon(ring)).collect()).collect();
-        let in_data = |p| is_within(&rim_places, p);
-        let stays = |p: [f64; 2]| {
-            let at = Coord { x: p[0], y: p[1] };
-            let in_polygon = |rings: &Vec<Polygon>| rings.iter().filter(|ring| ring.contains(&at)).count() % 2 == 1;
-            self.bounds.is_none_or(|bounds| bounds.holds(p[0], p[1]))
-                && (polygons.is_empty() || polygons.iter().any(in_polygon))
-        };
-        let mut outside_data = 0;
-        for (faces, p) in regions(tin) {
-            let data = in_data(p);
-            if !data {
-                outside_data += faces.len();
+        let lines = self.insert(tin, &rim)?;
+        let rim = rim.iter().map(|edge| (SURFACE, edge.as_slice()));
+        let curves = rim.chain(lines.iter().map(|(domain, line)| (*domain, line.as_slice())));
+        let domains = Domains::new(&tin.triangulation, curves);
+        tin.inside = vec![false; tin.triangulation.tds().cell_slots()];
+        let mut left_out = 0;
+        for Region { within, faces } in domains.regions(&tin.triangulation) {
+            let is_within = |domain| within.contains(&domain);
+            let in_polygon = self.polygons.is_empty() || within.last().is_some_and(|&last| last >= POLYGONS);
+            if !is_within(SURFACE) {
+                continue;
             }
-            if !data || !stays(p) {
-                faces.iter().for_each(|face| tin.inside[face.index()] = false);
+            if in_polygon && (self.bounds.is_none() || is_within(BOUNDS)) {
+                faces.iter().for_each(|face| tin.inside[face.index()] = true);
+            } else {
+                left_out += faces.len();
             }
         }
-        before - outside_data - tin.count().1
+        Ok(left_out)
     }
 
-    /// Inserts the clip line.
-    fn insert(&self, tin: &mut Tin) {
+    /// Inserts the clip lines; returns their vertices, each line with the number of its domain.
+    fn insert(&self, tin: &mut Tin, rim: &[[VertexId; 2]]) -> Result<Vec<(usize, Vec<VertexId>)>> {
         let mut line = Vec::new();
         let mut line_ends = Vec::new();
-        for ring in self.rings() {
+        let rings = self.rings();
+        for (_, ring) in &rings {
             for pair in ring.windows(2) {
                 line.push(pair[0]);
                 line.extend(crossings_between(tin, pair[0], pair[1]));
@@ -89,32 +98,83 @@ impl Clip {
             line_ends.push(line.len());
         }
         let heights: Vec<Option<f64>> = line.iter().map(|&[x, y]| tin.elevation(x, y)).collect();
-        // Without heights at first, so that a crossing takes that of the breakline it crosses. Places that
-        // the arithmetic does not admit are far outside of any data.
-        let vertices: Vec<VertexId> = line
-            .iter()
-            .map(|&[x, y]| tin.triangulation.insert([x, y, f64::NAN]).unwrap_or(VertexId::INFINITE))
-            .collect();
-        for [a, b] in sorted_segments(&vertices, &line_ends) {
-            if b != VertexId::INFINITE {
-                tin.triangulation.insert_segment(a, b);
-            }
+        // A vertex on a line that is led may have the lines arranged anew: before there is any constraint that belongs to no
+        // line, and what was settled on crossings is put back.
+        let settled: Vec<[f64; 3]> =
+            tin.triangulation.crossings().iter().map(|&v| *tin.triangulation.point(v)).collect();
+        // Without heights at first, so that a crossing takes that of the breakline it crosses.
+        let mut vertices = Vec::with_capacity(line.len());
+        for &[x, y] in &line {
+            let vertex = tin.triangulation.insert([x, y, f64::NAN]);
+            vertices.push(vertex.map_err(|_| refused([x, y, 0.0]).at("boundary"))?);
+        }
+        restore(tin, settled);
+        let is_there = |edge: &&[VertexId; 2]| edge.iter().all(|&v| tin.triangulation.tds().is_vertex(v));
+        let rim: Vec<[VertexId; 2]> = rim.iter().filter(is_there).copied().collect();
+        for &[a, b] in rim.iter().chain(&sorted_segments(&vertices, &line_ends)) {
+            tin.triangulation.insert_segment(a, b);
         }
         for (&vertex, height) in vertices.iter().zip(heights) {
-            if let (Some(z), true) = (height, vertex != VertexId::INFINITE) {
+            if let Some(z) = height {
                 set_height(tin, vertex, z);
             }
         }
-        // Where the clip line crosses itself: between its neighbors.
+        let starts = std::iter::once(&0).chain(&line_ends);
+        let runs: Vec<&[VertexId]> = starts.zip(&line_ends).map(|(&start, &end)| &vertices[start..end]).collect();
+        // Where the clip line crosses the rim or a breakline that it meets elsewhere too, and where it crosses itself.
+        let mut solid: Vec<&[VertexId]> = rim.iter().map(<[VertexId; 2]>::as_slice).collect();
+        solid.extend(tin.triangulation.lines().map(|line| tin.triangulation.line_vertices(line)));
+        let on_solid = heights_between(tin, &solid);
+        on_solid.into_iter().for_each(|(vertex, z)| set_height(tin, vertex, z));
+        heights_between(tin, &runs).into_iter().for_each(|(vertex, z)| set_height(tin, vertex, z));
+        // Outside of the data any will do.
         let is_bare = |&vertex: &VertexId| tin.triangulation.point(vertex)[2].is_nan();
         for vertex in tin.triangulation.tds().vertices().filter(is_bare).collect::<Vec<_>>() {
-            let z = mean_around(tin, vertex);
-            set_height(tin, vertex, z);
+            set_height(tin, vertex, 0.0);
+        }
+        Ok(rings.iter().zip(runs).map(|((domain, _), run)| (*domain, run.to_vec())).collect())
+    }
+}
+
+/// Gives the crossings at these places their heights.
+fn restore(tin: &mut Tin, mut settled: Vec<[f64; 3]>) {
+    settled.sort_by(|p, q| lexicographic(*p, *q));
+    for vertex in tin.triangulation.crossings().to_vec() {
+        let p = *tin.triangulation.point(vertex);
+        if let Ok(at) = settled.binary_search_by(|q| lexicographic(*q, p)) {
+            tin.triangulation.replace_point(vertex, settled[at]);
         }
     }
 }
 
-/// The places between two others where the way crosses an edge of the surface that is no constraint, in
+/// The order of places in plan.
+fn lexicographic(p: [f64; 3], q: [f64; 3]) -> Ordering {
+    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+}
+
+/// The heights on lines at the vertices that have none, between those that have one: in between the lines lie in one
+/// triangle of the surface, so that all have the same height there but for a rounding. Sorted, the lowest first.
+fn heights_between(tin: &Tin, lines: &[&[VertexId]]) -> Vec<(VertexId, f64)> {
+    let triangulation = &tin.triangulation;
+    let mut heights = Vec::new();
+    for pair in lines.iter().flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]) {
+        let mut chain = vec![pair[0]];
+        chain.extend(triangulation.way(pair[0], pair[1]));
+        chain.push(pair[1]);
+        let known: Vec<usize> = (0..chain.len()).filter(|&i| !triangulation.point(chain[i])[2].is_nan()).collect();
+        for ends in known.windows(2) {
+            let [p, q] = [ends[0], ends[1]].map(|i| *triangulation.point(chain[i]));
+            heights.extend(chain[ends[0] + 1..ends[1]].iter().map(|&vertex| {
+                let [x, y, _] = *triangulation.point(vertex);
+                (vertex, height_along(p, q, [x, y]))
+            }));
+        }
+    }
+    heights.sort_by(|(u, low), (v, high)| u.cmp(v).then(low.total_cmp(high)));
+    heights
+}
+
+/// The places between two others where the way crosses an edge within the surface that is no constraint, in
 /// their order.
 fn crossings_between(tin: &Tin, [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> Vec<[f64; 2]> {
     let triangulation = &tin.triangulation;
@@ -125,7 +185,7 @@ fn crossings_between(tin: &Tin, [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> Vec<[
     let is_open = |&[c, d]: &[VertexId; 2]| {
         triangulation.tds().edge(c, d).is_some_and(|(cell, i)| {
             let beside = triangulation.tds().neighbor(cell, i);
-            !triangulation.is_constrained(cell, i) && (tin.inside[cell.index()] || tin.inside[beside.index()])
+            !triangulation.is_constrained(cell, i) && tin.inside[cell.index()] && tin.inside[beside.index()]
         })
     };
     let crossed = triangulation.edges_crossed(&a, &b).into_iter().filter(is_open);
@@ -138,28 +198,11 @@ fn crossings_between(tin: &Tin, [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> Vec<[
     places
 }
 
-fn polygon(ring: &[[f64; 2]]) -> Polygon {
-    Polygon::new(LineString::from_iter(ring.iter().map(|&[x, y]| Coord { x, y })), Vec::new())
-}
-
-fn plan(tin: &Tin, vertex: VertexId) -> [f64; 2] {
-    let p = tin.triangulation.point(vertex);
-    [p[0], p[1]]
-}
-
 fn set_height(tin: &mut Tin, vertex: VertexId, z: f64) {
     let [x, y, known] = *tin.triangulation.point(vertex);
     if known.is_nan() {
         tin.triangulation.replace_point(vertex, [x, y, z]);
     }
-}
-
-/// The mean height of the neighbors that have one; 0 if none has, which are outside of the data.
-fn mean_around(tin: &Tin, vertex: VertexId) -> f64 {
-    let tds = tin.triangulation.tds();
-    let corners = tds.around(vertex).flat_map(|cell| *tds.corners(cell)).filter(|&v| v != VertexId::INFINITE);
-    let heights: Vec<f64> = corners.map(|v| tin.triangulation.point(v)[2]).filter(|z| z.is_finite()).collect();
-    heights.iter().sum::<f64>() / heights.len().max(1) as f64
 }
 
 /// The edges between the surface and what is not part of it, in an order of their own.
@@ -174,44 +217,4 @@ fn rim(tin: &Tin) -> Vec<[VertexId; 2]> {
     }
     rim.sort_unstable();
     rim
-}
-
-/// Whether a ray to the left crosses the edges an odd number of times.
-fn is_within(edges: &[[[f64; 2]; 2]], [x, y]: [f64; 2]) -> bool {
-    let crosses =
-        |&&[a, b]: &&[[f64; 2]; 2]| (a[1] <= y) != (b[1] <= y) && a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) < x;
-    edges.iter().filter(crosses).count() % 2 == 1
-}
-
-/// The sets of faces that no constraint divides, each with a place within.
-fn regions(tin: &Tin) -> Vec<(Vec<CellId>, [f64; 2])> {
-    let tds = tin.triangulation.tds();
-    let mut seen = vec![false; tin.inside.len()];
-    let mut regions = Vec::new();
-    for start in tin.triangulation.finite_cells() {
-        if std::mem::replace(&mut seen[start.index()], true) {
-            continue;
-        }
-        let mut faces = vec![start];
-        let mut next = 0;
-        // In the middle of the largest face one is furthest from any rounding.
-        let mut largest = (f64::NEG_INFINITY, [0.0; 2]);
-        while next < faces.len() {
-            let cell = faces[next];
-            next += 1;
-            let [a, b, c] = tds.corners(cell).map(|v| plan(tin, v));
-            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-            if area > largest.0 {
-                largest = (area, [0, 1].map(|k| a[k] + ((b[k] - a[k]) + (c[k] - a[k])) / 3.0));
-            }
-            for i in (0..3).filter(|&i| !tin.triangulation.is_constrained(cell, i)) {
-                let beside = tds.neighbor(cell, i);
-                if !tds.is_infinite(beside) && !std::mem::replace(&mut seen[beside.index()], true) {
-                    faces.push(beside);
-                }
-            }
-        }
-        regions.push((faces, largest.1));
-    }
-    regions
 }

@@ -1,6 +1,7 @@
-//! Heights where breaklines cross.
+//! Heights where breaklines meet: each has one of its own there.
 
 use std::cmp::Ordering;
+use std::collections::HashSet;
 
 use crate::error::{Error, Result};
 use crate::geometry::{Terrain, height_along};
@@ -9,7 +10,7 @@ use crate::triangulation::{ConstrainedDelaunay, LineId};
 
 use super::DuplicateRule;
 
-/// Which height stands where breaklines cross, each with one of its own.
+/// Which height stands where breaklines cross between their vertices, each with one of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrossingRule {
     /// One of them, or their mean; first and last mean the order in which the lines were added. The default is
@@ -25,83 +26,106 @@ impl Default for CrossingRule {
     }
 }
 
-/// A place where breaklines with different heights meet.
+/// A place where breaklines with different heights meet: they cross, or one passes or shares a vertex of the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrossingHeights {
     /// In plan.
     pub place: [f64; 2],
-    /// Each line, by its position among those that were added, and its own height there; in order of the lines.
+    /// Each line, by its position among those that were added, and its own height there; in order of the lines. A line
+    /// that comes there twice, with two heights, is there twice.
     pub heights: Vec<(usize, f64)>,
     /// The height that stands.
     pub chosen: f64,
+    /// Whether a vertex was added there, which takes its height by the [`CrossingRule`]. One that was given keeps the
+    /// height that it has by the [`DuplicateRule`].
+    pub is_added: bool,
 }
 
 impl CrossingHeights {
     /// By how much the heights differ.
     pub fn difference(&self) -> f64 {
-        let heights = || self.heights.iter().map(|&(_, z)| z);
-        heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
+        let [(_, lowest), (_, highest)] = self.extremes();
+        highest - lowest
+    }
+
+    /// The line with the lowest height, and that with the highest; of equal ones the first.
+    pub fn extremes(&self) -> [(usize, f64); 2] {
+        let first = self.heights.first().copied().unwrap_or_default();
+        self.heights.iter().fold([first; 2], |[low, high], &(line, z)| {
+            [if z < low.1 { (line, z) } else { low }, if z > high.1 { (line, z) } else { high }]
+        })
     }
 }
 
-/// A line at a vertex between its own.
-struct Pass {
-    vertex: VertexId,
-    line: LineId,
-    height: f64,
+/// A line at a vertex, with its own height there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pass {
+    pub(super) vertex: VertexId,
+    pub(super) line: LineId,
+    pub(super) height: f64,
 }
 
 /// Gives every vertex that was added where lines cross its height, by the rule. Returns, in lexicographic order of
 /// their places, those at which the heights differ by more than the tolerance.
+///
+/// `disputed` are the lines at vertices that they were given by with different heights.
 pub(super) fn settle_heights(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
+    disputed: Vec<Pass>,
     rule: CrossingRule,
     tolerance: f64,
-) -> Result<Vec<CrossingHeights>> {
-    let passes = passes(triangulation);
+) -> Vec<CrossingHeights> {
+    let choice = match rule {
+        CrossingRule::Choose(choice) => choice,
+        CrossingRule::Refuse => DuplicateRule::Lowest,
+    };
     let mut reported = Vec::new();
-    for at_vertex in passes.chunk_by(|p, q| p.vertex == q.vertex) {
+    for at_vertex in passes(triangulation, disputed).chunk_by(|p, q| p.vertex == q.vertex) {
         let vertex = at_vertex[0].vertex;
-        let [x, y, _] = *triangulation.point(vertex);
-        let mut heights: Vec<f64> = at_vertex.iter().map(|pass| pass.height).collect();
-        let choice = match rule {
-            CrossingRule::Choose(choice) => choice,
-            CrossingRule::Refuse => DuplicateRule::Lowest,
-        };
-        let chosen = choice.choose(&mut heights);
-        triangulation.replace_point(vertex, [x, y, chosen]);
+        let [x, y, mut chosen] = *triangulation.point(vertex);
+        let is_added = triangulation.is_added(vertex);
+        if is_added {
+            chosen = choice.choose(&mut at_vertex.iter().map(|pass| pass.height).collect::<Vec<f64>>());
+            triangulation.replace_point(vertex, [x, y, chosen]);
+        }
         let heights = at_vertex.iter().map(|pass| (pass.line.index(), pass.height)).collect();
-        let crossing = CrossingHeights { place: [x, y], heights, chosen };
+        let crossing = CrossingHeights { place: [x, y], heights, chosen, is_added };
         if crossing.difference() > tolerance {
             reported.push(crossing);
         }
     }
-    reported.sort_by(|p, q| by_place(p, q));
-    match (rule, reported.first()) {
-        (CrossingRule::Refuse, Some(first)) => Err(refused(first, tolerance)),
-        _ => Ok(reported),
-    }
+    reported.sort_by(by_place);
+    reported
 }
 
-/// The passes of lines through added vertices, by vertex and line.
-fn passes(triangulation: &ConstrainedDelaunay<Terrain>) -> Vec<Pass> {
+/// All lines at the vertices that lines pass between their own and at disputed ones, by vertex and line.
+fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> Vec<Pass> {
     let mut passes = Vec::new();
-    if triangulation.crossings().is_empty() {
-        return passes;
-    }
     for line in triangulation.lines() {
-        for pair in triangulation.line_vertices(line).windows(2) {
+        for pair in triangulation.line_vertices(line).windows(2).filter(|pair| pair[0] != pair[1]) {
             let [p, q] = [pair[0], pair[1]].map(|v| *triangulation.point(v));
-            let between = triangulation.way(pair[0], pair[1]);
-            for vertex in between.into_iter().filter(|&v| triangulation.is_added(v)) {
+            passes.extend(triangulation.way(pair[0], pair[1]).into_iter().map(|vertex| {
                 let [x, y, _] = *triangulation.point(vertex);
-                passes.push(Pass { vertex, line, height: height_along(p, q, [x, y]) });
-            }
+                Pass { vertex, line, height: height_along(p, q, [x, y]) }
+            }));
         }
     }
+    // Where one passes a vertex that others were given by, without dispute among them, these have its height.
+    let mut passed: HashSet<VertexId> =
+        passes.iter().map(|pass| pass.vertex).filter(|&vertex| !triangulation.is_added(vertex)).collect();
+    for pass in &disputed {
+        passed.remove(&pass.vertex);
+    }
+    if !passed.is_empty() {
+        for line in triangulation.lines() {
+            let own = triangulation.line_vertices(line).iter().filter(|vertex| passed.contains(vertex));
+            passes.extend(own.map(|&vertex| Pass { vertex, line, height: triangulation.point(vertex)[2] }));
+        }
+    }
+    passes.extend(disputed);
     // A line that passes twice keeps both of its heights; equal ones are one.
     passes.sort_by(|p, q| p.vertex.cmp(&q.vertex).then(p.line.cmp(&q.line)).then(p.height.total_cmp(&q.height)));
-    passes.dedup_by(|p, q| p.vertex == q.vertex && p.line == q.line && p.height == q.height);
+    passes.dedup();
     passes
 }
 
@@ -109,11 +133,142 @@ fn by_place(p: &CrossingHeights, q: &CrossingHeights) -> Ordering {
     p.place[0].total_cmp(&q.place[0]).then(p.place[1].total_cmp(&q.place[1]))
 }
 
-#[cold]
-fn refused(crossing: &CrossingHeights, tolerance: f64) -> Error {
-    let [x, y] = crossing.place;
-    let told: Vec<String> =
-        crossing.heights.iter().map(|(line, z)| format!("breakline {line} has height {z}")).collect();
-    Error::format(format!("where breaklines cross at {x} {y}, {}, expected within {tolerance}", told.join(" and ")))
-        .cure("mend the lines, or choose a height with --crossing-z lowest, highest or mean")
+/// The error for breaklines that differ, if there are any; `name` tells of a line what the user calls it.
+pub(super) fn refuse(crossings: &[CrossingHeights], tolerance: f64, name: &dyn Fn(usize) -> String) -> Result<()> {
+    let Some(first) = crossings.first() else { return Ok(()) };
+    let [x, y] = first.place;
+    let [(low, lowest), (high, highest)] = first.extremes();
+    let more = match crossings.len() {
+        1 => String::new(),
+        count => format!(", and at {} places more", count - 1),
+    };
+    Err(Error::format(format!(
+        "breaklines meet with different heights at {x} {y}: {lowest} of {}, {highest} of {}, expected within {tolerance}{more}",
+        name(low),
+        name(high)
+    ))
+    .cure("mend the lines, or choose a height with --crossing-z lowest, highest or mean (--crossing-report lists all places)"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Surface;
+    use crate::terrain::{Tin, TinBuilder};
+
+    type Line<'a> = &'a [[f64; 3]];
+
+    /// Two lines that cross at the origin, at heights 1 and 4, and one that crosses them there at 2.5.
+    const STAR: [Line; 3] = [
+        &[[-4.0, 0.0, 0.0], [4.0, 0.0, 2.0]],
+        &[[0.0, -4.0, 4.0], [0.0, 4.0, 4.0]],
+        &[[-4.0, -4.0, 2.5], [4.0, 4.0, 2.5]],
+    ];
+
+    fn builder(lines: &[Line]) -> TinBuilder {
+        let mut builder = TinBuilder::default();
+        builder.add_points(&[-9.0, 9.0, 9.0, -9.0], &[-9.0, -9.0, 9.0, 9.0], &[0.0; 4]);
+        lines.iter().for_each(|line| builder.add_breakline(line));
+        builder
+    }
+
+    fn tin(lines: &[Line], rule: DuplicateRule) -> Tin {
+        let mut builder = builder(lines);
+        builder.crossing_heights = CrossingRule::Choose(rule);
+        builder.build().unwrap()
+    }
+
+    fn vertices(tin: &Tin) -> Vec<[u64; 3]> {
+        (0..tin.vertex_count() as u32).map(|v| tin.position(v).map(f64::to_bits)).collect()
+    }
+
+    #[test]
+    fn each_rule_has_its_height() {
+        use DuplicateRule::{First, Highest, Last, Lowest, Mean};
+        for (rule, expected) in [(Lowest, 1.0), (Highest, 4.0), (Mean, 2.5), (First, 1.0), (Last, 2.5)] {
+            let tin = tin(&STAR, rule);
+            assert_eq!(tin.elevation(0.0, 0.0), Some(expected), "{rule:?}");
+            let heights = vec![(0, 1.0), (1, 4.0), (2, 2.5)];
+            let told = CrossingHeights { place: [0.0; 2], heights, chosen: expected, is_added: true };
+            assert_eq!((told.difference(), told.extremes()), (3.0, [(0, 1.0), (1, 4.0)]));
+            assert_eq!(tin.report().crossing_heights, [told]);
+        }
+    }
+
+    #[test]
+    fn only_first_and_last_know_an_order() {
+        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            let lines = order.map(|line| STAR[line]);
+            for rule in [DuplicateRule::Lowest, DuplicateRule::Highest, DuplicateRule::Mean] {
+                assert_eq!(vertices(&tin(&lines, rule)), vertices(&tin(&STAR, rule)), "{order:?} {rule:?}");
+            }
+            let own = [1.0, 4.0, 2.5];
+            let [first, last] = [DuplicateRule::First, DuplicateRule::Last].map(|rule| tin(&lines, rule));
+            assert_eq!(first.elevation(0.0, 0.0), Some(own[order[0]]));
+            assert_eq!(last.elevation(0.0, 0.0), Some(own[order[2]]));
+        }
+    }
+
+    #[test]
+    fn what_differs_by_no_more_than_the_tolerance_is_passed_over() {
+        for (tolerance, count) in [(0.0, 1), (2.5, 1), (3.0, 0), (9.0, 0)] {
+            let mut builder = builder(&STAR);
+            builder.crossing_tolerance = tolerance;
+            let tin = builder.build().unwrap();
+            assert_eq!(tin.report().crossing_heights.len(), count);
+            assert_eq!(tin.elevation(0.0, 0.0), Some(1.0));
+        }
+    }
+
+    #[test]
+    fn the_refusal_names_both_lines_as_the_caller_does() {
+        let refuse = |tolerance| {
+            let mut builder = builder(&STAR);
+            builder.crossing_heights = CrossingRule::Refuse;
+            builder.crossing_tolerance = tolerance;
+            builder.build_named(&|line| format!("road {}", ["A", "B", "C"][line]))
+        };
+        let message = "breaklines meet with different heights at 0 0: 1 of road A, 4 of road B, expected within 0.5";
+        assert_eq!(refuse(0.5).unwrap_err().to_string(), message);
+        assert!(refuse(3.0).is_ok());
+    }
+
+    #[test]
+    fn a_vertex_that_is_touched_keeps_its_height_and_is_told() {
+        // The second line ends on the first, the third shares that end, the fourth is elsewhere.
+        let lines: [Line; 4] = [
+            &[[-4.0, 0.0, 0.0], [4.0, 0.0, 2.0]],
+            &[[2.0, 0.0, 7.0], [2.0, 4.0, 7.0]],
+            &[[2.0, -4.0, 5.0], [2.0, 0.0, 5.0]],
+            &[[-4.0, 6.0, 5.0], [4.0, 6.0, 5.0]],
+        ];
+        let told = |lines: &[Line]| {
+            let tin = tin(lines, DuplicateRule::Highest);
+            assert_eq!(tin.report().crossings, 0);
+            let heights: Vec<_> = tin.report().crossing_heights.iter().map(|c| c.heights.clone()).collect();
+            assert!(tin.report().crossing_heights.iter().all(|c| !c.is_added && c.place == [2.0, 0.0]));
+            (tin.elevation(2.0, 0.0), heights)
+        };
+        assert_eq!(told(&lines), (Some(5.0), vec![vec![(0, 1.5), (1, 7.0), (2, 5.0)]]));
+        assert_eq!(told(&lines[..2]), (Some(7.0), vec![vec![(0, 1.5), (1, 7.0)]]));
+        assert_eq!(told(&lines[1..]), (Some(5.0), vec![vec![(0, 7.0), (1, 5.0)]]));
+        let level: Line = &[[2.0, 0.0, 1.5], [2.0, 4.0, 7.0]];
+        assert_eq!(told(&[lines[0], level]), (Some(1.5), vec![]));
+    }
+
+    #[test]
+    fn a_point_on_a_breakline_is_no_crossing() {
+        let mut builder = builder(&STAR[..1]);
+        builder.add_points(&[1.0], &[0.0], &[8.0]);
+        let tin = builder.build().unwrap();
+        assert_eq!((tin.elevation(1.0, 0.0), tin.report().crossing_heights.len()), (Some(8.0), 0));
+    }
+
+    #[test]
+    fn a_ring_that_ends_at_another_height_than_it_began_is_told() {
+        let ring: Line = &[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0, 0.0, 3.0]];
+        let tin = tin(&[ring], DuplicateRule::Lowest);
+        let [told] = tin.report().crossing_heights.as_slice() else { panic!() };
+        assert_eq!((told.heights.as_slice(), told.chosen), ([(0, 1.0), (0, 3.0)].as_slice(), 1.0));
+    }
 }

@@ -32,6 +32,7 @@ mod builder;
 mod clip;
 pub mod contour;
 mod crossings;
+mod domains;
 mod duplicates;
 mod grid_surface;
 mod hillshade;

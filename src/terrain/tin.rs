@@ -1,6 +1,6 @@
 use crate::crs::Crs;
 use crate::data::Surface;
-use crate::geometry::{Geometry, Terrain};
+use crate::geometry::{Geometry, Terrain, height_along};
 use crate::kernel::RANGE;
 use crate::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
@@ -115,15 +115,35 @@ impl Tin {
     }
 }
 
+/// Where a triangle is thinner than this part of its longest side, rounding hides where across it a place lies: such are
+/// made where lines are led through crossings.
+const THINNEST: f64 = 1e-9;
+
 /// The height at `q` of the plane through three points. Exactly that of a corner at a corner.
 pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     let cross = |p: [f64; 3], r: [f64; 3]| (p[0] - q[0]) * (r[1] - q[1]) - (p[1] - q[1]) * (r[0] - q[0]);
     let (at_a, at_b, at_c) = (cross(b, c), cross(c, a), cross(a, b));
     let area = at_a + at_b + at_c;
-    if area == 0.0 {
-        return a[2];
+    let longest = square(a, b).max(square(b, c)).max(square(c, a));
+    if area.abs() <= THINNEST * longest {
+        return along_sliver([a, b, c], q);
     }
     a[2] + (at_b * (b[2] - a[2]) + at_c * (c[2] - a[2])) / area
+}
+
+/// The same of a triangle that is hardly more than a line: along its two shorter sides.
+fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
+    let sides = [(a, b, c), (b, c, a), (c, a, b)];
+    let length = |&(p, r, _): &([f64; 3], [f64; 3], [f64; 3])| square(p, r);
+    let [from, to, middle] =
+        sides.into_iter().max_by(|s, t| length(s).total_cmp(&length(t))).map_or([a, b, c], Into::into);
+    let is_before = (q[0] - middle[0]) * (to[0] - from[0]) + (q[1] - middle[1]) * (to[1] - from[1]) <= 0.0;
+    if is_before { height_along(from, middle, q) } else { height_along(middle, to, q) }
+}
+
+/// The square of a distance in plan.
+fn square(p: [f64; 3], q: [f64; 3]) -> f64 {
+    (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
 }
 
 impl Surface for Tin {
@@ -155,5 +175,21 @@ impl Surface for Tin {
 
     fn crs(&self) -> Option<&Crs> {
         self.crs.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sliver_is_folded_at_its_middle_corner() {
+        let [a, b, c] = [[0.0, 0.0, 1.0], [1.0, 3.0, 7.0], [0.5, 1.5 + 1e-13, 6.0]];
+        for corners in [[a, b, c], [c, b, a], [b, c, a]] {
+            for (y, z) in [(0.0, 1.0), (0.75, 3.5), (1.5, 6.0), (2.25, 6.5), (3.0, 7.0)] {
+                assert!((linear(corners, [y / 3.0, y]) - z).abs() < 1e-9, "{corners:?} at {y}");
+            }
+        }
+        assert_eq!([a, b, c].map(|p| linear([a, b, c], [p[0], p[1]])), [1.0, 7.0, 6.0]);
     }
 }

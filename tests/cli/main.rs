@@ -1,5 +1,6 @@
 //! The program as it is run, in a temporary folder.
 
+mod crossings;
 mod results;
 mod usage;
 

@@ -116,6 +116,10 @@ fn the_surface_is_clipped_to_bounds_and_boundary() {
     let both = extent(&["--bounds", "1,-9,9,9", "--boundary", "b.geojson"]);
     close(&both["min"], [1.0, 0.0, 11.0]);
     close(&both["max"], [3.0, 2.0, 13.0]);
+    // The same boundary as lines.
+    let lines = geojson(25832, "MultiLineString", "[[[0,0],[3,0],[0,3]],[[0,0],[0,3]]]");
+    std::fs::write(folder.path().join("b.geojson"), lines).unwrap();
+    assert_eq!(extent(&["--bounds", "1,-9,9,9", "--boundary", "b.geojson"]), both);
     // Points beyond the buffer are not used, those in it are.
     let run = run_in(&folder, &["tin", "a.xyz", "--bounds", "0,0,1,1", "--max-edge", "1.5", "-o", "w.ply"]);
     run.works(&["points up to 1.5 units outside of the bounds are used", "9 used; dropped: 7 outside of the bounds"]);

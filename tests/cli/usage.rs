@@ -104,7 +104,7 @@ fn files_of_the_wrong_kind_are_named_before_the_work() {
     let tin = |args: &[&str]| run_in(&folder, &[&["tin", "a.xyz", "-o", "t.ply"], args].concat());
     tin(&["--breaklines", "d.tif"]).fails(2, &["d.tif: --breaklines takes lines or polygons, this is a raster"]);
     tin(&["--breaklines", "p.las"]).fails(2, &["p.las: ", "this is lidar points"]);
-    tin(&["--boundary", "p.las"]).fails(2, &["p.las: --boundary takes polygons, this is lidar points"]);
+    tin(&["--boundary", "p.las"]).fails(2, &["p.las: --boundary takes polygons or closed lines, this is lidar points"]);
     tin(&["--class", "2", "8"]).fails(1, &["8: no such file", "hint: ", "commas", "--class 2,8"]);
     tin(&["folder"]).fails(1, &["folder: this is a folder", "hint: ", "folder/*.laz"]);
     let run = run_in(&folder, &["dem", "a.xyz", "-o", "e.tif", "--align-to", "no.tif"]);
@@ -197,7 +197,12 @@ fn breaklines_without_heights_are_refused_never_taken_as_0() {
     tin("part.geojson").fails(1, &["part.geojson: record 1: vertex 2 at 1 1 has no height"]);
     tin("points.geojson").fails(1, &["points.geojson", "no lines"]);
     let run = run_in(&folder, &["tin", "a.xyz", "--boundary", "flat.geojson", "-o", "t.ply"]);
-    run.fails(1, &["flat.geojson", "no polygons"]);
+    run.fails(
+        1,
+        &["flat.geojson: record 1: the boundary is not closed: a line ends at 0 0", "1.414213562 away, at 1 1"],
+    );
+    let run = run_in(&folder, &["tin", "a.xyz", "--boundary", "points.geojson", "-o", "t.ply"]);
+    run.fails(1, &["points.geojson", "no polygons and no lines"]);
     assert!(!folder.path().join("t.ply").exists());
 }
 

@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 use clap::{Args, Parser, Subcommand};
 
 pub(super) use parse::{Corners, EdgeLength, join_corners};
-pub(super) use surface::{DuplicatesArg, SurfaceArgs};
+pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
 pub(super) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OnCrossingArg,
     OutputArgs, TinArgs, TriangulateArgs,

@@ -108,6 +108,14 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A finite number from zero up.
+pub(super) fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value >= 0.0 => Ok(value),
+        value => Err(format!("{value} is below zero")),
+    }
+}
+
 /// An angle from the horizon to the zenith.
 pub(super) fn altitude(text: &str) -> Result<f64, String> {
     match finite(text)? {

@@ -2,7 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::parse::{Corners, EdgeLength};
+use super::OnCrossingArg;
+use super::parse::{Corners, EdgeLength, not_negative};
 
 /// What the surface is made of.
 #[derive(Debug, Clone, Args)]
@@ -27,7 +28,8 @@ pub(in crate::cli) struct SurfaceArgs {
 
     /// Polygons that the surface is clipped to (repeatable)
     ///
-    /// What is inside of any polygon stays. Heights on the boundary are those of the surface.
+    /// What is inside of any polygon stays. Heights on the boundary are those of the surface. Lines are
+    /// taken for one polygon if they close to rings, end to end, and otherwise refused with the gap.
     #[arg(long, value_name = "FILE", help_heading = "Surface")]
     pub(in crate::cli) boundary: Vec<PathBuf>,
 
@@ -66,6 +68,50 @@ pub(in crate::cli) struct SurfaceArgs {
     )]
     pub(in crate::cli) duplicates: DuplicatesArg,
 
+    /// What to do where breaklines cross between their vertices
+    ///
+    /// `split` gives them a common vertex there; `reject` is an error that names both lines and the place.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "split|reject",
+        default_value_t,
+        hide_possible_values = false,
+        help_heading = "Surface"
+    )]
+    pub(in crate::cli) on_crossing: OnCrossingArg,
+
+    /// Which height stands where breaklines cross between their vertices
+    ///
+    /// Each line has a height of its own there. The default, `lowest`, does not depend on any order, nor do
+    /// `highest` and `mean`; `first` and `last` mean the order of the lines in the input; `error` refuses heights
+    /// that differ by more than `--crossing-tolerance`. Where a line meets a vertex of another, that
+    /// vertex keeps its height (vertices that share a place follow `--duplicates`); places where the
+    /// heights differ are told all the same.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "RULE",
+        default_value_t,
+        hide_possible_values = false,
+        help_heading = "Surface"
+    )]
+    pub(in crate::cli) crossing_z: CrossingZArg,
+
+    /// Heights of breaklines that meet may differ by this [default: 0.01 metres]
+    ///
+    /// Places where they differ by more are told. In the units of the heights (0.01 metres are 0.0328 feet);
+    /// without any, 0.01 units.
+    #[arg(long, value_name = "HEIGHT", value_parser = not_negative, allow_negative_numbers = true, help_heading = "Surface")]
+    pub(in crate::cli) crossing_tolerance: Option<f64>,
+
+    /// Table of all places where breaklines meet with different heights
+    ///
+    /// Comma separated: place, height that stands, both lines by file, feature id and part, with their
+    /// heights. Written also when there is no such place.
+    #[arg(long, value_name = "FILE.csv", help_heading = "Surface")]
+    pub(in crate::cli) crossing_report: Option<PathBuf>,
+
     /// Coordinate system to assign to the input, as `EPSG:25832`
     ///
     /// Takes the place of what the files say. Nothing is reprojected. Without it, a file that names
@@ -100,4 +146,22 @@ pub(in crate::cli) enum DuplicatesArg {
     First,
     /// The last in the order of the input
     Last,
+}
+
+/// Which height stands where breaklines cross.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(in crate::cli) enum CrossingZArg {
+    /// The lowest
+    #[default]
+    Lowest,
+    /// The highest
+    Highest,
+    /// The mean
+    Mean,
+    /// That of the first line in the order of the input
+    First,
+    /// That of the last line in the order of the input
+    Last,
+    /// None: different heights are an error
+    Error,
 }

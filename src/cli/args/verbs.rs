@@ -240,6 +240,10 @@ Example:
 pub(in crate::cli) struct CheckArgs {
     #[command(flatten)]
     pub(in crate::cli) surface: SurfaceArgs,
+
+    /// Replace a crossing report that exists
+    #[arg(long)]
+    pub(in crate::cli) overwrite: bool,
 }
 
 /// Try everything on a small valley that comes with the program

@@ -1,0 +1,114 @@
+//! Rings of lines: a boundary may be drawn in pieces.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::lines::{Drawn, Rings, at_record};
+use super::units::neat;
+use crate::error::{Error, Result};
+
+/// A place, to be compared bit by bit.
+type Key = [u64; 2];
+
+/// Joins lines that meet end to end, in exactly the same place, to rings. Where more than two meet it does not matter
+/// which go together: by the even-odd rule all choices bound the same area.
+///
+/// # Errors
+/// If there is a gap: an end at which no other line goes on. The nearest such end is told, and how far it is.
+///
+/// # Complexity
+/// Linear.
+pub(super) fn close(lines: &[Drawn], path: &Path) -> Result<Rings> {
+    let flat: Vec<Vec<[f64; 2]>> =
+        lines.iter().map(|line| line.points.iter().map(|p| [p[0] + 0.0, p[1] + 0.0]).collect()).collect();
+    let mut at: HashMap<Key, Vec<usize>> = HashMap::new();
+    for (number, line) in flat.iter().enumerate() {
+        for end in ends(line) {
+            at.entry(key(end)).or_default().push(number);
+        }
+    }
+    let is_loose = |end: &[f64; 2]| at.get(&key(*end)).is_some_and(|lines| lines.len() % 2 == 1);
+    let mut loose = flat.iter().zip(lines).flat_map(|(line, drawn)| ends(line).map(move |end| (end, drawn)));
+    if let Some((end, drawn)) = loose.find(|(end, _)| is_loose(end)) {
+        let others = flat.iter().flat_map(|line| ends(line)).filter(|other| is_loose(other) && *other != end);
+        return Err(at_record(gap(end, others), path, drawn.fid + 1));
+    }
+
+    // An even number of ends everywhere: who goes on as long as there is a line left ends where they began.
+    let mut used = vec![false; flat.len()];
+    let mut rings = Vec::new();
+    for first in 0..flat.len() {
+        if std::mem::replace(&mut used[first], true) {
+            continue;
+        }
+        let mut ring = flat[first].clone();
+        while let Some(here) = ring.last().copied().filter(|last| *last != flat[first][0]) {
+            let Some(next) = at.get_mut(&key(here)).and_then(Vec::pop) else { break };
+            if std::mem::replace(&mut used[next], true) {
+                continue;
+            }
+            match flat[next][0] == here {
+                true => ring.extend(&flat[next][1..]),
+                false => ring.extend(flat[next].iter().rev().skip(1)),
+            }
+        }
+        rings.push(ring);
+    }
+    Ok(rings)
+}
+
+fn ends(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
+    line.first().copied().into_iter().chain(line.last().copied())
+}
+
+fn key(place: [f64; 2]) -> Key {
+    place.map(f64::to_bits)
+}
+
+#[cold]
+fn gap([x, y]: [f64; 2], others: impl Iterator<Item = [f64; 2]>) -> Error {
+    let far = |p: &[f64; 2]| (p[0] - x).hypot(p[1] - y);
+    let nearest = others.min_by(|p, q| far(p).total_cmp(&far(q)));
+    let next = nearest.map(|p| format!(", the next loose end is {} away, at {} {}", neat(far(&p)), p[0], p[1]));
+    Error::format(format!("the boundary is not closed: a line ends at {x} {y}{}", next.unwrap_or_default()))
+        .cure("close the gap, so that lines end where others begin, or give polygons")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rings(lines: &[&[[f64; 2]]]) -> Result<Rings> {
+        let points = |line: &[[f64; 2]]| line.iter().map(|p| [p[0], p[1], f64::NAN]).collect();
+        let drawn: Vec<Drawn> =
+            lines.iter().enumerate().map(|(fid, line)| Drawn { fid, part: None, points: points(line) }).collect();
+        close(&drawn, Path::new("l.shp"))
+    }
+
+    #[test]
+    fn pieces_in_any_order_and_direction_make_rings() {
+        let [a, b, c, d] = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+        assert_eq!(rings(&[&[a, b, c], &[a, d], &[c, d]]).unwrap(), [vec![a, b, c, d, a]]);
+        let hole = [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0], [1.0, 1.0]];
+        assert_eq!(rings(&[&hole, &[a, b, c], &[c, [-0.0, 0.0]]]).unwrap(), [hole.to_vec(), vec![a, b, c, a]]);
+    }
+
+    #[test]
+    fn where_four_meet_all_lines_are_used_once() {
+        let [a, b, c, d, m] = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [2.0, 2.0]];
+        let rings = rings(&[&[m, a], &[b, m], &[a, b], &[m, c], &[d, m], &[c, d]]).unwrap();
+        assert_eq!(rings.iter().map(|ring| ring.len() - 1).sum::<usize>(), 6);
+        assert!(rings.iter().all(|ring| ring.first() == ring.last()));
+    }
+
+    #[test]
+    fn a_gap_is_told_with_both_ends_and_its_width() {
+        let error = rings(&[&[[0.0, 0.0], [4.0, 0.0]], &[[4.0, 0.5], [0.0, 4.0]], &[[0.0, 4.0], [0.0, 0.0]]]);
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "l.shp: record 1: the boundary is not closed: a line ends at 4 0, the next loose end is 0.5 away, at 4 0.5"
+        );
+        let three = rings(&[&[[0.0, 0.0], [1.0, 0.0]], &[[0.0, 0.0], [0.0, 1.0]], &[[0.0, 0.0], [-1.0, 0.0]]]);
+        assert!(three.unwrap_err().to_string().contains("ends at 0 0, the next loose end is 1 away, at 1 0"));
+    }
+}
