@@ -1,0 +1,303 @@
+//! The phases of an arrangement: pairs that cross, sites, passes, chains.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::kernel::{Kernel, Orientation2};
+use crate::num::Sign;
+
+use super::boxes::{Box2, BoxTree};
+use super::cells::Cells;
+use super::pixel::Grid;
+use super::{Arrangement, Crossing, Place, Segment, lexicographic};
+
+/// A segment that is led through a site.
+#[derive(Debug, Clone, Copy)]
+struct Pass {
+    segment: u32,
+    site: u32,
+    /// Whether the site is known to lie on the segment exactly; of those that were added, none is.
+    exact: bool,
+}
+
+pub(super) struct Builder<'a, F> {
+    grid: Grid,
+    places: usize,
+    place: &'a F,
+    ends: &'a [[u32; 2]],
+    segments: Vec<Segment>,
+    added: Vec<Place>,
+    /// The segments whose crossing was rounded to an added site, site after site, and where those of each end.
+    crossed: Vec<u32>,
+    crossed_ends: Vec<u32>,
+}
+
+impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
+    pub(super) fn new(grid: Grid, places: usize, place: &'a F, ends: &'a [[u32; 2]]) -> Self {
+        let segments = ends.iter().map(|&[a, b]| [place(a), place(b)]).collect();
+        Builder {
+            grid,
+            places,
+            place,
+            ends,
+            segments,
+            added: Vec::new(),
+            crossed: Vec::new(),
+            crossed_ends: Vec::new(),
+        }
+    }
+
+    pub(super) fn run<K: Kernel>(mut self) -> Arrangement {
+        let tree = self.tree(0..self.segments.len() as u32);
+        let pairs = self.crossing_pairs::<K>(&tree);
+        let vertices = if pairs.is_empty() { Vec::new() } else { self.vertices() };
+        let crossings = self.round::<K>(pairs, &vertices);
+        let (led, passes) = self.lead::<K>(&crossings, vertices);
+        self.collect(crossings, &led, passes)
+    }
+
+    fn site(&self, site: u32) -> Place {
+        match (site as usize).checked_sub(self.places) {
+            None => (self.place)(site),
+            Some(added) => self.added[added],
+        }
+    }
+
+    /// A tree over some segments, by their position in the list.
+    fn tree(&self, segments: impl Iterator<Item = u32>) -> BoxTree {
+        let boxes: Vec<Box2> = segments.map(|i| Box2::around(self.segments[i as usize])).collect();
+        BoxTree::new(&boxes)
+    }
+
+    /// The ends of all segments, each once.
+    fn vertices(&self) -> Vec<u32> {
+        let mut vertices: Vec<u32> = self.ends.iter().flatten().copied().collect();
+        vertices.par_sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+
+    /// Phase 1: the pairs of segments that cross in their interiors.
+    fn crossing_pairs<K: Kernel>(&self, tree: &BoxTree) -> Vec<[u32; 2]> {
+        let of_leaf = |(at, &i): (usize, &u32)| {
+            let mut found = Vec::new();
+            let s = self.segments[i as usize];
+            tree.overlapping_from(at + 1, &Box2::around(s), &mut |j| {
+                if cross::<K>(s, self.segments[j as usize]) {
+                    found.push([i.min(j), i.max(j)]);
+                }
+            });
+            found
+        };
+        let mut pairs: Vec<[u32; 2]> =
+            tree.order().par_iter().enumerate().with_min_len(256).flat_map_iter(of_leaf).collect();
+        pairs.par_sort_unstable();
+        pairs
+    }
+
+    /// Phase 2: the site of each crossing. An end in whose pixel it lies; else the center of its pixel.
+    fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>, vertices: &[u32]) -> Vec<Crossing> {
+        enum Rounded {
+            ToVertex(u32),
+            ToCenter(Place),
+        }
+        let cells = Cells::new(self.grid, vertices, self.place);
+        let round = |&segments: &[u32; 2]| {
+            let [ab, cd] = segments.map(|i| self.segments[i as usize]);
+            let center = self.grid.crossing::<K>(ab, cd);
+            // Ends may be finer than the finest step. What lies beyond one would lead the line back.
+            let common = Box2::around(ab).common(&Box2::around(cd));
+            let holds = |&v: &u32| {
+                let at = (self.place)(v);
+                common.clamp(at) == at && self.grid.crossing_in::<K>(ab, cd, at)
+            };
+            // Of several the first in plan, whatever their numbers.
+            let by_place = |&u: &u32, &v: &u32| lexicographic((self.place)(u), (self.place)(v));
+            let center = common.clamp(center);
+            let end = || segments.iter().flat_map(|&i| self.ends[i as usize]).find(|&end| (self.place)(end) == center);
+            match cells.near(center).filter(holds).min_by(by_place).or_else(end) {
+                Some(vertex) => Rounded::ToVertex(vertex),
+                None => Rounded::ToCenter(center),
+            }
+        };
+        let rounded: Vec<Rounded> = pairs.par_iter().with_min_len(256).map(round).collect();
+        let mut centers: Vec<(Place, u32)> = Vec::new();
+        let mut crossings = Vec::with_capacity(pairs.len());
+        for (segments, rounded) in pairs.into_iter().zip(rounded) {
+            let site = match rounded {
+                Rounded::ToVertex(vertex) => vertex,
+                Rounded::ToCenter(center) => {
+                    centers.push((center, crossings.len() as u32));
+                    u32::MAX
+                }
+            };
+            crossings.push(Crossing { segments, site });
+        }
+        centers.par_sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
+        for (center, crossing) in centers {
+            if self.added.last() != Some(&center) {
+                self.added.push(center);
+                self.crossed_ends.push(0);
+            }
+            self.crossed.extend(crossings[crossing as usize].segments);
+            if let Some(end) = self.crossed_ends.last_mut() {
+                *end = self.crossed.len() as u32;
+            }
+            crossings[crossing as usize].site = (self.places + self.added.len() - 1) as u32;
+        }
+        crossings
+    }
+
+    /// Phase 3: leads the segments that cross others through all sites whose pixels they meet; and, as long as there
+    /// are any, those that meet a pixel by which another was bent.
+    fn lead<K: Kernel>(&self, crossings: &[Crossing], vertices: Vec<u32>) -> (Vec<u32>, Vec<Pass>) {
+        if crossings.is_empty() {
+            return (Vec::new(), Vec::new());
+        }
+        let mut is_hot = vec![false; self.places + self.added.len()];
+        let mut sites = vertices;
+        sites.extend((self.places..self.places + self.added.len()).map(|site| site as u32));
+        sites.iter().for_each(|&site| is_hot[site as usize] = true);
+        let mut is_active = vec![false; is_hot.len()];
+        let mut is_led = vec![false; self.segments.len()];
+        let mut led: Vec<(BoxTree, Vec<u32>)> = Vec::new();
+        let mut fresh: Vec<u32> = crossings.iter().flat_map(|crossing| crossing.segments).collect();
+        fresh.par_sort_unstable();
+        fresh.dedup();
+        let mut passes = Vec::new();
+        while !fresh.is_empty() {
+            fresh.iter().for_each(|&i| is_led[i as usize] = true);
+            led.push((self.tree(fresh.iter().copied()), std::mem::take(&mut fresh)));
+            let newest = &led[led.len() - 1..];
+            let before = passes.len();
+            self.pass::<K>(&sites, newest, &mut passes);
+            // Places that lie on a segment that may bend are kept on it.
+            let cold = (0..self.places as u32).into_par_iter().with_min_len(4096);
+            let on = |&site: &u32| !is_hot[site as usize] && self.is_on_one::<K>(site, newest);
+            let heated: Vec<u32> = cold.filter(on).collect();
+            heated.iter().for_each(|&site| is_hot[site as usize] = true);
+            self.pass::<K>(&heated, &led, &mut passes);
+            sites.extend(heated);
+            // What was bent may bend others.
+            let mut bent_by: Vec<u32> =
+                passes[before..].iter().filter(|pass| !pass.exact).map(|pass| pass.site).collect();
+            bent_by.retain(|&site| !std::mem::replace(&mut is_active[site as usize], true));
+            let straight: Vec<u32> = (0..self.segments.len() as u32).filter(|&i| !is_led[i as usize]).collect();
+            let rest = self.tree(straight.iter().copied());
+            for site in bent_by {
+                let at = self.site(site);
+                rest.overlapping(&self.grid.around(at), |member| {
+                    let i = straight[member as usize];
+                    fresh.extend(self.meets::<K>(i, site, at).then_some(i));
+                });
+            }
+            fresh.sort_unstable();
+            fresh.dedup();
+        }
+        (led.into_iter().flat_map(|(_, members)| members).collect(), passes)
+    }
+
+    /// Whether a segment meets the pixel of a site that is no end of it.
+    fn meets<K: Kernel>(&self, segment: u32, site: u32, at: Place) -> bool {
+        !self.ends[segment as usize].contains(&site) && self.grid.hits::<K>(self.segments[segment as usize], at)
+    }
+
+    /// Adds what passes through these sites among the segments of some trees.
+    fn pass<K: Kernel>(&self, sites: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
+        let of_sites = |sites: &[u32]| {
+            let mut found = Vec::new();
+            for &site in sites {
+                let at = self.site(site);
+                let around = self.grid.around(at);
+                let crossed = self.crossed_at(site);
+                for (tree, members) in trees {
+                    tree.overlapping(&around, |member| {
+                        let segment = members[member as usize];
+                        if crossed.contains(&segment) {
+                            found.push(Pass { segment, site, exact: false });
+                        } else if self.meets::<K>(segment, site, at) {
+                            let [a, b] = self.segments[segment as usize];
+                            let exact = crossed.is_empty() && K::sign(&Orientation2([a, b, at])) == Sign::Zero;
+                            found.push(Pass { segment, site, exact });
+                        }
+                    });
+                }
+            }
+            found
+        };
+        passes.par_extend(sites.par_chunks(512).flat_map_iter(of_sites));
+    }
+
+    /// The segments whose crossings were rounded to an added site: they are led through it, no question.
+    fn crossed_at(&self, site: u32) -> &[u32] {
+        let Some(added) = (site as usize).checked_sub(self.places) else { return &[] };
+        let from = if added == 0 { 0 } else { self.crossed_ends[added - 1] as usize };
+        &self.crossed[from..self.crossed_ends[added] as usize]
+    }
+
+    /// Whether a place lies on a segment of the trees exactly.
+    fn is_on_one<K: Kernel>(&self, site: u32, trees: &[(BoxTree, Vec<u32>)]) -> bool {
+        let at = self.site(site);
+        let mut is_on = false;
+        for (tree, members) in trees {
+            tree.overlapping(&Box2::around([at, at]), |member| {
+                let [a, b] = self.segments[members[member as usize] as usize];
+                is_on = is_on || K::sign(&Orientation2([a, b, at])) == Sign::Zero;
+            });
+        }
+        is_on
+    }
+
+    /// Phase 4: the sites of each segment, in order.
+    fn collect(self, crossings: Vec<Crossing>, led: &[u32], passes: Vec<Pass>) -> Arrangement {
+        // Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
+        // column from one side to the other.
+        let along = |segment: u32, site: u32| {
+            let [a, b] = self.segments[segment as usize];
+            let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
+            let at = self.site(site);
+            let [dx, dy] = [0, 1].map(|k| b[k] / self.grid.unit[k] - a[k] / self.grid.unit[k]);
+            let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
+            [first, second].map(|k| if a[k] <= b[k] { at[k] } else { -at[k] })
+        };
+        let mut ordered: Vec<(u32, Place, u32)> =
+            passes.par_iter().map(|&Pass { segment, site, .. }| (segment, along(segment, site), site)).collect();
+        drop(passes);
+        ordered.par_sort_unstable_by(|p, q| p.0.cmp(&q.0).then_with(|| lexicographic(p.1, q.1)));
+        let mut chains: FxHashMap<u32, Range<u32>> = led.iter().map(|&segment| (segment, 0..0)).collect();
+        let mut chain_sites = Vec::with_capacity(ordered.len());
+        for passes in ordered.chunk_by(|p, q| p.0 == q.0) {
+            let segment = passes[0].0;
+            let [a, b] = self.ends[segment as usize].map(|end| along(segment, end));
+            let (first, last) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
+            let from = chain_sites.len();
+            // An end of another segment that is finer than the finest step may stand beyond our own end.
+            let is_between = |at: Place| lexicographic(first, at).is_lt() && lexicographic(at, last).is_lt();
+            chain_sites.extend(passes.iter().filter(|&&(_, at, _)| is_between(at)).map(|&(_, _, site)| site));
+            let [a, b] = self.segments[segment as usize];
+            if lexicographic(a, b).is_gt() {
+                chain_sites[from..].reverse();
+            }
+            chains.insert(segment, from as u32..chain_sites.len() as u32);
+        }
+        let on_grid = self.grid.is_even();
+        Arrangement {
+            unit: self.grid.unit,
+            on_grid,
+            places: self.places,
+            added: self.added,
+            crossings,
+            chains,
+            chain_sites,
+        }
+    }
+}
+
+/// Whether two segments cross in their interiors.
+#[inline]
+fn cross<K: Kernel>([a, b]: Segment, [c, d]: Segment) -> bool {
+    let apart = |p, q, r, s| K::sign(&Orientation2([p, q, r])) * K::sign(&Orientation2([p, q, s])) == Sign::Negative;
+    apart(a, b, c, d) && apart(c, d, a, b)
+}
