@@ -13,7 +13,7 @@ use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin};
 /// Collects points and lines and makes a [`Tin`] of them.
 ///
 /// The result depends on the set of points and lines only, not on the order in which they are added
-/// (except under [`DuplicateRule::First`] and [`Last`](DuplicateRule::Last)).
+/// (except under [`DuplicateRule::First`] and [`Last`](DuplicateRule::Last), for duplicates and crossings).
 ///
 /// ```
 /// use breakline::data::Surface;

@@ -1,9 +1,9 @@
 //! Clipping a TIN to polygons.
 //!
-//! 1. The rim of the surface becomes a constraint, so that it stays where it is.
-//! 2. The clip line goes in as constraints, its vertices where they were given. Its heights are read off
-//!    the surface: at its vertices, and at new ones wherever it crosses an edge. Where it crosses a
-//!    breakline or the rim, the height of those stands.
+//! 1. The vertices of the clip line go in where they were given. Their heights are read off the surface, there and at
+//!    new ones wherever the line crosses an edge. Where it crosses a breakline or the rim of the surface, the height of
+//!    those stands.
+//! 2. The rim becomes a constraint, so that it stays where it is; and so does the clip line.
 //! 3. The rim, the bounds and each polygon are closed curves of constraints now: one flood over the faces tells in which
 //!    of them each lies.
 

@@ -140,7 +140,7 @@ pub(super) fn refuse(crossings: &[CrossingHeights], tolerance: f64, name: &dyn F
     let [(low, lowest), (high, highest)] = first.extremes();
     let more = match crossings.len() {
         1 => String::new(),
-        count => format!(", and at {} places more", count - 1),
+        count => format!(" ({count} such places in all)"),
     };
     Err(Error::format(format!(
         "breaklines meet with different heights at {x} {y}: {lowest} of {}, {highest} of {}, expected within {tolerance}{more}",
