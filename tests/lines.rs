@@ -128,6 +128,28 @@ fn edits_off_the_grid() {
     edits(5, 150, |random| [random.unit() - 0.5, random.unit() - 0.5]);
 }
 
+/// The same lines in a hundred random orders, some of them backwards.
+#[test]
+fn a_hundred_orders_give_one_triangulation() {
+    let mut random = Random(7);
+    let utm = |random: &mut Random| [500_000.0 + random.unit() * 50.0, 4_649_000.0 + random.unit() * 50.0];
+    let grid = |random: &mut Random| [random.below(9) as f64, random.below(9) as f64];
+    let near_zero = |random: &mut Random| [random.unit() - 0.5, ulps(0.5, random.around(20)) - 0.5 * random.unit()];
+    for place in [utm as fn(&mut Random) -> Point, grid, near_zero] {
+        let points: Vec<Point> = (0..30).map(|_| place(&mut random)).collect();
+        let mut lines: Vec<Vec<Point>> = (0..40).map(|_| (0..3).map(|_| place(&mut random)).collect()).collect();
+        let (first, _) = built(&points, &lines);
+        assert!(first.crossings().len() > 100 || first.constrained_edges().count() > 100);
+        let expected = seen(&first, &[]);
+        for _ in 0..100 {
+            random.shuffle(&mut lines);
+            let at = random.index(lines.len());
+            lines[at].reverse();
+            assert_eq!(seen(&built(&points, &lines).0, &[]), expected);
+        }
+    }
+}
+
 #[test]
 fn lines_know_their_edges_and_edges_their_lines() {
     let points = [[0.0, 0.0], [4.0, 0.0], [2.0, 0.0], [2.0, 3.0], [2.0, -3.0], [0.0, 4.0], [4.0, 4.0]];

@@ -7,8 +7,6 @@
 //! 3. The rim, the bounds and each polygon are closed curves of constraints now: one flood over the faces tells in which
 //!    of them each lies.
 
-use std::cmp::Ordering;
-
 use crate::data::Bounds;
 use crate::error::Result;
 use crate::geometry::{Crossing, Geometry, height_along};
@@ -98,19 +96,12 @@ impl Clip {
             line_ends.push(line.len());
         }
         let heights: Vec<Option<f64>> = line.iter().map(|&[x, y]| tin.elevation(x, y)).collect();
-        // A vertex on a line that is led may have the lines arranged anew: before there is any constraint that belongs to no
-        // line, and what was settled on crossings is put back.
-        let settled: Vec<[f64; 3]> =
-            tin.triangulation.crossings().iter().map(|&v| *tin.triangulation.point(v)).collect();
         // Without heights at first, so that a crossing takes that of the breakline it crosses.
         let mut vertices = Vec::with_capacity(line.len());
         for &[x, y] in &line {
-            let vertex = tin.triangulation.insert([x, y, f64::NAN]);
+            let vertex = tin.triangulation.insert_apart([x, y, f64::NAN]);
             vertices.push(vertex.map_err(|_| refused([x, y, 0.0]).at("boundary"))?);
         }
-        restore(tin, settled);
-        let is_there = |edge: &&[VertexId; 2]| edge.iter().all(|&v| tin.triangulation.tds().is_vertex(v));
-        let rim: Vec<[VertexId; 2]> = rim.iter().filter(is_there).copied().collect();
         for &[a, b] in rim.iter().chain(&sorted_segments(&vertices, &line_ends)) {
             tin.triangulation.insert_segment(a, b);
         }
@@ -134,22 +125,6 @@ impl Clip {
         }
         Ok(rings.iter().zip(runs).map(|((domain, _), run)| (*domain, run.to_vec())).collect())
     }
-}
-
-/// Gives the crossings at these places their heights.
-fn restore(tin: &mut Tin, mut settled: Vec<[f64; 3]>) {
-    settled.sort_by(|p, q| lexicographic(*p, *q));
-    for vertex in tin.triangulation.crossings().to_vec() {
-        let p = *tin.triangulation.point(vertex);
-        if let Ok(at) = settled.binary_search_by(|q| lexicographic(*q, p)) {
-            tin.triangulation.replace_point(vertex, settled[at]);
-        }
-    }
-}
-
-/// The order of places in plan.
-fn lexicographic(p: [f64; 3], q: [f64; 3]) -> Ordering {
-    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
 }
 
 /// The heights on lines at the vertices that have none, between those that have one: in between the lines lie in one
