@@ -12,13 +12,14 @@ use common::random::{Random, ulps};
 type Point = [f64; 2];
 type Constrained = ConstrainedDelaunay<Plane>;
 type Bits = [u64; 2];
+type Places = BTreeSet<Vec<Bits>>;
 
 fn bits(p: &Point) -> Bits {
     p.map(|x| (x + 0.0).to_bits())
 }
 
 /// What can be seen of a triangulation whatever its numbers: triangles, constrained edges, and the lines' chains.
-fn seen(t: &Constrained, lines: &[LineId]) -> (BTreeSet<Vec<Bits>>, BTreeSet<Vec<Bits>>, Vec<Vec<Bits>>) {
+fn seen(t: &Constrained, lines: &[LineId]) -> (Places, Places, Vec<Vec<Bits>>) {
     let at = |v: &VertexId| bits(t.point(*v));
     let sorted = |vertices: &[VertexId]| {
         let mut places: Vec<Bits> = vertices.iter().map(at).collect();
@@ -196,7 +197,7 @@ fn simplified_lines_cross_no_other() {
     let frame = [[-9.0, -9.0], [20.0, -9.0], [20.0, 9.0], [-9.0, 9.0]];
     for (others, tolerance, left) in [(vec![], 0.5, 9), (vec![], 1.0, 2), (vec![island.clone()], 1.0, 3)] {
         let (mut t, _) = built(&frame, &[]);
-        let line = t.insert_lines(&[zigzag.clone()]).unwrap()[0];
+        let line = t.insert_lines(std::slice::from_ref(&zigzag)).unwrap()[0];
         let others = t.insert_lines(&others).unwrap();
         let gone = t.simplify_line(line, tolerance);
         assert_eq!((t.line_vertices(line).len(), gone), (left, 9 - left), "{tolerance} {}", others.len());

@@ -18,8 +18,8 @@
 //! Ends may be finer than that, when coordinates near zero and large ones come together. The grid is then that of the doubles
 //! themselves, whose steps shrink towards zero, so that ends still are centers and pixels still do not overlap. The
 //! bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero without
-//! meeting it: there pieces may cross after all (and where ends lie closer together than 2^-60 of the unit, which is the
-//! smallest step). The pieces are then arranged [again](Arrangement::again), with up to another half unit of displacement.
+//! meeting it: there pieces may cross after all (and where ends are finer than 2^-159, which is the smallest step unless
+//! coordinates are outside of the kernels' range anyway). The pieces are then arranged [again](Arrangement::again), with up to another half unit of displacement.
 //!
 //! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
 //! however close it passes by an end: nothing forces it.
@@ -83,18 +83,26 @@ impl Arrangement {
         });
         // Half of the smallest subnormal number is none: away from there, by a power of two.
         const UP: f64 = f64::from_bits((1023 + 400) << 52);
-        const SMALLEST: f64 = f64::from_bits(1);
         let scale: Place = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
         // Zero has one sign only.
         let scaled = |p: Place| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
         let place = |i: u32| scaled(place(i));
         let ends = || segments.iter().flatten().map(|&i| place(i));
-        let grid = Grid::through(scaled(largest), scaled([SMALLEST; 2]), ends());
-        let mut arrangement = if grid.is_ordinary {
-            Builder::new(grid, places, &place, segments).run::<Adaptive>()
-        } else {
-            Builder::new(grid, places, &place, segments).run::<Wide>()
+        // The smallest step is one that has a half, and that all coordinates are multiples of if they are small.
+        let smallest = scale.map(|s| if s == UP { f64::from_bits(1) * UP } else { f64::from_bits(4) });
+        let arrange = |grid: Grid| {
+            let builder = Builder::new(grid, places, &place, segments);
+            if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() }
         };
+        let even = Grid::through(scaled(largest), smallest, ends());
+        let mut arrangement = arrange(even);
+        // Places on segments count like ends: finer ones make pixels overlap, unless the steps are those of doubles.
+        let finer = |&&site: &&u32| (site as usize) < places && !even.holds(place(site));
+        if even.is_even()
+            && let Some(&site) = arrangement.chain_sites.iter().find(finer)
+        {
+            arrangement = arrange(Grid::through(scaled(largest), smallest, ends().chain([place(site)])));
+        }
         for axis in 0..2 {
             arrangement.unit[axis] /= scale[axis];
             arrangement.added.iter_mut().for_each(|p| p[axis] /= scale[axis]);

@@ -27,22 +27,20 @@ fn last_place(x: f64) -> f64 {
     if x < f64::MAX / 2.0 { x.next_up() - x } else { x - x.next_down() }
 }
 
-/// Beyond this many bits below the unit, doubles near zero are finer than anything needs.
-const DEPTH: f64 = f64::from_bits((1023 - 60) << 52);
-
 impl Grid {
     /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles.
-    /// No step is smaller than `smallest`, unless all are.
+    /// No step is smaller than `smallest`.
     pub(super) fn through(largest: Place, smallest: Place, places: impl Iterator<Item = Place> + Clone) -> Self {
         let last = largest.map(last_place);
         let unit = [0, 1].map(|k| last[k].max(smallest[k]));
         let mut grid = Grid { unit, finest: unit, is_ordinary: false };
+        let in_range = places.clone().flatten().all(|x| RANGE.admits(x));
         if !places.clone().all(|place| grid.holds(place)) {
-            let lower = [0, 1].map(|k| (2.0 * RANGE.min).max(smallest[k]));
-            grid.finest = [0, 1].map(|k| (unit[k] * DEPTH).max(lower[k]).min(unit[k]));
+            // Crossings of what the fast kernels admit are to be admitted, with half a step beside.
+            let finest = if in_range { [2.0 * RANGE.min; 2] } else { smallest };
+            grid.finest = [0, 1].map(|k| finest[k].min(unit[k]));
         }
-        grid.is_ordinary =
-            grid.finest.iter().all(|&step| RANGE.admits(step / 2.0)) && places.flatten().all(|x| RANGE.admits(x));
+        grid.is_ordinary = in_range && grid.finest.iter().all(|&step| RANGE.admits(step / 2.0));
         grid
     }
 
@@ -70,7 +68,7 @@ impl Grid {
     }
 
     /// Whether a place is a multiple of the unit on both axes.
-    fn holds(&self, place: Place) -> bool {
+    pub(super) fn holds(&self, place: Place) -> bool {
         (0..2).all(|k| {
             let steps = place[k] / self.unit[k]; // at most 2^53, and exact unless it vanishes
             steps == steps.trunc() && steps * self.unit[k] == place[k]
@@ -156,7 +154,7 @@ impl Grid {
         let error = |p: Pair, q: Pair| 10.0 * Pair::ERROR * (p.estimate().abs() + q.estimate().abs());
         let divided = divisor.estimate().abs();
         let doubt = error(products[2], products[3]);
-        if !(doubt < divided / 4.0) {
+        if doubt.is_nan() || doubt >= divided / 4.0 {
             return None;
         }
         let of_fraction = 2.0 * (error(products[0], products[1]) + doubt) / divided + 10.0 * Pair::ERROR;

@@ -59,7 +59,7 @@ pub fn distance_to_segment(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let [vx, vy] = [p[0] - a[0], p[1] - a[1]];
     let length = ux.hypot(uy);
     let along = vx * (ux / length) + vy * (uy / length);
-    if !(along > 0.0) {
+    if along.is_nan() || along <= 0.0 {
         vx.hypot(vy) // beside the start, or the segment is a point
     } else if along >= length {
         (p[0] - b[0]).hypot(p[1] - b[1])

@@ -30,7 +30,7 @@ pub enum OnCrossing {
 pub struct Rounding {
     /// The unit of the grid, on each axis: the last place of the largest coordinate of a line's vertex.
     pub unit: [f64; 2],
-    /// Whether all vertices of lines lie on the grid. Then no line is displaced by more than half a unit on
+    /// Whether all vertices of lines lie on the grid, and all points on lines that cross others. Then no line is displaced by more than half a unit on
     /// each axis, proven.
     pub on_grid: bool,
 }

@@ -44,7 +44,7 @@ fn parts(x: f64) -> Option<(i64, i32)> {
 }
 
 /// The unit in the last place of the largest magnitude on each axis among the points of lines, and whether all
-/// of these points are multiples of it.
+/// points are multiples of it. (Of the others those count that lie on lines.)
 fn grid(case: &Case) -> ([f64; 2], bool) {
     let drawn = || case.lines.iter().flatten().map(|&i| case.points[i as usize]);
     let unit = [0, 1].map(|axis| {
@@ -52,7 +52,7 @@ fn grid(case: &Case) -> ([f64; 2], bool) {
         if largest == f64::MAX { largest - largest.next_down() } else { largest.next_up() - largest }
     });
     let is_multiple = |x: f64, unit: f64| parts(x).is_none_or(|(_, low)| low >= parts(unit).unwrap().1);
-    (unit, drawn().all(|p| is_multiple(p[0], unit[0]) && is_multiple(p[1], unit[1])))
+    (unit, case.points.iter().all(|p| is_multiple(p[0], unit[0]) && is_multiple(p[1], unit[1])))
 }
 
 /// The program's grid is no coarser, and it takes the points for what they are.
