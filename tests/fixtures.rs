@@ -21,7 +21,8 @@ fn assert_stated(what: &str, value: impl std::fmt::Display) {
 
 #[test]
 fn the_program_makes_the_same_bytes() {
-    let mut expected = BTreeSet::from(["README.md".to_owned()]);
+    // Sets of lines that broke something once are kept beside: tests/constraints.rs.
+    let mut expected = BTreeSet::from(["README.md".to_owned(), "constraints".to_owned()]);
     let mut total = 0;
     for (name, bytes) in fixtures::files().unwrap() {
         let committed = std::fs::read(folder().join(name)).unwrap();
