@@ -16,6 +16,10 @@ use crate::tds::VertexId;
 use super::lines::undirected;
 use super::{ConstrainedDelaunay, LineId, Refused, Rounding};
 
+/// How often pieces that cross are arranged again. One or two rounds do, but for coordinates whose magnitudes span hundreds of
+/// powers of two: there each round may go on by one of them only, and what is left is cut where it is met.
+const ROUNDS: usize = 32;
+
 /// A piece of a line between two sites.
 type Piece = [VertexId; 2];
 
@@ -143,23 +147,30 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         self.lent.retain(|v| used.contains(v));
         let segments = self.segments();
         let (mut arrangement, given) = self.arrange(&segments, &leaving);
-        self.carry_out(&arrangement, &given, &segments, leaving);
+        let mut pieces = self.carry_out(&arrangement, &given, &segments, leaving);
         self.was_tangled = self.tangled;
-        while self.tangled {
+        for _ in 0..ROUNDS {
+            if !self.tangled {
+                return;
+            }
             arrangement = self.arrange_again(arrangement, &given, &segments);
-            self.carry_out(&arrangement, &given, &segments, HashSet::new());
+            pieces = self.carry_out(&arrangement, &given, &segments, HashSet::new());
+        }
+        if std::mem::take(&mut self.tangled) {
+            pieces.into_iter().for_each(|[a, b]| self.force(a, b));
+            self.crossings.sort_unstable();
         }
     }
 
     /// Makes the triangulation that of an arrangement of segments over the given vertices, without those that leave; unless
-    /// pieces cross, which makes it tangled.
+    /// pieces cross, which makes it tangled. Returns the pieces.
     fn carry_out(
         &mut self,
         arrangement: &Arrangement,
         given: &[VertexId],
         segments: &[Piece],
         mut leaving: HashSet<VertexId>,
-    ) {
+    ) -> Vec<Piece> {
         self.tangled = false;
         // Phase 1: sites that stay keep their vertices, others go.
         let mut at_place: HashMap<[u64; 2], VertexId> =
@@ -205,7 +216,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         if self.dimension() < 2 {
             self.waiting = segments.to_vec();
-            return;
+            return Vec::new();
         }
 
         // Phase 4: new sites and pieces are put in.
@@ -246,10 +257,11 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         pieces.sort_unstable();
         pieces.dedup();
-        for [a, b] in pieces {
+        for &[a, b] in &pieces {
             self.insert_piece(a, b);
         }
         self.lines.touch();
+        pieces
     }
 
     /// Arranges segments over the vertices that were given and do not leave; these are returned.
