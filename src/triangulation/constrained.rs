@@ -37,7 +37,7 @@ impl Walls {
 /// Chew 1989).
 ///
 /// What is constrained are *lines*: points in a row, which may touch, overlap, repeat, cross and close. Each keeps an
-/// [id](LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is split there;
+/// [id](super::LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is split there;
 /// where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines bend no further than
 /// the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is proven.
 ///

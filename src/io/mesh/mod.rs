@@ -6,7 +6,7 @@
 //! | OBJ | decimals that give the same doubles back | coordinate system, as a comment | yes |
 //! | OFF | the same | the same | yes |
 //! | STL | 32-bit floats from a local origin | no | no |
-//! | `.ele` with its `.node` | the same as OBJ; heights are 0 | breaklines | yes; to write, see [`triangle`](super::triangle) |
+//! | `.ele` with its `.node` | the same as OBJ; heights are 0 | breaklines | yes; to write, see [`super::triangle`] |
 //!
 //! Vertices and faces come in the order of the surface, which for a TIN is a function of its points and
 //! lines: along a curve, so that neighbors stand near each other. Vertices without a face are not written.
