@@ -3,6 +3,8 @@
 //! Boxes are sorted into vertical slabs and within each by height (sort-tile-recursive: Leutenegger, Lopez and
 //! Edgington 1997), and every [`FAN`] of them in a row get a box around them, and so on up.
 
+use rayon::prelude::*;
+
 /// Children of a node: a power of two.
 const FAN: usize = 1 << FAN_BITS;
 const FAN_BITS: usize = 3;
@@ -49,12 +51,29 @@ impl Box2 {
     }
 
     #[inline(always)]
-    fn overlaps(&self, other: &Self) -> bool {
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
         // Without branches: all four are cheaper than a misprediction.
         (self.min[0] <= other.max[0])
             & (other.min[0] <= self.max[0])
             & (self.min[1] <= other.max[1])
             & (other.min[1] <= self.max[1])
+    }
+
+    /// Whether all of the box lies on one side of the line through a segment, and not so near to it that rounding could
+    /// hide the side. The coordinates are those of the fast kernels.
+    #[inline(always)]
+    pub(super) fn is_beside(&self, [a, b]: [[f64; 2]; 2]) -> bool {
+        let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
+        // The corners that are furthest to the right and to the left of the direction.
+        let (right_x, left_x) = if uy > 0.0 { (self.max[0], self.min[0]) } else { (self.min[0], self.max[0]) };
+        let (right_y, left_y) = if ux > 0.0 { (self.min[1], self.max[1]) } else { (self.max[1], self.min[1]) };
+        // Twice the area of segment and corner, and more than its error: four roundings, each of 2^-53, in either product.
+        let area = |x: f64, y: f64| {
+            let (left, right) = (ux * (y - a[1]), uy * (x - a[0]));
+            (left - right, 4.0 * f64::EPSILON * (left.abs() + right.abs()))
+        };
+        let (rightmost, leftmost) = (area(right_x, right_y), area(left_x, left_y));
+        (rightmost.0 > rightmost.1) | (leftmost.0 < -leftmost.1)
     }
 
     /// On one axis, halved so that it does not overflow.
@@ -74,15 +93,16 @@ pub(super) struct BoxTree {
 
 impl BoxTree {
     pub(super) fn new(boxes: &[Box2]) -> Self {
-        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        // The keys travel with the numbers: half the time of looking them up.
+        let centers = boxes.iter().zip(0..).map(|(boxed, i)| ([0, 1].map(|axis| boxed.center(axis)), i));
+        let mut order: Vec<([f64; 2], u32)> = centers.collect();
         let by_center = |axis: usize| {
-            move |&i: &u32, &j: &u32| {
-                boxes[i as usize].center(axis).total_cmp(&boxes[j as usize].center(axis)).then(i.cmp(&j))
-            }
+            move |(p, i): &([f64; 2], u32), (q, j): &([f64; 2], u32)| p[axis].total_cmp(&q[axis]).then(i.cmp(j))
         };
-        order.sort_unstable_by(by_center(0));
+        order.par_sort_unstable_by(by_center(0));
         let slab = FAN * ((boxes.len() as f64 / FAN as f64).sqrt().ceil() as usize).max(1);
-        order.chunks_mut(slab).for_each(|slab| slab.sort_unstable_by(by_center(1)));
+        order.par_chunks_mut(slab).for_each(|slab| slab.sort_unstable_by(by_center(1)));
+        let order: Vec<u32> = order.into_iter().map(|(_, i)| i).collect();
         let mut levels = vec![order.iter().map(|&i| boxes[i as usize]).collect::<Vec<Box2>>()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let above = below.chunks(FAN).map(|chunk| chunk.iter().fold(Box2::NOTHING, |sum, b| sum.with(b))).collect();
@@ -96,15 +116,17 @@ impl BoxTree {
         &self.order
     }
 
-    /// Calls with the number of every box that overlaps this one.
-    pub(super) fn overlapping(&self, with: &Box2, mut visit: impl FnMut(u32)) {
-        self.overlapping_from(0, with, &mut visit);
+    /// Calls with the number of every box that is met; where a box is, those are that it lies in.
+    #[inline]
+    pub(super) fn visit(&self, is_met: impl Fn(&Box2) -> bool, mut visit: impl FnMut(u32)) {
+        self.visit_from(0, is_met, &mut visit);
     }
 
     /// The same with those leaves only that stand at `first` or behind.
-    pub(super) fn overlapping_from(&self, first: usize, with: &Box2, visit: &mut impl FnMut(u32)) {
+    #[inline]
+    pub(super) fn visit_from(&self, first: usize, is_met: impl Fn(&Box2) -> bool, visit: &mut impl FnMut(u32)) {
         let top = self.levels.len() - 1;
-        let is_in = |root: &Box2| root.overlaps(with) && (top > 0 || first == 0);
+        let is_in = |root: &Box2| is_met(root) && (top > 0 || first == 0);
         if !self.levels[top].first().is_some_and(is_in) {
             return;
         }
@@ -123,7 +145,7 @@ impl BoxTree {
             // A node's leaves are FAN^level in a row.
             let skipped = (first >> (FAN_BITS * (level - 1))).saturating_sub(row.start);
             for (child, boxed) in row.clone().zip(&below[row]).skip(skipped) {
-                if boxed.overlaps(with) {
+                if is_met(boxed) {
                     stack[height] = (level as u32 - 1, child as u32);
                     height += 1;
                 }
@@ -149,14 +171,15 @@ mod tests {
             let tree = BoxTree::new(&boxes);
             for query in &boxes {
                 let mut found = Vec::new();
-                tree.overlapping(query, |i| found.push(i));
+                tree.visit(|boxed| boxed.overlaps(query), |i| found.push(i));
                 found.sort_unstable();
                 let all: Vec<u32> = (0..count as u32).filter(|&i| boxes[i as usize].overlaps(query)).collect();
                 assert_eq!(found, all);
             }
             let mut pairs = 0;
             for (at, &i) in tree.order().iter().enumerate() {
-                tree.overlapping_from(at + 1, &boxes[i as usize], &mut |_| pairs += 1);
+                let query = boxes[i as usize];
+                tree.visit_from(at + 1, |boxed| boxed.overlaps(&query), &mut |_| pairs += 1);
             }
             let all = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
             assert_eq!(pairs, all.filter(|&(i, j)| boxes[i].overlaps(&boxes[j])).count());

@@ -84,7 +84,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         let of_leaf = |(at, &i): (usize, &u32)| {
             let mut found = Vec::new();
             let s = self.segments[i as usize];
-            tree.overlapping_from(at + 1, &Box2::around(s), &mut |j| {
+            tree.visit_from(at + 1, self.along(i), &mut |j| {
                 if cross::<K>(s, self.segments[j as usize]) {
                     found.push([i.min(j), i.max(j)]);
                 }
@@ -160,74 +160,90 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         let mut sites = vertices;
         sites.extend((self.places..self.places + self.added.len()).map(|site| site as u32));
         sites.iter().for_each(|&site| is_hot[site as usize] = true);
+        let mut hot = vec![self.pixels(sites)];
         let mut is_active = vec![false; is_hot.len()];
         let mut is_led = vec![false; self.segments.len()];
-        let mut led: Vec<(BoxTree, Vec<u32>)> = Vec::new();
+        let mut led: Vec<u32> = Vec::new();
         let mut fresh: Vec<u32> = crossings.iter().flat_map(|crossing| crossing.segments).collect();
         fresh.par_sort_unstable();
         fresh.dedup();
-        let mut passes = Vec::new();
+        let mut passes = self.passes_of_crossings();
+        let mut known = 0;
         while !fresh.is_empty() {
             fresh.iter().for_each(|&i| is_led[i as usize] = true);
-            led.push((self.tree(fresh.iter().copied()), std::mem::take(&mut fresh)));
-            let newest = &led[led.len() - 1..];
-            let before = passes.len();
-            self.pass::<K>(&sites, newest, &mut passes);
+            let newest = self.tree(fresh.iter().copied());
+            self.pass::<K>(&fresh, &hot, &mut passes);
             // Places that lie on a segment that may bend are kept on it.
             let cold = (0..self.places as u32).into_par_iter().with_min_len(4096);
-            let on = |&site: &u32| !is_hot[site as usize] && self.is_on_one::<K>(site, newest);
+            let on = |&site: &u32| !is_hot[site as usize] && self.is_on_one::<K>(site, &newest, &fresh);
             let heated: Vec<u32> = cold.filter(on).collect();
             heated.iter().for_each(|&site| is_hot[site as usize] = true);
-            self.pass::<K>(&heated, &led, &mut passes);
-            sites.extend(heated);
+            led.append(&mut fresh);
+            hot.push(self.pixels(heated));
+            self.pass::<K>(&led, &hot[hot.len() - 1..], &mut passes);
             // What was bent may bend others.
             let mut bent_by: Vec<u32> =
-                passes[before..].iter().filter(|pass| !pass.exact).map(|pass| pass.site).collect();
+                passes[known..].iter().filter(|pass| !pass.exact).map(|pass| pass.site).collect();
+            known = passes.len();
             bent_by.retain(|&site| !std::mem::replace(&mut is_active[site as usize], true));
-            let straight: Vec<u32> = (0..self.segments.len() as u32).filter(|&i| !is_led[i as usize]).collect();
-            let rest = self.tree(straight.iter().copied());
-            for site in bent_by {
-                let at = self.site(site);
-                rest.overlapping(&self.grid.around(at), |member| {
-                    let i = straight[member as usize];
-                    fresh.extend(self.meets::<K>(i, site, at).then_some(i));
-                });
-            }
-            fresh.sort_unstable();
-            fresh.dedup();
+            let bent_by = self.pixels(bent_by);
+            let straight = (0..self.segments.len() as u32).into_par_iter().with_min_len(4096);
+            let is_bent = |&i: &u32| !is_led[i as usize] && self.sites_on::<K>(i, &bent_by).next().is_some();
+            fresh = straight.filter(is_bent).collect();
         }
-        (led.into_iter().flat_map(|(_, members)| members).collect(), passes)
+        (led, passes)
     }
 
-    /// Whether a segment meets the pixel of a site that is no end of it.
-    fn meets<K: Kernel>(&self, segment: u32, site: u32, at: Place) -> bool {
-        !self.ends[segment as usize].contains(&site) && self.grid.hits::<K>(self.segments[segment as usize], at)
+    /// Of the segments that cross, where they do: they are led through that site, no question.
+    fn passes_of_crossings(&self) -> Vec<Pass> {
+        let mut passes = Vec::with_capacity(self.crossed.len());
+        for site in (self.places..self.places + self.added.len()).map(|site| site as u32) {
+            // Two crossings of one segment may have come to one site.
+            let mut here = self.crossed_at(site).to_vec();
+            here.sort_unstable();
+            here.dedup();
+            passes.extend(here.into_iter().map(|segment| Pass { segment, site, exact: false }));
+        }
+        passes
     }
 
-    /// Adds what passes through these sites among the segments of some trees.
-    fn pass<K: Kernel>(&self, sites: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
-        let of_sites = |sites: &[u32]| {
-            let mut found = Vec::new();
-            for &site in sites {
-                let at = self.site(site);
-                let around = self.grid.around(at);
-                let crossed = self.crossed_at(site);
-                for (tree, members) in trees {
-                    tree.overlapping(&around, |member| {
-                        let segment = members[member as usize];
-                        if crossed.contains(&segment) {
-                            found.push(Pass { segment, site, exact: false });
-                        } else if self.meets::<K>(segment, site, at) {
-                            let [a, b] = self.segments[segment as usize];
-                            let exact = crossed.is_empty() && K::sign(&Orientation2([a, b, at])) == Sign::Zero;
-                            found.push(Pass { segment, site, exact });
-                        }
-                    });
-                }
-            }
-            found
+    /// A tree over the pixels of some sites.
+    fn pixels(&self, sites: Vec<u32>) -> (BoxTree, Vec<u32>) {
+        let boxes: Vec<Box2> = sites.par_iter().map(|&site| self.grid.around(self.site(site))).collect();
+        (BoxTree::new(&boxes), sites)
+    }
+
+    /// What a segment may meet, by boxes.
+    fn along(&self, segment: u32) -> impl Fn(&Box2) -> bool + use<'a, F> {
+        let s = self.segments[segment as usize];
+        let (around, is_ordinary) = (Box2::around(s), self.grid.is_ordinary);
+        move |boxed| around.overlaps(boxed) && !(is_ordinary && boxed.is_beside(s))
+    }
+
+    /// The sites whose pixels a segment meets, and that are no ends of it.
+    fn sites_on<K: Kernel>(&self, segment: u32, (tree, sites): &(BoxTree, Vec<u32>)) -> std::vec::IntoIter<u32> {
+        let mut found = Vec::new();
+        tree.visit(self.along(segment), |member| {
+            let site = sites[member as usize];
+            let is_end = self.ends[segment as usize].contains(&site);
+            let is_met = !is_end && self.grid.hits::<K>(self.segments[segment as usize], self.site(site));
+            found.extend(is_met.then_some(site));
+        });
+        found.into_iter()
+    }
+
+    /// Adds the sites of some trees that some segments pass through.
+    fn pass<K: Kernel>(&self, segments: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
+        let of_segment = |&segment: &u32| {
+            let [a, b] = self.segments[segment as usize];
+            let on = trees.iter().flat_map(move |tree| self.sites_on::<K>(segment, tree));
+            on.filter(move |&site| !self.crossed_at(site).contains(&segment)).map(move |site| {
+                let is_given = (site as usize) < self.places;
+                let exact = is_given && K::sign(&Orientation2([a, b, self.site(site)])) == Sign::Zero;
+                Pass { segment, site, exact }
+            })
         };
-        passes.par_extend(sites.par_chunks(512).flat_map_iter(of_sites));
+        passes.par_extend(segments.par_iter().with_min_len(64).flat_map_iter(of_segment));
     }
 
     /// The segments whose crossings were rounded to an added site: they are led through it, no question.
@@ -237,16 +253,18 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         &self.crossed[from..self.crossed_ends[added] as usize]
     }
 
-    /// Whether a place lies on a segment of the trees exactly.
-    fn is_on_one<K: Kernel>(&self, site: u32, trees: &[(BoxTree, Vec<u32>)]) -> bool {
+    /// Whether a place lies on a segment of the tree exactly.
+    fn is_on_one<K: Kernel>(&self, site: u32, tree: &BoxTree, members: &[u32]) -> bool {
         let at = self.site(site);
         let mut is_on = false;
-        for (tree, members) in trees {
-            tree.overlapping(&Box2::around([at, at]), |member| {
+        let here = Box2::around([at, at]);
+        tree.visit(
+            |boxed| boxed.overlaps(&here),
+            |member| {
                 let [a, b] = self.segments[members[member as usize] as usize];
                 is_on = is_on || K::sign(&Orientation2([a, b, at])) == Sign::Zero;
-            });
-        }
+            },
+        );
         is_on
     }
 

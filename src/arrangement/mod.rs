@@ -19,7 +19,7 @@
 //! themselves, whose steps shrink towards zero, so that ends still are centers and pixels still do not overlap. The
 //! bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero without
 //! meeting it: there pieces may cross after all (and where ends are finer than 2^-159, which is the smallest step unless
-//! coordinates are outside of the kernels' range anyway). The pieces are then arranged [again](Arrangement::again), with up to another half unit of displacement.
+//! coordinates are outside of the kernels' range anyway). The pieces are then arranged [again](Arrangement::settled), with up to another half unit of displacement.
 //!
 //! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
 //! however close it passes by an end: nothing forces it.
@@ -110,14 +110,23 @@ impl Arrangement {
         arrangement
     }
 
-    /// Arranges the pieces of an arrangement of these segments: where they cross, which they can off the even grid only, they
-    /// are split by the same rule, and displaced by up to another half a unit.
+    /// Arranges the pieces of an arrangement of these segments as long as any cross, which they can off the even grid only:
+    /// these are split by the same rule, and displaced by up to another half a unit each time.
     ///
-    /// Done again and again, it comes to an end. Sites of a segment come in order on both axes, those of its pieces lie
-    /// between their ends, and there are finitely many places in a box. Of two pieces that cross at least one is divided:
-    /// they have no common end, so the site of the crossing is an end of one of them at most.
+    /// It comes to an end. Sites of a segment come in order on both axes, those of its pieces lie between their ends, and
+    /// there are finitely many places in a box. Of two pieces that cross at least one is divided: they have no common
+    /// end, so the site of the crossing is an end of one of them at most.
+    ///
+    /// # Complexity
+    /// That of the arrangement for each round: one or two, but where coordinates span hundreds of powers of two.
     #[must_use]
-    pub fn again(mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> Self {
+    pub fn settled(mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> Self {
+        while self.again(&place, segments) {}
+        self
+    }
+
+    /// Arranges the pieces once more; says whether any cross.
+    fn again(&mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> bool {
         let row = |i: usize| {
             let [a, b] = segments[i];
             let sites = std::iter::once(a).chain(self.chain(i as u32).iter().copied()).chain([b]);
@@ -135,6 +144,9 @@ impl Arrangement {
             Some(added) => self.added[added],
         };
         let inner = Arrangement::new(self.places + self.added.len(), site, &pieces);
+        if inner.crossings.is_empty() {
+            return false;
+        }
         let mut chains = FxHashMap::default();
         let mut chain_sites = Vec::new();
         for i in 0..segments.len() {
@@ -159,7 +171,7 @@ impl Arrangement {
         }
         self.added.extend(inner.added);
         (self.chains, self.chain_sites) = (chains, chain_sites);
-        self
+        true
     }
 
     /// The grid's unit on each axis: a power of two.
@@ -194,24 +206,18 @@ impl Arrangement {
         self.chains.get(&segment).map_or(&[], |range| &self.chain_sites[range.start as usize..range.end as usize])
     }
 
-    /// Of every added site, the segments that are led through it: pairs of site and segment, in order.
+    /// The segments that are led through sites that were added: pairs of the site's position among these and the segment,
+    /// in order.
     pub fn through_added(&self) -> Vec<(u32, u32)> {
         let given = self.places as u32;
         let mut through = Vec::new();
         for (&segment, range) in &self.chains {
             let sites = &self.chain_sites[range.start as usize..range.end as usize];
-            through.extend(sites.iter().filter(|&&site| site >= given).map(|&site| (site, segment)));
+            through.extend(sites.iter().filter_map(|site| Some((site.checked_sub(given)?, segment))));
         }
         through.par_sort_unstable();
         through
     }
-}
-
-/// The part for one site of such pairs.
-pub fn through_site(through: &[(u32, u32)], site: u32) -> &[(u32, u32)] {
-    let first = through.partition_point(|&(other, _)| other < site);
-    let count = through[first..].partition_point(|&(other, _)| other == site);
-    &through[first..first + count]
 }
 
 /// By x, then by y; of coordinates that have one zero.

@@ -71,16 +71,14 @@ pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     pub(super) waiting: Vec<[VertexId; 2]>,
     /// Vertices added where segments cross.
     pub(super) crossings: Vec<VertexId>,
-    /// Pieces of segments that are not there, because their crossings did not come to an end.
+    /// Pieces of segments that are not there whole.
     pub(super) left_out: Vec<[VertexId; 2]>,
     /// The input lines, and their ways.
     pub(super) lines: Lines,
     pub(super) rounding: Option<Rounding>,
     /// Vertices that have come with lines, and go with them.
     pub(super) lent: HashSet<VertexId>,
-    /// Whether pieces cross that were arranged: possible off the grid only, and until they are arranged again.
-    pub(super) tangled: bool,
-    /// Whether pieces had to be arranged again.
+    /// Whether pieces crossed after they had been arranged, possible off the grid only, and were arranged again.
     pub(super) was_tangled: bool,
     pub(super) scratch: Scratch,
 }
@@ -104,7 +102,6 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             lines: Lines::default(),
             rounding: None,
             lent: HashSet::new(),
-            tangled: false,
             was_tangled: false,
             scratch: Scratch::default(),
         }
@@ -149,15 +146,6 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             self.waiting.push([a, b]);
         } else {
             self.force(a, b);
-        }
-    }
-
-    /// Puts in the piece of a line that was arranged.
-    pub(super) fn insert_piece(&mut self, a: VertexId, b: VertexId) {
-        if self.dimension() < 2 {
-            self.waiting.push([a, b]);
-        } else {
-            self.join(a, b);
         }
     }
 

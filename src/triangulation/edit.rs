@@ -8,17 +8,24 @@ use std::collections::{HashMap, HashSet};
 
 use rustc_hash::FxHashMap;
 
-use crate::arrangement::{Arrangement, through_site};
+use crate::arrangement::Arrangement;
 use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::lines::undirected;
-use super::{ConstrainedDelaunay, LineId, Refused, Rounding};
+use super::lines::{segments_of, undirected};
+use super::network::points_added;
+use super::{ConstrainedDelaunay, LineId, Refused};
 
-/// How often pieces that cross are arranged again. One or two rounds do, but for coordinates whose magnitudes span hundreds of
-/// powers of two: there each round may go on by one of them only, and what is left is cut where it is met.
-const ROUNDS: usize = 32;
+/// What lines ask for: segments over the vertices that were given.
+struct Demand {
+    /// In order.
+    given: Vec<VertexId>,
+    /// Of each.
+    places: Vec<[f64; 2]>,
+    /// By positions among these.
+    segments: Vec<[u32; 2]>,
+}
 
 /// A piece of a line between two sites.
 type Piece = [VertexId; 2];
@@ -38,14 +45,18 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let is_led = self.lies_on_led(&p);
         let vertex = self.insert_near(p, None);
         self.lent.remove(&vertex);
-        if let Ok(at) = self.crossings.binary_search(&vertex) {
-            self.crossings.remove(at);
-        }
+        self.claim(vertex);
         if is_led || self.was_tangled {
             self.rearrange();
         }
         self.insert_waiting();
         Ok(vertex)
+    }
+
+    /// Makes a vertex that was added for a crossing, if it was, one that is given.
+    fn claim(&mut self, vertex: VertexId) -> bool {
+        let at = self.crossings.binary_search(&vertex);
+        at.map(|at| self.crossings.remove(at)).is_ok()
     }
 
     /// Whether a point lies exactly on a segment that is led through sites.
@@ -82,8 +93,11 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
                 }
                 vertices.push(vertex);
             }
-            // What was added for a crossing is given now.
-            self.crossings.retain(|vertex| !vertices.contains(vertex) || !self.lent.insert(*vertex));
+            for &vertex in &vertices {
+                if self.claim(vertex) {
+                    self.lent.insert(vertex);
+                }
+            }
             ids.push(LineId::new(self.lines.given.len()));
             self.lines.given.push(Some(vertices.into()));
         }
@@ -107,6 +121,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
 
     /// Divides a line at one of the vertices that it was given by, counted from 0: it keeps its first part, the rest becomes
     /// a line of its own, whose id is returned. `None` where there is no such vertex, or it is an end.
+    ///
+    /// # Complexity
+    /// Linear in the line's vertices: no triangle changes.
     pub fn split_line(&mut self, line: LineId, at: usize) -> Option<LineId> {
         let given = self.lines.given.get_mut(line.index())?;
         let vertices = given.as_deref()?;
@@ -122,6 +139,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
 
     /// Appends a line to another that ends where it begins; the second id is free then. `false`, and nothing is changed, if
     /// it does not, or they are one line.
+    ///
+    /// # Complexity
+    /// Linear in the lines' vertices: no triangle changes.
     pub fn join_lines(&mut self, first: LineId, second: LineId) -> bool {
         let (head, tail) = (self.line_vertices(first), self.line_vertices(second));
         if first == second || head.is_empty() || head.last() != tail.first() {
@@ -137,41 +157,43 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// Carries out the difference between what is there and what the lines ask for.
     pub(super) fn rearrange(&mut self) {
         self.lines.touch();
+        let used: HashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
+        let leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
+        let demand = self.demand(&leaving);
         if self.dimension() < 2 {
-            self.waiting = self.segments();
+            self.waiting = demand.segments.iter().map(|ends| ends.map(|i| demand.given[i as usize])).collect();
             return;
         }
         self.waiting.clear();
-        let used: HashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
-        let leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
         self.lent.retain(|v| used.contains(v));
-        let segments = self.segments();
-        let (mut arrangement, given) = self.arrange(&segments, &leaving);
-        let mut pieces = self.carry_out(&arrangement, &given, &segments, leaving);
-        self.was_tangled = self.tangled;
-        for _ in 0..ROUNDS {
-            if !self.tangled {
-                return;
-            }
-            arrangement = self.arrange_again(arrangement, &given, &segments);
-            pieces = self.carry_out(&arrangement, &given, &segments, HashSet::new());
-        }
-        if std::mem::take(&mut self.tangled) {
-            pieces.into_iter().for_each(|[a, b]| self.force(a, b));
-            self.crossings.sort_unstable();
+        let place = |i: u32| demand.places[i as usize];
+        let arrangement = Arrangement::new(demand.given.len(), place, &demand.segments);
+        self.left_out = self.carry_out(&arrangement, &demand, leaving);
+        self.was_tangled = !self.left_out.is_empty();
+        if self.was_tangled {
+            let arrangement = arrangement.settled(place, &demand.segments);
+            self.left_out = self.carry_out(&arrangement, &demand, HashSet::new());
         }
     }
 
-    /// Makes the triangulation that of an arrangement of segments over the given vertices, without those that leave; unless
-    /// pieces cross, which makes it tangled. Returns the pieces.
+    /// What the lines ask for, without vertices that leave.
+    fn demand(&self, leaving: &HashSet<VertexId>) -> Demand {
+        let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
+        let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
+        let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
+        let segments = segments_of(self.lines.given.iter().flatten().map(|line| &**line), number);
+        let places = given.iter().map(|&v| self.plan_of(v)).collect();
+        Demand { given, places, segments }
+    }
+
+    /// Makes the triangulation that of an arrangement of what was asked for, without vertices that leave. Returns the pieces that
+    /// cross others.
     fn carry_out(
         &mut self,
         arrangement: &Arrangement,
-        given: &[VertexId],
-        segments: &[Piece],
+        Demand { given, segments, .. }: &Demand,
         mut leaving: HashSet<VertexId>,
     ) -> Vec<Piece> {
-        self.tangled = false;
         // Phase 1: sites that stay keep their vertices, others go.
         let mut at_place: HashMap<[u64; 2], VertexId> =
             self.crossings.iter().map(|&v| (key(self.plan_of(v)), v)).collect();
@@ -183,9 +205,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let mut splits = FxHashMap::default();
         let mut kept = HashSet::new();
         let mut way = Vec::new();
-        for (i, &[a, b]) in segments.iter().enumerate() {
-            let mut from = Some(a);
-            for to in arrangement.chain(i as u32).iter().map(|&site| sites[site as usize]).chain([Some(b)]) {
+        for (i, &[a, b]) in (0..).zip(segments) {
+            let mut from = sites[a as usize];
+            for &site in arrangement.chain(i).iter().chain([&b]) {
+                let to = sites[site as usize];
                 let ends = from.zip(to);
                 from = to;
                 let Some((from, to)) = ends else { continue };
@@ -206,29 +229,16 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             self.clear_wall(a, b);
         }
         self.lines.splits = splits;
-        self.lines.led.clear();
-        self.left_out.clear();
         self.crossings.retain(|v| !leaving.contains(v));
         let mut leaving: Vec<VertexId> = leaving.into_iter().collect();
         leaving.sort_unstable();
         for vertex in leaving {
             self.remove_free(vertex);
         }
-        if self.dimension() < 2 {
-            self.waiting = segments.to_vec();
-            return Vec::new();
-        }
 
         // Phase 4: new sites and pieces are put in.
-        let through = arrangement.through_added();
-        let first_added = sites.len() - arrangement.added().len();
-        for (i, &place) in arrangement.added().iter().enumerate() {
-            let passing = through_site(&through, (first_added + i) as u32);
-            let site = &mut sites[first_added + i];
-            let ends: Vec<[G::Point; 2]> =
-                passing.iter().map(|&(_, i)| segments[i as usize].map(|v| *self.point(v))).collect();
-            let ends: Vec<[&G::Point; 2]> = ends.iter().map(|ends| ends.each_ref()).collect();
-            let p = self.inner.geometry.meet(place, &ends);
+        let added = points_added(&self.inner.geometry, arrangement, segments, |i| *self.point(given[i as usize]));
+        for (site, p) in sites[given.len()..].iter_mut().zip(added) {
             match *site {
                 Some(vertex) => self.replace_point(vertex, p),
                 None => {
@@ -240,62 +250,14 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             }
         }
         self.crossings.sort_unstable();
-        let mut pieces = Vec::new();
-        for (i, &[a, b]) in segments.iter().enumerate() {
-            let chain = arrangement.chain(i as u32);
-            let between: Box<[VertexId]> = chain.iter().filter_map(|&site| sites[site as usize]).collect();
-            let mut at = a;
-            for &site in between.iter().chain([&b]) {
-                pieces.push(undirected(at, site));
-                at = site;
-            }
-            if arrangement.is_led(i as u32) {
-                self.lines.led.insert([a, b], between);
-            }
-        }
-        self.rounding = (!arrangement.crossings().is_empty())
-            .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
-        pieces.sort_unstable();
-        pieces.dedup();
-        for &[a, b] in &pieces {
-            self.insert_piece(a, b);
-        }
+        let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all of them
+        let crossing = self.lead(arrangement, segments, |site| sites[site as usize]);
         self.lines.touch();
-        pieces
-    }
-
-    /// Arranges segments over the vertices that were given and do not leave; these are returned.
-    fn arrange(&self, segments: &[Piece], leaving: &HashSet<VertexId>) -> (Arrangement, Vec<VertexId>) {
-        let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
-        let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
-        let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
-        let numbered: Vec<[u32; 2]> = segments.iter().map(|segment| segment.map(number)).collect();
-        let (geometry, points) = (&self.inner.geometry, &self.inner.points);
-        let place = |i: u32| geometry.plan(&points[given[i as usize].index()]);
-        let arrangement = Arrangement::new(given.len(), place, &numbered);
-        (arrangement, given)
-    }
-
-    /// Arranges the pieces of an arrangement.
-    fn arrange_again(&self, arrangement: Arrangement, given: &[VertexId], segments: &[Piece]) -> Arrangement {
-        let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
-        let numbered: Vec<[u32; 2]> = segments.iter().map(|segment| segment.map(number)).collect();
-        let (geometry, points) = (&self.inner.geometry, &self.inner.points);
-        arrangement.again(|i| geometry.plan(&points[given[i as usize].index()]), &numbered)
+        crossing
     }
 
     fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
         self.inner.geometry.plan(self.point(vertex))
-    }
-
-    /// Each segment of the lines once, in order of the vertices.
-    fn segments(&self) -> Vec<Piece> {
-        let lines = self.lines.given.iter().flatten();
-        let pairs = lines.flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
-        let mut segments: Vec<Piece> = pairs.map(|pair| undirected(pair[0], pair[1])).collect();
-        segments.sort_unstable();
-        segments.dedup();
-        segments
     }
 }
 

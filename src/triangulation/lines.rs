@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use rustc_hash::FxHashMap;
 
+use crate::arrangement::Arrangement;
 use crate::geometry::Crossing;
 use crate::num::Sign;
 use crate::tds::{Id, VertexId};
@@ -41,7 +42,50 @@ pub(super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
     if a < b { [a, b] } else { [b, a] }
 }
 
+/// Each segment of some lines once, from the smaller vertex to the larger, in order; the numbers keep the order of the
+/// vertices.
+pub(super) fn segments_of<'a>(
+    lines: impl Iterator<Item = &'a [VertexId]>,
+    number: impl Fn(VertexId) -> u32,
+) -> Vec<[u32; 2]> {
+    let pairs = lines.flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
+    let mut segments: Vec<[u32; 2]> = pairs.map(|pair| undirected(pair[0], pair[1]).map(&number)).collect();
+    segments.sort_unstable();
+    segments.dedup();
+    segments
+}
+
 impl Lines {
+    /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each once, in
+    /// order.
+    pub(super) fn lead(
+        &mut self,
+        arrangement: &Arrangement,
+        segments: &[[u32; 2]],
+        vertex: impl Fn(u32) -> VertexId,
+    ) -> Vec<[VertexId; 2]> {
+        self.led.clear();
+        let mut pieces = Vec::with_capacity(segments.len());
+        for (i, ends) in (0..).zip(segments) {
+            let [a, b] = ends.map(&vertex);
+            let mut between: Box<[VertexId]> = arrangement.chain(i).iter().map(|&site| vertex(site)).collect();
+            let mut at = a;
+            for &next in between.iter().chain([&b]) {
+                pieces.push(undirected(at, next));
+                at = next;
+            }
+            if arrangement.is_led(i) {
+                if a > b {
+                    between.reverse();
+                }
+                self.led.insert(undirected(a, b), between);
+            }
+        }
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
     /// Forgets what was derived. After every change.
     pub(super) fn touch(&mut self) {
         self.on_edges.take();
@@ -159,6 +203,9 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 
     /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it is
     /// one edge.
+    ///
+    /// # Complexity
+    /// Linear in the length of the result.
     pub fn way(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
         let mut chain = Vec::new();
         self.walk(a, b, &mut chain);

@@ -7,12 +7,12 @@
 //!
 //! Every step depends on the set of points and segments only.
 
-use crate::arrangement::{Arrangement, through_site};
+use crate::arrangement::Arrangement;
 use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::lines::undirected;
+use super::lines::{segments_of, undirected};
 use super::{ConstrainedDelaunay, Refused, spatial_order};
 
 /// What becomes of lines that cross between their vertices.
@@ -83,7 +83,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         if let Some(bad) = sites.iter().position(|p| !geometry.admits(p)) {
             return Err(Refused::Coordinate(bad));
         }
-        let segments = segments_of(&lines);
+        let index = |v: VertexId| v.index() as u32;
+        let segments = segments_of(lines.iter().map(|line| &**line), index);
         let arrangement = Arrangement::new(sites.len(), |i| geometry.plan(&sites[i as usize]), &segments);
         if on_crossing == OnCrossing::Reject {
             reject(&geometry, &sites, &lines, &arrangement, &segments)?;
@@ -98,38 +99,31 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
 
         let mut triangulation = Self::from_sorted(geometry, sites)?;
-        let mut pieces = Vec::with_capacity(segments.len());
-        for (i, &[a, b]) in segments.iter().enumerate() {
-            let between = arrangement.chain(i as u32);
-            let mut at = a;
-            for &site in between.iter().chain([&b]) {
-                pieces.push(undirected(vertex(at), vertex(site)));
-                at = site;
-            }
-            if arrangement.is_led(i as u32) {
-                let [a, b] = [a, b].map(vertex);
-                let mut sites: Box<[VertexId]> = between.iter().map(|&site| vertex(site)).collect();
-                if a > b {
-                    sites.reverse();
-                }
-                triangulation.lines.led.insert(undirected(a, b), sites);
-            }
-        }
         triangulation.lines.given = lines.into_iter().map(Some).collect();
         triangulation.crossings = added;
-        if !arrangement.crossings().is_empty() {
-            triangulation.rounding = Some(Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
-        }
-        drop(arrangement);
-        pieces.sort_unstable();
-        pieces.dedup();
-        for [a, b] in pieces {
-            triangulation.insert_piece(a, b);
-        }
-        if triangulation.tangled {
+        if !triangulation.lead(&arrangement, &segments, vertex).is_empty() {
             triangulation.rearrange();
         }
         Ok((triangulation, renumbered))
+    }
+
+    /// Puts in the pieces of segments that were arranged, whose sites are vertices now. Returns those that cross others,
+    /// which are there up to the first crossing only.
+    pub(super) fn lead(
+        &mut self,
+        arrangement: &Arrangement,
+        segments: &[[u32; 2]],
+        vertex: impl Fn(u32) -> VertexId,
+    ) -> Vec<[VertexId; 2]> {
+        self.rounding = (!arrangement.crossings().is_empty())
+            .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
+        let mut pieces = self.lines.lead(arrangement, segments, vertex);
+        if self.dimension() < 2 {
+            self.waiting = pieces;
+            return Vec::new();
+        }
+        pieces.retain(|&[a, b]| !self.join(a, b));
+        pieces
     }
 
     /// The distinct sites of points in spatial order, and of each point the number of its site.
@@ -180,22 +174,30 @@ fn reject<G: Crossing>(
     Ok(())
 }
 
-/// Each segment of the lines once, from the smaller number to the larger, in order.
-fn segments_of(lines: &VertexLines) -> Vec<[u32; 2]> {
-    let pairs = lines.iter().flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
-    let mut segments: Vec<[u32; 2]> =
-        pairs.map(|pair| undirected(pair[0], pair[1]).map(|v| v.index() as u32)).collect();
-    segments.sort_unstable();
-    segments.dedup();
-    segments
-}
-
 /// The first line with a segment, and its position in the line.
 fn find(lines: &VertexLines, segment: [u32; 2]) -> (usize, usize) {
     let segment = segment.map(|site| VertexId::new(site as usize));
     let in_line = |line: &[VertexId]| line.windows(2).position(|pair| undirected(pair[0], pair[1]) == segment);
     let mut found = lines.iter().enumerate().filter_map(|(i, line)| Some((i, in_line(line)?)));
     found.next().unwrap_or_default()
+}
+
+/// What the geometry makes of the sites that an arrangement has added, given the points at the others.
+pub(super) fn points_added<G: Crossing>(
+    geometry: &G,
+    arrangement: &Arrangement,
+    segments: &[[u32; 2]],
+    point: impl Fn(u32) -> G::Point,
+) -> Vec<G::Point> {
+    let through = arrangement.through_added();
+    let mut rest = &through[..];
+    let meet = |(added, &place): (usize, &[f64; 2])| {
+        let (here, others) = rest.split_at(rest.partition_point(|&(other, _)| other as usize <= added));
+        rest = others;
+        let ends: Vec<[G::Point; 2]> = here.iter().map(|&(_, i)| segments[i as usize].map(&point)).collect();
+        geometry.meet(place, &ends.iter().map(|ends| ends.each_ref()).collect::<Vec<_>>())
+    };
+    arrangement.added().iter().enumerate().map(meet).collect()
 }
 
 /// Puts the added sites among the given ones, which come in spatial order, as points of the geometry. Returns the number
@@ -209,30 +211,14 @@ fn add_sites<G: Crossing + Coordinates<3>>(
     if arrangement.added().is_empty() {
         return Ok((None, Vec::new()));
     }
-    let given = sites.len() as u32;
-    let through = arrangement.through_added();
-    let mut met = Vec::new();
-    for (i, &place) in arrangement.added().iter().enumerate() {
-        let here = through_site(&through, given + i as u32);
-        met.clear();
-        met.extend(here.iter().map(|&(_, segment)| segments[segment as usize].map(|end| sites[end as usize])));
-        let segments: Vec<[&G::Point; 2]> = met.iter().map(|ends| ends.each_ref()).collect();
-        let p = geometry.meet(place, &segments);
-        sites.push(p);
-    }
-    let order = spatial_order(sites.len(), |i| geometry.coordinates(&sites[i]))?;
-    let mut all: Vec<G::Point> = Vec::with_capacity(sites.len());
-    let mut renumbered = vec![VertexId::INFINITE; sites.len()];
-    let mut added = Vec::new();
-    for index in order {
-        // Equal places are in the order of their numbers: what was given stands.
-        let p = sites[index as usize];
-        if all.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
-            added.extend((index >= given).then(|| VertexId::new(all.len())));
-            all.push(p);
-        }
-        renumbered[index as usize] = VertexId::new(all.len() - 1);
-    }
+    let given = sites.len();
+    let added = points_added(geometry, arrangement, segments, |site| sites[site as usize]);
+    sites.extend(added);
+    // Where a given point is at such a place already, it stands.
+    let (all, renumbered) = ConstrainedDelaunay::<G>::sites(geometry, sites)?;
     *sites = all;
+    let mut is_given = vec![false; sites.len()];
+    renumbered[..given].iter().for_each(|v| is_given[v.index()] = true);
+    let added = (0..sites.len()).filter(|&i| !is_given[i]).map(VertexId::new).collect();
     Ok((Some(renumbered), added))
 }

@@ -206,7 +206,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         Some(*self.point(vertex))
     }
 
-    fn is_on_constraint(&self, vertex: VertexId) -> bool {
+    pub(super) fn is_on_constraint(&self, vertex: VertexId) -> bool {
         let has_wall = |cell: CellId| {
             let i = self.tds().index_of(cell, vertex);
             i.is_some_and(|i| self.is_constrained(cell, ccw(i)) || self.is_constrained(cell, cw(i)))

@@ -42,13 +42,16 @@ enum Met {
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Pieces that were arranged
-    /// meet no constraint between their ends, but off the grid; then the rest is not put in, and what we have is tangled.
-    pub(super) fn join(&mut self, a: VertexId, b: VertexId) {
-        self.force_until(a, b, |this, _, _, _| {
-            this.tangled = true;
+    /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Says whether all of it is
+    /// there: pieces that were arranged meet no constraint between their ends, but off the grid; behind one, nothing is
+    /// put in.
+    pub(super) fn join(&mut self, a: VertexId, b: VertexId) -> bool {
+        let mut is_whole = true;
+        self.force_until(a, b, |_, _, _, _| {
+            is_whole = false;
             Vec::new()
         });
+        is_whole
     }
 
     /// Puts in the segment between two vertices, in a triangulation that spans the plane, across constraints.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use crate::geometry::{Coordinates, Crossing, distance_to_segment};
 use crate::num::Sign;
-use crate::tds::{CellId, VertexId};
+use crate::tds::{CellId, VertexId, ccw};
 
 use super::{ConstrainedDelaunay, LineId};
 
@@ -81,9 +81,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             }
         };
         let beyond = |triangle: [VertexId; 3], points: [VertexId; 3]| {
-            (0..3).any(|i| points.iter().all(|&p| turn(triangle[i], triangle[(i + 1) % 3], p) != Sign::Positive))
+            (0..3).any(|i| points.iter().all(|&p| turn(triangle[i], triangle[ccw(i)], p) != Sign::Positive))
         };
-        let holds = |p: VertexId| (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], p) != Sign::Negative);
+        let holds = |p: VertexId| (0..3).all(|i| turn(corners[i], corners[ccw(i)], p) != Sign::Negative);
         let mut seen: HashSet<CellId> = HashSet::new();
         let mut open: Vec<CellId> = self.tds().around(b).collect();
         while let Some(cell) = open.pop() {
@@ -92,18 +92,13 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             {
                 continue;
             }
-            let blocks = |&v: &VertexId| !corners.contains(&v) && !gone.contains(&v) && self.is_on_line(v) && holds(v);
+            let blocks =
+                |&v: &VertexId| !corners.contains(&v) && !gone.contains(&v) && self.is_on_constraint(v) && holds(v);
             if theirs.iter().any(blocks) {
                 return false;
             }
             open.extend(self.tds().cell_neighbors(cell));
         }
         true
-    }
-
-    fn is_on_line(&self, vertex: VertexId) -> bool {
-        self.tds()
-            .around(vertex)
-            .any(|cell| (0..3).any(|i| self.tds().vertex(cell, i) != vertex && self.is_constrained(cell, i)))
     }
 }

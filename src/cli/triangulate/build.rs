@@ -50,11 +50,7 @@ pub(super) fn build<K: Kernel>(
     // Zero has one sign only: places are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
     let (t, vertices) = ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
-    let chain = |(i, ends): (usize, &[u32; 2])| match t.dimension() {
-        2 => t.chain(LineId::new(i)),
-        _ => collinear_chain(&t, ends.map(|v| vertices[v as usize])),
-    };
-    let chains: Vec<Vec<VertexId>> = segments.iter().enumerate().map(chain).collect();
+    let chains: Vec<Vec<VertexId>> = (0..segments.len()).map(|i| t.chain(LineId::new(i))).collect();
 
     let number = |v: &VertexId| v.index() as u32;
     let cells: Vec<CellId> = if t.dimension() == 2 { t.finite_cells().collect() } else { Vec::new() };
@@ -103,14 +99,4 @@ fn walls<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, v: VertexId) -> impl Iter
         let i = t.tds().index_of(cell, v)?;
         t.is_constrained(cell, cw(i)).then(|| t.tds().vertex(cell, ccw(i)))
     })
-}
-
-/// The vertices along a segment where all points are on one line, and there are no walls.
-fn collinear_chain<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, [a, b]: [VertexId; 2]) -> Vec<VertexId> {
-    let order = |v: &VertexId, w: &VertexId| t.geometry().compare(t.point(*v), t.point(*w));
-    let (low, high) = if order(&a, &b).is_gt() { (b, a) } else { (a, b) };
-    let is_between = |v: &VertexId| order(&low, v).is_le() && order(v, &high).is_le();
-    let mut chain: Vec<VertexId> = t.tds().vertices().filter(is_between).collect();
-    chain.sort_unstable_by(order);
-    chain
 }
