@@ -30,19 +30,6 @@ impl Box2 {
         Box2 { min: [x0, y0], max: [x1, y1] }
     }
 
-    /// What both hold.
-    pub(super) fn common(&self, other: &Self) -> Self {
-        Box2 {
-            min: [self.min[0].max(other.min[0]), self.min[1].max(other.min[1])],
-            max: [self.max[0].min(other.max[0]), self.max[1].min(other.max[1])],
-        }
-    }
-
-    /// The place in the box, which is not empty, that is nearest to another.
-    pub(super) fn clamp(&self, place: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|k| place[k].max(self.min[k]).min(self.max[k]))
-    }
-
     fn with(self, other: &Self) -> Self {
         Box2 {
             min: [self.min[0].min(other.min[0]), self.min[1].min(other.min[1])],

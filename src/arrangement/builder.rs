@@ -9,7 +9,6 @@ use crate::kernel::{Kernel, Orientation2};
 use crate::num::Sign;
 
 use super::boxes::{Box2, BoxTree};
-use super::cells::Cells;
 use super::pixel::Grid;
 use super::{Arrangement, Crossing, Place, Segment, lexicographic};
 
@@ -97,43 +96,19 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         pairs
     }
 
-    /// Phase 2: the site of each crossing. An end in whose pixel it lies; else the center of its pixel.
+    /// Phase 2: the site of each crossing, the center of its pixel; which may be an end of a segment.
     fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>, vertices: &[u32]) -> Vec<Crossing> {
-        enum Rounded {
-            ToVertex(u32),
-            ToCenter(Place),
-        }
-        let cells = Cells::new(self.grid, vertices, self.place);
-        let round = |&segments: &[u32; 2]| {
-            let [ab, cd] = segments.map(|i| self.segments[i as usize]);
-            let center = self.grid.crossing::<K>(ab, cd);
-            // Ends may be finer than the finest step. What lies beyond one would lead the line back.
-            let common = Box2::around(ab).common(&Box2::around(cd));
-            let holds = |&v: &u32| {
-                let at = (self.place)(v);
-                common.clamp(at) == at && self.grid.crossing_in::<K>(ab, cd, at)
-            };
-            // Of several the first in plan, whatever their numbers.
-            let by_place = |&u: &u32, &v: &u32| lexicographic((self.place)(u), (self.place)(v));
-            let center = common.clamp(center);
-            let end = || segments.iter().flat_map(|&i| self.ends[i as usize]).find(|&end| (self.place)(end) == center);
-            match cells.near(center).filter(holds).min_by(by_place).or_else(end) {
-                Some(vertex) => Rounded::ToVertex(vertex),
-                None => Rounded::ToCenter(center),
-            }
+        let vertex_at: FxHashMap<[u64; 2], u32> = vertices.iter().map(|&v| (key((self.place)(v)), v)).collect();
+        let round = |&[i, j]: &[u32; 2]| {
+            let center = self.grid.crossing::<K>(self.segments[i as usize], self.segments[j as usize]);
+            (center, vertex_at.get(&key(center)).copied())
         };
-        let rounded: Vec<Rounded> = pairs.par_iter().with_min_len(256).map(round).collect();
+        let rounded: Vec<(Place, Option<u32>)> = pairs.par_iter().with_min_len(256).map(round).collect();
         let mut centers: Vec<(Place, u32)> = Vec::new();
         let mut crossings = Vec::with_capacity(pairs.len());
-        for (segments, rounded) in pairs.into_iter().zip(rounded) {
-            let site = match rounded {
-                Rounded::ToVertex(vertex) => vertex,
-                Rounded::ToCenter(center) => {
-                    centers.push((center, crossings.len() as u32));
-                    u32::MAX
-                }
-            };
-            crossings.push(Crossing { segments, site });
+        for (segments, (center, vertex)) in pairs.into_iter().zip(rounded) {
+            centers.extend(vertex.is_none().then_some((center, crossings.len() as u32)));
+            crossings.push(Crossing { segments, site: vertex.unwrap_or(u32::MAX) });
         }
         centers.par_sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
         for (center, crossing) in centers {
@@ -288,19 +263,15 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         let mut chain_sites = Vec::with_capacity(ordered.len());
         for passes in ordered.chunk_by(|p, q| p.0 == q.0) {
             let segment = passes[0].0;
-            let [a, b] = self.ends[segment as usize].map(|end| along(segment, end));
-            let (first, last) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
             let from = chain_sites.len();
-            // An end of another segment that is finer than the finest step may stand beyond our own end.
-            let is_between = |at: Place| lexicographic(first, at).is_lt() && lexicographic(at, last).is_lt();
-            chain_sites.extend(passes.iter().filter(|&&(_, at, _)| is_between(at)).map(|&(_, _, site)| site));
+            chain_sites.extend(passes.iter().map(|&(_, _, site)| site));
             let [a, b] = self.segments[segment as usize];
             if lexicographic(a, b).is_gt() {
                 chain_sites[from..].reverse();
             }
             chains.insert(segment, from as u32..chain_sites.len() as u32);
         }
-        let on_grid = self.grid.is_even();
+        let on_grid = self.grid.is_even;
         Arrangement {
             unit: self.grid.unit,
             on_grid,
@@ -318,4 +289,9 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
 fn cross<K: Kernel>([a, b]: Segment, [c, d]: Segment) -> bool {
     let apart = |p, q, r, s| K::sign(&Orientation2([p, q, r])) * K::sign(&Orientation2([p, q, s])) == Sign::Negative;
     apart(a, b, c, d) && apart(c, d, a, b)
+}
+
+/// Equal places have equal keys: of zeros, there is one.
+fn key(place: Place) -> [u64; 2] {
+    place.map(f64::to_bits)
 }

@@ -15,11 +15,11 @@
 //! segments. Ends that are multiples of it are centers of pixels themselves, pixels do not overlap, and the argument
 //! above holds without a gap: **no point of a line is displaced by more than half a unit on each axis**.
 //!
-//! Ends may be finer than that, when coordinates near zero and large ones come together. The grid is then that of the doubles
-//! themselves, whose steps shrink towards zero, so that ends still are centers and pixels still do not overlap. The
+//! Ends may be finer than that, when coordinates near zero and large ones come together. The grid is then that of the
+//! doubles themselves, whose steps shrink towards zero, so that ends still are centers and pixels still tile the plane. The
 //! bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero without
-//! meeting it: there pieces may cross after all (and where ends are finer than 2^-159, which is the smallest step unless
-//! coordinates are outside of the kernels' range anyway). The pieces are then arranged [again](Arrangement::settled), with up to another half unit of displacement.
+//! meeting it: there pieces may cross after all, and are arranged [again](Arrangement::settled), with up to another half a
+//! unit of displacement.
 //!
 //! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
 //! however close it passes by an end: nothing forces it.
@@ -28,7 +28,6 @@
 
 mod boxes;
 mod builder;
-mod cells;
 mod pixel;
 
 use std::ops::Range;
@@ -88,8 +87,7 @@ impl Arrangement {
         let scaled = |p: Place| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
         let place = |i: u32| scaled(place(i));
         let ends = || segments.iter().flatten().map(|&i| place(i));
-        // The smallest step is one that has a half, and that all coordinates are multiples of if they are small.
-        let smallest = scale.map(|s| if s == UP { f64::from_bits(1) * UP } else { f64::from_bits(4) });
+        let smallest = scale.map(|s| f64::from_bits(1) * s);
         let arrange = |grid: Grid| {
             let builder = Builder::new(grid, places, &place, segments);
             if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() }
@@ -98,7 +96,7 @@ impl Arrangement {
         let mut arrangement = arrange(even);
         // Places on segments count like ends: finer ones make pixels overlap, unless the steps are those of doubles.
         let finer = |&&site: &&u32| (site as usize) < places && !even.holds(place(site));
-        if even.is_even()
+        if even.is_even
             && let Some(&site) = arrangement.chain_sites.iter().find(finer)
         {
             arrangement = arrange(Grid::through(scaled(largest), smallest, ends().chain([place(site)])));

@@ -6,17 +6,21 @@ use crate::num::{Dyadic, Pair, Sign};
 use super::boxes::Box2;
 use super::{Place, Segment};
 
-/// The places to which crossings are rounded: on each axis the numbers of doubles, but none closer together than the
-/// *finest* unit, and none further apart than the *unit*; both are powers of two.
+/// The places to which crossings are rounded. On each axis these are either the multiples of the *unit*, a power of two; or the
+/// numbers of doubles, of which there are none between zero and the *floor*.
 ///
-/// If the two are equal it is a grid of equal steps. The *pixel* of such a place is what is nearer to it than to its neighbors,
-/// a half-open rectangle: it holds its left and its lower border. These tile the plane. A place in between has a pixel of
-/// that size around itself.
+/// The *pixel* of a place is what is nearer to it than to its neighbors, a half-open rectangle: it holds its left and its
+/// lower border. These tile the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
     pub(super) unit: [f64; 2],
-    finest: [f64; 2],
-    /// Whether coordinates and steps are in the range of the fast kernels.
+    pub(super) is_even: bool,
+    /// The smallest magnitude but zero, off the even grid.
+    floor: [f64; 2],
+    /// The smallest step, off the even grid: that of subnormal numbers, which may have been scaled.
+    smallest: [f64; 2],
+    /// Whether coordinates are in the range of the fast kernels. Halves of steps then enter their polynomials as multiples
+    /// of 2^-213, instead of 2^-212, which the degree of 3 makes up for.
     pub(super) is_ordinary: bool,
 }
 
@@ -28,37 +32,49 @@ fn last_place(x: f64) -> f64 {
 }
 
 impl Grid {
-    /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles.
-    /// No step is smaller than `smallest`.
+    /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles, but none
+    /// smaller than `smallest`.
     pub(super) fn through(largest: Place, smallest: Place, places: impl Iterator<Item = Place> + Clone) -> Self {
-        let last = largest.map(last_place);
-        let unit = [0, 1].map(|k| last[k].max(smallest[k]));
-        let mut grid = Grid { unit, finest: unit, is_ordinary: false };
-        let in_range = places.clone().flatten().all(|x| RANGE.admits(x));
-        if !places.clone().all(|place| grid.holds(place)) {
-            // Crossings of what the fast kernels admit are to be admitted, with half a step beside.
-            let finest = if in_range { [2.0 * RANGE.min; 2] } else { smallest };
-            grid.finest = [0, 1].map(|k| finest[k].min(unit[k]));
-        }
-        grid.is_ordinary = in_range && grid.finest.iter().all(|&step| RANGE.admits(step / 2.0));
+        let unit = [0, 1].map(|k| last_place(largest[k]).max(smallest[k]));
+        let is_ordinary = places.clone().flatten().all(|x| RANGE.admits(x));
+        // Crossings of what the fast kernels admit are to be admitted.
+        let floor = if is_ordinary { [RANGE.min; 2] } else { smallest };
+        let mut grid = Grid { unit, is_even: true, floor, smallest, is_ordinary };
+        grid.is_even =
+            (0..2).all(|k| unit[k] >= floor[k] || largest[k] == 0.0) && places.clone().all(|p| grid.holds(p));
         grid
     }
 
-    /// Whether all steps are equal.
-    pub(super) fn is_even(&self) -> bool {
-        self.unit == self.finest
+    /// From a place to the next one above on an axis.
+    #[inline(always)]
+    fn gap_above(&self, axis: usize, x: f64) -> f64 {
+        if self.is_even {
+            return self.unit[axis];
+        }
+        let floor = self.floor[axis];
+        if -floor <= x && x < floor {
+            return floor;
+        }
+        (x.next_up() - x).clamp(self.smallest[axis], self.unit[axis])
     }
 
     /// How far the pixel around a value reaches down on an axis.
     #[inline(always)]
     fn down(&self, axis: usize, x: f64) -> f64 {
-        (x - x.next_down()).clamp(self.finest[axis], self.unit[axis]) / 2.0
+        self.gap_above(axis, -x) / 2.0 // nothing, if the gap is one that has no half
     }
 
     /// How far it reaches up.
     #[inline(always)]
     fn up(&self, axis: usize, x: f64) -> f64 {
-        (x.next_up() - x).clamp(self.finest[axis], self.unit[axis]) / 2.0
+        let gap = self.gap_above(axis, x);
+        gap - gap / 2.0
+    }
+
+    /// The place that is nearest to a value, on an axis.
+    fn nearest(&self, axis: usize, x: f64) -> f64 {
+        let step = if self.is_even { self.unit[axis] } else { self.gap_above(axis, x) };
+        (x / step).round() * step + 0.0 // zero has one sign only
     }
 
     /// A box around the pixel of a place.
@@ -72,16 +88,6 @@ impl Grid {
         (0..2).all(|k| {
             let steps = place[k] / self.unit[k]; // at most 2^53, and exact unless it vanishes
             steps == steps.trunc() && steps * self.unit[k] == place[k]
-        })
-    }
-
-    /// Of a place within the magnitudes: the number of the unit that it is nearest to, on each axis.
-    pub(super) fn pixel(&self, place: Place) -> [i64; 2] {
-        std::array::from_fn(|k| {
-            // Floor first: adding a half to a large odd number would round.
-            let steps = place[k] / self.unit[k];
-            let below = steps.floor();
-            below as i64 + i64::from(steps - below >= 0.5)
         })
     }
 
@@ -162,8 +168,7 @@ impl Grid {
         for (along, center) in center.iter_mut().enumerate() {
             let x = Pair::difference(a[along], 0.0) - way[along] * fraction;
             let doubt = of_fraction * way[along].estimate().abs() + 10.0 * Pair::ERROR * a[along].abs();
-            let step = 2.0 * self.up(along, x.estimate());
-            *center = (x.estimate() / step).round() * step + 0.0;
+            *center = self.nearest(along, x.estimate());
             let beside = (x - Pair::difference(*center, 0.0)).estimate();
             let inside =
                 -self.down(along, *center) + 2.0 * doubt < beside && beside < self.up(along, *center) - 2.0 * doubt;
@@ -176,17 +181,12 @@ impl Grid {
 
     fn round<K: Kernel>(&self, ab: Segment, cd: Segment, turn: Sign, along: usize) -> f64 {
         let side = |center: f64, offset: f64| turn * K::sign(&CrossingSide { ab, cd, along, center, offset });
-        let nearest = |x: f64| {
-            let step = 2.0 * self.up(along, x);
-            (x / step).round() * step
-        };
-        let mut center = nearest(estimate(ab, cd, along));
+        let mut center = self.nearest(along, estimate(ab, cd, along));
         for tries in 0.. {
-            let (down, up) = (self.down(along, center), self.up(along, center));
-            let step = if side(center, -down) == Sign::Negative {
-                -2.0 * down
-            } else if side(center, up) != Sign::Negative {
-                2.0 * up
+            let step = if side(center, -self.down(along, center)) == Sign::Negative {
+                -self.gap_above(along, -center)
+            } else if side(center, self.up(along, center)) != Sign::Negative {
+                self.gap_above(along, center)
             } else {
                 break;
             };
@@ -194,19 +194,9 @@ impl Grid {
             // it is longer than a step or two.
             let exact = || CrossingSide { ab, cd, along, center, offset: 0.0 }.value(Dyadic::difference);
             let way = if tries < 2 { step } else { exact().quotient(&divisor(ab, cd)) };
-            center = if way.abs() <= 1.5 * step.abs() { center + step } else { nearest(center + way) };
+            center = if way.abs() <= 1.5 * step.abs() { center + step } else { self.nearest(along, center + way) };
         }
         center + 0.0 // zero has one sign only
-    }
-
-    /// Whether the crossing of two segments lies in the pixel around a place.
-    pub(super) fn crossing_in<K: Kernel>(&self, ab: Segment, cd: Segment, center: Place) -> bool {
-        let turn = K::sign(&Orientation2([cd[0], cd[1], ab[0]]));
-        (0..2).all(|along| {
-            let side = |offset| turn * K::sign(&CrossingSide { ab, cd, along, center: center[along], offset });
-            let (down, up) = (self.down(along, center[along]), self.up(along, center[along]));
-            side(-down) != Sign::Negative && side(up) == Sign::Negative
-        })
     }
 }
 
