@@ -4,7 +4,7 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use breakline::geometry::{Coordinates, Plane};
+use breakline::geometry::Plane;
 use breakline::tds::VertexId;
 use breakline::triangulation::{Delaunay, Level};
 use common::random::{Random, ulps};
@@ -12,17 +12,10 @@ use common::random::{Random, ulps};
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;
 
-/// The finite cells of any dimension as sorted points.
+/// The finite cells as sorted points.
 fn cells(t: &Free) -> BTreeSet<Vec<[u64; 2]>> {
     // Bits order negative numbers wrongly, which does no harm here.
-    let place = |v: &VertexId| t.geometry().coordinates(t.point(*v)).map(f64::to_bits);
-    t.finite_cells()
-        .map(|cell| {
-            let mut corners: Vec<_> = t.tds().cell_vertices(cell).iter().map(place).collect();
-            corners.sort_unstable();
-            corners
-        })
-        .collect()
+    common::cells::cells(t, |p| p.map(f64::to_bits))
 }
 
 fn fresh(points: &[Point]) -> Free {

@@ -10,21 +10,13 @@ use breakline::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, Refused, Triangulation};
 use common::random::Random;
 
-/// The finite cells as sets of points, whatever their numbers and order.
+/// The finite cells as sorted points, in whole steps of 1/1024.
 fn cells<G, const N: usize, V, C>(t: &Triangulation<G, N, V, C>) -> BTreeSet<Vec<Vec<i64>>>
 where
     G: Coordinates<N>,
     C: Copy + Default,
 {
-    let place =
-        |v: &VertexId| t.geometry().coordinates(t.point(*v)).as_ref().iter().map(|x| (x * 1024.0) as i64).collect();
-    t.finite_cells()
-        .map(|cell| {
-            let mut corners: Vec<Vec<i64>> = t.tds().cell_vertices(cell).iter().map(place).collect();
-            corners.sort();
-            corners
-        })
-        .collect()
+    common::cells::cells(t, |p| p.as_ref().iter().map(|x| (x * 1024.0) as i64).collect())
 }
 
 fn grid_points<const D: usize>(random: &mut Random, count: u64, side: u64, scale: f64) -> Vec<[f64; D]> {

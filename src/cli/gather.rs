@@ -24,7 +24,8 @@ use crate::terrain::{Classes, Selection, SelectionReport, TinBuilder, TinReport}
 /// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
 
-/// What heights of breaklines that meet may differ by, unless something else is said: what a survey of edges is good for.
+/// What heights of breaklines that meet may differ by, unless something else is said: what a survey of edges is good
+/// for.
 const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 
 /// What the verbs work on.

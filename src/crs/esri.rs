@@ -1,9 +1,9 @@
 //! What Esri calls things in a `.prj`: EPSG's names by Esri's rule, and the well-known exceptions to it.
 //!
-//! The rule: everything but letters, digits, `+` and `-` becomes an underscore, a geographic system begins with `GCS_`, a
-//! datum with `D_`, years are written out (`ETRS89`, `ETRS_1989`). Many of Esri's names follow none: the zones of the
-//! State Plane system have their FIPS numbers there, for example, and here EPSG's name. Readers identify a system by its
-//! parameters.
+//! The rule: everything but letters, digits, `+` and `-` becomes an underscore, a geographic system begins with `GCS_`,
+//! a datum with `D_`, years are written out (`ETRS89`, `ETRS_1989`). Many of Esri's names follow none: the zones of the
+//! State Plane system have their FIPS numbers there, for example, and here EPSG's name. Readers identify a system by
+//! its parameters.
 
 use super::definition::Datum;
 

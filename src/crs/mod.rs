@@ -133,8 +133,8 @@ impl Crs {
         Ok(crs)
     }
 
-    /// The definition for a `.prj` file: WKT 1 in Esri's words, which GDAL, QGIS and ArcGIS identify. Horizontal only, as
-    /// most readers expect.
+    /// The definition for a `.prj` file: WKT 1 in Esri's words, which GDAL, QGIS and ArcGIS identify. Horizontal only,
+    /// as most readers expect.
     pub fn to_prj(&self) -> String {
         self.write(Dialect::Esri)
     }
@@ -171,8 +171,8 @@ impl Crs {
         }
     }
 
-    /// Whether both mean the same horizontal system (and the same vertical one where both state one): by code where both
-    /// have one, else by definition (datum, projection, parameters, unit), never by name.
+    /// Whether both mean the same horizontal system (and the same vertical one where both state one): by code where
+    /// both have one, else by definition (datum, projection, parameters, unit), never by name.
     pub fn is_same(&self, other: &Crs) -> bool {
         if self == other {
             return true;

@@ -15,7 +15,9 @@
 //! use breakline::data::{Bounds, Shape};
 //! use geo::{Area, BoundingRect, Geometry};
 //!
-//! let ring = |min: f64, max: f64| vec![[min, min, 0.0], [min, max, 0.0], [max, max, 0.0], [max, min, 0.0], [min, min, 0.0]];
+//! let ring = |min: f64, max: f64| {
+//!     vec![[min, min, 0.0], [min, max, 0.0], [max, max, 0.0], [max, min, 0.0], [min, min, 0.0]]
+//! };
 //! let lake_with_island = Shape::Polygon(vec![ring(0.0, 10.0), ring(4.0, 6.0)]);
 //! let geometry = Geometry::from(&lake_with_island);
 //! assert_eq!(geometry.unsigned_area(), 96.0);

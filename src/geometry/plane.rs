@@ -53,7 +53,8 @@ impl<K: Kernel> Crossing for Plane<K> {
     }
 }
 
-/// How far a place is from a segment, rounded.
+/// How far a place is from a segment, rounded: in the unit of the coordinates, which is the same on both axes. A
+/// segment whose ends share a place is that place. O(1).
 pub fn distance_to_segment(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
     let [vx, vy] = [p[0] - a[0], p[1] - a[1]];

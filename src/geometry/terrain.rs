@@ -63,6 +63,9 @@ impl<K: Kernel> Crossing for Terrain<K> {
 }
 
 /// The height of a segment where it passes by a place in plan; the same for either order of its ends.
+///
+/// That is at the foot of the perpendicular in plan, or at the end that the place lies beyond; where the ends share a
+/// place in plan, the lower height. In the unit of the ends' heights, which need not be that of the plan. O(1).
 pub fn height_along(p: [f64; 3], q: [f64; 3], [x, y]: [f64; 2]) -> f64 {
     let (p, q) = if lexicographic(plan(&p), plan(&q)).is_gt() { (q, p) } else { (p, q) };
     // In parts of the longer side: squares of extreme magnitudes are none.

@@ -7,7 +7,7 @@
 //! | a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
 //! | to write a raster | | [`geotiff::write()`]; a picture: [`png::write_gray`] |
 //! | a mesh, to read or to write | [`mesh::read`], [`mesh::write`] | |
-//! | points and segments in the plane, and their triangulation, in Triangle's files | | [`triangle::read`], [`triangle::write`] |
+//! | points and segments in the plane, triangulated: Triangle's files | | [`triangle::read`], [`triangle::write`] |
 //! | to write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`] |
 //! | to write other shapes | | [`shapefile::write_layer`] |
 //! | other coordinates | | [`proj::transform`] |

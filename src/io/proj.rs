@@ -1,9 +1,10 @@
 //! Reprojection by [PROJ](https://proj.org), behind the feature `proj`.
 //!
-//! Coordinates are always easting (or longitude) first. In plan PROJ does what it does: it picks the best operation that
-//! it has grids for, point by point. None of the large grids are shipped, so it may fall back on an operation of metres,
-//! or of unknown accuracy; [`Transform::warnings`](crate::crs::Transform::warnings) says which operations were used and how good they are. Heights are
-//! converted between units, and never between vertical datums: the warnings say so where it matters.
+//! Coordinates are always easting (or longitude) first. In plan PROJ does what it does: it picks the best operation
+//! that it has grids for, point by point. None of the large grids are shipped, so it may fall back on an operation of
+//! metres, or of unknown accuracy; [`Transform::warnings`](crate::crs::Transform::warnings) says which operations were
+//! used and how good they are. Heights are converted between units, and never between vertical datums: the warnings say
+//! so where it matters.
 
 /// The operation that takes coordinates from one system to another.
 ///

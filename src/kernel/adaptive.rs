@@ -14,8 +14,8 @@ impl Filter for ErrorBound {
     }
 }
 
-/// [`ErrorBound`] for every finite coordinate: it gives up where differences are so small that products might underflow,
-/// and on zeros.
+/// [`ErrorBound`] for every finite coordinate: it gives up where differences are so small that products might
+/// underflow, and on zeros.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FlooredErrorBound;
 

@@ -10,7 +10,7 @@
 //! | [`Exact`] | arbitrary precision | the judge in tests; any finite coordinates |
 //! | [`Expansions`] | sums of `f64` | exact within [`RANGE`], never filtered |
 //! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then expansions | the default |
-//! | [`Wide`] | as `Adaptive`, on scaled coordinates if need be, or arbitrary precision | any finite coordinates, fast |
+//! | [`Wide`] | as `Adaptive`, scaled if need be, or arbitrary precision | any finite coordinates, fast |
 //!
 //! New ones are combined with [`Filtered`]: a quick [`Filter`] that may give up, before a sure
 //! kernel.
@@ -175,6 +175,6 @@ impl Kernel for Expansions {
 /// The default: as fast as floating point where that is certain, exact everywhere within [`RANGE`].
 pub type Adaptive = Filtered<ErrorBound, Filtered<OnLattice, Expansions>>;
 
-/// For every finite coordinate, from `5e-324` to `1.8e308`: nearly as fast as [`Adaptive`] within its range, and where a
-/// power of two brings the coordinates of a question there.
+/// For every finite coordinate, from `5e-324` to `1.8e308`: nearly as fast as [`Adaptive`] within its range, and where
+/// a power of two brings the coordinates of a question there.
 pub type Wide = Filtered<FlooredErrorBound, Filtered<OnLattice, Filtered<Scaled<Adaptive>, Exact>>>;

@@ -30,8 +30,8 @@ impl Bounded {
     /// `a - b`, rounded once, whose magnitude is `2^-160` at least: sound for all finite coordinates, in products of
     /// up to five differences.
     ///
-    /// The magnitude of a product is then `2^-800` at least, and what its rounding to a multiple of `2^-1074` adds where
-    /// it underflows is less than any other rounding may add. Sums do not underflow. The price: no zero is
+    /// The magnitude of a product is then `2^-800` at least, and what its rounding to a multiple of `2^-1074` adds
+    /// where it underflows is less than any other rounding may add. Sums do not underflow. The price: no zero is
     /// certain, and no sign where differences are that small.
     #[inline(always)]
     pub fn floored_difference(a: f64, b: f64) -> Self {

@@ -14,7 +14,8 @@
 //!
 //! | to ask for | use |
 //! |---|---|
-//! | the corners and neighbors of a cell | [`Tds::cell_vertices`], [`Tds::cell_neighbors`]; one: [`Tds::vertex`], [`Tds::neighbor`] |
+//! | the corners and neighbors of a cell | [`Tds::cell_vertices`], [`Tds::cell_neighbors`] |
+//! | one of them | [`Tds::vertex`], [`Tds::neighbor`] |
 //! | the same cell as its neighbor sees it | [`Tds::index_of_neighbor`] |
 //! | all vertices | [`Tds::vertices`] |
 //! | all cells, with or without the infinite ones | [`Tds::cells`], [`Tds::is_infinite`] |

@@ -122,8 +122,8 @@ impl TinBuilder {
     }
 
     /// Clips the surface to a polygon, given as its rings (by the even-odd rule: a ring within a ring is
-    /// a hole). Heights along the rings are taken from the surface, and they and the rim of the surface become constraints. May be called several times: what
-    /// is inside of any polygon stays.
+    /// a hole). Heights along the rings are taken from the surface, and they and the rim of the surface become
+    /// constraints. May be called several times: what is inside of any polygon stays.
     pub fn add_boundary(&mut self, rings: &[Vec<[f64; 2]>]) {
         self.boundaries.push(rings.to_vec());
     }
@@ -131,8 +131,8 @@ impl TinBuilder {
     /// Makes the TIN.
     ///
     /// # Errors
-    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit numbers can count, nothing
-    /// spans an area, or breaklines cross or differ in height where that is refused.
+    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit numbers can count,
+    /// nothing spans an area, or breaklines cross or differ in height where that is refused.
     ///
     /// # Complexity
     /// O(n log n) in practice; about 80 bytes a point beside the input.

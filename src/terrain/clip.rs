@@ -4,8 +4,8 @@
 //!    new ones wherever the line crosses an edge. Where it crosses a breakline or the rim of the surface, the height of
 //!    those stands.
 //! 2. The rim becomes a constraint, so that it stays where it is; and so does the clip line.
-//! 3. The rim, the bounds and each polygon are closed curves of constraints now: one flood over the faces tells in which
-//!    of them each lies.
+//! 3. The rim, the bounds and each polygon are closed curves of constraints now: one flood over the faces tells in
+//!    which of them each lies.
 
 use crate::data::Bounds;
 use crate::error::Result;

@@ -4,8 +4,8 @@ use crate::geometry::Terrain;
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::ConstrainedDelaunay;
 
-/// Curves along constrained edges. Those of one number bound one domain: by the even-odd rule, so that an edge along which
-/// two of them run bounds nothing.
+/// Curves along constrained edges. Those of one number bound one domain: by the even-odd rule, so that an edge along
+/// which two of them run bounds nothing.
 #[derive(Debug, Default)]
 pub(super) struct Domains {
     /// The edges with the numbers of the domains that they bound, sorted.
@@ -109,7 +109,8 @@ mod tests {
     /// Closed curves by their points in plan, each with the number of its domain.
     type Curves = &'static [(usize, &'static [[i32; 2]])];
 
-    /// A plane of a grid of points with these curves drawn in, and the number of faces of area 1/2 in each set of domains.
+    /// A plane of a grid of points with these curves drawn in, and the number of faces of area 1/2 in each set of
+    /// domains.
     fn areas(curves: Curves) -> Vec<(Vec<usize>, usize)> {
         let at = |[x, y]: [i32; 2]| (y * 9 + x) as u32;
         let points: Vec<[f64; 3]> = (0..81).map(|i| [f64::from(i % 9), f64::from(i / 9), 0.0]).collect();

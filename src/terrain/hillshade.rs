@@ -46,7 +46,8 @@ impl Light {
 ///
 /// Slopes are those of Horn (1981), "Hill shading and the reflectance map": weighted differences
 /// over the 3 x 3 cells around each, as in `gdaldem hillshade`. At the edge of the data the
-/// surface is continued in straight lines, so that a plane is shaded alike up to its edge. Any frame will do: the light stays where it is when the raster is rotated.
+/// surface is continued in straight lines, so that a plane is shaded alike up to its edge. Any frame
+/// will do: the light stays where it is when the raster is rotated.
 pub struct Hillshade<S> {
     source: S,
     frame: Frame,

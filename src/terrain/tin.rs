@@ -115,8 +115,8 @@ impl Tin {
     }
 }
 
-/// Where a triangle is thinner than this part of its longest side, rounding hides where across it a place lies: such are
-/// made where lines are led through crossings.
+/// Where a triangle is thinner than this part of its longest side, rounding hides where across it a place lies: such
+/// are made where lines are led through crossings.
 const THINNEST: f64 = 1e-9;
 
 /// The height at `q` of the plane through three points. Exactly that of a corner at a corner.

@@ -2,6 +2,7 @@
 #![allow(dead_code, unreachable_pub)]
 
 pub(crate) mod case;
+pub(crate) mod cells;
 pub(crate) mod judge;
 pub(crate) mod random;
 pub(crate) mod subject;

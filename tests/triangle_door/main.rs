@@ -8,54 +8,18 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/program.rs"]
+mod program;
 
 mod check;
 mod damaged;
 mod written;
 
-use std::path::Path;
-
-use assert_cmd::Command;
+use program::{Run, files_of, folder_with, run_in};
 use tempfile::TempDir;
 
-/// What came out of a run.
-struct Run {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
-impl Run {
-    /// Fails unless the run ended with this code and said all of this.
-    #[track_caller]
-    fn ends(&self, code: i32, said: &[&str]) {
-        let all = format!("{}{}", self.stdout, self.stderr);
-        assert_eq!(self.code, code, "{all}");
-        said.iter().for_each(|part| assert!(all.contains(part), "expected `{part}` in:\n{all}"));
-    }
-}
-
 fn run(folder: &TempDir, args: &str) -> Run {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
-    let output = command.current_dir(folder.path()).args(args.split(' ')).output().unwrap();
-    Run {
-        code: output.status.code().expect("the program was killed"),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
-}
-
-fn folder_with(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    files.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).unwrap());
-    folder
-}
-
-fn files_of(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
+    run_in(folder, &args.split(' ').collect::<Vec<_>>())
 }
 
 /// The numbers of a file, line by line, without comments.

@@ -58,27 +58,13 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Which height stands where points share a place
     ///
     /// `first` and `last` mean the order of the input; all others do not depend on it.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "RULE",
-        default_value_t,
-        hide_possible_values = false,
-        help_heading = "Surface"
-    )]
+    #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Surface")]
     pub(in crate::cli) duplicates: DuplicatesArg,
 
     /// What to do where breaklines cross between their vertices
     ///
     /// `split` gives them a common vertex there; `reject` is an error that names both lines and the place.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "split|reject",
-        default_value_t,
-        hide_possible_values = false,
-        help_heading = "Surface"
-    )]
+    #[arg(long, value_enum, value_name = "split|reject", default_value_t, help_heading = "Surface")]
     pub(in crate::cli) on_crossing: OnCrossingArg,
 
     /// Which height stands where breaklines cross between their vertices
@@ -88,14 +74,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// that differ by more than `--crossing-tolerance`. Where a line meets a vertex of another, that
     /// vertex keeps its height (vertices that share a place follow `--duplicates`); places where the
     /// heights differ are told all the same.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "RULE",
-        default_value_t,
-        hide_possible_values = false,
-        help_heading = "Surface"
-    )]
+    #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Surface")]
     pub(in crate::cli) crossing_z: CrossingZArg,
 
     /// Heights of breaklines that meet may differ by this [default: 0.01 metres]

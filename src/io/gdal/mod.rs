@@ -5,8 +5,8 @@
 //! always easting (or longitude) first. What GDAL would print goes into errors and warnings.
 //!
 //! Without the feature the functions are there, and fail with the cure. A program that links this library with both
-//! features `proj` and `gdal` must be linked with `-Wl,--exclude-libs,ALL`, as this package's `build.rs` does for its own:
-//! otherwise the system's libgdal finds the SQLite that PROJ was built with, and crashes.
+//! features `proj` and `gdal` must be linked with `-Wl,--exclude-libs,ALL`, as this package's `build.rs` does for its
+//! own: otherwise the system's libgdal finds the SQLite that PROJ was built with, and crashes.
 
 use std::path::{Path, PathBuf};
 

@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 /// More cells than this are not read at once; 8 bytes each.
 const MAX_CELLS: usize = 1 << 31;
 
-/// A raster that GDAL has open. Its first band is read: values are stored sample x scale + offset, NaN where it has none
-/// (by its nodata value or its mask).
+/// A raster that GDAL has open. Its first band is read: values are stored sample x scale + offset, NaN where it has
+/// none (by its nodata value or its mask).
 #[derive(Debug)]
 pub struct Raster {
     path: PathBuf,

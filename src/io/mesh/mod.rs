@@ -20,8 +20,8 @@
 //!
 //! The coordinate system stands in the header as WKT, in lines `comment crs TEXT`. Some readers take
 //! no line over 1024 bytes, so that the text is cut into lines of about 200; it is what follows
-//! `crs ` in all of them, joined. The OBJ comments are alike, with `# crs `, and so are those of OFF. Readers also take a code
-//! there, as in `EPSG:25832`.
+//! `crs ` in all of them, joined. The OBJ comments are alike, with `# crs `, and so are those of OFF.
+//! Readers also take a code there, as in `EPSG:25832`.
 
 mod crs_text;
 mod listing;

@@ -6,7 +6,7 @@
 //! | | taken from it | missing | damaged |
 //! |---|---|---|---|
 //! | `.shp` | shapes | error | what is whole is read, a warning names each place; an error if nothing is |
-//! | `.shx` | which attribute row a record has; where to go on behind a damaged record | order of the `.shp` | not used, a warning |
+//! | `.shx` | a record's attribute row; where to go on behind damage | order of the `.shp` | not used, a warning |
 //! | `.dbf` | names, heights if asked for, deleted rows | no fields | a warning; an error if heights are asked for |
 //! | `.prj` | coordinate system | unknown | unknown, a warning |
 //! | `.cpg` | encoding of the names | guessed | guessed |
@@ -15,8 +15,9 @@
 //!
 //! | found | done |
 //! |---|---|
-//! | counts, part indices or a type that make no sense, in a record of a sane length | that record is left out, a warning |
-//! | a record header that makes no sense, a record that passes the end of the file | reading goes on at the next record of the `.shx`, or ends; a warning |
+//! | counts, part indices or a type without sense, in a record of a sane length | that record is left out, a warning |
+//! | a record header that makes no sense | reading goes on at the next record of the `.shx`, or ends; a warning |
+//! | a record that passes the end of the file | the same |
 //! | x or y not a finite number | an error: the record is well formed, so the value was wrong before it was written |
 //! | z not finite or "no data" (below -1e38) | no height (NaN), a warning with the count |
 //! | null shapes, also with a body; no parts, no points | read as they are |

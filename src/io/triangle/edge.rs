@@ -8,8 +8,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Numbering, Triangulated, bytes_of};
-use crate::error::{Error, Result};
+use super::{Numbering, Triangulated, counted, listed, marker, read_rows};
+use crate::error::Result;
 use crate::io::rows::Rows;
 
 const COUNTS: &str = "EDGES MARKERS";
@@ -17,27 +17,19 @@ const EDGE: &str = "NUMBER VERTEX VERTEX MARKER";
 
 /// The edges whose marker is not 0: pieces of segments, and the boundary.
 pub(super) fn read_marked(path: &Path, numbering: Numbering) -> Result<Vec<[u32; 2]>> {
-    let bytes = bytes_of(path)?;
-    read(&bytes, numbering).map_err(|e: Error| e.in_file(path))
+    read_rows(path, |rows| read(rows, numbering))
 }
 
-fn read(bytes: &[u8], numbering: Numbering) -> Result<Vec<[u32; 2]>> {
-    let mut rows = Rows::new(bytes);
-    let mut header = rows.expect(|| "the number of edges".to_owned(), COUNTS)?;
-    let count: usize = header.within("number of edges")?;
+fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 2]>> {
+    let (mut header, count) = counted(&mut rows, "edges", COUNTS)?;
     let marker_count: usize = header.within_or("number of boundary markers", 0)?;
-    let mut marked = Vec::new();
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("edge {} of {count}", i + 1), EDGE)?;
-        row.whole("edge number")?;
-        let ends = [numbering.vertex(&mut row, "first end")?, numbering.vertex(&mut row, "second end")?];
-        let marker: i32 = if marker_count > 0 { row.within("boundary marker")? } else { 0 };
-        if marker != 0 {
-            marked.push(ends);
-        }
-    }
+    let edges = listed(&mut rows, count, "edge", EDGE, |row, _| {
+        let ends = [numbering.vertex(row, "first end")?, numbering.vertex(row, "second end")?];
+        let is_marked = marker(row, marker_count)? != 0;
+        Ok(is_marked.then_some(ends))
+    })?;
     rows.end("the last edge")?;
-    Ok(marked)
+    Ok(edges.into_iter().flatten().collect())
 }
 
 pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {

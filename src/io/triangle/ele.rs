@@ -10,7 +10,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Numbering, Triangulated, bytes_of, edge, neigh, node, poly, room};
+use super::{Numbering, Triangulated, counted, edge, listed, neigh, node, poly, read_rows};
 use crate::data::Triangles;
 use crate::error::Result;
 use crate::io::decimal::Decimal;
@@ -22,8 +22,7 @@ const TRIANGLE: &str = "NUMBER VERTEX VERTEX VERTEX ATTRIBUTES";
 pub(super) fn read_file(path: &Path) -> Result<Triangles> {
     let nodes = node::read_beside(path)?.nodes;
     let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
-    let bytes = bytes_of(path)?;
-    let faces = read(&bytes, numbering).map_err(|e| e.in_file(path))?;
+    let faces = read_rows(path, |rows| read(rows, numbering))?;
     let beside = |extension: &str| Some(path.with_extension(extension)).filter(|path| path.exists());
     let segments = match beside("poly") {
         Some(path) => poly::read_segments_alone(&path, numbering)?,
@@ -44,31 +43,26 @@ pub(super) fn read_file(path: &Path) -> Result<Triangles> {
     Ok(Triangles { vertices, faces, constrained_edges, neighbors, crs: None })
 }
 
-fn read(bytes: &[u8], numbering: Numbering) -> Result<Vec<[u32; 3]>> {
-    let mut rows = Rows::new(bytes);
-    let mut header = rows.expect(|| "the number of triangles".to_owned(), COUNTS)?;
-    let count: usize = header.within("number of triangles")?;
+fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 3]>> {
+    let (mut header, count) = counted(&mut rows, "triangles", COUNTS)?;
     let corner_count: usize = header.within_or("number of vertices of a triangle", 3)?;
     if corner_count != 3 && corner_count != 6 {
         return Err(header.wrong(format!("a triangle has {corner_count} vertices, expected 3 or 6")));
     }
     let attribute_count: usize = header.within_or("number of attributes", 0)?;
-    let mut faces = Vec::with_capacity(room(count, &rows));
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("triangle {} of {count}", i + 1), TRIANGLE)?;
-        row.whole("triangle number")?;
+    let faces = listed(&mut rows, count, "triangle", TRIANGLE, |row, _| {
         let mut face = [0; 3];
         for corner in &mut face {
-            *corner = numbering.vertex(&mut row, "corner")?;
+            *corner = numbering.vertex(row, "corner")?;
         }
         for _ in 3..corner_count {
-            numbering.vertex(&mut row, "middle of an edge")?;
+            numbering.vertex(row, "middle of an edge")?;
         }
         for _ in 0..attribute_count {
             row.finite("attribute")?;
         }
-        faces.push(face);
-    }
+        Ok(face)
+    })?;
     rows.end("the last triangle")?;
     Ok(faces)
 }

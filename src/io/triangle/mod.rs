@@ -216,9 +216,50 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// What `read` makes of the lines of a file. Its errors name the file.
+fn read_rows<T>(path: &Path, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> {
+    let bytes = bytes_of(path)?;
+    read(Rows::new(&bytes)).map_err(|e| e.in_file(path))
+}
+
+/// The line that begins a list, and the count that it begins with.
+fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Result<(Row<'a>, usize)> {
+    let what = format!("number of {items}");
+    let mut header = rows.expect(|| format!("the {what}"), pattern)?;
+    let count = header.within(&what)?;
+    Ok((header, count))
+}
+
+/// The items of a list: what `read` makes of each line and the number that it begins with.
+fn listed<T>(
+    rows: &mut Rows,
+    count: usize,
+    item: &str,
+    pattern: &'static str,
+    mut read: impl FnMut(&mut Row, i64) -> Result<T>,
+) -> Result<Vec<T>> {
+    let what = format!("{item} number");
+    let mut items = Vec::with_capacity(room(count, rows));
+    for i in 0..count {
+        let mut row = rows.expect(|| format!("{item} {} of {count}", i + 1), pattern)?;
+        let number = row.whole(&what)?;
+        items.push(read(&mut row, number)?);
+    }
+    Ok(items)
+}
+
 /// Room for what a count announces, as far as the bytes can hold it: an item takes six at least.
 fn room(count: usize, rows: &Rows) -> usize {
     count.min(rows.bytes_left() / 6 + 1)
+}
+
+fn place(row: &mut Row) -> Result<[f64; 2]> {
+    Ok([row.finite("x coordinate")?, row.finite("y coordinate")?])
+}
+
+/// The boundary marker; 0 where the list has none.
+fn marker(row: &mut Row, marker_count: usize) -> Result<i32> {
+    if marker_count > 0 { row.within("boundary marker") } else { Ok(0) }
 }
 
 /// How vertices are numbered.

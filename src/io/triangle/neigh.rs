@@ -8,29 +8,23 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Triangulated, bytes_of, room};
-use crate::error::{Error, Result};
+use super::{Triangulated, counted, listed, read_rows};
+use crate::error::Result;
 use crate::io::rows::Rows;
 
 const COUNTS: &str = "TRIANGLES 3";
 const NEIGHBORS: &str = "NUMBER NEIGHBOR NEIGHBOR NEIGHBOR, -1 for none";
 
 pub(super) fn read_file(path: &Path, first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {
-    let bytes = bytes_of(path)?;
-    read(&bytes, first, triangle_count).map_err(|e: Error| e.in_file(path))
+    read_rows(path, |rows| read(rows, first, triangle_count))
 }
 
-fn read(bytes: &[u8], first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {
-    let mut rows = Rows::new(bytes);
-    let mut header = rows.expect(|| "the number of triangles".to_owned(), COUNTS)?;
-    let count: usize = header.within("number of triangles")?;
+fn read(mut rows: Rows, first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {
+    let (header, count) = counted(&mut rows, "triangles", COUNTS)?;
     if count != triangle_count {
         return Err(header.wrong(format!("there are {count} triangles, but the .ele file has {triangle_count}")));
     }
-    let mut neighbors = Vec::with_capacity(room(count, &rows));
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("triangle {} of {count}", i + 1), NEIGHBORS)?;
-        row.whole("triangle number")?;
+    let neighbors = listed(&mut rows, count, "triangle", NEIGHBORS, |row, _| {
         let mut around = [None; 3];
         for beside in &mut around {
             let number = row.whole("neighbor")?;
@@ -43,8 +37,8 @@ fn read(bytes: &[u8], first: u32, triangle_count: usize) -> Result<Vec<[Option<u
                 })?);
             }
         }
-        neighbors.push(around);
-    }
+        Ok(around)
+    })?;
     rows.end("the last triangle")?;
     Ok(neighbors)
 }

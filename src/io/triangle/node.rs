@@ -10,8 +10,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{LineGraph, Nodes, Surplus, Triangulated, bytes_of, room};
-use crate::error::{Error, Result};
+use super::{LineGraph, Nodes, Surplus, Triangulated, counted, listed, marker, place, read_rows, room};
+use crate::error::Result;
 use crate::io::decimal::Decimal;
 use crate::io::rows::Rows;
 
@@ -26,14 +26,11 @@ pub(super) struct Listed {
 }
 
 pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
-    let bytes = bytes_of(path)?;
-    let read = || {
-        let mut rows = Rows::new(&bytes);
-        let listed = read(&mut rows)?;
+    let Listed { nodes, lines, surplus } = read_rows(path, |mut rows| {
+        let vertices = read(&mut rows)?;
         rows.end("the last vertex")?;
-        Ok(listed)
-    };
-    let Listed { nodes, lines, surplus } = read().map_err(|e: Error| e.in_file(path))?;
+        Ok(vertices)
+    })?;
     let warnings = surplus.warning().into_iter().collect();
     Ok(LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, warnings, ..Default::default() })
 }
@@ -48,8 +45,7 @@ pub(super) fn read_beside(path: &Path) -> Result<LineGraph> {
 
 /// Reads the vertices that follow, with the line that counts them.
 pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
-    let mut header = rows.expect(|| "the number of vertices".to_owned(), COUNTS)?;
-    let count: usize = header.within("number of vertices")?;
+    let (mut header, count) = counted(rows, "vertices", COUNTS)?;
     let dimension = header.within_or("dimension", 2)?;
     if dimension != 2 {
         return Err(header.wrong(format!("the dimension is {dimension}, expected 2")));
@@ -63,29 +59,26 @@ pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
     let mut nodes = Nodes { attribute_count, ..Nodes::default() };
     nodes.points.reserve_exact(room);
     nodes.markers.reserve_exact(room);
-    let mut lines = Vec::with_capacity(room);
     let mut surplus = Surplus::default();
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("vertex {} of {count}", i + 1), VERTEX)?;
-        let number = row.whole("vertex number")?;
-        if i == 0 {
+    let lines = listed(rows, count, "vertex", VERTEX, |row, number| {
+        if nodes.points.is_empty() {
             nodes.first_number = u32::try_from(number)
                 .ok()
                 .filter(|&first| first <= 1)
                 .ok_or_else(|| row.wrong(format!("the first vertex has the number {number}, expected 0 or 1")))?;
         }
-        let expected = i as i64 + i64::from(nodes.first_number);
+        let expected = nodes.points.len() as i64 + i64::from(nodes.first_number);
         if number != expected {
             return Err(row.wrong(format!("vertex number {number} is out of sequence, expected {expected}")));
         }
-        nodes.points.push([row.finite("x coordinate")?, row.finite("y coordinate")?]);
+        nodes.points.push(place(row)?);
         for _ in 0..attribute_count {
             nodes.attributes.push(row.finite("attribute")?);
         }
-        nodes.markers.push(if marker_count == 1 { row.within("boundary marker")? } else { 0 });
-        surplus.look(&row);
-        lines.push(row.line);
-    }
+        nodes.markers.push(marker(row, marker_count)?);
+        surplus.look(row);
+        Ok(row.line)
+    })?;
     Ok(Listed { nodes, lines, surplus })
 }
 

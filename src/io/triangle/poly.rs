@@ -13,10 +13,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::node::{self, Listed};
-use super::{Hole, LineGraph, Numbering, Region, Segment, Surplus, Triangulated, bytes_of, room};
+use super::{Hole, LineGraph, Numbering, Region, Segment, Surplus, Triangulated};
+use super::{bytes_of, counted, listed, marker, place, read_rows};
 use crate::error::{Error, Result};
 use crate::io::decimal::Decimal;
-use crate::io::rows::Rows;
+use crate::io::rows::{Row, Rows};
 
 const SEGMENTS: &str = "SEGMENTS MARKERS";
 const SEGMENT: &str = "NUMBER VERTEX VERTEX MARKER, the last if the list's first line announces it";
@@ -45,20 +46,16 @@ pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
 
 /// The segments of a file that has no vertices of its own; `None` if it has some.
 pub(super) fn read_segments_alone(path: &Path, numbering: Numbering) -> Result<Option<Vec<Segment>>> {
-    let bytes = bytes_of(path)?;
-    let mut rows = Rows::new(&bytes);
-    let mut read = || {
+    read_rows(path, |mut rows| {
         if !node::read(&mut rows)?.nodes.points.is_empty() {
             return Ok(None);
         }
         read_segments(&mut rows, numbering, &mut Surplus::default()).map(Some)
-    };
-    read().map_err(|e: Error| e.in_file(path))
+    })
 }
 
 fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -> Result<Vec<Segment>> {
-    let mut header = rows.expect(|| "the number of segments".to_owned(), SEGMENTS)?;
-    let count: usize = header.within("number of segments")?;
+    let (mut header, count) = counted(rows, "segments", SEGMENTS)?;
     let marker_count: usize = header.within_or("number of boundary markers", 0)?;
     if marker_count > 1 || header.has_more() {
         // A vertex that the list above does not count looks like this.
@@ -66,51 +63,43 @@ fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -
             header.wrong("this is no line that counts segments: expected two numbers, the second 0 or 1".into())
         );
     }
-    let mut segments = Vec::with_capacity(room(count, rows));
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("segment {} of {count}", i + 1), SEGMENT)?;
-        let number = row.whole("segment number")?;
-        let ends = [numbering.vertex(&mut row, "first end")?, numbering.vertex(&mut row, "second end")?];
-        let marker = if marker_count == 1 { row.within("boundary marker")? } else { 0 };
-        surplus.look(&row);
-        segments.push(Segment { ends, marker, number, line: row.line });
+    listed(rows, count, "segment", SEGMENT, |row, number| {
+        let ends = [numbering.vertex(row, "first end")?, numbering.vertex(row, "second end")?];
+        let marker = marker(row, marker_count)?;
+        surplus.look(row);
+        Ok(Segment { ends, marker, number, line: row.line })
+    })
+}
+
+/// The count in a line that holds nothing else.
+fn count_alone(mut header: Row, items: &str) -> Result<usize> {
+    let count = header.within(&format!("number of {items}"))?;
+    if header.has_more() {
+        return Err(header.wrong(format!("this is no line that counts {items}: expected one number")));
     }
-    Ok(segments)
+    Ok(count)
 }
 
 fn read_holes(rows: &mut Rows, surplus: &mut Surplus) -> Result<Vec<Hole>> {
-    let mut header = rows.expect(|| "the number of holes".to_owned(), "HOLES, 0 if there are none")?;
-    let count: usize = header.within("number of holes")?;
-    if header.has_more() {
-        return Err(header.wrong("this is no line that counts holes: expected one number".into()));
-    }
-    let mut holes = Vec::with_capacity(room(count, rows));
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("hole {} of {count}", i + 1), "NUMBER X Y")?;
-        row.whole("hole number")?;
-        holes.push(Hole { at: [row.finite("x coordinate")?, row.finite("y coordinate")?], line: row.line });
-        surplus.look(&row);
-    }
-    Ok(holes)
+    let header = rows.expect(|| "the number of holes".to_owned(), "HOLES, 0 if there are none")?;
+    let count = count_alone(header, "holes")?;
+    listed(rows, count, "hole", "NUMBER X Y", |row, _| {
+        let at = place(row)?;
+        surplus.look(row);
+        Ok(Hole { at, line: row.line })
+    })
 }
 
 fn read_regions(rows: &mut Rows, surplus: &mut Surplus) -> Result<Vec<Region>> {
-    let Some(mut header) = rows.next("REGIONS") else { return Ok(Vec::new()) };
-    let count: usize = header.within("number of regions")?;
-    if header.has_more() {
-        return Err(header.wrong("this is no line that counts regions: expected one number".into()));
-    }
-    let mut regions = Vec::with_capacity(room(count, rows));
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("region {} of {count}", i + 1), "NUMBER X Y ATTRIBUTE AREA")?;
-        row.whole("region number")?;
-        let at = [row.finite("x coordinate")?, row.finite("y coordinate")?];
+    let Some(header) = rows.next("REGIONS") else { return Ok(Vec::new()) };
+    let count = count_alone(header, "regions")?;
+    listed(rows, count, "region", "NUMBER X Y ATTRIBUTE AREA", |row, _| {
+        let at = place(row)?;
         let attribute = row.finite("attribute")?;
         let area = if row.has_more() { row.finite("largest area")? } else { attribute };
-        regions.push(Region { at, attribute, max_area: Some(area).filter(|&area| area > 0.0), line: row.line });
-        surplus.look(&row);
-    }
-    Ok(regions)
+        surplus.look(row);
+        Ok(Region { at, attribute, max_area: Some(area).filter(|&area| area > 0.0), line: row.line })
+    })
 }
 
 pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {
