@@ -118,7 +118,7 @@ impl BoxTree {
             return;
         }
         // Fewer than 12 levels number all of 32 bits.
-        let mut stack = [(top as u32, 0u32); 12 * FAN];
+        let mut stack = [(top as u32, 0u32); 12 * FAN + 1];
         let mut height = 1;
         while height > 0 {
             height -= 1;
@@ -132,10 +132,9 @@ impl BoxTree {
             // A node's leaves are FAN^level in a row.
             let skipped = (first >> (FAN_BITS * (level - 1))).saturating_sub(row.start);
             for (child, boxed) in row.clone().zip(&below[row]).skip(skipped) {
-                if is_met(boxed) {
-                    stack[height] = (level as u32 - 1, child as u32);
-                    height += 1;
-                }
+                // PERF: without a branch, of which one in three would be mispredicted.
+                stack[height] = (level as u32 - 1, child as u32);
+                height += usize::from(is_met(boxed));
             }
         }
     }

@@ -32,7 +32,6 @@ mod pixel;
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::kernel::{Adaptive, Wide};
@@ -208,14 +207,27 @@ impl Arrangement {
     /// in order.
     pub fn through_added(&self) -> Vec<(u32, u32)> {
         let given = self.places as u32;
-        let mut through = Vec::new();
-        for (&segment, range) in &self.chains {
-            let sites = &self.chain_sites[range.start as usize..range.end as usize];
-            through.extend(sites.iter().filter_map(|site| Some((site.checked_sub(given)?, segment))));
+        let added = |site: &u32| site.checked_sub(given);
+        // Site after site, by counting.
+        let mut ends = vec![0u32; self.added.len()];
+        self.chain_sites.iter().filter_map(added).for_each(|site| ends[site as usize] += 1);
+        let mut through = vec![(0, 0); starts(&mut ends) as usize];
+        let mut chains: Vec<(&u32, &Range<u32>)> = self.chains.iter().collect();
+        chains.sort_unstable_by_key(|(segment, _)| **segment);
+        for (&segment, range) in chains {
+            for site in self.chain_sites[range.start as usize..range.end as usize].iter().filter_map(added) {
+                let end = &mut ends[site as usize];
+                through[*end as usize] = (site, segment);
+                *end += 1;
+            }
         }
-        through.par_sort_unstable();
         through
     }
+}
+
+/// Makes of each count the sum of those before it; returns the sum of all.
+fn starts(counts: &mut [u32]) -> u32 {
+    counts.iter_mut().fold(0, |sum, count| sum + std::mem::replace(count, sum))
 }
 
 /// By x, then by y; of coordinates that have one zero.

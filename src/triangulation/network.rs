@@ -191,11 +191,16 @@ pub(super) fn points_added<G: Crossing>(
 ) -> Vec<G::Point> {
     let through = arrangement.through_added();
     let mut rest = &through[..];
+    let mut ends: Vec<[G::Point; 2]> = Vec::new();
     let meet = |(added, &place): (usize, &[f64; 2])| {
         let (here, others) = rest.split_at(rest.partition_point(|&(other, _)| other as usize <= added));
         rest = others;
-        let ends: Vec<[G::Point; 2]> = here.iter().map(|&(_, i)| segments[i as usize].map(&point)).collect();
-        geometry.meet(place, &ends.iter().map(|ends| ends.each_ref()).collect::<Vec<_>>())
+        ends.clear();
+        ends.extend(here.iter().map(|&(_, i)| segments[i as usize].map(&point)));
+        match &ends[..] {
+            [[a, b], [c, d]] => geometry.meet(place, &[[a, b], [c, d]]), // nearly always
+            ends => geometry.meet(place, &ends.iter().map(|ends| ends.each_ref()).collect::<Vec<_>>()),
+        }
     };
     arrangement.added().iter().enumerate().map(meet).collect()
 }

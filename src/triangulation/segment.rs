@@ -8,7 +8,7 @@
 //! 3. At a constraint: it is lifted, the place of the crossing becomes a vertex, and four pieces are
 //!    put in.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::geometry::{Crossing, in_sphere};
 use crate::num::Sign;
@@ -26,7 +26,7 @@ pub(super) struct Scratch {
     left: Vec<VertexId>,
     right: Vec<VertexId>,
     /// Directed edges that wait for the triangle on their other side.
-    open: HashMap<[VertexId; 2], (CellId, usize)>,
+    open: FxHashMap<[VertexId; 2], (CellId, usize)>,
     /// Constraints that stick into the corridor without being crossed.
     spikes: Vec<[VertexId; 2]>,
     /// Triangles whose edges may have to be flipped.
