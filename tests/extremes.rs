@@ -4,7 +4,7 @@ mod common;
 
 use breakline::geometry::{Plane, Space};
 use breakline::kernel::Wide;
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, spatial_order};
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, spatial_order};
 use common::random::Random;
 
 type Constrained = ConstrainedDelaunay<Plane<Wide>>;
@@ -76,4 +76,26 @@ fn in_space() {
         let (t, _) = Delaunay::from_points(Space::<Wide>::default(), &scaled(&points, unit)).unwrap();
         assert_eq!(t.check(Level::Law), []);
     }
+}
+
+/// Near zero the default kernel has a smallest step: where lines cross between two of these, one of them is the place.
+#[test]
+fn crossings_near_the_smallest_numbers_that_are_admitted() {
+    let mut random = Random(5);
+    let smallest = 2f64.powi(-160);
+    let mut crossings = 0;
+    for round in 0..400 {
+        let last_place = [0.0, f64::EPSILON, 0.125][round % 3];
+        let mut coordinate = || {
+            let x = random.around(3) as f64;
+            x * smallest * (1.0 + last_place * random.below(4) as f64)
+        };
+        let points: Vec<[f64; 2]> = (0..12).map(|_| [coordinate(), coordinate()]).collect();
+        let lines: Vec<[u32; 2]> = (0..6).map(|i| [2 * i, 2 * i + 1]).collect();
+        let plane: Plane = Plane::default();
+        let (t, _) = ConstrainedDelaunay::<_>::from_lines(plane, &points, &lines, OnCrossing::Split).unwrap();
+        assert_eq!(t.check(Level::Law), [], "{points:?}");
+        crossings += t.crossings().len();
+    }
+    assert!(crossings > 400, "{crossings}");
 }

@@ -283,6 +283,11 @@ fn the_whole_range() {
     ask_all(400, || ulps(min, random.below(4) as i64) * random.pick(&[-1.0, 1.0]));
     ask_all(400, || ulps(max, -(random.below(4) as i64)) * random.pick(&[-1.0, 1.0]));
     ask_all(400, || random.pick(&[ulps(min, 1), ulps(min, 3), max, max / 2.0, -max]));
+    let step = min * f64::EPSILON;
+    ask_all(400, || step * random.around(3) as f64);
+    ask_all(400, || step * random.around(1 << 40) as f64);
+    ask_all(400, || random.pick(&[step, -step, 3.0 * step, 0.0, min, 2.0 * min, max, -max]));
+    assert!(RANGE.admits(step) && RANGE.admits(-3.0 * step) && !RANGE.admits(step / 2.0) && !RANGE.admits(1.5 * step));
     assert!(!RANGE.admits(min.next_down()) && !RANGE.admits(max.next_up()));
     assert!(RANGE.admits(min) && RANGE.admits(-max) && RANGE.admits(-0.0));
 }
@@ -453,7 +458,7 @@ fn crossings_are_right_to_the_last_bits() {
         let off = positive(rational(crossing(a, b, c, d)) - &expected);
         assert!(off <= expected * &unit * rational(6.0), "{:?}", [a, b, c, d]);
     }
-    let scales = [1.0, 2f64.powi(1000), 2f64.powi(-1000), 2f64.powi(-1060)];
+    let scales = [1.0, 2f64.powi(1000), 2f64.powi(-1000), f64::from_bits(1 << 14)];
     let quotients = scales.map(|s| crossing([0.0, s], [0.0, -2.0 * s], [-s, 0.0], [s, 0.0]));
     assert_eq!(quotients, [1.0 / 3.0; 4]);
     assert_eq!(crossing([0.0, -f64::MAX], [0.0, f64::MAX], [-f64::MAX, 0.0], [f64::MAX, 0.0]), 0.5);

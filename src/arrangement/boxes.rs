@@ -54,7 +54,8 @@ impl Box2 {
         // The corners that are furthest to the right and to the left of the direction.
         let (right_x, left_x) = if uy > 0.0 { (self.max[0], self.min[0]) } else { (self.min[0], self.max[0]) };
         let (right_y, left_y) = if ux > 0.0 { (self.min[1], self.max[1]) } else { (self.max[1], self.min[1]) };
-        // Twice the area of segment and corner, and more than its error: four roundings, each of 2^-53, in either product.
+        // Twice the area of segment and corner, and more than its error: four roundings, each of 2^-53, in either
+        // product.
         let area = |x: f64, y: f64| {
             let (left, right) = (ux * (y - a[1]), uy * (x - a[0]));
             (left - right, 4.0 * f64::EPSILON * (left.abs() + right.abs()))

@@ -196,8 +196,8 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         move |boxed| around.overlaps(boxed) & !(is_ordinary & boxed.is_beside(s))
     }
 
-    /// Calls with each site in some trees whose pixel a segment meets, and that is no end of it, nor added for a crossing
-    /// with it.
+    /// Calls with each site in some trees whose pixel a segment meets, and that is no end of it, nor added for a
+    /// crossing with it.
     fn sites_on<K: Kernel>(&self, segment: u32, trees: &[(BoxTree, Vec<u32>)], mut visit: impl FnMut(u32)) {
         let is_met = self.along(segment);
         for (tree, sites) in trees {

@@ -16,10 +16,10 @@
 //! above holds without a gap: **no point of a line is displaced by more than half a unit on each axis**.
 //!
 //! Ends may be finer than that, when coordinates near zero and large ones come together. The grid is then that of the
-//! doubles themselves, whose steps shrink towards zero, so that ends still are centers and pixels still tile the plane. The
-//! bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero without
-//! meeting it: there pieces may cross after all, and are arranged [again](Arrangement::settled), with up to another half a
-//! unit of displacement.
+//! doubles themselves, whose steps shrink towards zero, so that ends still are centers and pixels still tile the plane.
+//! The bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero
+//! without meeting it: there pieces may cross after all, and are arranged [again](Arrangement::settled), with up to
+//! another half a unit of displacement.
 //!
 //! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
 //! however close it passes by an end: nothing forces it.
@@ -72,8 +72,8 @@ impl Arrangement {
     /// All coordinates are finite. Segments are different; one from a place to itself is none.
     ///
     /// # Complexity
-    /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at the
-    /// worst, for long lines side by side across the axes.
+    /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at
+    /// the worst, for long lines side by side across the axes.
     pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> Self {
         let largest = segments.iter().flatten().fold([0.0f64; 2], |largest, &i| {
             let p = place(i);
@@ -107,12 +107,12 @@ impl Arrangement {
         arrangement
     }
 
-    /// Arranges the pieces of an arrangement of these segments as long as any cross, which they can off the even grid only:
-    /// these are split by the same rule, and displaced by up to another half a unit each time.
+    /// Arranges the pieces of an arrangement of these segments as long as any cross, which they can off the even grid
+    /// only: these are split by the same rule, and displaced by up to another half a unit each time.
     ///
-    /// It comes to an end. Sites of a segment come in order on both axes, those of its pieces lie between their ends, and
-    /// there are finitely many places in a box. Of two pieces that cross at least one is divided: they have no common
-    /// end, so the site of the crossing is an end of one of them at most.
+    /// It comes to an end. Sites of a segment come in order on both axes, those of its pieces lie between their ends,
+    /// and there are finitely many places in a box. Of two pieces that cross at least one is divided: they have no
+    /// common end, so the site of the crossing is an end of one of them at most.
     ///
     /// # Complexity
     /// That of the arrangement for each round: one or two, but where coordinates span hundreds of powers of two.
@@ -203,8 +203,8 @@ impl Arrangement {
         self.chains.get(&segment).map_or(&[], |range| &self.chain_sites[range.start as usize..range.end as usize])
     }
 
-    /// The segments that are led through sites that were added: pairs of the site's position among these and the segment,
-    /// in order.
+    /// The segments that are led through sites that were added: pairs of the site's position among these and the
+    /// segment, in order.
     pub fn through_added(&self) -> Vec<(u32, u32)> {
         let given = self.places as u32;
         let added = |site: &u32| site.checked_sub(given);

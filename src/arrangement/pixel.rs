@@ -6,21 +6,18 @@ use crate::num::{Dyadic, Pair, Sign};
 use super::boxes::Box2;
 use super::{Place, Segment};
 
-/// The places to which crossings are rounded. On each axis these are either the multiples of the *unit*, a power of two; or the
-/// numbers of doubles, of which there are none between zero and the *floor*.
+/// The places to which crossings are rounded. On each axis these are either the multiples of the *unit*, a power of
+/// two; or the numbers of doubles, of which there are none between zero and the *floor*.
 ///
-/// The *pixel* of a place is what is nearer to it than to its neighbors, a half-open rectangle: it holds its left and its
-/// lower border. These tile the plane.
+/// The *pixel* of a place is what is nearer to it than to its neighbors, a half-open rectangle: it holds its left and
+/// its lower border. These tile the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
     pub(super) unit: [f64; 2],
     pub(super) is_even: bool,
-    /// The smallest magnitude but zero, off the even grid.
-    floor: [f64; 2],
-    /// The smallest step, off the even grid: that of subnormal numbers, which may have been scaled.
     smallest: [f64; 2],
-    /// Whether coordinates are in the range of the fast kernels. Halves of steps then enter their polynomials as multiples
-    /// of 2^-213, instead of 2^-212, which the degree of 3 makes up for.
+    /// Whether coordinates are in the range of the fast kernels. Halves of steps then enter their polynomials as
+    /// multiples of 2^-213, instead of 2^-212, which the degree of 3 makes up for.
     pub(super) is_ordinary: bool,
 }
 
@@ -32,16 +29,15 @@ fn last_place(x: f64) -> f64 {
 }
 
 impl Grid {
-    /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles, but none
-    /// smaller than `smallest`.
+    /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles, but
+    /// none smaller than `smallest`.
     pub(super) fn through(largest: Place, smallest: Place, places: impl Iterator<Item = Place> + Clone) -> Self {
-        let unit = [0, 1].map(|k| last_place(largest[k]).max(smallest[k]));
         let is_ordinary = places.clone().flatten().all(|x| RANGE.admits(x));
         // Crossings of what the fast kernels admit are to be admitted.
-        let floor = if is_ordinary { [RANGE.min; 2] } else { smallest };
-        let mut grid = Grid { unit, is_even: true, floor, smallest, is_ordinary };
-        grid.is_even =
-            (0..2).all(|k| unit[k] >= floor[k] || largest[k] == 0.0) && places.clone().all(|p| grid.holds(p));
+        let smallest = if is_ordinary { [RANGE.min * f64::EPSILON; 2] } else { smallest };
+        let unit = [0, 1].map(|k| last_place(largest[k]).max(smallest[k]));
+        let mut grid = Grid { unit, is_even: true, smallest, is_ordinary };
+        grid.is_even = places.clone().all(|place| grid.holds(place));
         grid
     }
 
@@ -50,10 +46,6 @@ impl Grid {
     fn gap_above(&self, axis: usize, x: f64) -> f64 {
         if self.is_even {
             return self.unit[axis];
-        }
-        let floor = self.floor[axis];
-        if -floor <= x && x < floor {
-            return floor;
         }
         (x.next_up() - x).clamp(self.smallest[axis], self.unit[axis])
     }
@@ -73,7 +65,7 @@ impl Grid {
 
     /// The place that is nearest to a value, on an axis.
     fn nearest(&self, axis: usize, x: f64) -> f64 {
-        let step = if self.is_even { self.unit[axis] } else { self.gap_above(axis, x) };
+        let step = self.gap_above(axis, x);
         (x / step).round() * step + 0.0 // zero has one sign only
     }
 
@@ -93,8 +85,8 @@ impl Grid {
 
     /// Whether a segment has a point in the pixel around a place.
     ///
-    /// Of two convex sets without a common point, a line along a side of one of them keeps them apart: a side of the pixel
-    /// or the segment. That the pixel lacks two of its sides makes no difference: it is the union of growing
+    /// Of two convex sets without a common point, a line along a side of one of them keeps them apart: a side of the
+    /// pixel or the segment. That the pixel lacks two of its sides makes no difference: it is the union of growing
     /// closed rectangles.
     pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Place) -> bool {
         if self.is_ordinary && self.is_far([a, b], center) {
@@ -156,7 +148,8 @@ impl Grid {
         let products = [ux * vy, uy * vx, ux * way[1], uy * way[0]];
         let [area, divisor] = [products[0] - products[1], products[2] - products[3]];
         let fraction = area / divisor;
-        // Each area comes of two products and a difference; ten errors are more than all that they and the quotient have.
+        // Each area comes of two products and a difference; ten errors are more than all that they and the quotient
+        // have.
         let error = |p: Pair, q: Pair| 10.0 * Pair::ERROR * (p.estimate().abs() + q.estimate().abs());
         let divided = divisor.estimate().abs();
         let doubt = error(products[2], products[3]);
@@ -190,8 +183,8 @@ impl Grid {
             } else {
                 break;
             };
-            // An estimate is a step or two off, unless the angle is small: then the exact way is gone, rounded, as often as
-            // it is longer than a step or two.
+            // An estimate is a step or two off, unless the angle is small: then the exact way is gone, rounded, as
+            // often as it is longer than a step or two.
             let exact = || CrossingSide { ab, cd, along, center, offset: 0.0 }.value(Dyadic::difference);
             let way = if tries < 2 { step } else { exact().quotient(&divisor(ab, cd)) };
             center = if way.abs() <= 1.5 * step.abs() { center + step } else { self.nearest(along, center + way) };

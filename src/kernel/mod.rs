@@ -51,10 +51,11 @@ pub trait Predicate {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T;
 }
 
-/// Magnitudes of coordinates for which an arithmetic is proven: zero, and `min..=max`.
+/// Magnitudes of coordinates for which an arithmetic is proven: `min..=max`; and below, zero and other multiples of the
+/// last place of `min`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Smallest magnitude but zero.
+    /// Smallest magnitude at which all numbers are admitted.
     pub min: f64,
     /// Largest magnitude.
     pub max: f64,
@@ -62,12 +63,12 @@ pub struct Range {
 
 /// Where `f64` neither overflows nor underflows in any predicate of this crate: `2^-160..=2^200`.
 ///
-/// *Downwards.* Coordinates are multiples of `2^-160 / 2^52 = 2^-212`, and so are their differences; what is
-/// computed of degree `d`, rounded or not, is a multiple of `2^(-212 d)`, which for degree 5 (in-sphere, the
-/// highest) is `2^-1060 > 2^-1074`. A rounding thus happens only to what is larger than its unit by 53 bits: it
-/// is never one of a subnormal number, terms that carry one are no less than `2^-1007`, and an
-/// error bound relative to them is there, too. The error terms of exact products are multiples of
-/// `2^-1060` themselves; none is lost.
+/// *Downwards.* Coordinates are multiples of `2^-160 / 2^52 = 2^-212` (below `2^-160` these only are admitted), and so
+/// are their differences; what is computed of degree `d`, rounded or not, is a multiple of `2^(-212 d)`, which for
+/// degree 5 (in-sphere, the highest) is `2^-1060 > 2^-1074`. A rounding thus happens only to what is larger than its
+/// unit by 53 bits: it is never one of a subnormal number, terms that carry one are no less than `2^-1007`, and an
+/// error bound relative to them is there, too. The error terms of exact products are multiples of `2^-1060` themselves;
+/// none is lost.
 ///
 /// *Upwards.* Fewer than 2^7 terms of differences up to `2^201` stay below `2^(5 * 201 + 7) = 2^1012`, and the
 /// components of an expansion below twice its value. The largest factor of a product is a volume of
@@ -90,7 +91,7 @@ impl Range {
     #[inline]
     pub fn admits(self, x: f64) -> bool {
         let magnitude = x.abs();
-        magnitude == 0.0 || (self.min <= magnitude && magnitude <= self.max)
+        magnitude <= self.max && (self.min <= magnitude || (magnitude / (self.min * f64::EPSILON)).fract() == 0.0)
     }
 }
 

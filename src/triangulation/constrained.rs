@@ -37,9 +37,10 @@ impl Walls {
 /// Chew 1989).
 ///
 /// What is constrained are *lines*: points in a row, which may touch, overlap, repeat, cross and close. Each keeps an
-/// [id](super::LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is split there;
-/// where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines bend no further than
-/// the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is proven.
+/// [id](super::LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is
+/// split there; where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines
+/// bend no further than the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is
+/// proven.
 ///
 /// The triangulation is a function of the set of points and the set of lines' segments, whether they came at once
 /// ([`from_lines`](Self::from_lines)), one by one or with others that have been removed since.
@@ -135,8 +136,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         Ok(self.insert_near(p, None))
     }
 
-    /// Forces the edge between two vertices, with all that it meets on its way. Where it crosses a constraint, a vertex is
-    /// added at once.
+    /// Forces the edge between two vertices, with all that it meets on its way. Where it crosses a constraint, a vertex
+    /// is added at once.
     ///
     /// # Complexity
     /// Quadratic in the number of triangles that one piece crosses (in practice a few), and a vertex

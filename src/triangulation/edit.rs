@@ -1,8 +1,8 @@
 //! Lines added, removed and changed in place.
 //!
 //! The arrangement of the lines is a function of their set, and so is the triangulation of vertices and pieces. An edit
-//! therefore arranges the new set of lines, compares, and carries out the difference: what comes out is what building anew
-//! would have given, with other numbers.
+//! therefore arranges the new set of lines, compares, and carries out the difference: what comes out is what building
+//! anew would have given, with other numbers.
 
 use std::collections::{HashMap, HashSet};
 
@@ -38,8 +38,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A walk and time proportional to the number of triangles replaced; and a look at every segment that crosses others,
-    /// if there are any: one that the point lies on exactly is led through it from now on.
+    /// A walk and time proportional to the number of triangles replaced; and a look at every segment that crosses
+    /// others, if there are any: one that the point lies on exactly is led through it from now on.
     pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
         self.inner.admit(&p)?;
         let is_led = self.lies_on_led(&p);
@@ -75,8 +75,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// The position, in all lines taken together, of the first point that is refused; nothing has changed then.
     ///
     /// # Complexity
-    /// All lines are arranged anew, O(n log n) for n segments of all of them, so that many lines are better added in one call;
-    /// the triangulation changes only where they do.
+    /// All lines are arranged anew, O(n log n) for n segments of all of them, so that many lines are better added in
+    /// one call; the triangulation changes only where they do.
     pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, Refused> {
         let points = || lines.iter().flat_map(|line| line.as_ref());
         if let Some(bad) = points().position(|p| self.inner.admit(p).is_err()) {
@@ -119,8 +119,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         removed
     }
 
-    /// Divides a line at one of the vertices that it was given by, counted from 0: it keeps its first part, the rest becomes
-    /// a line of its own, whose id is returned. `None` where there is no such vertex, or it is an end.
+    /// Divides a line at one of the vertices that it was given by, counted from 0: it keeps its first part, the rest
+    /// becomes a line of its own, whose id is returned. `None` where there is no such vertex, or it is an end.
     ///
     /// # Complexity
     /// Linear in the line's vertices: no triangle changes.
@@ -137,8 +137,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Some(LineId::new(self.lines.given.len() - 1))
     }
 
-    /// Appends a line to another that ends where it begins; the second id is free then. `false`, and nothing is changed, if
-    /// it does not, or they are one line.
+    /// Appends a line to another that ends where it begins; the second id is free then. `false`, and nothing is
+    /// changed, if it does not, or they are one line.
     ///
     /// # Complexity
     /// Linear in the lines' vertices: no triangle changes.
@@ -186,8 +186,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Demand { given, places, segments }
     }
 
-    /// Makes the triangulation that of an arrangement of what was asked for, without vertices that leave. Returns the pieces that
-    /// cross others.
+    /// Makes the triangulation that of an arrangement of what was asked for, without vertices that leave. Returns the
+    /// pieces that cross others.
     fn carry_out(
         &mut self,
         arrangement: &Arrangement,

@@ -21,9 +21,9 @@ pub type LineId = Id<LineTag>;
 /// The input lines, and the way that each takes in the triangulation.
 ///
 /// A line is kept as the vertices that it was given by. What lies between two of them is told by two tables that hold
-/// nothing for a segment that is one edge: through which sites a segment is led, and at which vertex an edge was split. So
-/// a line takes 16 bytes, and 4 for each of its vertices; a segment that crosses others about 40 more, and 4 for each
-/// site on it.
+/// nothing for a segment that is one edge: through which sites a segment is led, and at which vertex an edge was split.
+/// So a line takes 16 bytes, and 4 for each of its vertices; a segment that crosses others about 40 more, and 4 for
+/// each site on it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lines {
     /// By their ids.
@@ -56,8 +56,8 @@ pub(super) fn segments_of<'a>(
 }
 
 impl Lines {
-    /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each once, in
-    /// order.
+    /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each
+    /// once, in order.
     pub(super) fn lead(
         &mut self,
         arrangement: &Arrangement,
@@ -201,8 +201,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         chain
     }
 
-    /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it is
-    /// one edge.
+    /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it
+    /// is one edge.
     ///
     /// # Complexity
     /// Linear in the length of the result.

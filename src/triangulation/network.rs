@@ -30,8 +30,8 @@ pub enum OnCrossing {
 pub struct Rounding {
     /// The unit of the grid, on each axis: the last place of the largest coordinate of a line's vertex.
     pub unit: [f64; 2],
-    /// Whether all vertices of lines lie on the grid, and all points on lines that cross others. Then no line is displaced by more than half a unit on
-    /// each axis, proven.
+    /// Whether all vertices of lines lie on the grid, and all points on lines that cross others. Then no line is
+    /// displaced by more than half a unit on each axis, proven.
     pub on_grid: bool,
 }
 
@@ -107,8 +107,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Ok((triangulation, renumbered))
     }
 
-    /// Puts in the pieces of segments that were arranged, whose sites are vertices now. Returns those that cross others,
-    /// which are there up to the first crossing only.
+    /// Puts in the pieces of segments that were arranged, whose sites are vertices now. Returns those that cross
+    /// others, which are there up to the first crossing only.
     pub(super) fn lead(
         &mut self,
         arrangement: &Arrangement,
@@ -205,8 +205,8 @@ pub(super) fn points_added<G: Crossing>(
     arrangement.added().iter().enumerate().map(meet).collect()
 }
 
-/// Puts the added sites among the given ones, which come in spatial order, as points of the geometry. Returns the number
-/// of every site then, if there were any to add; and the numbers of those that are new.
+/// Puts the added sites among the given ones, which come in spatial order, as points of the geometry. Returns the
+/// number of every site then, if there were any to add; and the numbers of those that are new.
 fn add_sites<G: Crossing + Coordinates<3>>(
     geometry: &G,
     sites: &mut Vec<G::Point>,

@@ -186,10 +186,10 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Takes out a vertex that no constraint ends in or runs through, and returns its point; `None` if one does,
-    /// or if there is no such vertex. The result is the triangulation of the other points with the same
-    /// constraints. Numbers and time as in [`Delaunay::remove`]. The tables of [lines](super::lines::Lines) must not name it
-    /// any more when its number is used again.
+    /// Takes out a vertex that no constraint ends in or runs through, and returns its point; `None` if one does, or if
+    /// there is no such vertex. The result is the triangulation of the other points with the same constraints. Numbers
+    /// and time as in [`Delaunay::remove`]. The tables of [lines](super::lines::Lines) must not name it any more when
+    /// its number is used again.
     pub(super) fn remove_free(&mut self, vertex: VertexId) -> Option<G::Point> {
         if !self.tds().is_vertex(vertex) || self.is_on_constraint(vertex) {
             return None;

@@ -42,9 +42,9 @@ enum Met {
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Says whether all of it is
-    /// there: pieces that were arranged meet no constraint between their ends, but off the grid; behind one, nothing is
-    /// put in.
+    /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Says whether all of
+    /// it is there: pieces that were arranged meet no constraint between their ends, but off the grid; behind one,
+    /// nothing is put in.
     pub(super) fn join(&mut self, a: VertexId, b: VertexId) -> bool {
         let mut is_whole = true;
         self.force_until(a, b, |_, _, _, _| {
@@ -72,8 +72,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         });
     }
 
-    /// Puts in a segment piece by piece; where one meets a constraint, `at_wall` says what to go on with, given the ends of
-    /// the piece and the wall.
+    /// Puts in a segment piece by piece; where one meets a constraint, `at_wall` says what to go on with, given the
+    /// ends of the piece and the wall.
     fn force_until(
         &mut self,
         a: VertexId,

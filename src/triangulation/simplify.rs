@@ -10,9 +10,9 @@ use super::{ConstrainedDelaunay, LineId};
 
 impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// Takes vertices out of a line, in plan, as long as every one of them lies within `tolerance` of the piece that
-    /// stands for it, and no line comes to lie on its other side: the triangle between the line and its shortcut is free
-    /// of other vertices of lines. Ends stay, and vertices that are shared with other lines or used twice. Vertices that had
-    /// come with the line go. Returns how many were taken out of the line.
+    /// stands for it, and no line comes to lie on its other side: the triangle between the line and its shortcut is
+    /// free of other vertices of lines. Ends stay, and vertices that are shared with other lines or used twice.
+    /// Vertices that had come with the line go. Returns how many were taken out of the line.
     ///
     /// Vertices are tried from the first on, each with all that were taken out beside it (after the vertex removal of
     /// Dyken, Dæhlen and Sevaldrud 2009).
