@@ -1,0 +1,207 @@
+//! One construction, timed: a line that can be put beside those of other programs.
+//!
+//! ```text
+//! bench_triangulation FILE.xy [FILE.seg] [--threads N] [--one-by-one] [--check]
+//! bench_triangulation FILE.xyz [--threads N] [--one-by-one] [--check]
+//! ```
+//!
+//! A file holds coordinates one after the other, little-endian 64-bit floating point: pairs (`.xy`) to be triangulated in the
+//! plane, or triples (`.xyz`) in space. Segments (`.seg`) are pairs of 32-bit numbers of points. What is printed: program,
+//! data, points, threads, seconds, peak memory in MB and what of it was added by the construction, triangles (or tetrahedra), and
+//! processor seconds. The caller's indices are part of the time, reading the file is not.
+//!
+//! `--one-by-one` inserts the points one after the other, in the order of the file. `--check` proves the result right, and
+//! counts the questions that got as far as each stage of the arithmetic; both take time of their own, so that the line is of
+//! a build without.
+
+use std::hint::black_box;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::Instant;
+
+use breakline::geometry::{Plane, Space};
+use breakline::kernel::{Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnLattice, Predicate, Range};
+use breakline::num::Sign;
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Refused};
+
+/// The stages of [`Adaptive`], each counting what it is asked.
+type Counting = Filtered<Counted<0, ErrorBound>, Filtered<Counted<1, OnLattice>, Counted<2, Expansions>>>;
+
+static ASKED: [AtomicU64; 3] = [const { AtomicU64::new(0) }; 3];
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Counted<const STAGE: usize, K>(K);
+
+impl<const STAGE: usize, K: Filter> Filter for Counted<STAGE, K> {
+    const RANGE: Range = K::RANGE;
+
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        ASKED[STAGE].fetch_add(1, Relaxed);
+        K::try_sign(predicate)
+    }
+}
+
+impl<const STAGE: usize, K: Kernel> Kernel for Counted<STAGE, K> {
+    const RANGE: Range = K::RANGE;
+
+    fn sign<P: Predicate>(predicate: &P) -> Sign {
+        ASKED[STAGE].fetch_add(1, Relaxed);
+        K::sign(predicate)
+    }
+}
+
+struct Options {
+    points: String,
+    segments: Option<String>,
+    threads: usize,
+    one_by_one: bool,
+    check: bool,
+}
+
+fn options() -> Result<Options, String> {
+    let mut options = Options { points: String::new(), segments: None, threads: 1, one_by_one: false, check: false };
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--threads" => {
+                let count = arguments.next().unwrap_or_default();
+                options.threads = count.parse().map_err(|_| format!("--threads {count}: a number is expected"))?;
+            }
+            "--one-by-one" => options.one_by_one = true,
+            "--check" => options.check = true,
+            _ if argument.ends_with(".seg") => options.segments = Some(argument),
+            _ => options.points = argument,
+        }
+    }
+    if options.points.is_empty() {
+        return Err(
+            "usage: bench_triangulation FILE.xy|FILE.xyz [FILE.seg] [--threads N] [--one-by-one] [--check]".into()
+        );
+    }
+    Ok(options)
+}
+
+fn read(path: &str) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| format!("{path}: {error}"))
+}
+
+fn points<const D: usize>(path: &str) -> Result<Vec<[f64; D]>, String> {
+    let bytes = read(path)?;
+    let numbers = bytes.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number));
+    let numbers: Vec<f64> = numbers.collect();
+    Ok(numbers.as_chunks::<D>().0.to_vec())
+}
+
+fn segments(path: &str) -> Result<Vec<[u32; 2]>, String> {
+    let bytes = read(path)?;
+    let numbers: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|number| u32::from_le_bytes(*number)).collect();
+    Ok(numbers.as_chunks::<2>().0.to_vec())
+}
+
+/// A number of kilobytes in the system's account of this process, as MB; zero where there is none.
+fn memory(name: &str) -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix(name));
+    line.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
+}
+
+/// Seconds that the threads of this process have run.
+fn processor_seconds() -> f64 {
+    let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+    let of_task = |task: std::fs::DirEntry| {
+        let stat = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
+        stat.split_whitespace().next()?.parse::<f64>().ok()
+    };
+    tasks.filter_map(of_task).sum::<f64>() * 1e-9
+}
+
+/// Times a construction; prints its line, given how to count the cells.
+fn time<T>(
+    options: &Options,
+    count: usize,
+    build: impl FnOnce() -> Result<T, Refused>,
+    cells: impl Fn(&T) -> usize,
+) -> Result<(), String> {
+    // The peak so far does not count. Where that cannot be told, nothing is lost.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+    let (before, processor, start) = (memory("VmRSS:"), processor_seconds(), Instant::now());
+    let built = black_box(build().map_err(|refused| format!("{}: {refused}", options.points))?);
+    let (seconds, processor) = (start.elapsed().as_secs_f64(), processor_seconds() - processor);
+    let peak = memory("VmHWM:");
+    let stem = std::path::Path::new(&options.points).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let data = if options.segments.is_some() { stem + "+seg" } else { stem };
+    let program = if options.one_by_one { "breakline_one_by_one" } else { "breakline" };
+    println!(
+        "{program} {data} {count} {} {seconds:.4} {peak:.1} {:.1} {} {processor:.4}",
+        options.threads,
+        peak - before,
+        cells(&built)
+    );
+    Ok(())
+}
+
+/// What the check of a triangulation says, and how many questions each stage was asked while it was built.
+fn tell(asked: [u64; 3], flaws: usize) -> Result<(), String> {
+    let [all, lattice, exact] = asked;
+    eprintln!(
+        "check: {flaws} flaws; asked of the kernel {all}, not certain by the error bound {lattice}, nor as integers {exact}"
+    );
+    if flaws == 0 { Ok(()) } else { Err(format!("{flaws} flaws")) }
+}
+
+fn asked() -> [u64; 3] {
+    [0, 1, 2].map(|stage: usize| ASKED[stage].load(Relaxed))
+}
+
+fn plane<K: Kernel>(points: &[[f64; 2]], one_by_one: bool) -> Result<(Delaunay<Plane<K>, 3>, usize), Refused> {
+    if !one_by_one {
+        let (t, vertices) = Delaunay::from_points(Plane::default(), points)?;
+        return Ok((t, vertices.len()));
+    }
+    let mut t = Delaunay::new(Plane::default());
+    for &p in points {
+        t.insert(p)?;
+    }
+    Ok((t, points.len()))
+}
+
+fn run(options: &Options) -> Result<(), String> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build_global();
+    pool.map_err(|error| error.to_string())?;
+    if options.points.ends_with(".xyz") {
+        let points = points::<3>(&options.points)?;
+        let build = || Delaunay::<Space<Adaptive>, 4>::from_points(Space::default(), &points);
+        return time(options, points.len(), build, |(t, _)| t.finite_cells().count());
+    }
+    let points = points::<2>(&options.points)?;
+    let Some(path) = &options.segments else {
+        if options.check {
+            let (t, _) = plane::<Counting>(&points, options.one_by_one).map_err(|refused| refused.to_string())?;
+            let asked = asked();
+            tell(asked, t.check(Level::Law).len())?;
+        }
+        let build = || plane::<Adaptive>(&points, options.one_by_one);
+        return time(options, points.len(), build, |(t, _)| t.finite_cells().count());
+    };
+    let segments = segments(path)?;
+    if options.check {
+        let built =
+            ConstrainedDelaunay::<Plane<Counting>>::from_lines(Plane::default(), &points, &segments, OnCrossing::Split);
+        let (t, _) = built.map_err(|refused| refused.to_string())?;
+        let asked = asked();
+        tell(asked, t.check(Level::Law).len())?;
+    }
+    let build =
+        || ConstrainedDelaunay::<Plane<Adaptive>>::from_lines(Plane::default(), &points, &segments, OnCrossing::Split);
+    time(options, points.len(), build, |(t, _)| t.finite_cells().count())
+}
+
+fn main() -> ExitCode {
+    match options().and_then(|options| run(&options)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
