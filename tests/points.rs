@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use breakline::crs::CrsKind;
-use breakline::data::{Bounds, PointBatch, PointInfo, PointSource};
+use breakline::data::{Bounds, Lattice, PointBatch, PointInfo, PointSource};
 use breakline::error::Kind;
 use breakline::io::{las, points};
 use serde_json::Value;
@@ -41,7 +41,7 @@ fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summ
             *summary.classes.entry(batch.class[i]).or_default() += 1;
             *summary.returns.entry(batch.return_number[i]).or_default() += 1;
         }
-        if let Some((scale, offset)) = source.info().lattice {
+        if let Some(Lattice { scale, offset }) = source.info().lattice {
             for (axis, column) in [&batch.x, &batch.y, &batch.z].into_iter().enumerate() {
                 let steps = column.iter().map(|value| ((value - offset[axis]) / scale[axis]).round() as i128);
                 summary.lattice_sums[axis] += steps.sum::<i128>();
@@ -108,7 +108,8 @@ fn every_lidar_file_gives_what_is_known_of_it() {
         assert!(info.format.starts_with(&format), "{path}: {}", info.format);
         assert_eq!(info.format.ends_with("LAZ") || info.format.ends_with("COPC"), path.ends_with("laz"), "{path}");
         assert_eq!(info.count, fact["point_count"].as_u64(), "{path}");
-        assert_eq!(info.lattice, Some((triple(&fact["scale"]), triple(&fact["offset"]))), "{path}");
+        let lattice = Lattice { scale: triple(&fact["scale"]), offset: triple(&fact["offset"]) };
+        assert_eq!(info.lattice, Some(lattice), "{path}");
         if info.count > Some(0) {
             let bounds = info.bounds.unwrap();
             assert_eq!((bounds.min, bounds.max), (triple(&fact["hdr_min"]), triple(&fact["hdr_max"])), "{path}");

@@ -7,7 +7,7 @@
 //!
 //! | what | record | stream |
 //! |---|---|---|
-//! | points | [`PointBatch`] (columns), [`PointInfo`] | [`PointSource`] |
+//! | points | [`PointBatch`] (columns), [`PointInfo`], [`Lattice`] | [`PointSource`] |
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], with its place: [`Frame`] | [`BlockSource`], asked by [`Window`] |
@@ -25,6 +25,7 @@ mod contour_line;
 mod frame;
 pub mod geo;
 mod grid;
+mod lattice;
 mod mesh;
 mod points;
 mod shape;
@@ -35,6 +36,7 @@ pub use bounds::Bounds;
 pub use contour_line::ContourLine;
 pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
 pub use grid::{BlockSource, Grid};
+pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::orientation;
 pub use points::{PointBatch, PointFlags, PointInfo, PointSource};

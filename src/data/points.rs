@@ -1,4 +1,4 @@
-use super::Bounds;
+use super::{Bounds, Lattice};
 use crate::crs::Crs;
 use crate::error::Result;
 
@@ -77,8 +77,8 @@ pub struct PointInfo {
     pub crs: Option<Crs>,
     /// Whether the points carry classes.
     pub has_classes: bool,
-    /// Scale and offset per axis, for formats on an integer lattice.
-    pub lattice: Option<([f64; 3], [f64; 3])>,
+    /// The lattice of the coordinates, for formats that have one.
+    pub lattice: Option<Lattice>,
     /// What a user should be told: a disagreement, a guess, something ignored.
     pub warnings: Vec<String>,
 }

@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | [`Plane`] | `[f64; 2]` | in the plane |
 //! | [`Terrain`] | `[f64; 3]` | in plan: on x and y; z is carried along |
+//! | [`Steps`] | `[i32; 3]` | in plan, of points on a lattice like that of a LAS file |
 //! | [`Space`] | `[f64; 3]` | in space |
 //!
 //! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
@@ -24,11 +25,13 @@ mod crossed;
 mod perturbation;
 mod plane;
 mod space;
+mod steps;
 mod terrain;
 
 pub(crate) use perturbation::{in_sphere, in_sphere_of_flat};
 pub use plane::{Plane, distance_to_segment};
 pub use space::Space;
+pub use steps::Steps;
 pub use terrain::{Terrain, height_along};
 
 use std::cmp::Ordering;

@@ -28,6 +28,13 @@ impl Filter for FlooredErrorBound {
     }
 }
 
+/// The bits that differences may have so that 128 hold the polynomial: one of degree `d` in differences below `2^b` is below
+/// `2^(b d + 7)` for every formula of this crate (in-sphere has 4 * 3 * 6 terms), and a difference must fit a double.
+const fn bits(degree: i32) -> i32 {
+    let bits = 120 / degree;
+    if bits < 53 { bits } else { 53 }
+}
+
 /// Integers, where the coordinates of this one question lie on a coarse enough common grid.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OnLattice;
@@ -36,11 +43,25 @@ impl Filter for OnLattice {
     const RANGE: Range = Range::FINITE;
 
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
-        // A polynomial of degree d in differences below 2^b is below 2^(b d + 7) for every formula
-        // of this crate (in-sphere has 4 * 3 * 6 terms), and a difference must fit a double.
-        let bits = (120 / P::DEGREE).min(53);
-        let inverse_unit = lattice::inverse_unit((0..P::AXES).map(|axis| predicate.axis(axis)), bits)?;
-        let value = predicate.value(|a, b| lattice::difference(a, b, inverse_unit));
-        Some(Sign::of(&value))
+        let axes = (0..P::AXES).map(|axis| predicate.axis(axis));
+        let inverse_unit = lattice::inverse_unit(axes, bits(P::DEGREE))?;
+        Some(Sign::of(&predicate.value(|a, b| lattice::difference(a, b, inverse_unit))))
+    }
+}
+
+/// Integers, for coordinates that are whole numbers: [`OnLattice`] whose unit is 1. The differences in an in-circle or
+/// in-sphere test may be up to `2^30` and `2^24`.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WholeNumbers;
+
+impl Filter for WholeNumbers {
+    /// Of the numbers below `2^52` only the multiples of 1 are admitted.
+    const RANGE: Range = Range { min: 1.0 / f64::EPSILON, max: 2.0 / f64::EPSILON };
+
+    #[inline]
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        let axes = (0..P::AXES).map(|axis| predicate.axis(axis));
+        let fit = lattice::fit(axes, 1.0, bits(P::DEGREE));
+        fit.then(|| Sign::of(&predicate.value(|a, b| lattice::difference(a, b, 1.0))))
     }
 }

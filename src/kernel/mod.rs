@@ -10,6 +10,7 @@
 //! | [`Exact`] | arbitrary precision | the judge in tests; any finite coordinates |
 //! | [`Expansions`] | sums of `f64` | exact within [`RANGE`], never filtered |
 //! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then expansions | the default |
+//! | [`Lattice`] | error-bounded `f64`, then integers, wide ones if need be | whole numbers up to 2^53, like those of LAS files |
 //! | [`Wide`] | as `Adaptive`, scaled if need be, or arbitrary precision | any finite coordinates, fast |
 //!
 //! New ones are combined with [`Filtered`]: a quick [`Filter`] that may give up, before a sure
@@ -23,7 +24,7 @@ mod formula;
 mod rounding;
 mod scaled;
 
-pub use adaptive::{ErrorBound, FlooredErrorBound, OnLattice};
+pub use adaptive::{ErrorBound, FlooredErrorBound, OnLattice, WholeNumbers};
 pub use formula::{
     CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
@@ -175,6 +176,10 @@ impl Kernel for Expansions {
 
 /// The default: as fast as floating point where that is certain, exact everywhere within [`RANGE`].
 pub type Adaptive = Filtered<ErrorBound, Filtered<OnLattice, Expansions>>;
+
+/// For coordinates that are whole numbers, up to `2^53`: 128-bit integers answer what floating point cannot, and expansions
+/// what these cannot hold.
+pub type Lattice = Filtered<ErrorBound, Filtered<WholeNumbers, Expansions>>;
 
 /// For every finite coordinate, from `5e-324` to `1.8e308`: nearly as fast as [`Adaptive`] within its range, and where
 /// a power of two brings the coordinates of a question there.

@@ -30,14 +30,22 @@ where
         return None;
     }
     let inverse = 2f64.powi(-lowest);
+    fit(axes, inverse, bits).then_some(inverse)
+}
+
+/// Whether differences within each axis, of multiples of a unit and counted in it, stay below `2^bits`; 53 at the most.
+#[inline]
+pub fn fit<A>(mut axes: impl Iterator<Item = A>, inverse_unit: f64, bits: i32) -> bool
+where
+    A: Iterator<Item = f64>,
+{
     // The rounding of max - min is harmless: it is monotone and 2^bits is representable, so that nothing
     // from there on gets below. (2^53 + 1 gets *to* 2^53.)
-    let limit = 2f64.powi(bits);
-    let fits = |axis: A| {
+    let limit = f64::from_bits(((1023 + bits) as u64) << 52);
+    axes.all(|axis| {
         let (min, max) = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), x| (min.min(x), max.max(x)));
-        (max - min) * inverse < limit
-    };
-    axes.into_iter().all(fits).then_some(inverse)
+        (max - min) * inverse_unit < limit
+    })
 }
 
 /// `a - b` counted in units.

@@ -6,7 +6,7 @@ use super::Sheet;
 use super::sheet::counted;
 use crate::cli::open;
 use crate::cli::talk::Talk;
-use crate::data::{Bounds, PointBatch, PointFlags, PointInfo};
+use crate::data::{Bounds, Lattice, PointBatch, PointFlags, PointInfo};
 use crate::error::Result;
 
 /// The flags of a point, by name.
@@ -79,7 +79,7 @@ fn tell(info: &PointInfo, census: &Census) -> Sheet {
     sheet.silent("stated_count", info.count);
     sheet.bounds(census.bounds);
     sheet.crs(info.crs.as_ref());
-    if let Some((scale, offset)) = info.lattice {
+    if let Some(Lattice { scale, offset }) = info.lattice {
         let list = |values: [f64; 3]| values.map(|value| (value + 0.0).to_string()).join(" ");
         sheet.row("scale", list(scale), json!(scale));
         sheet.row("offset", list(offset), json!(offset));

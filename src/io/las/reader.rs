@@ -7,7 +7,7 @@ use super::laz::Laz;
 use super::plain::Plain;
 use super::raw::LONGEST_HEADER;
 use super::{records, reference};
-use crate::data::{PointBatch, PointInfo, PointSource};
+use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
 use crate::error::Result;
 
 /// Reads the points of a LAS or LAZ file; made by [`open`](super::open).
@@ -54,7 +54,7 @@ impl LasReader {
             bounds: header.bounds,
             crs,
             has_classes: true,
-            lattice: Some((header.scale, header.offset)),
+            lattice: Some(Lattice { scale: header.scale, offset: header.offset }),
             warnings,
         };
         Ok(LasReader { name, header, info, points, warnings: Vec::new() })

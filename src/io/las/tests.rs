@@ -7,7 +7,7 @@ use las::{Builder, Color, Point, Transform, Vector, Version, Vlr, Writer};
 
 use super::{LasReader, from_stream};
 use crate::crs::{Crs, GeoKeys};
-use crate::data::{PointBatch, PointFlags, PointSource};
+use crate::data::{Lattice, PointBatch, PointFlags, PointSource};
 use crate::error::Result;
 
 const SCALE: [f64; 3] = [0.01, 0.001, 0.1];
@@ -143,7 +143,7 @@ fn every_version_and_point_format() {
                 let name = format!("LAS 1.{}, point format {format}{packing}", version.1);
                 assert_eq!(reader.info().format, name);
                 assert_eq!(reader.info().count, Some(1000));
-                assert_eq!(reader.info().lattice, Some((SCALE, OFFSET)));
+                assert_eq!(reader.info().lattice, Some(Lattice { scale: SCALE, offset: OFFSET }));
                 assert_eq!(reader.header().software, "tests");
                 assert!(reader.info().warnings.is_empty() && reader.warnings().is_empty(), "{name}");
                 check_points(&all, 1000, format >= 6);

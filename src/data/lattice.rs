@@ -1,0 +1,63 @@
+/// An integer lattice in space, as the header of a LAS file has it: a number `n` of steps on an axis stands for the coordinate
+/// `n * scale + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// The length of a step on each axis.
+    pub scale: [f64; 3],
+    /// The coordinates of the origin.
+    pub offset: [f64; 3],
+}
+
+impl Lattice {
+    /// The coordinates of a point of the lattice, rounded as a reader of LAS does.
+    #[inline]
+    pub fn point(&self, steps: [i32; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| f64::from(steps[k]) * self.scale[k] + self.offset[k])
+    }
+
+    /// The steps to a point; `None` if it is no [point](Self::point) of the lattice.
+    #[inline]
+    pub fn steps(&self, point: [f64; 3]) -> Option<[i32; 3]> {
+        let steps = [0, 1, 2].map(|k| ((point[k] - self.offset[k]) / self.scale[k]).round() as i32);
+        (self.point(steps) == point).then_some(steps)
+    }
+
+    /// The way from this lattice into another one that has all of its points, up to roundings of coordinates to doubles: a
+    /// step here is a whole number of steps there, and so is the way between the origins. `None` if it is not.
+    pub fn embed(&self, into: &Lattice) -> Option<Embedding> {
+        let mut embedding = Embedding { factor: [1; 3], shift: [0; 3] };
+        for k in 0..3 {
+            let (factor, shift) = (self.scale[k] / into.scale[k], (self.offset[k] - into.offset[k]) / into.scale[k]);
+            // Scales and offsets in decimals are rounded themselves.
+            let size = (self.offset[k].abs() + into.offset[k].abs()) / into.scale[k];
+            embedding.factor[k] = whole(factor, factor)?;
+            embedding.shift[k] = whole(shift, size)?;
+        }
+        Some(embedding)
+    }
+}
+
+/// A number that is whole but for a few roundings of its size.
+fn whole(x: f64, size: f64) -> Option<i32> {
+    let is_whole = (x - x.round()).abs() <= 4.0 * f64::EPSILON * size.abs() && x.abs() < f64::from(i32::MAX);
+    is_whole.then_some(x.round() as i32)
+}
+
+/// Of [`Lattice::embed`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Embedding {
+    factor: [i32; 3],
+    shift: [i32; 3],
+}
+
+impl Embedding {
+    /// The same point in steps of the other lattice; `None` if these are more than 32 bits hold.
+    #[inline]
+    pub fn steps(&self, steps: [i32; 3]) -> Option<[i32; 3]> {
+        let mut there = [0; 3];
+        for k in 0..3 {
+            there[k] = steps[k].checked_mul(self.factor[k])?.checked_add(self.shift[k])?;
+        }
+        Some(there)
+    }
+}

@@ -1,0 +1,126 @@
+//! Triangulations of points as LAS files hold them: whole numbers of steps, without a conversion.
+
+mod common;
+
+use breakline::data::{Lattice, PointBatch};
+use breakline::geometry::{Plane, Steps};
+use breakline::kernel::{self, Exact, InCircle, Kernel, Orientation2};
+use breakline::tds::VertexId;
+use breakline::triangulation::{Delaunay, Level};
+use common::random::Random;
+
+/// The triangles as the positions of their points, from the smallest on, in order.
+fn triangles<G: breakline::geometry::Geometry<3>>(t: &Delaunay<G, 3>, vertices: &[VertexId]) -> Vec<[usize; 3]> {
+    let mut first = vec![usize::MAX; t.vertex_count()];
+    for (i, v) in vertices.iter().enumerate().rev() {
+        first[v.index()] = i;
+    }
+    let of_cell = |cell| {
+        let mut corners = t.tds().cell_vertices(cell).iter().map(|v| first[v.index()]).collect::<Vec<_>>();
+        let smallest = (0..corners.len()).min_by_key(|&i| corners[i]).unwrap();
+        corners.rotate_left(smallest);
+        corners.try_into().unwrap()
+    };
+    let mut triangles: Vec<[usize; 3]> = t.finite_cells().map(of_cell).collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+/// As steps and as coordinates of the plane the points have one triangulation.
+fn same(points: &[[i32; 3]]) {
+    let (steps, vertices) = Delaunay::from_points(<Steps>::default(), points).unwrap();
+    assert_eq!(steps.check(Level::Law), []);
+    let places: Vec<[f64; 2]> = points.iter().map(|p| [p[0].into(), p[1].into()]).collect();
+    let (plane, of_plane) = Delaunay::from_points(<Plane>::default(), &places).unwrap();
+    assert_eq!(vertices, of_plane);
+    if steps.dimension() == 2 {
+        assert_eq!(triangles(&steps, &vertices), triangles(&plane, &of_plane));
+    }
+}
+
+#[test]
+fn steps_of_every_size() {
+    let mut random = Random(1);
+    for round in 0..300 {
+        let size = random.pick(&[1i64, 3, 1000, 1 << 20, i64::from(i32::MAX)]);
+        let count = 1 + random.index(60);
+        let points: Vec<[i32; 3]> = (0..count).map(|_| [(); 3].map(|()| random.around(size) as i32)).collect();
+        same(&points);
+        let ends = [i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX - 1, i32::MAX];
+        if round % 10 == 0 {
+            let points: Vec<[i32; 3]> = (0..count).map(|_| [(); 3].map(|()| random.pick(&ends))).collect();
+            same(&points);
+        }
+    }
+}
+
+/// Cocircular to the last step, at the ends of 32 bits, where 128 do not hold an in-circle test.
+#[test]
+fn the_kernel_is_exact_on_whole_numbers() {
+    let mut random = Random(2);
+    let mut ties = 0;
+    for round in 0..4000 {
+        let size = random.pick(&[2i64, 1 << 15, 1 << 30, 1 << 31, 1 << 52]);
+        let mut points = [(); 4].map(|()| [(); 2].map(|()| random.around(size) as f64));
+        if round % 2 == 0 {
+            // A rectangle, one corner of which is a step away in half of the rounds.
+            let [[x0, y0], [x1, y1], ..] = points;
+            points = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+            points[3][round / 2 % 2] += (round / 4 % 2) as f64;
+        }
+        let [a, b, c, _] = points;
+        let (in_circle, orientation) = (InCircle(points), Orientation2([a, b, c]));
+        assert_eq!(kernel::Lattice::sign(&in_circle), Exact::sign(&in_circle), "{points:?}");
+        assert_eq!(kernel::Lattice::sign(&orientation), Exact::sign(&orientation), "{points:?}");
+        ties += usize::from(Exact::sign(&in_circle) == breakline::num::Sign::Zero);
+    }
+    assert!(ties > 500, "{ties}");
+}
+
+#[test]
+fn fractions_are_refused() {
+    let refused = |p: [f64; 2]| Delaunay::from_points(Plane::<kernel::Lattice>::default(), &[[0.0, 0.0], p]).is_err();
+    assert!(refused([0.5, 1.0]) && refused([1.0, 1e300]) && refused([f64::NAN, 1.0]));
+    assert!(!refused([2f64.powi(53), -3.0]));
+}
+
+#[test]
+fn one_lattice_within_another() {
+    let lattice =
+        |scale: f64, offset: f64| Lattice { scale: [scale, scale, 0.001], offset: [offset, 2.0 * offset, 0.0] };
+    let (coarse, fine) = (lattice(0.01, 500_000.0), lattice(0.001, 499_999.98));
+    let embedding = coarse.embed(&fine).unwrap();
+    let there = embedding.steps([7, -3, 5]).unwrap();
+    assert_eq!(there, [90, 10, 5]);
+    for (p, q) in coarse.point([7, -3, 5]).into_iter().zip(fine.point(there)) {
+        assert!((p - q).abs() < 1e-9, "{p} {q}");
+    }
+    assert_eq!(fine.embed(&coarse), None, "finer steps");
+    assert_eq!(coarse.embed(&lattice(0.003, 500_000.0)), None, "steps that are no multiples");
+    assert_eq!(coarse.embed(&lattice(0.01, 0.005)), None, "half a step between");
+    assert_eq!(coarse.embed(&lattice(0.01, -1e9)), None, "too far");
+    assert_eq!(embedding.steps([i32::MAX, 0, 0]), None);
+    assert_eq!(coarse.embed(&coarse).unwrap().steps([i32::MAX, i32::MIN, 0]), Some([i32::MAX, i32::MIN, 0]));
+}
+
+/// Of a tile: the coordinates that are read are points of its lattice, all of them, and its steps triangulate.
+#[test]
+fn a_tile() {
+    let tiles = ["lidar/lake_breakline/lake.laz", "lidar/formats/1.2-with-color.las", "lidar/formats/pdrf10-1.4.las"];
+    for tile in tiles {
+        let Some(path) = common::shared(tile) else { continue };
+        let mut source = breakline::io::points::open(&path).unwrap();
+        let lattice = source.info().lattice.unwrap();
+        let mut points = Vec::new();
+        let mut batch = PointBatch::default();
+        loop {
+            source.read(&mut batch).unwrap();
+            if batch.is_empty() {
+                break;
+            }
+            let places = (0..batch.len()).map(|i| [batch.x[i], batch.y[i], batch.z[i]]);
+            points.extend(places.map(|p| lattice.steps(p).expect("a point of the lattice")));
+        }
+        same(&points);
+    }
+}
