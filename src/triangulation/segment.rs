@@ -8,8 +8,6 @@
 //! 3. At a constraint: it is lifted, the place of the crossing becomes a vertex, and four pieces are
 //!    put in.
 
-use rustc_hash::FxHashMap;
-
 use crate::geometry::{Crossing, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
@@ -22,16 +20,70 @@ use super::{ConstrainedDelaunay, Walls};
 pub(super) struct Scratch {
     /// Triangles that the segment crosses, in order.
     corridor: Vec<CellId>,
-    /// Vertices to the left of the segment, with its two ends, in order; and to the right.
-    left: Vec<VertexId>,
-    right: Vec<VertexId>,
-    /// Directed edges that wait for the triangle on their other side.
-    open: FxHashMap<[VertexId; 2], (CellId, usize)>,
-    /// Constraints that stick into the corridor without being crossed.
-    spikes: Vec<[VertexId; 2]>,
+    left: Side,
+    right: Side,
+    /// Parts of a side that are still to be triangulated.
+    parts: Vec<Part>,
     /// Triangles whose edges may have to be flipped.
     pub(super) unsettled: Vec<CellId>,
 }
+
+/// One side of a segment: the border of what it crosses there, from its one end to the other.
+#[derive(Debug, Clone, Default)]
+struct Side {
+    chain: Vec<VertexId>,
+    /// Between each two of these.
+    edges: Vec<Edge>,
+}
+
+/// An edge of the border: the triangle on its outer side, and the edge's number there.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    cell: CellId,
+    i: usize,
+    is_wall: bool,
+    /// Whether both sides of the edge are the border's, which runs along it and back around its tip.
+    is_spike: bool,
+}
+
+/// Positions of a chain between which a triangle is to be put, and the edge that it has in common with the one before.
+type Part = (usize, usize, Option<(CellId, usize)>);
+
+impl Side {
+    fn clear(&mut self, start: VertexId) {
+        self.chain.clear();
+        self.chain.push(start);
+        self.edges.clear();
+    }
+
+    fn push(&mut self, vertex: VertexId, edge: Edge) {
+        self.chain.push(vertex);
+        self.edges.push(edge);
+    }
+
+    /// Marks the edges that the border runs along in both directions; the pairs of these are nested like parentheses.
+    /// Returns them.
+    fn mark_spikes(&mut self) -> Vec<[usize; 2]> {
+        let mut spikes = Vec::new();
+        // A border that comes back to no vertex but one before the last has none.
+        if !self.chain.windows(3).any(|row| row[0] == row[2]) {
+            return spikes;
+        }
+        let mut open: Vec<usize> = Vec::new();
+        for k in 0..self.edges.len() {
+            let is_back = |&j: &usize| self.chain[j] == self.chain[k + 1] && self.chain[j + 1] == self.chain[k];
+            match open.pop_if(|j| is_back(j)) {
+                Some(j) => spikes.push([j, k]),
+                None => open.push(k),
+            }
+        }
+        spikes.iter().flatten().for_each(|&k| self.edges[k].is_spike = true);
+        spikes
+    }
+}
+
+/// The base of a triangle that [`fill`](ConstrainedDelaunay::fill) makes is opposite this corner.
+const BASE: usize = 2;
 
 /// How a trace ended.
 enum Met {
@@ -91,9 +143,11 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             }
             match self.trace(a, b) {
                 Met::Vertex(v) => {
-                    self.retriangulate(a, v);
-                    self.set_wall(a, v, true);
-                    self.settle();
+                    if self.scratch.corridor.is_empty() {
+                        self.set_wall(a, v, true); // the edge is there
+                    } else {
+                        self.retriangulate();
+                    }
                     if v != b {
                         self.lines.split(a, b, v);
                         pieces.push((v, b));
@@ -152,17 +206,20 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     fn trace(&mut self, a: VertexId, b: VertexId) -> Met {
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.corridor.clear();
-        scratch.left.clear();
-        scratch.right.clear();
-        scratch.left.push(a);
-        scratch.right.push(a);
+        scratch.left.clear(a);
+        scratch.right.clear(a);
         let met = self.trace_into(a, b, &mut scratch);
         self.scratch = scratch;
         met
     }
 
-    fn trace_into(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
+    fn trace_into(&self, a: VertexId, b: VertexId, Scratch { corridor, left, right, .. }: &mut Scratch) -> Met {
         let tds = self.tds();
+        let edge = |cell: CellId, i: usize| {
+            let outside = tds.neighbor(cell, i);
+            let j = tds.index_of_neighbor(outside, cell);
+            Edge { cell: outside, i: j, is_wall: tds.cell_data(cell).has(i), is_spike: false }
+        };
         // The triangle at `a` through which the segment leaves, or a neighbor right on the way.
         let mut leaves = None;
         for cell in tds.around(a) {
@@ -174,145 +231,126 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             match self.turn(a, u, b) {
                 Sign::Zero if self.is_ahead(a, b, u) => return Met::Vertex(u),
                 Sign::Positive if w != VertexId::INFINITE && self.turn(a, w, b) == Sign::Negative => {
-                    leaves = Some((cell, i, u, w));
+                    right.push(u, edge(cell, cw(i)));
+                    left.push(w, edge(cell, ccw(i)));
+                    leaves = Some((cell, i));
                     break;
                 }
                 _ => {}
             }
         }
-        let Some((mut cell, mut i, mut right, mut left)) = leaves else {
+        let Some((mut cell, mut i)) = leaves else {
             // Unreachable: the triangles around a vertex of a convex region leave no gap.
             return Met::Vertex(b);
         };
         loop {
-            scratch.corridor.push(cell);
-            scratch.left.extend((scratch.left.last() != Some(&left)).then_some(left));
-            scratch.right.extend((scratch.right.last() != Some(&right)).then_some(right));
+            corridor.push(cell);
             if tds.cell_data(cell).has(i) {
                 return Met::Wall(cell, i);
             }
             let beyond = tds.neighbor(cell, i);
             let j = tds.index_of_neighbor(beyond, cell);
             let p = tds.vertex(beyond, j);
-            match self.turn(a, b, p) {
+            // `beyond` is (p, left, right) counter-clockwise: the one on p's side is left behind.
+            let turn = self.turn(a, b, p);
+            if turn != Sign::Negative {
+                left.push(p, edge(beyond, cw(j)));
+            }
+            if turn != Sign::Positive {
+                right.push(p, edge(beyond, ccw(j)));
+            }
+            i = match turn {
                 Sign::Zero => {
-                    scratch.corridor.push(beyond);
-                    scratch.left.push(p);
-                    scratch.right.push(p);
+                    corridor.push(beyond);
                     return Met::Vertex(p);
                 }
-                // `beyond` is (p, left, right) counter-clockwise: drop the one on p's side.
-                Sign::Positive => {
-                    i = ccw(j);
-                    left = p;
-                }
-                Sign::Negative => {
-                    i = cw(j);
-                    right = p;
-                }
-            }
+                Sign::Positive => ccw(j),
+                Sign::Negative => cw(j),
+            };
             cell = beyond;
         }
     }
 
-    /// Replaces the corridor by triangles on both sides of the edge `a b`.
-    fn retriangulate(&mut self, a: VertexId, b: VertexId) {
-        if self.scratch.corridor.is_empty() {
-            return; // the edge is there
-        }
+    /// Replaces the corridor by triangles on both sides of the segment, which is a constraint then. What was a constrained
+    /// Delaunay triangulation is one again: triangles that the segment does not cross see no more than before.
+    fn retriangulate(&mut self) {
         let mut scratch = std::mem::take(&mut self.scratch);
-        self.open_border(&mut scratch);
-        // Left: the polygon runs from a over the chain to b, the base a b has it on its left. Right: the
-        // base is b a, the chain runs from b back to a.
-        scratch.right.reverse();
-        let mut reuse = std::mem::take(&mut scratch.corridor);
-        let left = std::mem::take(&mut scratch.left);
-        let right = std::mem::take(&mut scratch.right);
-        self.fill(&left, &mut reuse, &mut scratch);
-        self.fill(&right, &mut reuse, &mut scratch);
-        debug_assert!(reuse.is_empty() && scratch.open.is_empty(), "the corridor was not filled");
-        debug_assert!(self.inner.tds.edge(a, b).is_some());
-        (scratch.left, scratch.right, scratch.corridor) = (left, right, reuse);
-        let spikes = std::mem::take(&mut scratch.spikes);
+        let Scratch { corridor, left, right, parts, .. } = &mut scratch;
+        // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end, has
+        // it on its left. On the right it is the other way around.
+        right.chain.reverse();
+        right.edges.reverse();
+        let sides = [self.fill(left, corridor, parts), self.fill(right, corridor, parts)];
+        if let [Some(left), Some(right)] = sides {
+            self.inner.tds.link(left, BASE, right, BASE);
+            for cell in [left, right] {
+                let data = self.inner.tds.cell_data_mut(cell);
+                *data = data.with(BASE, true);
+            }
+        }
+        debug_assert!(corridor.is_empty(), "the corridor was not filled");
         self.scratch = scratch;
-        for &[u, v] in &spikes {
-            self.set_wall(u, v, true);
-        }
-        self.scratch.spikes = spikes;
-        self.scratch.spikes.clear();
     }
 
-    /// Lists the edges around the corridor, with the cell on their outer side.
-    fn open_border(&self, scratch: &mut Scratch) {
-        let tds = self.tds();
-        scratch.open.clear();
-        let corridor = &scratch.corridor;
-        for (at, &cell) in corridor.iter().enumerate() {
-            let crossed = [at.checked_sub(1), Some(at + 1)].map(|k| k.and_then(|k| corridor.get(k)).copied());
-            for i in 0..3 {
-                let outside = tds.neighbor(cell, i);
-                if crossed.contains(&Some(outside)) {
-                    continue; // the corridor goes on there
-                }
-                let edge = tds.edge_ends(cell, i);
-                let j = tds.index_of_neighbor(outside, cell);
-                // The corridor may touch itself around the tip of a spike; both sides are then ours.
-                let own = scratch.open.remove(&[edge[1], edge[0]]).is_some();
-                if own {
-                    scratch.spikes.extend(tds.cell_data(cell).has(i).then_some(edge));
-                } else {
-                    scratch.open.insert(edge, (outside, j));
-                }
-            }
-        }
-    }
-
-    /// Triangulates the polygon `chain` whose base runs from its first to its last vertex, with cells
-    /// from `reuse`.
-    fn fill(&mut self, chain: &[VertexId], reuse: &mut Vec<CellId>, scratch: &mut Scratch) {
-        let mut bases = vec![(0, chain.len() - 1)];
-        while let Some((first, last)) = bases.pop() {
-            if last - first < 2 {
-                continue;
-            }
-            let (a, b) = (chain[first], chain[last]);
-            let mut best = None;
-            for k in first + 1..last {
-                let p = chain[k];
-                if self.turn(a, b, p) != Sign::Positive {
-                    continue; // behind the base, or an end of it met again at a spike
-                }
-                let closer = |c: usize| {
-                    chain[c] != p
-                        && in_sphere(&self.inner.geometry, [a, b, chain[c]].map(|v| self.point(v)), self.point(p))
-                };
-                if best.is_none_or(closer) {
-                    best = Some(k);
-                }
-            }
-            let (Some(apex), Some(cell)) = (best, reuse.pop()) else {
+    /// Triangulates a side, over the base from its chain's first to its last vertex, with cells from `free`. Returns the
+    /// triangle on the base.
+    fn fill(&mut self, side: &mut Side, free: &mut Vec<CellId>, parts: &mut Vec<Part>) -> Option<CellId> {
+        let spikes = side.mark_spikes();
+        let mut on_base = None;
+        parts.push((0, side.chain.len() - 1, None));
+        while let Some((first, last, above)) = parts.pop() {
+            let (Some(apex), Some(cell)) = (self.apex(&side.chain[first..=last]), free.pop()) else {
                 debug_assert!(false, "a polygon without a triangle on its base");
                 continue;
             };
-            self.inner.tds.set_corners(cell, [a, b, chain[apex]]);
-            *self.inner.tds.cell_data_mut(cell) = Walls::default();
-            for (i, edge) in [[b, chain[apex]], [chain[apex], a], [a, b]].into_iter().enumerate() {
-                match scratch.open.remove(&edge) {
-                    Some((beside, j)) => {
-                        self.inner.tds.link(cell, i, beside, j);
-                        let wall = self.is_constrained(beside, j);
-                        let data = self.inner.tds.cell_data_mut(cell);
-                        *data = data.with(i, wall);
-                    }
-                    None => {
-                        scratch.open.insert([edge[1], edge[0]], (cell, i));
-                    }
+            let apex = first + apex;
+            self.inner.tds.set_corners(cell, [first, last, apex].map(|k| side.chain[k]));
+            match above {
+                Some((other, i)) => self.inner.tds.link(cell, BASE, other, i),
+                None => on_base = Some(cell),
+            }
+            let mut walls = Walls::default();
+            for (i, from, to) in [(0, apex, last), (1, first, apex)] {
+                if to - from > 1 {
+                    parts.push((from, to, Some((cell, i))));
+                    continue;
+                }
+                let edge = &mut side.edges[from];
+                walls = walls.with(i, edge.is_wall);
+                if edge.is_spike {
+                    (edge.cell, edge.i) = (cell, i);
+                } else {
+                    self.inner.tds.link(cell, i, edge.cell, edge.i);
                 }
             }
-            scratch.unsettled.push(cell);
-            bases.push((first, apex));
-            bases.push((apex, last));
+            *self.inner.tds.cell_data_mut(cell) = walls;
         }
+        for [p, q] in spikes.into_iter().map(|pair| pair.map(|k| side.edges[k])) {
+            self.inner.tds.link(p.cell, p.i, q.cell, q.i);
+        }
+        on_base
+    }
+
+    /// Which vertex of a chain makes an empty circle with its first and last.
+    fn apex(&self, chain: &[VertexId]) -> Option<usize> {
+        if chain.len() == 3 {
+            return Some(1);
+        }
+        let (a, b) = (chain[0], chain[chain.len() - 1]);
+        let mut best = None;
+        for k in 1..chain.len() - 1 {
+            let p = chain[k];
+            if self.turn(a, b, p) != Sign::Positive {
+                continue; // behind the base, or an end of it met again at a spike
+            }
+            let closer = |c: usize| {
+                chain[c] != p && in_sphere(&self.inner.geometry, [a, b, chain[c]].map(|v| self.point(v)), self.point(p))
+            };
+            if best.is_none_or(closer) {
+                best = Some(k);
+            }
+        }
+        best
     }
 
     /// Restores the law, starting from the cells in `unsettled`.
