@@ -12,6 +12,7 @@ use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
+use super::bulk::{Grain, Sites};
 use super::lines::undirected;
 use super::{ConstrainedDelaunay, Refused, spatial_order};
 
@@ -62,7 +63,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
                 return Err(Refused::Index { line, index });
             }
         }
-        let (sites, mut vertices) = Self::sites(&geometry, points)?;
+        let (sites, mut vertices) = Sites::of(&geometry, points, Grain::default())?;
+        if lines.is_empty() {
+            return Ok((Self::from_sites(geometry, sites), vertices));
+        }
         let named = |line: &L| line.as_ref().iter().map(|&i| vertices[i as usize]).collect();
         let lines = lines.iter().map(named).collect();
         let (triangulation, renumbered) = Self::from_sorted_lines(geometry, sites, lines, on_crossing)?;
@@ -76,17 +80,14 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// be added, the new number of each point is returned.
     pub(crate) fn from_sorted_lines(
         geometry: G,
-        mut sites: Vec<G::Point>,
+        mut sites: Sites<G::Point>,
         mut lines: VertexLines,
         on_crossing: OnCrossing,
     ) -> Result<(Self, Option<Vec<VertexId>>), Refused> {
-        if let Some(bad) = sites.iter().position(|p| !geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
         let segments = segments_of(&lines);
-        let arrangement = Arrangement::new(sites.len(), |i| geometry.plan(&sites[i as usize]), &segments);
+        let arrangement = Arrangement::new(sites.points.len(), |i| geometry.plan(&sites.points[i as usize]), &segments);
         if on_crossing == OnCrossing::Reject {
-            reject(&geometry, &sites, &lines, &arrangement, &segments)?;
+            reject(&geometry, &sites.points, &lines, &arrangement, &segments)?;
         }
         let (renumbered, added) = add_sites(&geometry, &mut sites, &arrangement, &segments)?;
         let vertex = |site: u32| match &renumbered {
@@ -97,7 +98,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             lines.iter_mut().flatten().for_each(|v| *v = renumbered[v.index()]);
         }
 
-        let mut triangulation = Self::from_sorted(geometry, sites)?;
+        let mut triangulation = Self::from_sites(geometry, sites);
         let mut pieces = Vec::with_capacity(segments.len());
         for (i, &[a, b]) in segments.iter().enumerate() {
             let between = arrangement.chain(i as u32);
@@ -130,24 +131,6 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             triangulation.rearrange();
         }
         Ok((triangulation, renumbered))
-    }
-
-    /// The distinct sites of points in spatial order, and of each point the number of its site.
-    pub(super) fn sites(geometry: &G, points: &[G::Point]) -> Result<(Vec<G::Point>, Vec<VertexId>), Refused> {
-        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
-        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
-        let mut sites: Vec<G::Point> = Vec::with_capacity(points.len());
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for index in order {
-            let p = points[index as usize];
-            if sites.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
-                sites.push(p);
-            }
-            vertices[index as usize] = VertexId::new(sites.len() - 1);
-        }
-        Ok((sites, vertices))
     }
 
     /// How the crossings of lines were rounded; `None` if none cross.
@@ -202,37 +185,38 @@ fn find(lines: &VertexLines, segment: [u32; 2]) -> (usize, usize) {
 /// of every site then, if there were any to add; and the numbers of those that are new.
 fn add_sites<G: Crossing + Coordinates<3>>(
     geometry: &G,
-    sites: &mut Vec<G::Point>,
+    sites: &mut Sites<G::Point>,
     arrangement: &Arrangement,
     segments: &[[u32; 2]],
 ) -> Result<(Option<Vec<VertexId>>, Vec<VertexId>), Refused> {
     if arrangement.added().is_empty() {
         return Ok((None, Vec::new()));
     }
-    let given = sites.len() as u32;
+    let mut all = std::mem::take(&mut sites.points);
+    let given = all.len() as u32;
     let through = arrangement.through_added();
     let mut met = Vec::new();
     for (i, &place) in arrangement.added().iter().enumerate() {
         let here = through_site(&through, given + i as u32);
         met.clear();
-        met.extend(here.iter().map(|&(_, segment)| segments[segment as usize].map(|end| sites[end as usize])));
+        met.extend(here.iter().map(|&(_, segment)| segments[segment as usize].map(|end| all[end as usize])));
         let segments: Vec<[&G::Point; 2]> = met.iter().map(|ends| ends.each_ref()).collect();
         let p = geometry.meet(place, &segments);
-        sites.push(p);
+        all.push(p);
     }
-    let order = spatial_order(sites.len(), |i| geometry.coordinates(&sites[i]))?;
-    let mut all: Vec<G::Point> = Vec::with_capacity(sites.len());
-    let mut renumbered = vec![VertexId::INFINITE; sites.len()];
+    let order = spatial_order(all.len(), |i| geometry.coordinates(&all[i]))?;
+    let mut sorted: Vec<G::Point> = Vec::with_capacity(all.len());
+    let mut renumbered = vec![VertexId::INFINITE; all.len()];
     let mut added = Vec::new();
     for index in order {
         // Equal places are in the order of their numbers: what was given stands.
-        let p = sites[index as usize];
-        if all.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
-            added.extend((index >= given).then(|| VertexId::new(all.len())));
-            all.push(p);
+        let p = all[index as usize];
+        if sorted.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
+            added.extend((index >= given).then(|| VertexId::new(sorted.len())));
+            sorted.push(p);
         }
-        renumbered[index as usize] = VertexId::new(all.len() - 1);
+        renumbered[index as usize] = VertexId::new(sorted.len() - 1);
     }
-    *sites = all;
+    *sites = Sites::sorted(geometry, sorted)?;
     Ok((Some(renumbered), added))
 }
