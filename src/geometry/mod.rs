@@ -28,7 +28,7 @@ mod space;
 mod steps;
 mod terrain;
 
-pub(crate) use perturbation::{in_sphere, in_sphere_of_flat};
+pub(crate) use perturbation::{in_sphere, in_sphere_of_flat, in_tied_circle};
 pub use plane::{Plane, distance_to_segment};
 pub use space::Space;
 pub use steps::Steps;
@@ -127,13 +127,27 @@ pub trait Geometry<const N: usize> {
     }
 }
 
-/// A geometry that knows numbers for its points. Only for sorting: no answer depends on it.
+/// A geometry that knows numbers for its points.
+///
+/// # Laws
+/// - In space coordinates are for sorting only: no answer depends on them.
+/// - In the plane they are exact: two sites have different ones, and if the predicates say that points lie along a line in some order,
+///   the coordinates say so, too.
 pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     /// The coordinates, up to three of them.
     type Coordinates: AsRef<[f64]>;
 
     /// Coordinates of a point.
     fn coordinates(&self, p: &Self::Point) -> Self::Coordinates;
+
+    /// Where a point lies in the plane, if the predicates' answers are the signs of
+    /// [`Orientation2`](crate::kernel::Orientation2) and [`InCircle`](crate::kernel::InCircle) of such places, within the
+    /// [range](crate::kernel::RANGE) of floating point. Construction in bulk then asks the geometry what floating point cannot
+    /// answer with certainty only, and takes half the time.
+    #[inline(always)]
+    fn exact_plan(&self, _: &Self::Point) -> Option<[f64; 2]> {
+        None
+    }
 }
 
 /// A geometry of the plane that can make points where segments meet: what constrained triangulations need

@@ -10,7 +10,7 @@
 
 use std::cmp::Ordering;
 
-use super::Geometry;
+use super::{Geometry, lexicographic};
 use crate::num::Sign;
 
 /// Whether `q` lies inside of the circumscribed sphere of a positively oriented simplex; on the
@@ -28,7 +28,16 @@ pub(crate) fn in_sphere<G: Geometry<N>, const N: usize>(geometry: &G, simplex: [
     }
 }
 
-/// The same within the flat that the simplex spans, for either orientation of it.
+/// Whether `q`, which lies on the circle of three points in the plane, beyond the edge between two of them as seen from
+/// the third, is inside after the perturbation: of the quadrilateral's diagonals the one that ends at the largest point
+/// goes. What [`in_sphere`] finds, in fewer steps.
+#[inline]
+pub(crate) fn in_tied_circle(opposite: [f64; 2], [a, b]: [[f64; 2]; 2], q: [f64; 2]) -> bool {
+    let larger = |p, q| if lexicographic(p, q).is_lt() { q } else { p };
+    lexicographic(larger(opposite, q), larger(a, b)).is_lt()
+}
+
+/// [`in_sphere`] within the flat that the simplex spans, for either orientation of it.
 pub(crate) fn in_sphere_of_flat<G: Geometry<N>, const N: usize>(
     geometry: &G,
     simplex: &[&G::Point],

@@ -40,6 +40,11 @@ impl<K: Kernel> Coordinates<3> for Plane<K> {
     fn coordinates(&self, p: &[f64; 2]) -> [f64; 2] {
         *p
     }
+
+    #[inline(always)]
+    fn exact_plan(&self, p: &[f64; 2]) -> Option<[f64; 2]> {
+        K::RANGE.filtered(*p)
+    }
 }
 
 impl<K: Kernel> Crossing for Plane<K> {

@@ -49,4 +49,8 @@ impl<K: Kernel> Coordinates<3> for Steps<K> {
     fn coordinates(&self, p: &[i32; 3]) -> [f64; 2] {
         plan(p)
     }
+    #[inline(always)]
+    fn exact_plan(&self, p: &[i32; 3]) -> Option<[f64; 2]> {
+        Plane::<K>::default().exact_plan(&plan(p))
+    }
 }

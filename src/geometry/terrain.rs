@@ -48,6 +48,11 @@ impl<K: Kernel> Coordinates<3> for Terrain<K> {
     fn coordinates(&self, p: &[f64; 3]) -> [f64; 2] {
         plan(p)
     }
+
+    #[inline(always)]
+    fn exact_plan(&self, p: &[f64; 3]) -> Option<[f64; 2]> {
+        K::RANGE.filtered(plan(p))
+    }
 }
 
 impl<K: Kernel> Crossing for Terrain<K> {

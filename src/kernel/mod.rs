@@ -88,6 +88,13 @@ impl Range {
         }
     }
 
+    /// Coordinates within this range, if they are within [`RANGE`], too.
+    #[inline(always)]
+    pub(crate) fn filtered<const D: usize>(self, coordinates: [f64; D]) -> Option<[f64; D]> {
+        let is_within = RANGE.min <= self.min && self.max <= RANGE.max;
+        (is_within || coordinates.iter().all(|&x| RANGE.admits(x))).then_some(coordinates)
+    }
+
     /// Whether a coordinate is admitted. Never a NaN.
     #[inline]
     pub fn admits(self, x: f64) -> bool {

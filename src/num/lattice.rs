@@ -6,7 +6,7 @@
 
 /// The exponent of the lowest set bit of a finite number; `None` for zero.
 #[inline]
-fn lowest_bit(x: f64) -> Option<i32> {
+pub fn lowest_bit(x: f64) -> Option<i32> {
     if x == 0.0 {
         return None;
     }

@@ -22,7 +22,7 @@ pub type CellId = Id<CellTag>;
 
 impl<T> Id<T> {
     /// Stands in slots that the dimension does not use.
-    pub(super) const NONE: Self = Self::reserved(u32::MAX - 1);
+    pub(crate) const NONE: Self = Self::reserved(u32::MAX - 1);
 
     /// Numbers below this are ordinary.
     pub const LIMIT: usize = (u32::MAX - 2) as usize;
@@ -45,6 +45,18 @@ impl<T> Id<T> {
             Some(stored) => Id(stored, PhantomData),
             None => unreachable!(),
         }
+    }
+
+    /// For what else is kept where ids are while a complex is built.
+    #[inline(always)]
+    pub(crate) fn from_stored(stored: NonZeroU32) -> Self {
+        Id(stored, PhantomData)
+    }
+
+    /// See [`from_stored`](Self::from_stored).
+    #[inline(always)]
+    pub(crate) fn stored(self) -> NonZeroU32 {
+        self.0
     }
 
     /// The position in an array.

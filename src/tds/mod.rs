@@ -86,21 +86,24 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// A full-dimensional complex, given as its cells; the vertices are numbered from 0 and all in use.
-    pub(crate) fn from_cells(links: Vec<Links<N>>, vertices: usize) -> Self
+    /// A full-dimensional complex, given as its cells and a cell of each vertex; the vertices are numbered from 0 and
+    /// all in use.
+    pub(crate) fn from_cells(links: Vec<Links<N>>, vertex_cell: Vec<CellId>, infinite_cell: CellId) -> Self
     where
         V: Default,
     {
-        let mut tds = Self::new();
-        tds.dimension = N as i32 - 1;
-        tds.cell_data = vec![C::default(); links.len()];
-        tds.vertex_data.resize_with(vertices, V::default);
-        tds.vertex_cell = vec![CellId::NONE; vertices];
-        for (index, links) in links.iter().enumerate() {
-            links.vertices.iter().for_each(|&vertex| tds.set_cell_of(vertex, CellId::new(index)));
+        let mut vertex_data = Vec::new();
+        vertex_data.resize_with(vertex_cell.len(), V::default);
+        Tds {
+            dimension: N as i32 - 1,
+            cell_data: vec![C::default(); links.len()],
+            links,
+            unused: Vec::new(),
+            vertex_cell,
+            vertex_data,
+            unused_vertices: Vec::new(),
+            infinite_cell,
         }
-        tds.links = links;
-        tds
     }
 
     /// Makes room for that many more vertices and the cells that come with them.

@@ -160,9 +160,9 @@ impl TinBuilder {
         // One vertex for each place, in spatial order.
         let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
         let lines = lines_of(&line_vertices, &self.line_ends);
-        let (mut triangulation, renumbered) =
-            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, lines, self.on_crossing)
-                .map_err(|error| not_built(error, name))?;
+        let (mut triangulation, renumbered) = crate::triangulation::Sites::sorted(&geometry, vertices)
+            .and_then(|sites| ConstrainedDelaunay::from_sorted_lines(geometry, sites, lines, self.on_crossing))
+            .map_err(|error| not_built(error, name))?;
         if let Some(renumbered) = renumbered {
             disputed.iter_mut().for_each(|pass| pass.vertex = renumbered[pass.vertex.index()]);
         }

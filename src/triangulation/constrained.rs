@@ -2,11 +2,12 @@ use std::collections::HashSet;
 use std::ops::Deref;
 
 use crate::geometry::{Coordinates, Crossing};
-use crate::tds::{CellId, Tds, VertexId};
+use crate::tds::{CellId, VertexId};
 
+use super::bulk::{self, Sites};
 use super::lines::Lines;
 use super::segment::Scratch;
-use super::{Flaw, Level, Location, Refused, Rounding, Triangulation, bulk};
+use super::{Flaw, Level, Location, Refused, Rounding, Triangulation};
 
 /// Which edges of a triangle are constraints: bit `i` is set for the one opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -226,27 +227,21 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 }
 
 impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
-    /// Triangulates points that are all different, and that the caller has put in spatial order: the
-    /// vertices are numbered as the points are, and no copy of them is made.
-    ///
-    /// # Errors
-    /// The first point that is refused, by its position.
-    pub(crate) fn from_sorted(geometry: G, points: Vec<G::Point>) -> Result<Self, Refused> {
+    /// Triangulates sites: the vertices are numbered as their points are, and no copy of them is made.
+    pub(crate) fn from_sites(geometry: G, sites: Sites<G::Point>) -> Self {
         let mut triangulation = Self::new(geometry);
-        if let Some(bad) = points.iter().position(|p| !triangulation.inner.geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
+        let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, bulk::Grain::default());
         let count = points.len();
         triangulation.inner.points = points;
-        if let Some(cells) = bulk::build(&triangulation.inner.geometry, &triangulation.inner.points) {
-            triangulation.inner.tds = Tds::from_cells(cells, count);
-            return Ok(triangulation);
+        if let Some(tds) = tds {
+            triangulation.inner.tds = tds;
+            return triangulation;
         }
         for index in 0..count {
             triangulation.insert_near(triangulation.inner.points[index], None);
         }
         debug_assert_eq!(triangulation.vertex_count(), count, "two points on one site");
-        Ok(triangulation)
+        triangulation
     }
 
     /// Triangulates many points. Returns the vertex of each point beside: they are numbered along a space
@@ -258,7 +253,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// # Complexity
     /// O(n log n), on all threads.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
-        let (sites, vertices) = Self::sites(&geometry, points)?;
-        Ok((Self::from_sorted(geometry, sites)?, vertices))
+        let (sites, vertices) = Sites::of(&geometry, points, bulk::Grain::default())?;
+        Ok((Self::from_sites(geometry, sites), vertices))
     }
 }

@@ -3,7 +3,7 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::VertexId;
 
-use super::{Refused, Triangulation, spatial_order};
+use super::{Refused, Triangulation, bulk};
 
 /// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space: `N` follows from the
 /// geometry.
@@ -56,25 +56,30 @@ impl<G: Geometry<N>, const N: usize> Delaunay<G, N> {
 }
 
 impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
-    /// Triangulates many points, taken in spatial order. Returns the vertex of each point beside;
-    /// points on one site share theirs.
+    /// Triangulates many points. Returns the vertex of each point beside: they are numbered in [spatial
+    /// order](super::spatial_order), and points on one site share theirs (the first of them stands).
     ///
     /// # Errors
     /// The first point that is refused, by its position.
     ///
     /// # Complexity
-    /// O(n log n) to sort; linear in practice to insert.
+    /// In the plane by divide and conquer (Guibas and Stolfi 1985, Dwyer 1987), on all threads: O(n log n) at
+    /// worst, linear for points that are spread evenly. Peak memory is 60 bytes a point beside two copies of the
+    /// points. In space by insertion, linear in practice.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
-        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
-        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
+        let grain = bulk::Grain::default();
+        let (sites, vertices) = bulk::Sites::of(&geometry, points, grain)?;
         let mut triangulation = Self::new(geometry);
-        triangulation.inner.points.reserve_exact(points.len());
-        triangulation.inner.tds.reserve(points.len());
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for index in order {
-            vertices[index as usize] = triangulation.insert(points[index as usize])?;
+        let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, grain);
+        let count = points.len();
+        triangulation.inner.points = points;
+        if let Some(tds) = tds {
+            triangulation.inner.tds = tds;
+            return Ok((triangulation, vertices));
+        }
+        triangulation.inner.tds.reserve(count);
+        for index in 0..count {
+            triangulation.insert(triangulation.inner.points[index])?;
         }
         Ok((triangulation, vertices))
     }

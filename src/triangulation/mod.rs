@@ -45,8 +45,9 @@ mod network;
 mod remove;
 mod segment;
 mod simplify;
-mod sort;
 
+pub(crate) use bulk::Sites;
+pub use bulk::spatial_order;
 pub use check::{Flaw, Level};
 pub use constrained::{ConstrainedDelaunay, Walls};
 pub use delaunay::Delaunay;
@@ -54,7 +55,6 @@ pub use lines::{LineId, LineTag};
 pub use locate::Location;
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
-pub use sort::spatial_order;
 
 use std::fmt;
 

@@ -12,8 +12,9 @@ use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
+use super::bulk::{Grain, Sites};
 use super::lines::{segments_of, undirected};
-use super::{ConstrainedDelaunay, Refused, spatial_order};
+use super::{ConstrainedDelaunay, Refused};
 
 /// What becomes of lines that cross between their vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,7 +63,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
                 return Err(Refused::Index { line, index });
             }
         }
-        let (sites, mut vertices) = Self::sites(&geometry, points)?;
+        let (sites, mut vertices) = Sites::of(&geometry, points, Grain::default())?;
+        if lines.is_empty() {
+            return Ok((Self::from_sites(geometry, sites), vertices));
+        }
         let named = |line: &L| line.as_ref().iter().map(|&i| vertices[i as usize]).collect();
         let lines = lines.iter().map(named).collect();
         let (triangulation, renumbered) = Self::from_sorted_lines(geometry, sites, lines, on_crossing)?;
@@ -76,18 +80,15 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// be added, the new number of each point is returned.
     pub(crate) fn from_sorted_lines(
         geometry: G,
-        mut sites: Vec<G::Point>,
+        mut sites: Sites<G::Point>,
         mut lines: VertexLines,
         on_crossing: OnCrossing,
     ) -> Result<(Self, Option<Vec<VertexId>>), Refused> {
-        if let Some(bad) = sites.iter().position(|p| !geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
         let index = |v: VertexId| v.index() as u32;
         let segments = segments_of(lines.iter().map(|line| &**line), index);
-        let arrangement = Arrangement::new(sites.len(), |i| geometry.plan(&sites[i as usize]), &segments);
+        let arrangement = Arrangement::new(sites.points.len(), |i| geometry.plan(&sites.points[i as usize]), &segments);
         if on_crossing == OnCrossing::Reject {
-            reject(&geometry, &sites, &lines, &arrangement, &segments)?;
+            reject(&geometry, &sites.points, &lines, &arrangement, &segments)?;
         }
         let (renumbered, added) = add_sites(&geometry, &mut sites, &arrangement, &segments)?;
         let vertex = |site: u32| match &renumbered {
@@ -98,7 +99,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             lines.iter_mut().flatten().for_each(|v| *v = renumbered[v.index()]);
         }
 
-        let mut triangulation = Self::from_sorted(geometry, sites)?;
+        let mut triangulation = Self::from_sites(geometry, sites);
         triangulation.lines.given = lines.into_iter().map(Some).collect();
         triangulation.crossings = added;
         if !triangulation.lead(&arrangement, &segments, vertex).is_empty() {
@@ -124,24 +125,6 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         pieces.retain(|&[a, b]| !self.join(a, b));
         pieces
-    }
-
-    /// The distinct sites of points in spatial order, and of each point the number of its site.
-    pub(super) fn sites(geometry: &G, points: &[G::Point]) -> Result<(Vec<G::Point>, Vec<VertexId>), Refused> {
-        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
-        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
-        let mut sites: Vec<G::Point> = Vec::with_capacity(points.len());
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for index in order {
-            let p = points[index as usize];
-            if sites.last().is_none_or(|site| geometry.compare(site, &p).is_ne()) {
-                sites.push(p);
-            }
-            vertices[index as usize] = VertexId::new(sites.len() - 1);
-        }
-        Ok((sites, vertices))
     }
 
     /// How the crossings of lines were rounded; `None` if none cross.
@@ -209,21 +192,22 @@ pub(super) fn points_added<G: Crossing>(
 /// number of every site then, if there were any to add; and the numbers of those that are new.
 fn add_sites<G: Crossing + Coordinates<3>>(
     geometry: &G,
-    sites: &mut Vec<G::Point>,
+    sites: &mut Sites<G::Point>,
     arrangement: &Arrangement,
     segments: &[[u32; 2]],
 ) -> Result<(Option<Vec<VertexId>>, Vec<VertexId>), Refused> {
     if arrangement.added().is_empty() {
         return Ok((None, Vec::new()));
     }
-    let given = sites.len();
-    let added = points_added(geometry, arrangement, segments, |site| sites[site as usize]);
-    sites.extend(added);
+    let mut all = std::mem::take(&mut sites.points);
+    let given = all.len();
+    let added = points_added(geometry, arrangement, segments, |site| all[site as usize]);
+    all.extend(added);
     // Where a given point is at such a place already, it stands.
-    let (all, renumbered) = ConstrainedDelaunay::<G>::sites(geometry, sites)?;
-    *sites = all;
-    let mut is_given = vec![false; sites.len()];
+    let (merged, renumbered) = Sites::of(geometry, &all, Grain::default())?;
+    *sites = merged;
+    let mut is_given = vec![false; sites.points.len()];
     renumbered[..given].iter().for_each(|v| is_given[v.index()] = true);
-    let added = (0..sites.len()).filter(|&i| !is_given[i]).map(VertexId::new).collect();
+    let added = (0..is_given.len()).filter(|&i| !is_given[i]).map(VertexId::new).collect();
     Ok((Some(renumbered), added))
 }

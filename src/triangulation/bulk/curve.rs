@@ -1,0 +1,152 @@
+//! Where points lie on a space filling curve.
+
+use rayon::prelude::*;
+
+/// A Morton curve (Morton 1966) through the box around some points of one to three coordinates.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    /// Times `unit`.
+    min: [f64; 3],
+    /// Powers of two that bring the extent to where it and its inverse are numbers: 1, but at the extremes; 0 on an
+    /// axis on which all points are equal by comparison.
+    unit: [f64; 3],
+    /// Steps in a unit; the same on all axes, so that parts are squares and cubes.
+    scale: f64,
+}
+
+/// Least and largest coordinate on each axis, and how many axes there are.
+#[derive(Clone, Copy)]
+struct Span {
+    min: [f64; 3],
+    max: [f64; 3],
+    axes: usize,
+}
+
+impl Span {
+    const EMPTY: Self = Span { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3], axes: 0 };
+
+    #[inline(always)]
+    fn with(mut self, point: &[f64]) -> Self {
+        self.axes = point.len().min(3);
+        for (axis, &x) in point.iter().take(3).enumerate() {
+            // `f64::min` takes NaN into account, which costs.
+            self.min[axis] = if x < self.min[axis] { x } else { self.min[axis] };
+            self.max[axis] = if x > self.max[axis] { x } else { self.max[axis] };
+        }
+        self
+    }
+
+    fn and(self, other: Self) -> Self {
+        Span {
+            min: std::array::from_fn(|axis| self.min[axis].min(other.min[axis])),
+            max: std::array::from_fn(|axis| self.max[axis].max(other.max[axis])),
+            axes: self.axes.max(other.axes),
+        }
+    }
+}
+
+impl Curve {
+    /// The curve through `count` points; `chunk` of them are looked at together by one thread.
+    pub(super) fn through<A: AsRef<[f64]>>(
+        count: usize,
+        coordinates: impl Fn(usize) -> A + Sync,
+        chunk: usize,
+    ) -> Self {
+        let span_of = |from: usize, to: usize| (from..to).fold(Span::EMPTY, |s, i| s.with(coordinates(i).as_ref()));
+        let Span { min, max, axes } = if count <= chunk {
+            span_of(0, count)
+        } else {
+            let chunks = (0..count.div_ceil(chunk)).into_par_iter();
+            chunks.map(|c| span_of(c * chunk, count.min((c + 1) * chunk))).reduce(|| Span::EMPTY, Span::and)
+        };
+        let extent = |unit: f64| (0..axes).map(|axis| max[axis] * unit - min[axis] * unit).fold(0.0, f64::max);
+        let unit = match extent(1.0) {
+            f64::INFINITY => 0.5,
+            tiny if tiny < 2f64.powi(-900) => 2f64.powi(900),
+            _ => 1.0,
+        };
+        let bits = if axes == 3 { 21.0 } else { 31.0f64 };
+        let scale = (bits.exp2() - 1.0) / extent(unit);
+        let scale = if scale.is_finite() { scale } else { 0.0 };
+        // Where the unit makes a coordinate infinite, all are equal: the extent is tiny.
+        let unit = min.map(|x| if (x * unit).is_finite() { unit } else { 0.0 });
+        let min = std::array::from_fn(|axis| if unit[axis] == 0.0 { 0.0 } else { min[axis] * unit[axis] });
+        Curve { min, unit, scale }
+    }
+
+    /// Whether all points are in one place.
+    pub(super) fn is_point(&self) -> bool {
+        self.scale == 0.0
+    }
+
+    /// Which of the `2^31` (of three axes: `2^21`) steps along an axis a coordinate is in: never one less for a larger
+    /// coordinate.
+    #[inline(always)]
+    fn step(&self, axis: usize, x: f64) -> u64 {
+        // In the doubles from 2^52 to 2^53 the low bits are a whole number. A conversion has to look for overflow and
+        // NaN, which takes three times as long.
+        const WHOLE: f64 = (1u64 << 52) as f64;
+        let steps = (x * self.unit[axis] - self.min[axis]) * self.scale;
+        u64::from((steps + WHOLE).to_bits() as u32)
+    }
+
+    /// Where a point lies on the curve, in the high bits. The highest bit is one of the first axis, the others follow in
+    /// turn; a larger coordinate never has the smaller bits.
+    #[inline(always)]
+    pub(super) fn key(&self, point: &[f64]) -> u64 {
+        match *point {
+            [] => 0,
+            [x] => self.step(0, x) << 33,
+            [x, y] => spread_by_two(self.step(0, x)) << 3 | spread_by_two(self.step(1, y)) << 2,
+            [x, y, z, ..] => {
+                let [x, y, z] = [self.step(0, x), self.step(1, y), self.step(2, z)].map(spread_by_three);
+                x << 3 | y << 2 | z << 1
+            }
+        }
+    }
+}
+
+/// The bits of a 32-bit number at the even places of 64.
+#[inline(always)]
+fn spread_by_two(x: u64) -> u64 {
+    let x = (x | x << 16) & 0x0000_FFFF_0000_FFFF;
+    let x = (x | x << 8) & 0x00FF_00FF_00FF_00FF;
+    let x = (x | x << 4) & 0x0F0F_0F0F_0F0F_0F0F;
+    let x = (x | x << 2) & 0x3333_3333_3333_3333;
+    (x | x << 1) & 0x5555_5555_5555_5555
+}
+
+/// The bits of a 21-bit number at every third place of 63.
+#[inline(always)]
+fn spread_by_three(x: u64) -> u64 {
+    let x = (x | x << 32) & 0x001F_0000_0000_FFFF;
+    let x = (x | x << 16) & 0x001F_0000_FF00_00FF;
+    let x = (x | x << 8) & 0x100F_00F0_0F00_F00F;
+    let x = (x | x << 4) & 0x10C3_0C30_C30C_30C3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_spread_in_order() {
+        for bit in 0..31 {
+            assert_eq!(spread_by_two(1 << bit), 1 << (2 * bit));
+        }
+        for bit in 0..21 {
+            assert_eq!(spread_by_three(1 << bit), 1 << (3 * bit));
+        }
+    }
+
+    #[test]
+    fn the_highest_bit_halves_the_first_axis() {
+        let points = [[0.0, 0.0], [1.0, 1.0]];
+        let curve = Curve::through(2, |i| points[i], 8);
+        assert_eq!(curve.key(&[0.0, 0.0]), 0);
+        assert_eq!(curve.key(&[0.9, 0.0]) >> 62, 0b10);
+        assert_eq!(curve.key(&[0.0, 0.9]) >> 62, 0b01);
+        assert_eq!(curve.key(&[1.0, 1.0]), u64::MAX << 2);
+    }
+}

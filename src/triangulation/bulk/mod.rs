@@ -1,0 +1,224 @@
+//! Triangulating many points at once: divide and conquer on faces with ghosts.
+//!
+//! After Guibas and Stolfi (1985), with the cuts of Dwyer's variant (1987, both directions in turn) taken
+//! from a Morton order, and without an edge structure: a part of the plane is kept as a *sphere* of
+//! faces, where each edge of its hull has a ghost face that ends in the infinite vertex.
+//!
+//! 1. [`order`]: the points come in Morton order. A range of them is cut where the highest bit in which its keys
+//!    differ changes, so that one coordinate strictly separates the halves.
+//!
+//!    ```text
+//!      +-------+-------+        +-------+-------+
+//!      | c   d | g   h |        | c   d : g   h |
+//!      |       |       |        | . . . : . . . |      keys: y x
+//!      | a   b | e   f |        | a   b : e   f |            0 0 a b | 1 0 c d | 0 1 e f | 1 1 g h
+//!      +-------+-------+        +-------+-------+
+//!       first cut, in x          then in y
+//!    ```
+//! 2. [`small`]: ranges of up to four points are made directly.
+//! 3. [`merge`]: two halves are joined. Their lower common tangent is found on the rings of ghosts, then the gap is
+//!    zipped from there up. On each side the next hull vertex is a candidate; before, hull edges whose triangle
+//!    it would destroy are flipped out. The ghost of the chosen candidate *becomes* the new
+//!    triangle.
+//!
+//!    ```text
+//!        \ |      | /          \ |      | /
+//!      ---c|      |d---      ---c|______|d---
+//!         /|      |\           /| \     |\
+//!        / |      | \         / |   \   | \
+//!      --- a------b ---      ---a-----\ b ---
+//!         left  right          d in the circle of a b c: a b d is next
+//!    ```
+//! 4. [`finish`]: twins of edges become neighbors of faces.
+//!
+//! A range of `m` points has exactly `2 m - 2` faces, and a merge adds exactly two: range `[lo, hi)` owns the
+//! faces `2 lo .. 2 hi - 2`, a merge at `mid` adds `2 mid - 2` and `2 mid - 1`. So nothing is allocated, and
+//! halves can be built by different threads. Ties are broken as everywhere, so that the result is the
+//! same, cell for cell, as by any other road. Collinear points have ghosts only.
+//!
+//! [`filter`] holds the arithmetic. It is used if the geometry has [exact
+//! plans](Coordinates::exact_plan) of all points; else the same algorithm asks the geometry everything.
+
+mod curve;
+mod faces;
+mod filter;
+mod finish;
+mod merge;
+mod order;
+mod small;
+#[cfg(test)]
+mod tests;
+
+use std::any::Any;
+
+use rayon::prelude::*;
+
+use crate::geometry::Coordinates;
+use crate::tds::{Links, Tds};
+
+use curve::Curve;
+use faces::Range;
+use filter::Seen;
+use merge::NONE;
+use order::Keys;
+
+pub(crate) use order::Sites;
+pub use order::spatial_order;
+
+/// The most points whose edges can be numbered: `2 n - 2` faces with four numbers each. More are
+/// left to insertion one by one.
+const MAX_POINTS: usize = 1 << 29;
+const _: () = assert!(4 * (2 * MAX_POINTS as u64 - 2) <= u32::MAX as u64);
+
+/// How much work one thread does at a time, in points.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grain {
+    /// Of passes over all points.
+    points: usize,
+    /// Of groups that are sorted: two arrays of records stay in a core's cache.
+    group: usize,
+    /// Larger ranges are halved between threads.
+    range: usize,
+}
+
+impl Default for Grain {
+    fn default() -> Self {
+        Grain { points: 1 << 14, group: 1 << 14, range: 1 << 14 }
+    }
+}
+
+/// Two ghosts of a finished part, at opposite ends of it, to start looking from; [`NONE`] for one point.
+#[derive(Clone, Copy)]
+struct Part {
+    bottom: u32,
+    top: u32,
+    first: u32,
+}
+
+/// The direction in which a merge looks: its halves are apart in x or in y.
+#[derive(Clone, Copy, PartialEq)]
+enum Axis {
+    X,
+    Y,
+}
+
+/// Triangulates sites; `None` if they are all collinear, more than [`MAX_POINTS`], or not in the plane. Vertices are
+/// numbered as the points.
+///
+/// # Complexity
+/// O(n log n) at worst; linear for points that are spread evenly.
+pub(super) fn build<G, const N: usize, V, C>(
+    geometry: &G,
+    sites: Sites<G::Point>,
+    grain: Grain,
+) -> (Vec<G::Point>, Option<Tds<N, V, C>>)
+where
+    G: Coordinates<N>,
+    V: Default,
+    C: Copy + Default,
+{
+    let Sites { points, keys } = sites;
+    let count = points.len();
+    if N != 3 || !(3..=MAX_POINTS).contains(&count) {
+        return (points, None);
+    }
+    let mut faces: Vec<Links<3>> =
+        (0..2 * count - 2).into_par_iter().with_min_len(grain.points).map(|_| Links::UNUSED).collect();
+    let has_plan = |chunk: &[G::Point]| chunk.iter().all(|p| geometry.exact_plan(p).is_some());
+    if points.par_chunks(grain.points).all(has_plan) {
+        fill::<G, N, true>(geometry, &points, &keys, &mut faces, grain);
+    } else {
+        fill::<G, N, false>(geometry, &points, &keys, &mut faces, grain);
+    }
+    drop(keys);
+    let finished = finish::finish(&mut faces, count, grain);
+    // The same type, as `N` is 3, which the compiler does not know.
+    let faces: Box<dyn Any> = Box::new(faces);
+    let tds = match (finished, faces.downcast::<Vec<Links<N>>>()) {
+        (Some(cells), Ok(faces)) => Some(Tds::from_cells(*faces, cells.of_vertices, cells.of_infinite)),
+        _ => None,
+    };
+    (points, tds)
+}
+
+/// Builds the faces, with the twins of edges in the slots for neighbors.
+fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
+    geometry: &G,
+    points: &[G::Point],
+    keys: &Keys,
+    faces: &mut [Links<3>],
+    grain: Grain,
+) {
+    let seen = Seen::<G, N, FILTERED>::new(geometry, points);
+    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain }.build(0, points.len());
+}
+
+impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
+    fn build(&mut self, lo: usize, hi: usize) -> Part {
+        match hi - lo {
+            1 => return Part { bottom: NONE, top: NONE, first: lo as u32 },
+            2 => return self.pair(lo),
+            3 => return self.triple(lo),
+            4 => {
+                if let Some(part) = self.quadruple(lo) {
+                    return part;
+                }
+            }
+            _ => {}
+        }
+        let differing = self.keys.difference(lo - self.first, hi - 1 - self.first);
+        if differing == 0 {
+            return self.build_dense(lo, hi);
+        }
+        let bit = 63 - differing.leading_zeros();
+        let mid = self.cut(lo, hi, bit);
+        let (left, right) = if hi - lo > self.grain.range {
+            let (seen, keys, first, offset, grain) = (self.seen, self.keys, self.first, self.offset, self.grain);
+            let (left, right) = self.faces.split_at_mut(2 * mid - offset);
+            let mut left = Range { seen, keys, first, faces: left, offset, grain };
+            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain };
+            rayon::join(|| left.build(lo, mid), || right.build(mid, hi))
+        } else {
+            (self.build(lo, mid), self.build(mid, hi))
+        };
+        // The bit of x stands above that of y.
+        self.merge(left, right, mid, if bit % 2 == 1 { Axis::X } else { Axis::Y })
+    }
+
+    /// The first point of a range whose key has the bit.
+    ///
+    /// `PERF:` without branches on what is compared, as these are not predictable.
+    #[inline(always)]
+    fn cut(&self, lo: usize, hi: usize, bit: u32) -> usize {
+        const FEW: usize = 16;
+        let has = |i: usize| self.keys.has(i - self.first, bit);
+        if hi - lo <= FEW {
+            return hi - (lo..hi).map(|i| usize::from(has(i))).sum::<usize>();
+        }
+        let (mut from, mut length) = (lo, hi - lo);
+        while length > 1 {
+            let half = length / 2;
+            from += if has(from + half - 1) { 0 } else { half };
+            length -= half;
+        }
+        from + usize::from(!has(from))
+    }
+
+    /// A range of points that the keys do not tell apart: more bits of them do, or keys along the curve through these
+    /// points alone, see [`order`].
+    #[cold]
+    fn build_dense(&mut self, lo: usize, hi: usize) -> Part {
+        let count = hi - lo;
+        let coordinates = |i: usize| self.seen.coordinates(crate::tds::VertexId::new(lo + i));
+        let mut keys = Keys::default();
+        if !self.keys.are_whole() {
+            keys = Keys::of(count, coordinates, self.seen.curve(self.grain), self.grain);
+        }
+        if keys.is_empty() || keys.difference(0, count - 1) == 0 {
+            let curve = Curve::through(count, coordinates, self.grain.points);
+            keys = Keys::of(count, coordinates, &curve, self.grain);
+        }
+        let (seen, offset, grain) = (self.seen, self.offset, self.grain);
+        Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain }.build(lo, hi)
+    }
+}

@@ -1,0 +1,255 @@
+//! In bulk and one by one, on what is small and degenerate, in small grains.
+
+use std::collections::BTreeSet;
+
+use crate::geometry::{Coordinates, Geometry, Plane};
+use crate::kernel::{Adaptive, Exact, Fast, InCircle, Kernel, Orientation2, Wide};
+use crate::num::Sign;
+use crate::tds::VertexId;
+use crate::triangulation::{Delaunay, Level};
+
+use super::filter::{Arrow, Circle};
+use super::{Grain, Sites, build};
+
+const TINY: Grain = Grain { points: 3, group: 2, range: 3 };
+
+type Cells = BTreeSet<[[u64; 2]; 3]>;
+
+/// A generator of numbers (SplitMix64, Steele and others 2014).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ z >> 31
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit
+    }
+
+    /// From 0 to 1.
+    fn unit(&mut self) -> f64 {
+        self.next() as f64 / u64::MAX as f64
+    }
+
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            items.swap(i, self.below(i as u64 + 1) as usize);
+        }
+    }
+}
+
+fn place(p: [f64; 2]) -> [u64; 2] {
+    p.map(|x| (x + 0.0).to_bits())
+}
+
+/// The finite cells, each from its least corner on.
+fn cells<G: Geometry<3, Point = [f64; 2]>>(t: &Delaunay<G, 3>) -> Cells {
+    let cell = |cell| {
+        let mut corners = t.tds().corners(cell).map(|v| place(*t.point(v)));
+        let least = (0..3).min_by_key(|&i| corners[i]).unwrap_or(0);
+        corners.rotate_left(least);
+        corners
+    };
+    if t.dimension() < 2 { Cells::new() } else { t.finite_cells().map(cell).collect() }
+}
+
+fn one_by_one<G: Geometry<3, Point = [f64; 2]>>(geometry: G, points: &[[f64; 2]]) -> Cells {
+    let mut t = Delaunay::new(geometry);
+    for &p in points {
+        t.insert(p).unwrap();
+    }
+    cells(&t)
+}
+
+fn in_bulk<G: Coordinates<3, Point = [f64; 2]>>(geometry: G, points: &[[f64; 2]], grain: Grain) -> Cells {
+    let (sites, vertices) = Sites::of(&geometry, points, grain).unwrap();
+    assert_eq!(vertices.len(), points.len());
+    for (&p, v) in points.iter().zip(vertices) {
+        assert_eq!(place(sites.points[v.index()]), place(p));
+    }
+    let distinct: BTreeSet<_> = points.iter().map(|&p| place(p)).collect();
+    assert_eq!(sites.points.len(), distinct.len());
+    let mut t = Delaunay::new(geometry);
+    let (points, tds) = build(&t.inner.geometry, sites, grain);
+    t.inner.points = points;
+    if let Some(tds) = tds {
+        t.inner.tds = tds;
+        assert_eq!(t.check(Level::Law), []);
+    }
+    cells(&t)
+}
+
+/// Makes a point.
+type Draw = dyn Fn(&mut Random) -> [f64; 2];
+
+/// One of many kinds of small inputs.
+fn points(random: &mut Random, round: u64) -> Vec<[f64; 2]> {
+    let count = 1 + random.below(if round.is_multiple_of(50) { 400 } else { 40 });
+    let point: Box<Draw> = match round % 10 {
+        0 => Box::new(|r| [r.unit(), r.unit()]),
+        1 => Box::new(|r| [0, 1].map(|_| r.below(6) as f64)),
+        2 => Box::new(|r| [0, 1].map(|_| r.below(30) as f64 * 0.37)),
+        // Collinear, but for a few.
+        3 => Box::new(|r| {
+            let x = r.below(60) as f64;
+            [x, 3.0 * x + f64::from(u8::from(r.below(20) == 0))]
+        }),
+        // On a circle of lattice points.
+        4 => Box::new(|r| {
+            let [x, y] = [[3.0, 4.0], [0.0, 5.0], [4.0, 3.0], [5.0, 0.0]][r.below(4) as usize];
+            [x * [1.0, -1.0][r.below(2) as usize], y * [1.0, -1.0][r.below(2) as usize]].map(|x| x * 13.0)
+        }),
+        // Neighboring numbers.
+        5 => Box::new(|r| [0, 1].map(|_| f64::from_bits(1f64.to_bits() + r.below(8)))),
+        // Two columns.
+        6 => Box::new(|r| [1e6 * r.below(2) as f64 + 1e-9 * r.unit(), r.unit()]),
+        // Clusters within clusters: more magnitudes than a key has bits.
+        7 => Box::new(|r| {
+            let scale = 10f64.powi(-4 * r.below(9) as i32);
+            [0, 1].map(|_| scale * r.below(12) as f64)
+        }),
+        // Fewer and fewer on a parabola.
+        8 => Box::new(|r| {
+            let x = r.unit() - 0.5;
+            [x, x * x]
+        }),
+        // Centimeters far from the origin.
+        _ => Box::new(|r| [443_000.0, 5_212_000.0].map(|x| ((x + 20.0 * r.unit()) * 100.0).round() / 100.0)),
+    };
+    let mut points: Vec<_> = (0..count).map(|_| point(random)).collect();
+    for _ in 0..random.below(4) {
+        points.push(points[random.below(points.len() as u64) as usize]);
+    }
+    points
+}
+
+/// Answers itself: nothing is known of its plans.
+#[derive(Clone, Copy, Default)]
+struct Closed(Plane<Adaptive>);
+
+impl Geometry<3> for Closed {
+    type Point = [f64; 2];
+
+    fn admits(&self, p: &[f64; 2]) -> bool {
+        self.0.admits(p)
+    }
+
+    fn compare(&self, p: &[f64; 2], q: &[f64; 2]) -> std::cmp::Ordering {
+        self.0.compare(p, q)
+    }
+
+    fn orientation(&self, simplex: [&[f64; 2]; 3]) -> Sign {
+        self.0.orientation(simplex)
+    }
+
+    fn side_of_sphere(&self, simplex: [&[f64; 2]; 3], q: &[f64; 2]) -> Sign {
+        self.0.side_of_sphere(simplex, q)
+    }
+}
+
+impl Coordinates<3> for Closed {
+    type Coordinates = [f64; 2];
+
+    fn coordinates(&self, p: &[f64; 2]) -> [f64; 2] {
+        *p
+    }
+}
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+#[test]
+fn bulk_is_one_by_one() {
+    let mut random = Random(7);
+    let pools = [1, 2].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap());
+    for round in 0..4000 {
+        let mut points = points(&mut random, round);
+        let expected = one_by_one(Plane::<Adaptive>::default(), &points);
+        for pool in &pools {
+            random.shuffle(&mut points);
+            let found = pool.install(|| in_bulk(Plane::<Adaptive>::default(), &points, TINY));
+            assert_eq!(found, expected, "{points:?}");
+        }
+        assert_eq!(in_bulk(Plane::<Adaptive>::default(), &points, Grain::default()), expected, "{points:?}");
+        assert_eq!(in_bulk(Closed::default(), &points, TINY), expected, "{points:?}");
+        in_bulk_fast(&points);
+    }
+}
+
+/// Plain floating point may be wrong, but ends.
+fn in_bulk_fast(points: &[[f64; 2]]) {
+    let (sites, _) = Sites::of(&Plane::<Fast>::default(), points, TINY).unwrap();
+    build::<_, 3, (), ()>(&Plane::<Fast>::default(), sites, TINY);
+}
+
+#[test]
+fn every_finite_coordinate_will_do() {
+    let mut random = Random(8);
+    for round in 0..600 {
+        let mut points = points(&mut random, round);
+        for scale in [1.0, 1e-300, 1e290] {
+            let points: Vec<_> = points.iter().map(|p| p.map(|x| x * scale)).collect();
+            let expected = one_by_one(Plane::<Wide>::default(), &points);
+            assert_eq!(in_bulk(Plane::<Wide>::default(), &points, TINY), expected, "{points:?}");
+        }
+        // Some within the range of filters, some not.
+        points.iter_mut().step_by(3).for_each(|p| p[0] *= 1e-200);
+        let expected = one_by_one(Plane::<Wide>::default(), &points);
+        assert_eq!(in_bulk(Plane::<Wide>::default(), &points, TINY), expected, "{points:?}");
+    }
+}
+
+#[test]
+fn the_numbers_do_not_depend_on_threads() {
+    let mut random = Random(9);
+    for round in 0..40 {
+        let points: Vec<_> = (0..20).flat_map(|_| points(&mut random, round)).collect();
+        let of = |threads: usize| {
+            with_threads(threads, || {
+                let geometry = Plane::<Adaptive>::default();
+                let (sites, vertices) = Sites::of(&geometry, &points, TINY).unwrap();
+                let (points, tds) = build::<_, 3, (), ()>(&geometry, sites, TINY);
+                let cells = |v: usize| tds.as_ref().and_then(|tds| tds.cell_of(VertexId::new(v)));
+                let cells: Vec<_> = (0..points.len()).map(cells).collect();
+                let corners = |tds: &crate::tds::Tds<3>| tds.cells().map(|c| *tds.corners(c)).collect::<Vec<_>>();
+                (vertices, cells, tds.as_ref().map(corners))
+            })
+        };
+        assert_eq!(of(1), of(3), "{points:?}");
+    }
+}
+
+#[test]
+fn certain_answers_are_right() {
+    let mut random = Random(10);
+    let (mut certain, mut open) = (0, 0);
+    for round in 0..60_000 {
+        // Nearly on a circle, nearly collinear.
+        let [x, y] = [random.unit() * 1e3, random.unit() * 1e3];
+        let tiny = 2f64.powi(-(random.below(60) as i32));
+        let angles = [0, 1, 2, 3].map(|_| random.unit() * if round % 2 == 1 { std::f64::consts::TAU } else { tiny });
+        let radius = 10f64.powi(random.below(7) as i32 - 3);
+        let mut p = angles.map(|t| [x + radius * t.cos(), y + radius * t.sin()]);
+        p[3][0] += tiny * radius * (random.unit() - 0.5);
+        let arrows = [1, 2, 3].map(|i| Arrow::between(p[0], p[i]));
+        let circle = Circle::through(arrows[0], arrows[1]);
+        for (estimate, sign) in [
+            (arrows[0].turn(arrows[1]), Exact::sign(&Orientation2([p[0], p[1], p[2]]))),
+            (circle.side(arrows[2]), Exact::sign(&InCircle(p))),
+        ] {
+            if estimate.is_positive() || estimate.is_negative() {
+                assert_eq!(estimate.is_positive(), sign == Sign::Positive, "{p:?}");
+                assert_eq!(estimate.is_negative(), sign == Sign::Negative, "{p:?}");
+                certain += 1;
+            } else {
+                open += 1;
+            }
+        }
+    }
+    assert!(certain > 10_000 && open > 10_000, "{certain} {open}");
+}
