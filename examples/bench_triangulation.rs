@@ -14,6 +14,8 @@
 //! counts the questions that got as far as each stage of the arithmetic; both take time of their own, so that the line is of
 //! a build without.
 
+#![allow(clippy::print_stdout, reason = "what it is for")]
+
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};

@@ -14,6 +14,9 @@ use super::{Flaw, Level, Location, Refused, Rounding, Triangulation};
 pub struct Walls(u8);
 
 impl Walls {
+    /// Marks a triangle that is being replaced.
+    pub(super) const TAKEN_OUT: Self = Walls(u8::MAX);
+
     /// Whether the edge opposite vertex `i` is one.
     #[inline(always)]
     pub fn has(self, i: usize) -> bool {

@@ -8,6 +8,8 @@
 //! 3. At a constraint: it is lifted, the place of the crossing becomes a vertex, and four pieces are
 //!    put in.
 
+use rustc_hash::FxHashMap;
+
 use crate::geometry::{Crossing, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
@@ -42,7 +44,7 @@ struct Edge {
     cell: CellId,
     i: usize,
     is_wall: bool,
-    /// Whether both sides of the edge are the border's, which runs along it and back around its tip.
+    /// Whether the triangle on the outer side is crossed, too: the corridor touches itself, around the edge's end.
     is_spike: bool,
 }
 
@@ -61,23 +63,16 @@ impl Side {
         self.edges.push(edge);
     }
 
-    /// Marks the edges that the border runs along in both directions; the pairs of these are nested like parentheses.
-    /// Returns them.
-    fn mark_spikes(&mut self) -> Vec<[usize; 2]> {
+    /// Of the edges that have both sides on the border, which of them are the same.
+    fn spikes(&self) -> Vec<[usize; 2]> {
+        let mut seen: FxHashMap<[VertexId; 2], usize> = FxHashMap::default();
         let mut spikes = Vec::new();
-        // A border that comes back to no vertex but one before the last has none.
-        if !self.chain.windows(3).any(|row| row[0] == row[2]) {
-            return spikes;
-        }
-        let mut open: Vec<usize> = Vec::new();
-        for k in 0..self.edges.len() {
-            let is_back = |&j: &usize| self.chain[j] == self.chain[k + 1] && self.chain[j + 1] == self.chain[k];
-            match open.pop_if(|j| is_back(j)) {
-                Some(j) => spikes.push([j, k]),
-                None => open.push(k),
+        for (k, ends) in self.chain.windows(2).enumerate().filter(|&(k, _)| self.edges[k].is_spike) {
+            match seen.get(&[ends[1], ends[0]]) {
+                Some(&other) => spikes.push([other, k]),
+                None => _ = seen.insert([ends[0], ends[1]], k),
             }
         }
-        spikes.iter().flatten().for_each(|&k| self.edges[k].is_spike = true);
         spikes
     }
 }
@@ -276,6 +271,12 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     fn retriangulate(&mut self) {
         let mut scratch = std::mem::take(&mut self.scratch);
         let Scratch { corridor, left, right, parts, .. } = &mut scratch;
+        for &cell in corridor.iter() {
+            *self.inner.tds.cell_data_mut(cell) = Walls::TAKEN_OUT;
+        }
+        for edge in left.edges.iter_mut().chain(&mut right.edges) {
+            edge.is_spike = *self.inner.tds.cell_data(edge.cell) == Walls::TAKEN_OUT;
+        }
         // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end, has
         // it on its left. On the right it is the other way around.
         right.chain.reverse();
@@ -295,7 +296,6 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// Triangulates a side, over the base from its chain's first to its last vertex, with cells from `free`. Returns the
     /// triangle on the base.
     fn fill(&mut self, side: &mut Side, free: &mut Vec<CellId>, parts: &mut Vec<Part>) -> Option<CellId> {
-        let spikes = side.mark_spikes();
         let mut on_base = None;
         parts.push((0, side.chain.len() - 1, None));
         while let Some((first, last, above)) = parts.pop() {
@@ -325,8 +325,10 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             }
             *self.inner.tds.cell_data_mut(cell) = walls;
         }
-        for [p, q] in spikes.into_iter().map(|pair| pair.map(|k| side.edges[k])) {
-            self.inner.tds.link(p.cell, p.i, q.cell, q.i);
+        if side.edges.iter().any(|edge| edge.is_spike) {
+            for [p, q] in side.spikes().into_iter().map(|pair| pair.map(|k| side.edges[k])) {
+                self.inner.tds.link(p.cell, p.i, q.cell, q.i);
+            }
         }
         on_base
     }
