@@ -16,17 +16,17 @@ pub(super) struct Curve {
 
 /// Least and largest coordinate on each axis, and how many axes there are.
 #[derive(Clone, Copy)]
-struct Span {
+pub(super) struct Span {
     min: [f64; 3],
     max: [f64; 3],
     axes: usize,
 }
 
 impl Span {
-    const EMPTY: Self = Span { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3], axes: 0 };
+    pub(super) const EMPTY: Self = Span { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3], axes: 0 };
 
     #[inline(always)]
-    fn with(mut self, point: &[f64]) -> Self {
+    pub(super) fn with(mut self, point: &[f64]) -> Self {
         self.axes = point.len().min(3);
         for (axis, &x) in point.iter().take(3).enumerate() {
             // `f64::min` takes NaN into account, which costs.
@@ -36,7 +36,7 @@ impl Span {
         self
     }
 
-    fn and(self, other: Self) -> Self {
+    pub(super) fn and(self, other: Self) -> Self {
         Span {
             min: std::array::from_fn(|axis| self.min[axis].min(other.min[axis])),
             max: std::array::from_fn(|axis| self.max[axis].max(other.max[axis])),
@@ -53,12 +53,15 @@ impl Curve {
         chunk: usize,
     ) -> Self {
         let span_of = |from: usize, to: usize| (from..to).fold(Span::EMPTY, |s, i| s.with(coordinates(i).as_ref()));
-        let Span { min, max, axes } = if count <= chunk {
-            span_of(0, count)
-        } else {
-            let chunks = (0..count.div_ceil(chunk)).into_par_iter();
-            chunks.map(|c| span_of(c * chunk, count.min((c + 1) * chunk))).reduce(|| Span::EMPTY, Span::and)
-        };
+        if count <= chunk {
+            return Self::along(span_of(0, count));
+        }
+        let chunks = (0..count.div_ceil(chunk)).into_par_iter();
+        Self::along(chunks.map(|c| span_of(c * chunk, count.min((c + 1) * chunk))).reduce(|| Span::EMPTY, Span::and))
+    }
+
+    /// The curve through all of a box.
+    pub(super) fn along(Span { min, max, axes }: Span) -> Self {
         let extent = |unit: f64| (0..axes).map(|axis| max[axis] * unit - min[axis] * unit).fold(0.0, f64::max);
         let unit = match extent(1.0) {
             f64::INFINITY => 0.5,

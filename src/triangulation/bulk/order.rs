@@ -26,7 +26,7 @@ use crate::tds::VertexId;
 
 use super::super::{MAX_VERTICES, Refused};
 use super::Grain;
-use super::curve::Curve;
+use super::curve::{Curve, Span};
 
 /// Bits of the buckets at the most: as many as there are lines in a core's cache to write to.
 const BUCKET_BITS: u32 = 11;
@@ -81,6 +81,8 @@ impl Keys {
 pub(crate) struct Sites<P> {
     pub(crate) points: Vec<P>,
     pub(super) keys: Keys,
+    /// Whether all have an exact plan.
+    pub(super) have_plans: bool,
 }
 
 /// The result of sorting.
@@ -115,7 +117,9 @@ pub fn spatial_order<A: AsRef<[f64]>>(
     if count >= MAX_VERTICES {
         return Err(Refused::TooMany);
     }
-    let sorted = sort(count, &coordinates, |_, _| false, Grain::default());
+    let grain = Grain::default();
+    let curve = Curve::through(count, &coordinates, grain.points);
+    let sorted = sort(count, &coordinates, &curve, |_, _| false, grain);
     Ok((0..count).into_par_iter().with_min_len(1 << 12).map(|rank| sorted.position(rank) as u32).collect())
 }
 
@@ -129,10 +133,10 @@ impl<P: Copy + Send + Sync> Sites<P> {
         points: &[P],
         grain: Grain,
     ) -> Result<(Self, Vec<VertexId>), Refused> {
-        admit(geometry, points, grain)?;
+        let (curve, have_plans) = survey(geometry, points, grain)?;
         let coordinates = |i: usize| geometry.coordinates(&points[i]);
         let is_same = |i: u32, j: u32| geometry.compare(&points[i as usize], &points[j as usize]).is_eq();
-        let sorted = sort(points.len(), &coordinates, is_same, grain);
+        let sorted = sort(points.len(), &coordinates, &curve, is_same, grain);
 
         let ranks: Vec<AtomicU32> =
             (0..points.len()).into_par_iter().with_min_len(grain.points).map(|_| AtomicU32::new(0)).collect();
@@ -148,7 +152,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
         }
         // In place.
         let vertices = ranks.into_iter().map(|rank| VertexId::new(rank.into_inner() as usize)).collect();
-        Ok((Sites { points: sites, keys: sorted.keys }, vertices))
+        Ok((Sites { points: sites, keys: sorted.keys, have_plans }, vertices))
     }
 
     /// Points that are all different and in [`spatial_order`] already.
@@ -160,39 +164,50 @@ impl<P: Copy + Send + Sync> Sites<P> {
         points: Vec<P>,
     ) -> Result<Self, Refused> {
         let grain = Grain::default();
-        admit(geometry, &points, grain)?;
-        let coordinates = |i: usize| geometry.coordinates(&points[i]);
-        let curve = Curve::through(points.len(), coordinates, grain.points);
-        let keys = Keys::of(points.len(), coordinates, &curve, grain);
-        Ok(Sites { points, keys })
+        let (curve, have_plans) = survey(geometry, &points, grain)?;
+        let keys = Keys::of(points.len(), |i| geometry.coordinates(&points[i]), &curve, grain);
+        Ok(Sites { points, keys, have_plans })
     }
 }
 
-/// Checks that all points may come in.
-fn admit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], grain: Grain) -> Result<(), Refused> {
-    let admitted = |chunk: &[G::Point]| chunk.iter().fold(true, |all, p| all & geometry.admits(p));
-    if !points.par_chunks(grain.points).all(admitted)
-        && let Some(bad) = points.iter().position(|p| !geometry.admits(p))
-    {
+/// Checks that all points may come in; the curve through them, and whether all have an exact plan.
+///
+/// `PERF:` in one pass instead of three.
+fn survey<G: Coordinates<N>, const N: usize>(
+    geometry: &G,
+    points: &[G::Point],
+    grain: Grain,
+) -> Result<(Curve, bool), Refused> {
+    let look = |(admitted, planned, span): (bool, bool, Span), p: &G::Point| {
+        let planned = planned & geometry.exact_plan(p).is_some();
+        (admitted & geometry.admits(p), planned, span.with(geometry.coordinates(p).as_ref()))
+    };
+    let nothing = || (true, true, Span::EMPTY);
+    let chunks = points.par_chunks(grain.points).map(|chunk| chunk.iter().fold(nothing(), look));
+    let (admitted, have_plans, span) = chunks.reduce(nothing, |p, q| (p.0 & q.0, p.1 & q.1, p.2.and(q.2)));
+    if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
         return Err(Refused::Coordinate(bad));
     }
-    if points.len() >= MAX_VERTICES { Err(Refused::TooMany) } else { Ok(()) }
+    if points.len() >= MAX_VERTICES {
+        return Err(Refused::TooMany);
+    }
+    Ok((Curve::along(span), have_plans))
 }
 
 /// Sorts; `is_same` says of two points in one place whether they are on one site.
 fn sort<A: AsRef<[f64]>>(
     count: usize,
     coordinates: &(impl Fn(usize) -> A + Sync),
+    curve: &Curve,
     is_same: impl Fn(u32, u32) -> bool + Sync,
     grain: Grain,
 ) -> Sorted {
-    let curve = Curve::through(count, coordinates, grain.points);
     let index_bits = usize::BITS - count.saturating_sub(1).leading_zeros();
     let key_bits = (index_bits + 17).min(64 - index_bits);
     let low = u64::MAX >> key_bits;
 
     let (records, starts) = distribute(count, |i| curve.key(coordinates(i).as_ref()), low, grain);
-    let sorter = Sorter { curve: &curve, coordinates, is_same: &is_same, low, grain };
+    let sorter = Sorter { curve, coordinates, is_same: &is_same, low, grain };
     let groups = groups(&starts, grain);
     let sorted: Vec<(usize, Vec<(u32, u32)>)> = groups
         .par_windows(2)
