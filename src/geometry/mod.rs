@@ -19,7 +19,7 @@
 //! | construction in bulk | [`Coordinates`], too |
 //! | constraints | [`Crossing`], too |
 //!
-//! Distances and angles are asked nowhere, and units play no part.
+//! Distances are asked for where a walk may start only, angles nowhere, and units play no part.
 
 mod crossed;
 mod perturbation;
@@ -106,6 +106,13 @@ pub trait Geometry<const N: usize> {
     /// is positively oriented.
     fn side_of_sphere(&self, simplex: [&Self::Point; N], q: &Self::Point) -> Sign;
 
+    /// About how far two points are from each other, in any measure: for choosing where a walk starts, no answer depends on it.
+    /// Without one, which is NaN, walks from far away take long.
+    #[inline]
+    fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> f64 {
+        f64::NAN
+    }
+
     /// The orientation of fewer than `N` points within the flat (line, plane) that they span: of two
     /// points their order, of three (asked for `N = 4` only) their turn in a plane, seen from a side
     /// that is fixed for the plane. Zero if they span less.
@@ -178,6 +185,12 @@ pub trait Crossing: Coordinates<3> {
         });
         self.meet(place, &[ab, cd])
     }
+}
+
+/// Along the axes.
+#[inline(always)]
+fn manhattan<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
+    (0..D).map(|axis| (p[axis] - q[axis]).abs()).sum()
 }
 
 /// Lexicographic order of coordinates.

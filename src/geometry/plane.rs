@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Crossing, Geometry, lexicographic};
+use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
@@ -20,6 +20,11 @@ impl<K: Kernel> Geometry<3> for Plane<K> {
     #[inline(always)]
     fn compare(&self, p: &[f64; 2], q: &[f64; 2]) -> Ordering {
         lexicographic(*p, *q)
+    }
+
+    #[inline]
+    fn rough_distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
+        manhattan(*p, *q)
     }
 
     #[inline(always)]

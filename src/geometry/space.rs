@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, lexicographic};
+use super::{Coordinates, Geometry, lexicographic, manhattan};
 use crate::kernel::{Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3};
 use crate::num::Sign;
 
@@ -31,6 +31,11 @@ impl<K: Kernel> Geometry<4> for Space<K> {
     #[inline(always)]
     fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
         lexicographic(*p, *q)
+    }
+
+    #[inline]
+    fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
+        manhattan(*p, *q)
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, Plane};
+use super::{Coordinates, Geometry, Plane, manhattan};
 use crate::kernel::{Kernel, Lattice};
 use crate::num::Sign;
 
@@ -29,6 +29,11 @@ impl<K: Kernel> Geometry<3> for Steps<K> {
     #[inline(always)]
     fn compare(&self, p: &[i32; 3], q: &[i32; 3]) -> Ordering {
         p[..2].cmp(&q[..2])
+    }
+
+    #[inline]
+    fn rough_distance(&self, p: &[i32; 3], q: &[i32; 3]) -> f64 {
+        manhattan(plan(p), plan(q))
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 use std::ops::Deref;
 
 use crate::geometry::{Coordinates, Geometry};
-use crate::tds::VertexId;
+use crate::tds::{CellId, VertexId};
 
 use super::{Refused, Triangulation, bulk};
 
@@ -36,11 +36,20 @@ impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A walk from the last insertion, and time proportional to the number of cells replaced: constant
-    /// on average for points in spatial order.
+    /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced:
+    /// constant on average for points in spatial order.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
+        self.insert_near(p, data, None)
+    }
+
+    /// The same, looking for the place from a cell on. Of a vertex nearby, that is
+    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that is there no more, for the last insertion.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<VertexId, Refused> {
         self.inner.admit(&p)?;
-        let location = self.inner.locate(&p, None);
+        let location = self.inner.locate(&p, near);
         Ok(self.inner.insert_at(p, location, data, |_, _, _| true, |_, _| ()))
     }
 }

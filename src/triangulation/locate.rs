@@ -41,10 +41,14 @@ impl Dice {
     }
 }
 
+/// Steps after which a walk looks for a better place to start from. In spatial order nearly all are over long before.
+const PATIENCE: usize = 64;
+
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Finds where `q` lies, by a remembering stochastic walk (Devillers, Pion, Teillaud 2002) from a
-    /// cell nearby, or from the last insertion. Ends on any triangulation, with probability one; in
-    /// the order of the square root of the number of vertices when started anywhere.
+    /// cell nearby, or from the last insertion. Ends on any triangulation, with probability one. If it takes long, it goes on
+    /// from the nearest of `n^(1/3)` of the `n` vertices (Mücke, Saias and Zhu 1996): then about as many steps are left where
+    /// points are spread evenly.
     ///
     /// The point must be one that the geometry [admits](Geometry::admits): for others the predicates have no
     /// answer, and so has this.
@@ -69,7 +73,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         }
         let mut dice = Dice(0x9E37_79B9);
         let mut from = None;
+        let mut steps = 0;
         'walk: loop {
+            steps += 1;
+            if steps == PATIENCE
+                && let Some(nearer) = self.jump(cell, q, &mut dice)
+            {
+                (cell, from) = (nearer, None);
+            }
             let mut touching = 0u8;
             let first = dice.below(width);
             for turn in 0..width {
@@ -95,6 +106,24 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             }
             return Location::Cell { cell, touching };
         }
+    }
+
+    /// A finite cell that is nearer to `q` than this one, as far as some vertices tell.
+    #[cold]
+    fn jump(&self, cell: CellId, q: &G::Point, dice: &mut Dice) -> Option<CellId> {
+        let slots = self.tds.vertex_slots();
+        let far = |v: VertexId| self.geometry.rough_distance(self.point(v), q);
+        let mut least = far(self.tds.vertex(cell, 0));
+        let mut nearest = None;
+        for _ in 0..(slots as f64).cbrt() as usize {
+            let vertex = VertexId::new(dice.below(slots));
+            if self.tds.is_vertex(vertex) && far(vertex) < least {
+                (least, nearest) = (far(vertex), Some(vertex));
+            }
+        }
+        let cell = self.tds.cell_of(nearest?)?;
+        let infinite = self.tds.index_of(cell, VertexId::INFINITE);
+        Some(infinite.map_or(cell, |i| self.tds.neighbor(cell, i)))
     }
 
     /// Whether `q` lies outside of the line or plane of all points, which a finite cell spans.
