@@ -6,7 +6,7 @@ use breakline::data::{Lattice, PointBatch};
 use breakline::geometry::{Plane, Steps};
 use breakline::kernel::{self, Exact, InCircle, Kernel, Orientation2};
 use breakline::tds::VertexId;
-use breakline::triangulation::{Delaunay, Level};
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing};
 use common::random::Random;
 
 /// The triangles as the positions of their points, from the smallest on, in order.
@@ -101,6 +101,22 @@ fn one_lattice_within_another() {
     assert_eq!(coarse.embed(&lattice(0.01, -1e9)), None, "too far");
     assert_eq!(embedding.steps([i32::MAX, 0, 0]), None);
     assert_eq!(coarse.embed(&coarse).unwrap().steps([i32::MAX, i32::MIN, 0]), Some([i32::MAX, i32::MIN, 0]));
+}
+
+/// Lines that cross have their vertex on the lattice, too.
+#[test]
+fn crossings_are_whole_numbers() {
+    let mut random = Random(3);
+    for _ in 0..200 {
+        let points: Vec<[f64; 2]> = (0..16).map(|_| [(); 2].map(|()| random.around(20) as f64)).collect();
+        let lines: Vec<[u32; 2]> = (0..8).map(|i| [2 * i, 2 * i + 1]).collect();
+        let plane = Plane::<kernel::Lattice>::default();
+        let (mut t, _) = ConstrainedDelaunay::<_>::from_lines(plane, &points, &lines, OnCrossing::Split).unwrap();
+        assert_eq!(t.check(Level::Law), [], "{points:?}");
+        t.insert_lines(&[[[-21.0, -3.0], [21.0, 4.0]]]).unwrap();
+        assert_eq!(t.check(Level::Law), [], "{points:?}");
+        assert!(t.points().as_flattened().iter().all(|x| x.fract() == 0.0), "{points:?}");
+    }
 }
 
 /// Of a tile: the coordinates that are read are points of its lattice, all of them, and its steps triangulate.

@@ -257,3 +257,30 @@ fn nesting_counts_the_lines_from_outside() {
     let (t, ids) = built(&[], &[vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]], vec![[4.0, 4.0], [0.5, 0.0]]]);
     assert!(matches!(t.nesting_of(ids), Err(Refused::Open { gap: [_, _], .. })));
 }
+
+/// Edits leave what building anew would have given, also below the plane, and with a point where lines cross.
+#[test]
+fn edits_at_the_edges() {
+    use breakline::geometry::{Plane, Terrain};
+    use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
+
+    let mut t = ConstrainedDelaunay::<_>::new(<Plane>::default());
+    let ids = t.insert_lines(&[[[0.0, 0.0], [1.0, 0.0]]]).unwrap();
+    assert_eq!(t.vertex_count(), 2);
+    assert!(t.remove_line(ids[0]));
+    assert_eq!((t.vertex_count(), t.dimension()), (0, -1));
+    for p in [[5.0, 5.0], [6.0, 5.0], [5.0, 6.0]] {
+        t.insert(p).unwrap();
+    }
+    assert_eq!((t.vertex_count(), t.finite_cells().count()), (3, 1));
+    assert_eq!(t.check(Level::Law), []);
+
+    let points = [[0.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0], [4.0, 0.0, 0.0]];
+    let lines = [[0, 1], [2, 3]];
+    let (mut t, _) =
+        ConstrainedDelaunay::<_>::from_lines(<Terrain>::default(), &points, &lines, OnCrossing::Split).unwrap();
+    let [crossing] = t.crossings()[..] else { panic!("they cross once") };
+    assert_eq!(t.point(crossing)[2], 0.0);
+    assert_eq!(t.insert([2.0, 2.0, 9.0]).unwrap(), crossing);
+    assert_eq!((t.point(crossing)[2], t.is_added(crossing)), (9.0, false));
+}

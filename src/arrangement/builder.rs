@@ -49,9 +49,8 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     pub(super) fn run<K: Kernel>(mut self) -> Arrangement {
         let tree = self.tree(0..self.segments.len() as u32);
         let pairs = self.crossing_pairs::<K>(&tree);
-        let vertices = if pairs.is_empty() { Vec::new() } else { self.vertices() };
-        let crossings = self.round::<K>(pairs, &vertices);
-        let (is_led, passes) = self.lead::<K>(&crossings, vertices);
+        let crossings = self.round::<K>(pairs);
+        let (is_led, passes) = self.lead::<K>(&crossings);
         self.collect(crossings, &is_led, passes)
     }
 
@@ -68,12 +67,13 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         BoxTree::new(&boxes)
     }
 
-    /// The ends of all segments, each once.
-    fn vertices(&self) -> Vec<u32> {
-        let mut vertices: Vec<u32> = self.ends.iter().flatten().copied().collect();
-        vertices.par_sort_unstable();
-        vertices.dedup();
-        vertices
+    /// The ends of all segments, and the sites of crossings; each once.
+    fn hot_sites(&self, crossings: &[Crossing]) -> Vec<u32> {
+        let mut sites: Vec<u32> = self.ends.iter().flatten().copied().collect();
+        sites.extend(crossings.iter().map(|crossing| crossing.site));
+        sites.par_sort_unstable();
+        sites.dedup();
+        sites
     }
 
     /// Phase 1: the pairs of segments that cross in their interiors.
@@ -94,19 +94,25 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         pairs.into_iter().map(|pair| [(pair >> 32) as u32, pair as u32]).collect()
     }
 
-    /// Phase 2: the site of each crossing, the center of its pixel; which may be an end of a segment.
-    fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>, vertices: &[u32]) -> Vec<Crossing> {
-        let vertex_at: FxHashMap<[u64; 2], u32> = vertices.iter().map(|&v| (key((self.place)(v)), v)).collect();
-        let round = |&[i, j]: &[u32; 2]| {
-            let center = self.grid.crossing::<K>(self.segments[i as usize], self.segments[j as usize]);
-            (center, vertex_at.get(&key(center)).copied())
-        };
-        let rounded: Vec<(Place, Option<u32>)> = pairs.par_iter().with_min_len(256).map(round).collect();
+    /// Phase 2: the site of each crossing, the center of its pixel; which may be a place that was given.
+    fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>) -> Vec<Crossing> {
+        let round = |&[i, j]: &[u32; 2]| self.grid.crossing::<K>(self.segments[i as usize], self.segments[j as usize]);
+        let rounded: Vec<Place> = pairs.par_iter().with_min_len(256).map(round).collect();
+        let mut given_at: FxHashMap<[u64; 2], Option<u32>> =
+            rounded.iter().map(|&center| (key(center), None)).collect();
+        if !given_at.is_empty() {
+            for place in 0..self.places as u32 {
+                if let Some(at) = given_at.get_mut(&key((self.place)(place))) {
+                    *at = Some(place);
+                }
+            }
+        }
         let mut centers: Vec<(Place, u32)> = Vec::new();
         let mut crossings = Vec::with_capacity(pairs.len());
-        for (segments, (center, vertex)) in pairs.into_iter().zip(rounded) {
-            centers.extend(vertex.is_none().then_some((center, crossings.len() as u32)));
-            crossings.push(Crossing { segments, site: vertex.unwrap_or(u32::MAX) });
+        for (segments, center) in pairs.into_iter().zip(rounded) {
+            let given = given_at[&key(center)];
+            centers.extend(given.is_none().then_some((center, crossings.len() as u32)));
+            crossings.push(Crossing { segments, site: given.unwrap_or(u32::MAX) });
         }
         centers.par_sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
         for (center, crossing) in centers {
@@ -125,13 +131,12 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
 
     /// Phase 3: leads the segments that cross others through all sites whose pixels they meet; and, as long as there
     /// are any, those that meet a pixel by which another was bent.
-    fn lead<K: Kernel>(&self, crossings: &[Crossing], vertices: Vec<u32>) -> (Vec<bool>, Vec<Pass>) {
+    fn lead<K: Kernel>(&self, crossings: &[Crossing]) -> (Vec<bool>, Vec<Pass>) {
         if crossings.is_empty() {
             return (vec![false; self.segments.len()], Vec::new());
         }
         let mut is_hot = vec![false; self.places + self.added.len()];
-        let mut sites = vertices;
-        sites.extend((self.places..self.places + self.added.len()).map(|site| site as u32));
+        let sites = self.hot_sites(crossings);
         sites.iter().for_each(|&site| is_hot[site as usize] = true);
         let mut hot = vec![self.pixels(sites)];
         let mut is_active = vec![false; is_hot.len()];

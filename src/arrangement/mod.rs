@@ -69,12 +69,13 @@ impl Arrangement {
     /// Arranges segments between places, given by their numbers below `places`, which are all different. Of the places
     /// that are no end of a segment, those count that lie exactly on a segment that is bent: it is led through them.
     ///
-    /// All coordinates are finite. Segments are different; one from a place to itself is none.
+    /// All coordinates are finite. Segments are different; one from a place to itself is none. Coordinates are multiples of
+    /// `step`, a power of two or zero, and so will be those that are added.
     ///
     /// # Complexity
     /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at
     /// the worst, for long lines side by side across the axes.
-    pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> Self {
+    pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
         let largest = segments.iter().flatten().fold([0.0f64; 2], |largest, &i| {
             let p = place(i);
             [largest[0].max(p[0].abs()), largest[1].max(p[1].abs())]
@@ -85,21 +86,21 @@ impl Arrangement {
         // Zero has one sign only.
         let scaled = |p: Place| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
         let place = |i: u32| scaled(place(i));
-        let ends = || segments.iter().flatten().map(|&i| place(i));
-        let smallest = scale.map(|s| f64::from_bits(1) * s);
-        let arrange = |grid: Grid| {
+        let smallest = scale.map(|s| step.max(f64::from_bits(1)) * s);
+        // Places on segments count like ends, once they are known.
+        let mut on_segments: Vec<u32> = Vec::new();
+        let mut arrangement = loop {
+            let known = segments.iter().flatten().chain(&on_segments).map(|&i| place(i));
+            let grid = Grid::through(scaled(largest), smallest, known);
             let builder = Builder::new(grid, places, &place, segments);
-            if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() }
+            let arrangement = if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() };
+            let before = on_segments.len();
+            let given = arrangement.chain_sites.iter().filter(|&&site| (site as usize) < places);
+            on_segments.extend(given.filter(|&&site| !grid.has(place(site))));
+            if on_segments.len() == before {
+                break arrangement;
+            }
         };
-        let even = Grid::through(scaled(largest), smallest, ends());
-        let mut arrangement = arrange(even);
-        // Places on segments count like ends: finer ones make pixels overlap, unless the steps are those of doubles.
-        let finer = |&&site: &&u32| (site as usize) < places && !even.holds(place(site));
-        if even.is_even
-            && let Some(&site) = arrangement.chain_sites.iter().find(finer)
-        {
-            arrangement = arrange(Grid::through(scaled(largest), smallest, ends().chain([place(site)])));
-        }
         for axis in 0..2 {
             arrangement.unit[axis] /= scale[axis];
             arrangement.added.iter_mut().for_each(|p| p[axis] /= scale[axis]);
@@ -117,13 +118,13 @@ impl Arrangement {
     /// # Complexity
     /// That of the arrangement for each round: one or two, but where coordinates span hundreds of powers of two.
     #[must_use]
-    pub fn settled(mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> Self {
-        while self.again(&place, segments) {}
+    pub fn settled(mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
+        while self.again(&place, segments, step) {}
         self
     }
 
     /// Arranges the pieces once more; says whether any cross.
-    fn again(&mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]]) -> bool {
+    fn again(&mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> bool {
         let row = |i: usize| {
             let [a, b] = segments[i];
             let sites = std::iter::once(a).chain(self.chain(i as u32).iter().copied()).chain([b]);
@@ -140,7 +141,7 @@ impl Arrangement {
             None => place(i),
             Some(added) => self.added[added],
         };
-        let inner = Arrangement::new(self.places + self.added.len(), site, &pieces);
+        let inner = Arrangement::new(self.places + self.added.len(), site, &pieces, step);
         if inner.crossings.is_empty() {
             return false;
         }
@@ -176,7 +177,8 @@ impl Arrangement {
         self.unit
     }
 
-    /// Whether all ends of segments are multiples of the unit, so that the pieces are proven not to cross.
+    /// Whether all ends of segments, and all places on those that are led through sites, are multiples of the unit, so that
+    /// the pieces are proven not to cross.
     pub fn is_on_grid(&self) -> bool {
         self.on_grid
     }

@@ -34,7 +34,8 @@ impl Grid {
     pub(super) fn through(largest: Place, smallest: Place, places: impl Iterator<Item = Place> + Clone) -> Self {
         let is_ordinary = places.clone().flatten().all(|x| RANGE.admits(x));
         // Crossings of what the fast kernels admit are to be admitted.
-        let smallest = if is_ordinary { [RANGE.min * f64::EPSILON; 2] } else { smallest };
+        let ordinary = RANGE.min * f64::EPSILON;
+        let smallest = if is_ordinary { smallest.map(|step| step.max(ordinary)) } else { smallest };
         let unit = [0, 1].map(|k| last_place(largest[k]).max(smallest[k]));
         let mut grid = Grid { unit, is_even: true, smallest, is_ordinary };
         grid.is_even = places.clone().all(|place| grid.holds(place));
@@ -73,6 +74,12 @@ impl Grid {
     pub(super) fn around(&self, place: Place) -> Box2 {
         let halves = [0, 1].map(|k| self.down(k, place[k]).max(self.up(k, place[k])));
         Box2::around([place, place]).grown(halves)
+    }
+
+    /// Whether a place is the center of a pixel, in the arithmetic that is used.
+    pub(super) fn has(&self, place: Place) -> bool {
+        let is_center = !self.is_even || self.holds(place);
+        is_center && (!self.is_ordinary || place.iter().all(|&x| RANGE.admits(x)))
     }
 
     /// Whether a place is a multiple of the unit on both axes.

@@ -30,7 +30,7 @@ impl Lattice {
             let (factor, shift) = (self.scale[k] / into.scale[k], (self.offset[k] - into.offset[k]) / into.scale[k]);
             // Scales and offsets in decimals are rounded themselves.
             let size = (self.offset[k].abs() + into.offset[k].abs()) / into.scale[k];
-            embedding.factor[k] = whole(factor, factor)?;
+            embedding.factor[k] = whole(factor, factor).filter(|&factor| factor > 0)?;
             embedding.shift[k] = whole(shift, size)?;
         }
         Some(embedding)
@@ -39,7 +39,8 @@ impl Lattice {
 
 /// A number that is whole but for a few roundings of its size.
 fn whole(x: f64, size: f64) -> Option<i32> {
-    let is_whole = (x - x.round()).abs() <= 4.0 * f64::EPSILON * size.abs() && x.abs() < f64::from(i32::MAX);
+    let tolerance = (4.0 * f64::EPSILON * size.abs()).min(0.01);
+    let is_whole = (x - x.round()).abs() <= tolerance && x.abs() < f64::from(i32::MAX);
     is_whole.then_some(x.round() as i32)
 }
 

@@ -52,7 +52,7 @@ use crate::num::Sign;
 /// - All answers are those of one and the same set of exact points.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Space`]; users add their own:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Space`]; users add their own:
 ///
 /// ```
 /// use std::cmp::Ordering;
@@ -170,6 +170,11 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 pub trait Crossing: Coordinates<3> {
     /// The point's coordinates in the plane, exactly.
     fn plan(&self, p: &Self::Point) -> [f64; 2];
+
+    /// A power of two that all coordinates that are admitted are multiples of, those near zero included; zero if there is none.
+    fn step(&self) -> f64 {
+        0.0
+    }
 
     /// A point at a place at which segments meet that pass by it no further away than a rounding.
     fn meet(&self, place: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;

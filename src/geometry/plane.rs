@@ -58,6 +58,11 @@ impl<K: Kernel> Crossing for Plane<K> {
         *p
     }
 
+    #[inline]
+    fn step(&self) -> f64 {
+        K::RANGE.min * f64::EPSILON
+    }
+
     fn meet(&self, place: [f64; 2], _: &[[&[f64; 2]; 2]]) -> [f64; 2] {
         place
     }

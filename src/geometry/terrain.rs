@@ -66,6 +66,11 @@ impl<K: Kernel> Crossing for Terrain<K> {
         plan(p)
     }
 
+    #[inline]
+    fn step(&self) -> f64 {
+        K::RANGE.min * f64::EPSILON
+    }
+
     fn meet(&self, [x, y]: [f64; 2], segments: &[[&[f64; 3]; 2]]) -> [f64; 3] {
         let heights = segments.iter().map(|&[p, q]| height_along(*p, *q, [x, y]));
         [x, y, heights.fold(f64::NAN, f64::min)]

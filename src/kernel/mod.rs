@@ -99,7 +99,8 @@ impl Range {
     #[inline]
     pub fn admits(self, x: f64) -> bool {
         let magnitude = x.abs();
-        magnitude <= self.max && (self.min <= magnitude || (magnitude / (self.min * f64::EPSILON)).fract() == 0.0)
+        let is_multiple = |magnitude: f64| magnitude == 0.0 || (magnitude / (self.min * f64::EPSILON)).fract() == 0.0;
+        magnitude <= self.max && (self.min <= magnitude || is_multiple(magnitude))
     }
 }
 

@@ -48,7 +48,7 @@ impl Clip {
         }
         for (_, ring) in &mut rings {
             // Zero has one sign only, and what is closer to it than the arithmetic goes is zero.
-            let tidy = |c: f64| if c.abs() < RANGE.min { 0.0 } else { c };
+            let tidy = |c: f64| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c };
             ring.iter_mut().flatten().for_each(|c| *c = tidy(*c));
             ring.extend(ring.first().copied());
         }

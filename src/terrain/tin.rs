@@ -56,7 +56,7 @@ impl Tin {
     /// A walk through about as many triangles as lie in a row across the surface.
     pub fn elevation(&self, x: f64, y: f64) -> Option<f64> {
         // Closer to zero than the arithmetic goes is zero; what is beyond its other end is beyond all vertices.
-        let [x, y] = [x, y].map(|c| if c.abs() < RANGE.min { 0.0 } else { c });
+        let [x, y] = [x, y].map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
         if !self.triangulation.geometry().admits(&[x, y, 0.0]) {
             return None;
         }

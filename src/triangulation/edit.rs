@@ -45,7 +45,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let is_led = self.lies_on_led(&p);
         let vertex = self.insert_near(p, None);
         self.lent.remove(&vertex);
-        self.claim(vertex);
+        if self.claim(vertex) {
+            self.replace_point(vertex, p);
+        }
         if is_led || self.was_tangled {
             self.rearrange();
         }
@@ -93,9 +95,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
                 }
                 vertices.push(vertex);
             }
-            for &vertex in &vertices {
+            for (&vertex, &p) in vertices.iter().zip(line.as_ref()) {
                 if self.claim(vertex) {
                     self.lent.insert(vertex);
+                    self.replace_point(vertex, p);
                 }
             }
             ids.push(LineId::new(self.lines.given.len()));
@@ -162,17 +165,28 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let demand = self.demand(&leaving);
         if self.dimension() < 2 {
             self.waiting = demand.segments.iter().map(|ends| ends.map(|i| demand.given[i as usize])).collect();
+            self.take_out(leaving);
             return;
         }
         self.waiting.clear();
-        self.lent.retain(|v| used.contains(v));
         let place = |i: u32| demand.places[i as usize];
-        let arrangement = Arrangement::new(demand.given.len(), place, &demand.segments);
+        let step = self.inner.geometry.step();
+        let arrangement = Arrangement::new(demand.given.len(), place, &demand.segments, step);
         self.left_out = self.carry_out(&arrangement, &demand, leaving);
         self.was_tangled = !self.left_out.is_empty();
         if self.was_tangled {
-            let arrangement = arrangement.settled(place, &demand.segments);
+            let arrangement = arrangement.settled(place, &demand.segments, step);
             self.left_out = self.carry_out(&arrangement, &demand, HashSet::new());
+        }
+    }
+
+    /// Removes vertices that nothing needs.
+    fn take_out(&mut self, leaving: HashSet<VertexId>) {
+        self.lent.retain(|v| !leaving.contains(v));
+        let mut leaving: Vec<VertexId> = leaving.into_iter().collect();
+        leaving.sort_unstable();
+        for vertex in leaving {
+            self.remove_free(vertex);
         }
     }
 
@@ -230,11 +244,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         self.lines.splits = splits;
         self.crossings.retain(|v| !leaving.contains(v));
-        let mut leaving: Vec<VertexId> = leaving.into_iter().collect();
-        leaving.sort_unstable();
-        for vertex in leaving {
-            self.remove_free(vertex);
-        }
+        self.take_out(leaving);
 
         // Phase 4: new sites and pieces are put in.
         let added = points_added(&self.inner.geometry, arrangement, segments, |i| *self.point(given[i as usize]));

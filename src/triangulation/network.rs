@@ -86,7 +86,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     ) -> Result<(Self, Option<Vec<VertexId>>), Refused> {
         let index = |v: VertexId| v.index() as u32;
         let segments = segments_of(lines.iter().map(|line| &**line), index);
-        let arrangement = Arrangement::new(sites.points.len(), |i| geometry.plan(&sites.points[i as usize]), &segments);
+        let arrangement = {
+            let place = |i: u32| geometry.plan(&sites.points[i as usize]);
+            Arrangement::new(sites.points.len(), place, &segments, geometry.step())
+        };
         if on_crossing == OnCrossing::Reject {
             reject(&geometry, &sites.points, &lines, &arrangement, &segments)?;
         }
