@@ -26,7 +26,7 @@ pub(super) struct Builder<'a, F> {
     ends: &'a [[u32; 2]],
     segments: Vec<Segment>,
     added: Vec<Place>,
-    /// The segments whose crossing was rounded to an added site, site after site, and where those of each end.
+    /// The segments whose crossing was rounded to an added site, each once, site after site; and where those of each end.
     crossed: Vec<u32>,
     crossed_ends: Vec<u32>,
 }
@@ -115,16 +115,20 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             crossings.push(Crossing { segments, site: given.unwrap_or(u32::MAX) });
         }
         centers.par_sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
-        for (center, crossing) in centers {
-            if self.added.last() != Some(&center) {
-                self.added.push(center);
-                self.crossed_ends.push(0);
+        let mut here: Vec<u32> = Vec::new();
+        for same in centers.chunk_by(|(p, _), (q, _)| p == q) {
+            let site = (self.places + self.added.len()) as u32;
+            here.clear();
+            for &(_, crossing) in same {
+                crossings[crossing as usize].site = site;
+                here.extend(crossings[crossing as usize].segments);
             }
-            self.crossed.extend(crossings[crossing as usize].segments);
-            if let Some(end) = self.crossed_ends.last_mut() {
-                *end = self.crossed.len() as u32;
-            }
-            crossings[crossing as usize].site = (self.places + self.added.len() - 1) as u32;
+            // Two crossings of one segment may have come to one site.
+            here.sort_unstable();
+            here.dedup();
+            self.added.push(same[0].0);
+            self.crossed.extend(&here);
+            self.crossed_ends.push(self.crossed.len() as u32);
         }
         crossings
     }
@@ -175,17 +179,11 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         (is_led, passes)
     }
 
-    /// Of the segments that cross, where they do: they are led through that site, no question.
+    /// Of the segments that cross, where they do.
     fn passes_of_crossings(&self) -> Vec<Pass> {
-        let mut passes = Vec::with_capacity(self.crossed.len());
-        for site in (self.places..self.places + self.added.len()).map(|site| site as u32) {
-            // Two crossings of one segment may have come to one site.
-            let mut here = self.crossed_at(site).to_vec();
-            here.sort_unstable();
-            here.dedup();
-            passes.extend(here.into_iter().map(|segment| Pass { segment, site, exact: false }));
-        }
-        passes
+        let sites = (self.places..self.places + self.added.len()).map(|site| site as u32);
+        let here = |site| self.crossed_at(site).iter().map(move |&segment| Pass { segment, site, exact: false });
+        sites.flat_map(here).collect()
     }
 
     /// A tree over the pixels of some sites.
