@@ -7,7 +7,7 @@ use super::boxes::Box2;
 use super::{Place, Segment};
 
 /// The places to which crossings are rounded. On each axis these are either the multiples of the *unit*, a power of
-/// two; or the numbers of doubles, of which there are none between zero and the *floor*.
+/// two; or the doubles, of which those near zero are multiples of the *smallest* step.
 ///
 /// The *pixel* of a place is what is nearer to it than to its neighbors, a half-open rectangle: it holds its left and
 /// its lower border. These tile the plane.
@@ -15,6 +15,7 @@ use super::{Place, Segment};
 pub(super) struct Grid {
     pub(super) unit: [f64; 2],
     pub(super) is_even: bool,
+    /// Off the even grid only.
     smallest: [f64; 2],
     /// Whether coordinates are in the range of the fast kernels. Halves of steps then enter their polynomials as
     /// multiples of 2^-213, instead of 2^-212, which the degree of 3 makes up for.
@@ -96,9 +97,6 @@ impl Grid {
     /// pixel or the segment. That the pixel lacks two of its sides makes no difference: it is the union of growing
     /// closed rectangles.
     pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Place) -> bool {
-        if self.is_ordinary && self.is_far([a, b], center) {
-            return false;
-        }
         let within = |k: usize| {
             let (low, high) = if a[k] < b[k] { (a[k], b[k]) } else { (b[k], a[k]) };
             reaches(high, center[k], -self.down(k, center[k])) && !reaches(low, center[k], self.up(k, center[k]))
@@ -123,16 +121,6 @@ impl Grid {
                 lower_left => lower_left * side([right, up]) == Sign::Negative,
             }
         }
-    }
-
-    /// Whether a place is so far from the line through a segment that rounding cannot hide it.
-    #[inline(always)]
-    fn is_far(&self, [a, b]: Segment, center: Place) -> bool {
-        let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
-        let [left, right] = [ux * (center[1] - a[1]), uy * (center[0] - a[0])];
-        // Half a unit at the most on each axis; and four roundings, each of 2^-53, in either product.
-        let pixel = self.unit[0] * uy.abs() + self.unit[1] * ux.abs();
-        (left - right).abs() > pixel + 4.0 * f64::EPSILON * (left.abs() + right.abs())
     }
 
     /// Where two segments cross in their interiors, rounded to the grid: the center of the pixel that the crossing lies
