@@ -261,7 +261,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         self.crossings.sort_unstable();
         let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all of them
-        let crossing = self.lead(arrangement, segments, |site| sites[site as usize]);
+        let pieces = self.lines.lead(arrangement, segments, |site| sites[site as usize]);
+        let crossing = self.join_all(pieces, arrangement);
         self.lines.touch();
         crossing
     }

@@ -105,23 +105,18 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let mut triangulation = Self::from_sites(geometry, sites);
         triangulation.lines.given = lines.into_iter().map(Some).collect();
         triangulation.crossings = added;
-        if !triangulation.lead(&arrangement, &segments, vertex).is_empty() {
+        let pieces = triangulation.lines.lead(&arrangement, &segments, vertex);
+        if !triangulation.join_all(pieces, &arrangement).is_empty() {
             triangulation.rearrange();
         }
         Ok((triangulation, renumbered))
     }
 
-    /// Puts in the pieces of segments that were arranged, whose sites are vertices now. Returns those that cross
-    /// others, which are there up to the first crossing only.
-    pub(super) fn lead(
-        &mut self,
-        arrangement: &Arrangement,
-        segments: &[[u32; 2]],
-        vertex: impl Fn(u32) -> VertexId,
-    ) -> Vec<[VertexId; 2]> {
+    /// Puts in the pieces of an arrangement. Returns those that cross others, which are there up to the first crossing
+    /// only.
+    pub(super) fn join_all(&mut self, mut pieces: Vec<[VertexId; 2]>, arrangement: &Arrangement) -> Vec<[VertexId; 2]> {
         self.rounding = (!arrangement.crossings().is_empty())
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
-        let mut pieces = self.lines.lead(arrangement, segments, vertex);
         if self.dimension() < 2 {
             self.waiting = pieces;
             return Vec::new();
@@ -206,11 +201,10 @@ fn add_sites<G: Crossing + Coordinates<3>>(
     let given = all.len();
     let added = points_added(geometry, arrangement, segments, |site| all[site as usize]);
     all.extend(added);
-    // Where a given point is at such a place already, it stands.
+    // Where a given point is, an arrangement adds none: all are different.
     let (merged, renumbered) = Sites::of(geometry, &all, Grain::default())?;
     *sites = merged;
-    let mut is_given = vec![false; sites.points.len()];
-    renumbered[..given].iter().for_each(|v| is_given[v.index()] = true);
-    let added = (0..is_given.len()).filter(|&i| !is_given[i]).map(VertexId::new).collect();
+    let mut added = renumbered[given..].to_vec();
+    added.sort_unstable();
     Ok((Some(renumbered), added))
 }
