@@ -74,7 +74,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// one is not asked for its circle: -10 % on a parabola, where one side alone climbs for long, and no loss elsewhere. What the
     /// loop needs of a hull edge is in variables, and a ghost is written once after all its flips: -8 % of the
     /// instructions, -5 % on the parabola. Reading places one ghost ahead, as the prototype did against mispredictions: +7 % instructions, no
-    /// gain.
+    /// gain. Asking both candidates without branches: 8.6 instead of 11.6 simulated mispredictions a point, no gain on
+    /// 1 million uniform points, and +10 % on a parabola.
     pub(super) fn merge(&mut self, left: Part, right: Part, mid: usize, axis: Axis) -> Part {
         let [Foot { vertex: mut a, at: mut at_a, ghost: gl }, Foot { vertex: mut b, at: mut at_b, ghost: gr }] =
             self.lower_tangent(self.extreme::<LEFT>(left, axis), self.extreme::<RIGHT>(right, axis));
