@@ -123,8 +123,10 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             }
             _ => None,
         };
-        let passes = |tds: &crate::tds::Tds<3, V, Walls>, cell, i| !tds.cell_data(cell).has(i);
-        let vertex = self.inner.insert_at(p, location, V::default(), passes, |walls, i| walls.only(i));
+        let takes = |t: &Triangulation<G, 3, V, Walls>, from, i, beyond| {
+            !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p)
+        };
+        let vertex = self.inner.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i));
         for end in split.into_iter().flatten() {
             self.set_wall(vertex, end, true);
         }

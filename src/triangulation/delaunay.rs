@@ -3,7 +3,7 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
-use super::{Refused, Triangulation, bulk};
+use super::{Locate, Location, Refused, Triangulation, bulk};
 
 /// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space: `N` follows from the
 /// geometry.
@@ -50,7 +50,25 @@ impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
     pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<VertexId, Refused> {
         self.inner.admit(&p)?;
         let location = self.inner.locate(&p, near);
-        Ok(self.inner.insert_at(p, location, data, |_, _, _| true, |_, _| ()))
+        Ok(self.insert_at(p, data, location))
+    }
+
+    /// The same, looking for the place by a [strategy](super::Locate), which learns of the new vertex.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_by(&mut self, strategy: &mut impl Locate<G, N>, p: G::Point, data: V) -> Result<VertexId, Refused> {
+        self.inner.admit(&p)?;
+        let location = strategy.locate(&self.inner, &p);
+        let vertex = self.insert_at(p, data, location);
+        if !matches!(location, Location::Vertex(_)) {
+            strategy.inserted(&self.inner.geometry, vertex, &p);
+        }
+        Ok(vertex)
+    }
+
+    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> VertexId {
+        self.inner.insert_at(p, location, data, |t, _, _, beyond| t.in_conflict(beyond, &p), |_, _| ())
     }
 }
 

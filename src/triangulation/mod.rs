@@ -38,6 +38,7 @@ mod crossed;
 mod delaunay;
 mod edit;
 mod flip;
+mod insert;
 mod lines;
 mod locate;
 mod nesting;
@@ -52,7 +53,7 @@ pub use check::{Flaw, Level};
 pub use constrained::{ConstrainedDelaunay, Walls};
 pub use delaunay::Delaunay;
 pub use lines::{LineId, LineTag};
-pub use locate::Location;
+pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
 
@@ -249,77 +250,5 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             }
             Some(infinite) => self.beyond_hull(cell, infinite, q),
         }
-    }
-
-    /// Checks that a point may come in.
-    fn admit(&self, p: &G::Point) -> Result<(), Refused> {
-        if !self.geometry.admits(p) {
-            return Err(Refused::Coordinate(self.vertex_count()));
-        }
-        if self.vertex_count() >= MAX_VERTICES {
-            return Err(Refused::TooMany);
-        }
-        Ok(())
-    }
-
-    fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
-        let vertex = self.tds.add_vertex(data);
-        match self.points.get_mut(vertex.index()) {
-            Some(place) => *place = p, // the hole of a removed one; or a bulk construction has put it there
-            None => self.points.push(p),
-        }
-        vertex
-    }
-
-    /// Adds a point outside of what the others span.
-    fn raise_dimension(&mut self, p: G::Point, data: V) -> VertexId {
-        let vertex = self.add_vertex(p, data);
-        self.tds.raise_dimension(vertex);
-        let finite = self.finite_cells().next();
-        if let Some(cell) = finite.filter(|_| self.dimension() > 0) {
-            let simplex = self.flat_with(cell, usize::MAX, &p);
-            let positive = if self.is_full() {
-                self.geometry.orientation(self.simplex(cell)) == Sign::Positive
-            } else {
-                self.geometry.orientation_in_flat(&simplex) == Sign::Positive
-            };
-            if !positive {
-                self.tds.mirror_all();
-            }
-        }
-        self.last = finite;
-        vertex
-    }
-
-    /// Adds a point under the empty sphere law, given where it is; `passes` says over which facets the
-    /// conflict zone may grow, `data` what the cells of the star inherit.
-    ///
-    /// Expected time proportional to the number of cells replaced.
-    fn insert_at(
-        &mut self,
-        p: G::Point,
-        location: Location,
-        vertex_data: V,
-        passes: impl Fn(&Tds<N, V, C>, CellId, usize) -> bool,
-        data: impl Fn(&C, usize) -> C,
-    ) -> VertexId {
-        let (cell, touching) = match location {
-            Location::Vertex(vertex) => return vertex,
-            Location::OutsideAffineHull => return self.raise_dimension(p, vertex_data),
-            Location::Cell { cell, touching } => (cell, touching),
-            Location::OutsideHull { cell } => (cell, 0),
-        };
-        let vertex = self.add_vertex(p, vertex_data);
-        let mut zone = std::mem::take(&mut self.zone);
-        zone.start(self.tds.cell_slots());
-        zone.add(cell);
-        // A point on a facet destroys the cells on both sides, wall or not.
-        for i in (0..N).filter(|i| touching >> i & 1 == 1) {
-            zone.add(self.tds.neighbor(cell, i));
-        }
-        zone.grow(&self.tds, |from, i, beyond| passes(&self.tds, from, i) && self.in_conflict(beyond, &p));
-        self.last = Some(self.tds.star(&mut zone, vertex, data));
-        self.zone = zone;
-        vertex
     }
 }

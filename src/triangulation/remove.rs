@@ -20,7 +20,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
 use super::flip::EdgeData;
-use super::{ConstrainedDelaunay, Delaunay, Triangulation};
+use super::{ConstrainedDelaunay, Delaunay, Locate, Triangulation};
 
 /// The ring around what is not yet triangulated, counter-clockwise as seen from within.
 struct Ring {
@@ -182,6 +182,13 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
         }
         self.inner.remove_vertex(vertex);
         Some(*self.point(vertex))
+    }
+
+    /// The same, telling a [strategy](Locate) of location.
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Option<G::Point> {
+        let point = self.remove(vertex)?;
+        strategy.removed(vertex);
+        Some(point)
     }
 }
 

@@ -1,3 +1,31 @@
+//! Point location: a walk, and strategies for where it starts.
+//!
+//! | strategy | steps of a walk, for `n` evenly spread points |
+//! |---|---|
+//! | [`Near`] a cell, or the last insertion | as many as cells lie between |
+//! | [`JumpAndWalk`] from the nearest of `n^(1/3)` vertices (Mücke, Saias and Zhu 1996) | `n^(1/3)`, and as many looks |
+//! | [`Buckets`] from a vertex in the same square of a grid | a few; none the better where all points are in one square |
+//! | [`Hierarchy`] of samples (Devillers 2002) | `log n`, however the points are spread |
+//!
+//! These walk from one triangle to the next across an edge that parts it from the place, with such edges tried in an order
+//! that looks random (the remembering stochastic, or zigzag, walk); [`StraightLine`] goes through the triangles that a
+//! line to the place meets (both: Devillers, Pion and Teillaud 2002).
+//!
+//! A strategy is a value of the caller's. Some of them learn from insertions and removals: pass these to
+//! [`Locate::inserted`] and [`Locate::removed`], or insert and remove by way of the strategy:
+//! [`Delaunay::insert_by`](super::Delaunay::insert_by), [`Delaunay::remove_by`](super::Delaunay::remove_by). One that has
+//! not been told is slower, and as right.
+
+mod buckets;
+mod hierarchy;
+mod start;
+mod straight;
+
+pub use buckets::Buckets;
+pub use hierarchy::Hierarchy;
+pub use start::{JumpAndWalk, Locate, Near};
+pub use straight::StraightLine;
+
 use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
@@ -29,7 +57,14 @@ pub enum Location {
 
 /// Marsaglia's xorshift: the walk turns corners in an order that no input can foresee, the same in
 /// every run.
+#[derive(Debug, Clone)]
 struct Dice(u32);
+
+impl Default for Dice {
+    fn default() -> Self {
+        Dice(0x9E37_79B9)
+    }
+}
 
 impl Dice {
     #[inline(always)]
@@ -71,7 +106,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         if !self.is_full() && self.leaves_flat(cell, q) {
             return Location::OutsideAffineHull;
         }
-        let mut dice = Dice(0x9E37_79B9);
+        let mut dice = Dice::default();
         let mut from = None;
         let mut steps = 0;
         'walk: loop {
@@ -111,19 +146,31 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// A finite cell that is nearer to `q` than this one, as far as some vertices tell.
     #[cold]
     fn jump(&self, cell: CellId, q: &G::Point, dice: &mut Dice) -> Option<CellId> {
+        let nearer = self.nearest_of_some(q, self.rough_distance(self.tds.vertex(cell, 0), q), dice)?;
+        let cell = self.tds.cell_of(nearer)?;
+        let infinite = self.tds.index_of(cell, VertexId::INFINITE);
+        Some(infinite.map_or(cell, |i| self.tds.neighbor(cell, i)))
+    }
+
+    fn rough_distance(&self, vertex: VertexId, q: &G::Point) -> f64 {
+        self.geometry.rough_distance(self.point(vertex), q)
+    }
+
+    /// Of `n^(1/3)` vertices the one nearest to `q`, if it is nearer than that.
+    fn nearest_of_some(&self, q: &G::Point, mut than: f64, dice: &mut Dice) -> Option<VertexId> {
         let slots = self.tds.vertex_slots();
-        let far = |v: VertexId| self.geometry.rough_distance(self.point(v), q);
-        let mut least = far(self.tds.vertex(cell, 0));
         let mut nearest = None;
         for _ in 0..(slots as f64).cbrt() as usize {
             let vertex = VertexId::new(dice.below(slots));
-            if self.tds.is_vertex(vertex) && far(vertex) < least {
-                (least, nearest) = (far(vertex), Some(vertex));
+            if !self.tds.is_vertex(vertex) {
+                continue;
+            }
+            let distance = self.rough_distance(vertex, q);
+            if distance < than {
+                (than, nearest) = (distance, Some(vertex));
             }
         }
-        let cell = self.tds.cell_of(nearest?)?;
-        let infinite = self.tds.index_of(cell, VertexId::INFINITE);
-        Some(infinite.map_or(cell, |i| self.tds.neighbor(cell, i)))
+        nearest
     }
 
     /// Whether `q` lies outside of the line or plane of all points, which a finite cell spans.

@@ -1,0 +1,151 @@
+//! Strategies of point location: the same answer by each, on grids where points lie on vertices, edges and lines.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use breakline::geometry::{Geometry, Plane};
+use breakline::num::Sign;
+use breakline::tds::{Tds, VertexId};
+use breakline::triangulation::{
+    Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine,
+};
+use common::random::Random;
+
+type Point = [f64; 2];
+type Free = Delaunay<Plane, 3>;
+
+/// What a location says, whichever cell it says it by.
+#[derive(Debug, PartialEq, Eq)]
+enum Place {
+    /// Inside of what these vertices span.
+    On(BTreeSet<VertexId>),
+    Outside,
+    OffTheFlat,
+}
+
+/// The place, after a look at whether it is the one.
+fn place(t: &Free, location: Location, q: Point) -> Place {
+    let tds: &Tds<3> = t.tds();
+    let plane = Plane::<breakline::kernel::Exact>::default();
+    match location {
+        Location::Vertex(vertex) => {
+            assert_eq!(*t.point(vertex), q);
+            Place::On([vertex].into())
+        }
+        Location::Cell { cell, touching } => {
+            let corners = tds.cell_vertices(cell);
+            let spanned = corners.iter().enumerate().filter(|(i, _)| touching >> i & 1 == 0).map(|(_, &v)| v);
+            for i in (0..3).filter(|_| t.dimension() == 2) {
+                let mut simplex = [0, 1, 2].map(|k| t.point(corners[k]));
+                simplex[i] = &q;
+                let expected = if touching >> i & 1 == 1 { Sign::Zero } else { Sign::Positive };
+                assert_eq!(plane.orientation(simplex), expected);
+            }
+            Place::On(spanned.collect())
+        }
+        Location::OutsideHull { cell } => {
+            let infinite = tds.index_of(cell, VertexId::INFINITE).unwrap();
+            if t.dimension() == 2 {
+                let [a, b] = tds.edge_ends(cell, infinite).map(|v| t.point(v));
+                assert_eq!(plane.orientation([a, b, &q]), Sign::Positive, "in sight of the hull edge");
+            }
+            Place::Outside
+        }
+        Location::OutsideAffineHull => Place::OffTheFlat,
+    }
+}
+
+/// By every strategy, as the default has it.
+fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane>, buckets: &Buckets, start: Option<VertexId>, q: Point) {
+    let expected = place(t, t.locate(&q, None), q);
+    let near = Near(start.filter(|&v| t.tds().is_vertex(v)).and_then(|v| t.tds().cell_of(v)));
+    let found = [
+        near.locate(t, &q),
+        JumpAndWalk.locate(t, &q),
+        StraightLine(None).locate(t, &q),
+        StraightLine(start).locate(t, &q),
+        hierarchy.locate(t, &q),
+        buckets.locate(t, &q),
+    ];
+    for (k, location) in found.into_iter().enumerate() {
+        assert_eq!(place(t, location, q), expected, "strategy {k}, {q:?} in {:?}", t.points());
+    }
+}
+
+fn tiny(random: &mut Random, side: u64) -> Point {
+    [random.below(side) as f64, random.below(side) as f64]
+}
+
+#[test]
+fn tiny_grids_that_grow_and_shrink() {
+    let mut random = Random(11);
+    for round in 0..300 {
+        let side = 1 + random.below(6);
+        let (mut t, mut hierarchy) = (Free::new(Plane::default()), Hierarchy::new(Plane::default()));
+        let mut buckets = Buckets::over([[0.0; 2], [side as f64; 2]], 1 + round % 9);
+        for _ in 0..60 {
+            let p = tiny(&mut random, side);
+            if random.below(3) > 0 {
+                let vertex = t.insert_by(&mut hierarchy, p, ()).unwrap();
+                buckets.inserted(t.geometry(), vertex, &p);
+            } else if let Location::Vertex(vertex) = t.locate(&p, None) {
+                // Half of the time the hierarchy is not told.
+                let told = random.below(2) == 0;
+                let removed = if told { t.remove_by(&mut hierarchy, vertex) } else { t.remove(vertex) };
+                assert_eq!(removed, Some(p));
+            }
+            for _ in 0..4 {
+                let q = tiny(&mut random, 2 * side + 1).map(|x| x - 0.5 * side as f64);
+                let start = (t.tds().vertex_slots() > 0).then(|| VertexId::new(random.index(t.tds().vertex_slots())));
+                same_by_all(&t, &hierarchy, &buckets, start, q);
+            }
+        }
+        assert_eq!(t.check(Level::Law), []);
+    }
+}
+
+#[test]
+fn thousands_of_points() {
+    let mut random = Random(12);
+    let sets: [Vec<Point>; 3] = [
+        (0..20_000).map(|_| [random.unit(), random.unit()]).collect(),
+        (0..20_000).map(|_| random.unit() - 0.5).map(|x| [x, x * x]).collect(),
+        (0..20_000).map(|i| [f64::from(i % 200), f64::from(i / 200)]).collect(),
+    ];
+    for points in sets {
+        let (t, _) = Free::from_points(Plane::default(), &points).unwrap();
+        let (hierarchy, buckets) = (Hierarchy::of(Plane::default(), &t), Buckets::of(&t));
+        let mut one_by_one = (Free::new(Plane::default()), Hierarchy::new(Plane::default()));
+        for &p in &points {
+            one_by_one.0.insert_by(&mut one_by_one.1, p, ()).unwrap();
+        }
+        assert_eq!(one_by_one.0.check(Level::Law), []);
+        for _ in 0..2000 {
+            let q = random.pick(&points).map(|x| x + (random.below(3) as f64 - 1.0) * 0.5);
+            let start = VertexId::new(random.index(points.len()));
+            same_by_all(&t, &hierarchy, &buckets, Some(start), q);
+            same_by_all(&one_by_one.0, &one_by_one.1, &buckets, Some(start), q);
+        }
+    }
+}
+
+/// The samples of the hierarchy follow the vertices: what is taken out again leaves nothing behind.
+#[test]
+fn numbers_used_again() {
+    let mut random = Random(13);
+    let (mut t, mut hierarchy) = (Free::new(Plane::default()), Hierarchy::<Plane>::new(Plane::default()));
+    for _ in 0..5 {
+        let mut vertices: Vec<VertexId> = (0..3000)
+            .map(|_| [random.unit(), random.unit()])
+            .map(|p| t.insert_by(&mut hierarchy, p, ()).unwrap())
+            .collect();
+        random.shuffle(&mut vertices);
+        for vertex in vertices {
+            let p = *t.point(vertex);
+            assert_eq!(hierarchy.locate(&t, &p), Location::Vertex(vertex));
+            assert_eq!(t.remove_by(&mut hierarchy, vertex), Some(p));
+        }
+        assert_eq!(hierarchy.sample_sizes().sum::<usize>(), 0);
+    }
+}
