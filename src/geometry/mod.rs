@@ -125,7 +125,8 @@ pub trait Geometry<const N: usize> {
 
     /// Whether `q`, which lies in the flat of the simplex, lies inside (positive), on or outside of
     /// the sphere around it there; whatever the orientation of the simplex. Two points: between
-    /// them.
+    /// them. One point: `q` is on the same site, and inside if its weight is larger; asked of weighted points only, of which
+    /// the answer without weights, that no point is inside of another, is wrong.
     fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
         match simplex {
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),

@@ -47,6 +47,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 }
             }
         }
+        let mut detached = self.detached;
         let holes: HashSet<VertexId> = self.unused_vertices.iter().copied().collect();
         for vertex in (0..self.vertex_slots()).map(VertexId::new).chain([VertexId::INFINITE]) {
             let sound = match self.cell_of(vertex) {
@@ -54,7 +55,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                     self.is_used(cell) && self.cell_vertices(cell).contains(&vertex) && !holes.contains(&vertex)
                 }
                 None if vertex == VertexId::INFINITE => self.dimension() == -1,
-                None => holes.contains(&vertex),
+                None if holes.contains(&vertex) => true,
+                None => {
+                    let is_detached = detached > 0;
+                    detached -= usize::from(is_detached);
+                    is_detached
+                }
             };
             if !sound {
                 flaws.push(Flaw::CellOfVertex(vertex));

@@ -62,6 +62,8 @@ pub struct Tds<const N: usize, V = (), C = ()> {
     vertex_data: Vec<V>,
     /// Numbers of removed vertices, reused from the end.
     unused_vertices: Vec<VertexId>,
+    /// How many vertices keep their number and are in no cell.
+    detached: usize,
     infinite_cell: CellId,
 }
 
@@ -82,6 +84,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             vertex_cell: Vec::new(),
             vertex_data: Vec::new(),
             unused_vertices: Vec::new(),
+            detached: 0,
             infinite_cell: CellId::NONE,
         }
     }
@@ -102,6 +105,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             vertex_cell,
             vertex_data,
             unused_vertices: Vec::new(),
+            detached: 0,
             infinite_cell,
         }
     }
@@ -124,7 +128,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// Finite vertices.
     pub fn vertex_count(&self) -> usize {
-        self.vertex_cell.len() - self.unused_vertices.len()
+        self.vertex_cell.len() - self.unused_vertices.len() - self.detached
     }
 
     /// One more than the largest number that a vertex has had: vertices are numbered below this, with gaps
@@ -254,6 +258,17 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.vertex_cell.push(CellId::NONE);
         self.vertex_data.push(data);
         VertexId::new(self.vertex_cell.len() - 1)
+    }
+
+    /// Takes note that a vertex, which keeps its number, is in no cell.
+    pub(crate) fn detach(&mut self, vertex: VertexId) {
+        self.vertex_cell[vertex.index()] = CellId::NONE;
+        self.detached += 1;
+    }
+
+    /// Takes note that a detached vertex is about to get cells; or, if it is to be removed, that it was detached.
+    pub(crate) fn attach(&mut self) {
+        self.detached -= 1;
     }
 
     /// Adds a cell without neighbors.

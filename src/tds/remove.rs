@@ -6,7 +6,6 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Gives back the number of a vertex that no cell has any more. Its payload stays until the number is used
     /// again.
     pub(crate) fn remove_vertex(&mut self, vertex: VertexId) {
-        debug_assert!(self.is_vertex(vertex));
         self.vertex_cell[vertex.index()] = CellId::NONE;
         self.unused_vertices.push(vertex);
     }

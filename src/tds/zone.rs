@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use super::{CellId, Tds, VertexId};
 
 /// A set of cells that is to be replaced by the star of one vertex, and the facets around it.
@@ -24,6 +26,23 @@ impl Zone {
     /// The facets around the zone: a cell within, and the index of the facet in it.
     pub fn border(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
         self.border.iter().map(|&(cell, i)| (cell, i as usize))
+    }
+
+    /// The finite vertices that are on no facet of the border: no cell will be left to them.
+    pub(crate) fn inner_vertices<const N: usize, V, C: Copy + Default>(&self, tds: &Tds<N, V, C>) -> Vec<VertexId> {
+        if tds.dimension() == 2 && self.border.len() == self.cells.len() + 2 {
+            return Vec::new(); // by Euler's relation
+        }
+        let on_facet = |&(cell, i): &(CellId, u8)| {
+            let vertices = tds.cell_vertices(cell).iter().enumerate();
+            vertices.filter(move |&(k, _)| k != i as usize).map(|(_, &vertex)| vertex)
+        };
+        let outer: HashSet<VertexId> = self.border.iter().flat_map(on_facet).collect();
+        let mut inner: Vec<VertexId> = self.cells.iter().flat_map(|&cell| tds.cell_vertices(cell)).copied().collect();
+        inner.retain(|vertex| *vertex != VertexId::INFINITE && !outer.contains(vertex));
+        inner.sort_unstable();
+        inner.dedup();
+        inner
     }
 
     pub(crate) fn start(&mut self, slots: usize) {

@@ -29,6 +29,8 @@ pub enum Flaw {
     NotConvex(CellId, usize),
     /// Level 4: the vertex beyond facet `i` lies in the cell's circumscribed sphere.
     NotDelaunay(CellId, usize),
+    /// Level 4: a hidden point is not in the cell that is said to hide it, or ought to be seen.
+    Hidden(VertexId),
     /// Level 4: an edge is constrained on one side only.
     OneSided(CellId, usize),
     /// Level 4: between these two vertices of a line's chain there is no constrained edge.

@@ -7,6 +7,7 @@
 //! | kind | law |
 //! |---|---|
 //! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere; in the plane and in space |
+//! | [`Regular`] | the same with weights: no vertex of less power than the cell's; in the plane |
 //! | [`ConstrainedDelaunay`] | the same among vertices that see each other past the constraints; in the plane |
 //!
 //! They own an engine and lend it for reading only.
@@ -43,6 +44,7 @@ mod lines;
 mod locate;
 mod nesting;
 mod network;
+mod regular;
 mod remove;
 mod segment;
 mod simplify;
@@ -56,6 +58,7 @@ pub use lines::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
+pub use regular::Regular;
 
 use std::fmt;
 
@@ -246,7 +249,11 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
                 let inner = self.tds.neighbor(cell, infinite);
                 let end = vertices[1 - infinite];
                 let replaced = 1 - self.tds.index_of(inner, end).unwrap_or(0);
-                self.side_of_facet(inner, replaced, q) == Sign::Negative
+                match self.side_of_facet(inner, replaced, q) {
+                    Sign::Negative => true,
+                    Sign::Zero => in_sphere_of_flat(&self.geometry, &[self.point(end)], q), // on its site
+                    Sign::Positive => false,
+                }
             }
             Some(infinite) => self.beyond_hull(cell, infinite, q),
         }

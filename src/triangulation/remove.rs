@@ -60,7 +60,7 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
     ///
     /// # Complexity
     /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.
-    fn remove_vertex(&mut self, vertex: VertexId) {
+    pub(super) fn remove_vertex(&mut self, vertex: VertexId) {
         if self.dimension() == 2 {
             match self.line_without(vertex) {
                 Some(line) => self.tds.set_line(&line),
@@ -73,6 +73,11 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
             self.tds.set_line(&rest);
         }
         self.tds.remove_vertex(vertex);
+    }
+
+    /// Whether without this vertex there are no triangles.
+    pub(super) fn is_flat_without(&self, vertex: VertexId) -> bool {
+        self.dimension() < 2 || self.line_without(vertex).is_some()
     }
 
     /// The vertices that are left, in their order, if they are collinear without this one.
