@@ -31,7 +31,7 @@ impl Walls {
 
     /// Only the edge opposite vertex `i`, if it was one.
     #[inline(always)]
-    fn only(self, i: usize) -> Self {
+    pub(super) fn only(self, i: usize) -> Self {
         Walls(self.0 & 1 << i)
     }
 }
@@ -100,7 +100,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// Without points.
     pub fn new(geometry: G) -> Self {
         ConstrainedDelaunay {
-            inner: Triangulation::new(geometry),
+            inner: Triangulation::over(geometry),
             waiting: Vec::new(),
             crossings: Vec::new(),
             left_out: Vec::new(),
@@ -114,15 +114,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 
     pub(super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
         let location = self.inner.locate(&p, near);
-        // The ends of a constraint that the point splits.
-        let split = match location {
-            Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
-                let i = touching.trailing_zeros() as usize;
-                let ends = self.tds().edge_ends(cell, i);
-                self.tds().cell_data(cell).has(i).then_some(ends)
-            }
-            _ => None,
-        };
+        let split = self.inner.wall_at(location);
         let takes = |t: &Triangulation<G, 3, V, Walls>, from, i, beyond| {
             !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p)
         };
@@ -165,25 +157,9 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         }
     }
 
-    /// Whether the edge of a cell opposite its vertex `i` is a constraint.
-    #[inline]
-    pub fn is_constrained(&self, cell: CellId, i: usize) -> bool {
-        self.tds().cell_data(cell).has(i)
-    }
-
     /// Whether there is a constraint on the edge between two vertices.
     pub(super) fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
         self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
-    }
-
-    /// Each constrained edge once, as the pair of its vertices, the smaller first.
-    pub fn constrained_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
-        self.tds().cells().filter(|_| self.dimension() == 2).flat_map(move |cell| {
-            (0..3).filter(move |&i| self.is_constrained(cell, i)).filter_map(move |i| {
-                let [a, b] = self.tds().edge_ends(cell, i);
-                (a < b).then_some([a, b]) // the cell on the other side has it as `b a`
-            })
-        })
     }
 
     /// The vertices that were added where constraints cross.
@@ -215,12 +191,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         if !flaws.is_empty() || level < Level::Law || self.dimension() < 2 {
             return flaws;
         }
-        let one_sided = |cell: CellId, i: usize| {
-            let beside = self.tds().neighbor(cell, i);
-            self.is_constrained(cell, i) != self.is_constrained(beside, self.tds().index_of_neighbor(beside, cell))
-        };
-        let edges = self.tds().cells().flat_map(|cell| (0..3).map(move |i| (cell, i)));
-        let one_sided = edges.filter(|&(cell, i)| one_sided(cell, i)).map(|(cell, i)| Flaw::OneSided(cell, i));
+        let one_sided = self.one_sided_walls().into_iter();
         let left_out = self.left_out.iter().map(|&[a, b]| Flaw::Missing(a, b));
         let broken = self.lines().flat_map(|line| {
             let chain = self.chain(line);

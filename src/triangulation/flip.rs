@@ -54,14 +54,14 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
             });
             if let Some(i) = flippable {
                 let beside = self.tds.neighbor(cell, i);
-                self.flip(cell, i);
+                self.exchange_diagonal(cell, i);
                 unsettled.extend([cell, beside]);
             }
         }
     }
 
     /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.
-    fn flip(&mut self, cell: CellId, i: usize) {
+    pub(super) fn exchange_diagonal(&mut self, cell: CellId, i: usize) {
         let tds = &mut self.tds;
         let beside = tds.neighbor(cell, i);
         let j = tds.index_of_neighbor(beside, cell);

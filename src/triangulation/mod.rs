@@ -6,8 +6,10 @@
 //!
 //! | kind | law |
 //! |---|---|
+//! | [`Triangulation`] | none: a point splits what it lies on |
 //! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere; in the plane and in space |
 //! | [`Regular`] | the same with weights: no vertex of less power than the cell's; in the plane |
+//! | [`Constrained`] | some edges are there whatever comes; in the plane |
 //! | [`ConstrainedDelaunay`] | the same among vertices that see each other past the constraints; in the plane |
 //!
 //! They own an engine and lend it for reading only.
@@ -32,6 +34,7 @@
 //!
 //! All questions take `&self`. In space points cannot be removed, and there is no weighted (regular) kind.
 
+mod basic;
 mod bulk;
 mod check;
 mod constrained;
@@ -48,6 +51,7 @@ mod regular;
 mod remove;
 mod segment;
 mod simplify;
+mod walled;
 
 pub(crate) use bulk::Sites;
 pub use bulk::spatial_order;
@@ -59,6 +63,7 @@ pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, Straig
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
 pub use regular::Regular;
+pub use walled::{Blocked, Constrained};
 
 use std::fmt;
 
@@ -120,7 +125,8 @@ impl std::error::Error for Refused {}
 /// Two cells to a vertex must be numbered.
 const MAX_VERTICES: usize = VertexId::LIMIT / 2;
 
-/// Points and cells without a law of their own: what the kinds share, for reading.
+/// Points and cells without a law of their own: the basic kind; and, for reading, what all kinds share.
+///
 #[derive(Debug, Clone)]
 pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
     geometry: G,
@@ -133,7 +139,7 @@ pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    fn new(geometry: G) -> Self {
+    fn over(geometry: G) -> Self {
         Triangulation { geometry, tds: Tds::new(), points: Vec::new(), zone: Zone::default(), last: None }
     }
 

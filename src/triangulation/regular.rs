@@ -101,7 +101,7 @@ impl<G: Geometry<3>, V> Deref for Regular<G, V> {
 impl<G: Geometry<3>, V> Regular<G, V> {
     /// Without points.
     pub fn new(geometry: G) -> Self {
-        Regular { inner: Triangulation::new(geometry), hidden: Hidden::default() }
+        Regular { inner: Triangulation::over(geometry), hidden: Hidden::default() }
     }
 
     /// Adds a point with a payload, seen or [hidden](Self::is_hidden); the one that is there already, with the payload it

@@ -55,16 +55,23 @@ impl Ring {
 
 #[expect(private_bounds, reason = "the methods are private, too")]
 impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
-    /// Takes out a vertex on no wall. Cells are replaced only where they had it as a corner; all of them where
-    /// the rest are collinear.
+    /// Takes out a vertex on no wall and restores the law. Cells are replaced only where they had it as a corner; all of
+    /// them where the rest are collinear.
     ///
     /// # Complexity
     /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.
     pub(super) fn remove_vertex(&mut self, vertex: VertexId) {
+        let mut unsettled = self.remove_lawless(vertex);
+        self.settle(&mut unsettled);
+    }
+
+    /// The same without restoring the law; returns the cells that are new.
+    pub(super) fn remove_lawless(&mut self, vertex: VertexId) -> Vec<CellId> {
+        let mut cells = Vec::new();
         if self.dimension() == 2 {
             match self.line_without(vertex) {
                 Some(line) => self.tds.set_line(&line),
-                None => self.fill_star(vertex),
+                None => cells = self.fill_star(vertex),
             }
         } else if self.vertex_count() > 2 {
             self.tds.skip(vertex);
@@ -73,6 +80,7 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
             self.tds.set_line(&rest);
         }
         self.tds.remove_vertex(vertex);
+        cells
     }
 
     /// Whether without this vertex there are no triangles.
@@ -100,7 +108,7 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
         (is_on_hull && line.windows(3).all(|w| turn(w) == Sign::Zero)).then_some(line)
     }
 
-    fn fill_star(&mut self, vertex: VertexId) {
+    fn fill_star(&mut self, vertex: VertexId) -> Vec<CellId> {
         let mut cells: Vec<CellId> = self.tds.around(vertex).collect();
         let mut ring = self.ring_around(vertex, &cells);
         // A ring takes two triangles less than it has corners.
@@ -132,7 +140,7 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
         let wall = self.tds.cell_data(beside).is_wall(j);
         let data = self.tds.cell_data_mut(last);
         *data = data.with_wall(i, wall);
-        self.settle(&mut cells);
+        cells
     }
 
     /// The rim of the cells around a vertex, which are given in their order.
@@ -219,11 +227,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     }
 
     pub(super) fn is_on_constraint(&self, vertex: VertexId) -> bool {
-        let has_wall = |cell: CellId| {
-            let i = self.tds().index_of(cell, vertex);
-            i.is_some_and(|i| self.is_constrained(cell, ccw(i)) || self.is_constrained(cell, cw(i)))
-        };
-        self.tds().around(vertex).any(has_wall) || self.waiting.iter().flatten().any(|&end| end == vertex)
+        self.inner.is_on_wall(vertex) || self.waiting.iter().flatten().any(|&end| end == vertex)
     }
 
     /// Takes the constraint off the edge between two vertices, which then is there only if the law wants it.

@@ -1,4 +1,4 @@
-//! Forcing a segment into a constrained Delaunay triangulation.
+//! Forcing a segment into a constrained triangulation.
 //!
 //! 1. *Trace*: walk along the segment from its start and collect the triangles it crosses, until it
 //!    meets a vertex or a constraint.
@@ -10,12 +10,12 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::geometry::{Crossing, in_sphere};
+use crate::geometry::{Crossing, Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
 use super::lines::undirected;
-use super::{ConstrainedDelaunay, Walls};
+use super::{ConstrainedDelaunay, Triangulation, Walls};
 
 /// Buffers of the segment insertion, kept from one to the next.
 #[derive(Debug, Clone, Default)]
@@ -81,7 +81,7 @@ impl Side {
 const BASE: usize = 2;
 
 /// How a trace ended.
-enum Met {
+pub(super) enum Met {
     /// At this vertex, which may be the segment's end.
     Vertex(VertexId),
     /// At the constraint opposite corner `i` of the cell.
@@ -129,20 +129,16 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     ) {
         let mut pieces = vec![(a, b)];
         while let Some((a, b)) = pieces.pop() {
-            if a == b || self.wall_up(a, b) {
+            if a == b || self.inner.wall_up(a, b) {
                 continue;
             }
             if let Some(&between) = self.lines.splits.get(&undirected(a, b)) {
                 pieces.extend([(between, b), (a, between)]);
                 continue;
             }
-            match self.trace(a, b) {
+            match self.inner.trace(a, b, &mut self.scratch) {
                 Met::Vertex(v) => {
-                    if self.scratch.corridor.is_empty() {
-                        self.set_wall(a, v, true); // the edge is there
-                    } else {
-                        self.retriangulate();
-                    }
+                    self.inner.force_traced(a, v, &mut self.scratch);
                     if v != b {
                         self.lines.split(a, b, v);
                         pieces.push((v, b));
@@ -174,13 +170,20 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         vec![(v, b), (a, v), (v, d), (c, v)]
     }
 
+    /// Restores the law, starting from the cells in `unsettled`.
+    pub(super) fn settle(&mut self) {
+        self.inner.settle(&mut self.scratch.unsettled);
+    }
+}
+
+impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
     /// Makes an edge a constraint, if it is there.
-    fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
-        let Some((cell, i)) = self.inner.tds.edge(a, b) else { return false };
-        let beside = self.inner.tds.neighbor(cell, i);
-        let j = self.inner.tds.index_of_neighbor(beside, cell);
+    pub(super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
+        let Some((cell, i)) = self.tds.edge(a, b) else { return false };
+        let beside = self.tds.neighbor(cell, i);
+        let j = self.tds.index_of_neighbor(beside, cell);
         for (cell, i) in [(cell, i), (beside, j)] {
-            let data = self.inner.tds.cell_data_mut(cell);
+            let data = self.tds.cell_data_mut(cell);
             *data = data.with(i, true);
         }
         true
@@ -188,28 +191,25 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 
     #[inline]
     fn turn(&self, a: VertexId, b: VertexId, c: VertexId) -> Sign {
-        self.inner.geometry.orientation([a, b, c].map(|v| self.point(v)))
+        self.geometry.orientation([a, b, c].map(|v| self.point(v)))
     }
 
     /// Whether `p` lies ahead of `a` on the way to `b`, all three being collinear.
     fn is_ahead(&self, a: VertexId, b: VertexId, p: VertexId) -> bool {
-        let compare = |p: VertexId, q: VertexId| self.inner.geometry.compare(self.point(p), self.point(q));
+        let compare = |p: VertexId, q: VertexId| self.geometry.compare(self.point(p), self.point(q));
         compare(a, p) == compare(a, b)
     }
 
     /// Walks from `a` towards `b` and fills the corridor and its two sides.
-    fn trace(&mut self, a: VertexId, b: VertexId) -> Met {
-        let mut scratch = std::mem::take(&mut self.scratch);
+    pub(super) fn trace(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
         scratch.corridor.clear();
         scratch.left.clear(a);
         scratch.right.clear(a);
-        let met = self.trace_into(a, b, &mut scratch);
-        self.scratch = scratch;
-        met
+        self.trace_into(a, b, scratch)
     }
 
     fn trace_into(&self, a: VertexId, b: VertexId, Scratch { corridor, left, right, .. }: &mut Scratch) -> Met {
-        let tds = self.tds();
+        let tds = &self.tds;
         let edge = |cell: CellId, i: usize| {
             let outside = tds.neighbor(cell, i);
             let j = tds.index_of_neighbor(outside, cell);
@@ -266,16 +266,26 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         }
     }
 
+    /// Makes the segment that was traced to a vertex a constrained edge.
+    pub(super) fn force_traced(&mut self, a: VertexId, v: VertexId, scratch: &mut Scratch) {
+        if scratch.corridor.is_empty() {
+            self.wall_up(a, v); // the edge is there
+        } else {
+            self.retriangulate(scratch);
+        }
+    }
+
     /// Replaces the corridor by triangles on both sides of the segment, which is a constraint then. What was a constrained
     /// Delaunay triangulation is one again: triangles that the segment does not cross see no more than before.
-    fn retriangulate(&mut self) {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let Scratch { corridor, left, right, parts, .. } = &mut scratch;
+    ///
+    /// In any other triangulation, too, the triangles fit the polygon: from each vertex of the border an edge went over the
+    /// segment, so that no edge of the border can hide it from the base.
+    fn retriangulate(&mut self, Scratch { corridor, left, right, parts, .. }: &mut Scratch) {
         for &cell in corridor.iter() {
-            *self.inner.tds.cell_data_mut(cell) = Walls::TAKEN_OUT;
+            *self.tds.cell_data_mut(cell) = Walls::TAKEN_OUT;
         }
         for edge in left.edges.iter_mut().chain(&mut right.edges) {
-            edge.is_spike = *self.inner.tds.cell_data(edge.cell) == Walls::TAKEN_OUT;
+            edge.is_spike = *self.tds.cell_data(edge.cell) == Walls::TAKEN_OUT;
         }
         // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end, has
         // it on its left. On the right it is the other way around.
@@ -283,14 +293,13 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         right.edges.reverse();
         let sides = [self.fill(left, corridor, parts), self.fill(right, corridor, parts)];
         if let [Some(left), Some(right)] = sides {
-            self.inner.tds.link(left, BASE, right, BASE);
+            self.tds.link(left, BASE, right, BASE);
             for cell in [left, right] {
-                let data = self.inner.tds.cell_data_mut(cell);
+                let data = self.tds.cell_data_mut(cell);
                 *data = data.with(BASE, true);
             }
         }
         debug_assert!(corridor.is_empty(), "the corridor was not filled");
-        self.scratch = scratch;
     }
 
     /// Triangulates a side, over the base from its chain's first to its last vertex, with cells from `free`. Returns the
@@ -304,9 +313,9 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                 continue;
             };
             let apex = first + apex;
-            self.inner.tds.set_corners(cell, [first, last, apex].map(|k| side.chain[k]));
+            self.tds.set_corners(cell, [first, last, apex].map(|k| side.chain[k]));
             match above {
-                Some((other, i)) => self.inner.tds.link(cell, BASE, other, i),
+                Some((other, i)) => self.tds.link(cell, BASE, other, i),
                 None => on_base = Some(cell),
             }
             let mut walls = Walls::default();
@@ -320,14 +329,14 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                 if edge.is_spike {
                     (edge.cell, edge.i) = (cell, i);
                 } else {
-                    self.inner.tds.link(cell, i, edge.cell, edge.i);
+                    self.tds.link(cell, i, edge.cell, edge.i);
                 }
             }
-            *self.inner.tds.cell_data_mut(cell) = walls;
+            *self.tds.cell_data_mut(cell) = walls;
         }
         if side.edges.iter().any(|edge| edge.is_spike) {
             for [p, q] in side.spikes().into_iter().map(|pair| pair.map(|k| side.edges[k])) {
-                self.inner.tds.link(p.cell, p.i, q.cell, q.i);
+                self.tds.link(p.cell, p.i, q.cell, q.i);
             }
         }
         on_base
@@ -346,17 +355,12 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
                 continue; // behind the base, or an end of it met again at a spike
             }
             let closer = |c: usize| {
-                chain[c] != p && in_sphere(&self.inner.geometry, [a, b, chain[c]].map(|v| self.point(v)), self.point(p))
+                chain[c] != p && in_sphere(&self.geometry, [a, b, chain[c]].map(|v| self.point(v)), self.point(p))
             };
             if best.is_none_or(closer) {
                 best = Some(k);
             }
         }
         best
-    }
-
-    /// Restores the law, starting from the cells in `unsettled`.
-    pub(super) fn settle(&mut self) {
-        self.inner.settle(&mut self.scratch.unsettled);
     }
 }

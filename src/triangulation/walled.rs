@@ -1,0 +1,202 @@
+use std::ops::Deref;
+
+use crate::geometry::Geometry;
+use crate::tds::{CellId, VertexId};
+
+use super::segment::{Met, Scratch};
+use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
+
+/// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the basic
+/// [`Triangulation`]; where one lies on a constraint, it splits it.
+///
+/// Constraints are edges here, between vertices. For lines that cross, are told apart, and are taken out again, and for
+/// triangles of good shape there is [`ConstrainedDelaunay`](super::ConstrainedDelaunay).
+///
+/// ```
+/// use breakline::geometry::Plane;
+/// use breakline::triangulation::{Blocked, Constrained};
+///
+/// let mut t: Constrained<Plane> = Constrained::new(Plane::default());
+/// let v = [[0.0, 0.0], [9.0, 1.0], [4.0, 5.0], [4.0, -5.0]].map(|p| t.insert(p).unwrap());
+/// assert_eq!(t.constrain(v[0], v[1]), Ok(()));
+/// assert_eq!(t.constrain(v[2], v[3]), Err(Blocked::Wall([v[0], v[1]])));
+/// t.release(v[0], v[1]);
+/// assert_eq!(t.constrain(v[2], v[3]), Ok(()));
+/// assert!(t.constrained_edges().eq([[v[2], v[3]]]));
+/// ```
+#[derive(Debug, Clone)]
+pub struct Constrained<G: Geometry<3>, V = ()> {
+    inner: Triangulation<G, 3, V, Walls>,
+    scratch: Scratch,
+}
+
+/// Why a constraint cannot be put in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Blocked {
+    /// It crosses the constraint between these vertices, the smaller first.
+    Wall([VertexId; 2]),
+    /// All points are collinear, so that there are no triangles to hold it; or one of the vertices does not exist.
+    Nowhere,
+}
+
+impl<G: Geometry<3>, V> Deref for Constrained<G, V> {
+    type Target = Triangulation<G, 3, V, Walls>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.inner
+    }
+}
+
+impl<G: Geometry<3>, V> Constrained<G, V> {
+    /// Without points.
+    pub fn new(geometry: G) -> Self {
+        Constrained { inner: Triangulation::over(geometry), scratch: Scratch::default() }
+    }
+
+    /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the site is taken.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or out of range; nothing has changed then.
+    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
+        self.inner.admit(&p)?;
+        let location = self.inner.locate(&p, None);
+        let split = self.inner.wall_at(location);
+        let takes = |t: &Triangulation<G, 3, V, Walls>, from: CellId, i, beyond| {
+            !t.tds.cell_data(from).has(i) && t.is_split_by(beyond, &p)
+        };
+        let vertex = self.inner.insert_at(p, location, data, takes, |walls, i| walls.only(i));
+        for end in split.into_iter().flatten() {
+            self.inner.wall_up(vertex, end);
+        }
+        Ok(vertex)
+    }
+
+    /// Forces the straight way between two vertices to consist of edges. Triangles that it crosses are replaced.
+    ///
+    /// # Errors
+    /// If it is blocked; nothing has changed then.
+    ///
+    /// # Complexity
+    /// Quadratic in the number of triangles between two vertices on the way at worst, in practice linear.
+    pub fn constrain(&mut self, a: VertexId, b: VertexId) -> Result<(), Blocked> {
+        let exists = |v: VertexId| v != VertexId::INFINITE && self.tds().is_vertex(v);
+        if self.dimension() < 2 || !exists(a) || !exists(b) {
+            return Err(Blocked::Nowhere);
+        }
+        // First without touching anything.
+        let mut from = a;
+        while from != b {
+            match self.inner.trace(from, b, &mut self.scratch) {
+                Met::Vertex(v) => from = v,
+                Met::Wall(cell, i) => {
+                    let mut ends = self.tds().edge_ends(cell, i);
+                    ends.sort_unstable();
+                    return Err(Blocked::Wall(ends));
+                }
+            }
+        }
+        let mut from = a;
+        while from != b {
+            let Met::Vertex(v) = self.inner.trace(from, b, &mut self.scratch) else { break };
+            self.inner.force_traced(from, v, &mut self.scratch);
+            from = v;
+        }
+        Ok(())
+    }
+
+    /// Takes the constraint off the edge between two vertices, which stays an edge; says whether there was one.
+    pub fn release(&mut self, a: VertexId, b: VertexId) -> bool {
+        let Some((cell, i)) = self.tds().edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i)) else {
+            return false;
+        };
+        let beside = self.tds().neighbor(cell, i);
+        let j = self.tds().index_of_neighbor(beside, cell);
+        for (cell, i) in [(cell, i), (beside, j)] {
+            let data = self.inner.tds.cell_data_mut(cell);
+            *data = data.with(i, false);
+        }
+        true
+    }
+
+    /// Takes a vertex out and returns its point; `None` if there is no such vertex, or a constraint ends in it or runs
+    /// through it.
+    pub fn remove(&mut self, vertex: VertexId) -> Option<G::Point> {
+        if !self.tds().is_vertex(vertex) || self.inner.is_on_wall(vertex) {
+            return None;
+        }
+        // Without triangles there is nothing to hold the constraints.
+        if self.constrained_edges().next().is_some() && self.inner.is_flat_without(vertex) {
+            return None;
+        }
+        self.inner.remove_lawless(vertex);
+        Some(*self.point(vertex))
+    }
+
+    /// Checks up to the level: that of the law is that each edge is constrained on both sides or on none.
+    #[must_use]
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        let mut flaws = self.inner.check(level);
+        if flaws.is_empty() && level == Level::Law {
+            flaws.extend(self.one_sided_walls());
+        }
+        flaws
+    }
+}
+
+impl<G: Geometry<3>> Constrained<G> {
+    /// Adds a point; the vertex that is there already, if the site is taken.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
+        self.insert_with(p, ())
+    }
+}
+
+/// What triangulations with constraints have in common, for reading.
+impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
+    /// Whether the edge of a cell opposite its vertex `i` is a constraint.
+    #[inline]
+    pub fn is_constrained(&self, cell: CellId, i: usize) -> bool {
+        self.tds.cell_data(cell).has(i)
+    }
+
+    /// Each constrained edge once, as the pair of its vertices, the smaller first.
+    pub fn constrained_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
+        self.tds.cells().filter(|_| self.dimension() == 2).flat_map(move |cell| {
+            (0..3).filter(move |&i| self.is_constrained(cell, i)).filter_map(move |i| {
+                let [a, b] = self.tds.edge_ends(cell, i);
+                (a < b).then_some([a, b]) // the cell on the other side has it as `b a`
+            })
+        })
+    }
+
+    /// The ends of the constraint that a place lies on in its inside.
+    pub(super) fn wall_at(&self, location: Location) -> Option<[VertexId; 2]> {
+        match location {
+            Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
+                let i = touching.trailing_zeros() as usize;
+                self.is_constrained(cell, i).then(|| self.tds.edge_ends(cell, i))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a constraint ends in a vertex or runs through it.
+    pub(super) fn is_on_wall(&self, vertex: VertexId) -> bool {
+        self.tds.around(vertex).any(|cell| {
+            let i = self.tds.index_of(cell, vertex);
+            (0..3).any(|k| Some(k) != i && self.is_constrained(cell, k))
+        })
+    }
+
+    /// Edges that are constrained on one side only.
+    pub(super) fn one_sided_walls(&self) -> Vec<Flaw> {
+        let edges = self.tds.cells().filter(|_| self.dimension() == 2).flat_map(|cell| (0..3).map(move |i| (cell, i)));
+        let is_one_sided = |&(cell, i): &(CellId, usize)| {
+            let beside = self.tds.neighbor(cell, i);
+            self.is_constrained(cell, i) != self.is_constrained(beside, self.tds.index_of_neighbor(beside, cell))
+        };
+        edges.filter(is_one_sided).map(|(cell, i)| Flaw::OneSided(cell, i)).collect()
+    }
+}

@@ -1,0 +1,174 @@
+//! The kinds without an empty circle: basic and constrained triangulations, on tiny grids.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use breakline::geometry::{Plane, Space};
+use breakline::kernel::Adaptive;
+use breakline::tds::VertexId;
+use breakline::triangulation::{Blocked, Constrained, Delaunay, Level, Triangulation, Walls};
+use common::random::Random;
+
+type Point = [f64; 2];
+
+fn tiny<const D: usize>(random: &mut Random, side: u64) -> [f64; D] {
+    std::array::from_fn(|_| random.below(side) as f64)
+}
+
+/// As many triangles as there must be: the same points, the same hull.
+fn fills_the_hull<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
+    let points: Vec<Point> = t.tds().vertices().map(|v| *t.point(v)).collect();
+    let (delaunay, _) = Delaunay::from_points(Plane::<Adaptive>::default(), &points).unwrap();
+    assert_eq!(t.dimension(), delaunay.dimension(), "{points:?}");
+    assert_eq!(t.finite_cells().count(), delaunay.finite_cells().count(), "{points:?}");
+}
+
+#[test]
+fn basic_ones_grow_flip_and_shrink() {
+    let mut random = Random(31);
+    for _ in 0..400 {
+        let side = 1 + random.below(6);
+        let mut t: Triangulation<Plane, 3> = Triangulation::new(Plane::default());
+        for _ in 0..40 {
+            match random.below(6) {
+                0..3 => _ = t.insert(tiny(&mut random, side)).unwrap(),
+                3 | 4 => {
+                    let cells: Vec<_> = t.tds().cells().collect();
+                    let before: BTreeSet<_> = t.finite_cells().collect();
+                    if !cells.is_empty() {
+                        let (cell, i) = (random.pick(&cells), random.index(3));
+                        let is_flippable = t.is_flippable(cell, i);
+                        assert_eq!(t.flip(cell, i), is_flippable);
+                        assert_eq!(t.finite_cells().collect::<BTreeSet<_>>(), before);
+                    }
+                }
+                _ => {
+                    let vertices: Vec<VertexId> = t.tds().vertices().collect();
+                    if !vertices.is_empty() {
+                        let vertex = random.pick(&vertices);
+                        assert_eq!(t.remove(vertex), Some(*t.point(vertex)));
+                        assert_eq!(t.remove(vertex), None);
+                    }
+                }
+            }
+            assert_eq!(t.check(Level::Law), []);
+            fills_the_hull(&t);
+        }
+    }
+}
+
+#[test]
+fn basic_ones_in_space() {
+    let mut random = Random(32);
+    for _ in 0..500 {
+        let side = 1 + random.below(4);
+        let mut t: Triangulation<Space, 4> = Triangulation::new(Space::default());
+        for _ in 0..25 {
+            t.insert(tiny(&mut random, side)).unwrap();
+            assert_eq!(t.check(Level::Law), []);
+        }
+    }
+}
+
+/// Each triangle has the color of the one that it was cut from.
+#[test]
+fn payloads_are_inherited() {
+    let mut random = Random(33);
+    let mut t: Triangulation<Plane, 3, (), u8> = Triangulation::new(Plane::default());
+    for p in [[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]] {
+        t.insert(p).unwrap();
+    }
+    let colored: Vec<_> = t.finite_cells().collect();
+    let shape = |t: &Triangulation<Plane, 3, (), u8>, cell| t.tds().corners(cell).map(|v| *t.point(v));
+    let parents: Vec<[Point; 3]> = colored.iter().map(|&cell| shape(&t, cell)).collect();
+    for (&cell, color) in colored.iter().zip(1..) {
+        *t.cell_data_mut(cell) = color;
+    }
+    for _ in 0..60 {
+        t.insert(tiny(&mut random, 9)).unwrap();
+    }
+    for cell in t.finite_cells() {
+        let corners = shape(&t, cell);
+        let middle = [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / 3.0);
+        let parent = parents[usize::from(*t.tds().cell_data(cell)) - 1];
+        let turn = |a: Point, b: Point| (b[0] - a[0]) * (middle[1] - a[1]) - (b[1] - a[1]) * (middle[0] - a[0]);
+        assert!((0..3).all(|k| turn(parent[k], parent[(k + 1) % 3]) > 0.0));
+    }
+}
+
+fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let turn = |a: Point, b: Point, c: Point| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
+}
+
+/// The vertices on the way from one to another, these included, in order.
+fn way(t: &Triangulation<Plane, 3, (), Walls>, a: VertexId, b: VertexId) -> Vec<VertexId> {
+    let (p, q) = (*t.point(a), *t.point(b));
+    if a == b {
+        return vec![a];
+    }
+    let along = |v: VertexId| {
+        let r = t.point(v);
+        let (u, w) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+        let (dot, length) = (u[0] * w[0] + u[1] * w[1], u[0] * u[0] + u[1] * u[1]);
+        (u[0] * w[1] == u[1] * w[0] && (0.0..=length).contains(&dot)).then_some(dot as i64)
+    };
+    let mut way: Vec<(i64, VertexId)> = t.tds().vertices().filter_map(|v| Some((along(v)?, v))).collect();
+    way.sort_unstable();
+    way.into_iter().map(|(_, v)| v).collect()
+}
+
+#[test]
+fn constraints_hold() {
+    let mut random = Random(34);
+    for _ in 0..600 {
+        let side = 2 + random.below(6);
+        let mut t: Constrained<Plane> = Constrained::new(Plane::default());
+        // Constraints by their ends, all their pieces present; released ones are gone.
+        let mut walls: BTreeSet<[VertexId; 2]> = BTreeSet::new();
+        for _ in 0..40 {
+            let vertices: Vec<VertexId> = t.tds().vertices().collect();
+            if vertices.len() < 3 || random.below(3) == 0 {
+                let p = tiny(&mut random, side);
+                let vertex = t.insert(p).unwrap();
+                let whole: Vec<_> = walls.iter().copied().collect();
+                for [a, b] in whole {
+                    if way(&t, a, b).contains(&vertex) && vertex != a && vertex != b {
+                        walls.remove(&[a, b]);
+                        walls.extend([[a, vertex], [vertex, b]].map(|mut ends| {
+                            ends.sort_unstable();
+                            ends
+                        }));
+                    }
+                }
+            } else if random.below(6) == 0 {
+                let vertex = random.pick(&vertices);
+                let is_end = walls.iter().flatten().any(|&v| v == vertex);
+                let removed = t.remove(vertex);
+                assert!(removed.is_none() || !is_end);
+            } else if random.below(8) == 0 && !walls.is_empty() {
+                let ends = walls.pop_first().unwrap();
+                assert!(t.release(ends[0], ends[1]));
+                assert!(!t.release(ends[0], ends[1]));
+            } else {
+                let (a, b) = (random.pick(&vertices), random.pick(&vertices));
+                let crossed = |&[c, d]: &[VertexId; 2]| cross(*t.point(a), *t.point(b), *t.point(c), *t.point(d));
+                let blocks: BTreeSet<[VertexId; 2]> = walls.iter().copied().filter(crossed).collect();
+                match t.constrain(a, b) {
+                    Ok(()) => {
+                        assert_eq!(blocks.len(), 0);
+                        for pair in way(&t, a, b).windows(2) {
+                            walls.insert([pair[0].min(pair[1]), pair[0].max(pair[1])]);
+                        }
+                    }
+                    Err(Blocked::Wall(ends)) => assert!(blocks.contains(&ends), "{ends:?} not in {blocks:?}"),
+                    Err(Blocked::Nowhere) => assert!(t.dimension() < 2),
+                }
+            }
+            assert_eq!(t.check(Level::Law), []);
+            fills_the_hull(&t);
+            assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), walls, "{:?}", t.points());
+        }
+    }
+}
