@@ -136,9 +136,14 @@ fn points_come_and_go() {
                 let all: Vec<VertexId> = t.tds().vertices().chain(t.hidden()).collect();
                 if !all.is_empty() {
                     let vertex = random.pick(&all);
-                    let p = t.remove(vertex).unwrap();
-                    assert!(points.remove(&p));
-                    assert_eq!(t.remove(vertex), None);
+                    assert!(points.remove(t.point(vertex)));
+                    if random.below(2) == 0 {
+                        let moved = t.move_to(vertex, p).unwrap().unwrap();
+                        assert_eq!((*t.point(moved), moved == vertex), (p, points.insert(p)));
+                    } else {
+                        t.remove(vertex).unwrap();
+                        assert_eq!(t.remove(vertex), None);
+                    }
                 }
             }
             is_lower_hull(&t, &points);

@@ -2,11 +2,12 @@
 
 mod common;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use breakline::geometry::Plane;
+use breakline::kernel::Adaptive;
 use breakline::tds::VertexId;
-use breakline::triangulation::{Delaunay, Level};
+use breakline::triangulation::{Delaunay, Level, Refused};
 use common::random::{Random, ulps};
 
 type Point = [f64; 2];
@@ -201,4 +202,44 @@ fn what_is_not_there_cannot_be_removed() {
     assert!(t.remove(v).is_some());
     assert_eq!(t.remove(v), None);
     assert_eq!((t.vertex_count(), t.tds().vertex_slots(), t.tds().vertices().count()), (2, 3, 2));
+}
+
+/// Vertices that wander: each state is that of the places where they are, and numbers and payloads go along.
+#[test]
+fn vertices_move() {
+    let mut random = Random(17);
+    for _ in 0..400 {
+        let side = 1 + random.below(5);
+        let mut place = || [0, 1].map(|_| random.below(side) as f64);
+        let points: Vec<Point> = (0..9).map(|_| place()).collect();
+        let (mut t, vertices) = Delaunay::from_points_with(Plane::<Adaptive>::default(), &points, |i| i).unwrap();
+        let mut places: BTreeMap<VertexId, Point> = vertices.iter().map(|&v| (v, *t.point(v))).collect();
+        let mut payloads: BTreeMap<VertexId, usize> = vertices.iter().map(|&v| (v, *t.tds().vertex_data(v))).collect();
+        for &v in &vertices {
+            let first = points.iter().position(|p| p == t.point(v));
+            assert_eq!(first, Some(payloads[&v]));
+        }
+        for at in 0..20 {
+            let (v, p) = (vertices[at % 9], place());
+            let there = places.iter().find(|(_, q)| **q == p).map(|(&w, _)| w);
+            let moved = t.move_to(v, p).unwrap();
+            if places.contains_key(&v) {
+                assert_eq!(moved, Some(there.unwrap_or(v)));
+                places.remove(&v);
+                if there.is_some_and(|w| w != v) {
+                    payloads.remove(&v);
+                }
+                places.entry(moved.unwrap()).or_insert(p);
+            } else {
+                assert_eq!(moved, None);
+            }
+            assert_eq!(t.check(Level::Law), []);
+            assert_eq!(t.tds().vertices().map(|v| (v, *t.point(v))).collect::<BTreeMap<_, _>>(), places);
+            assert_eq!(t.tds().vertices().map(|v| (v, *t.tds().vertex_data(v))).collect::<BTreeMap<_, _>>(), payloads);
+            let left: Vec<Point> = places.values().copied().collect();
+            let key = |p: Point| p.map(f64::to_bits);
+            assert_eq!(common::cells::cells(&t, key), common::cells::cells(&fresh(&left), key));
+        }
+        assert_eq!(t.move_to(vertices[0], [f64::NAN, 0.0]), Err(Refused::Coordinate(t.vertex_count())));
+    }
 }

@@ -40,6 +40,13 @@ where
         assert_eq!(one_by_one.check(Level::Law), [], "{points:?}");
         assert_eq!(cells(&one_by_one), expected, "{points:?}");
     }
+    let mut at_twice: Delaunay<G, N> = Delaunay::new(geometry);
+    let (first, second) = points.split_at(points.len() / 3);
+    for part in [first, second] {
+        let vertices = at_twice.insert_all(part).unwrap();
+        assert!(vertices.iter().zip(part).all(|(&v, p)| at_twice.geometry().compare(at_twice.point(v), p).is_eq()));
+    }
+    assert_eq!(cells(&at_twice), expected, "{points:?}");
 }
 
 #[test]

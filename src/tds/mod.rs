@@ -110,6 +110,22 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
+    /// The same complex with these payloads, of all vertices in order of their numbers.
+    pub(crate) fn with_vertex_data<W>(self, vertex_data: Vec<W>) -> Tds<N, W, C> {
+        assert_eq!(vertex_data.len(), self.vertex_cell.len());
+        Tds {
+            dimension: self.dimension,
+            links: self.links,
+            cell_data: self.cell_data,
+            unused: self.unused,
+            vertex_cell: self.vertex_cell,
+            vertex_data,
+            unused_vertices: self.unused_vertices,
+            detached: self.detached,
+            infinite_cell: self.infinite_cell,
+        }
+    }
+
     /// Makes room for that many more vertices and the cells that come with them.
     pub fn reserve(&mut self, vertices: usize) {
         // In the plane there are two triangles to a vertex; in space about 6.7 tetrahedra.

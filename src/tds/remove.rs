@@ -10,6 +10,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.unused_vertices.push(vertex);
     }
 
+    /// Takes the number that was given back last into use again, with its payload.
+    pub(crate) fn restore_vertex(&mut self) -> Option<VertexId> {
+        self.unused_vertices.pop()
+    }
+
     /// Makes the complex that of vertices along a line, in this order: of dimension 1, or 0 for one and -1
     /// for none. All cells are replaced.
     pub(crate) fn set_line(&mut self, line: &[VertexId]) {

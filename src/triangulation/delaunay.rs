@@ -3,7 +3,7 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
-use super::{Locate, Location, Refused, Triangulation, bulk};
+use super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk, spatial_order};
 
 /// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space: `N` follows from the
 /// geometry.
@@ -70,6 +70,46 @@ impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> VertexId {
         self.inner.insert_at(p, location, data, |t, _, _, beyond| t.in_conflict(beyond, &p), |_, _| ())
     }
+
+    /// The payload of a finite vertex, to change.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+}
+
+impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
+    /// Moves a vertex, which keeps its number and payload, and returns it; `None` if there is no such vertex. If another one is
+    /// at the place already, that one is returned, and the one that was moved is gone.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or out of range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// That of a removal, and of an insertion that looks for its place from there.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<Option<VertexId>, Refused> {
+        self.inner.admit(&p)?;
+        if vertex == VertexId::INFINITE || !self.tds().is_vertex(vertex) {
+            return Ok(None);
+        }
+        if self.inner.geometry.compare(self.point(vertex), &p).is_eq() {
+            self.inner.points[vertex.index()] = p;
+            return Ok(Some(vertex));
+        }
+        // A cell of another vertex, which is still there afterwards.
+        let around = self.tds().cell_of(vertex).map(|cell| self.tds().cell_vertices(cell));
+        let beside =
+            around.and_then(|corners| corners.iter().copied().find(|&v| v != vertex && v != VertexId::INFINITE));
+        self.remove(vertex);
+        let location = self.locate(&p, beside.and_then(|v| self.tds().cell_of(v)));
+        if let Location::Vertex(other) = location {
+            return Ok(Some(other));
+        }
+        let vertex = self.inner.restore_vertex(p);
+        if let Some(vertex) = vertex {
+            self.inner.connect(vertex, location, |t, _, _, beyond| t.in_conflict(beyond, &p), |_, _| ());
+        }
+        Ok(vertex)
+    }
 }
 
 impl<G: Geometry<N>, const N: usize> Delaunay<G, N> {
@@ -79,6 +119,32 @@ impl<G: Geometry<N>, const N: usize> Delaunay<G, N> {
     /// See [`insert_with`](Self::insert_with).
     pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
         self.insert_with(p, ())
+    }
+}
+
+impl<G: Coordinates<N>, const N: usize, V: Default> Delaunay<G, N, V> {
+    /// Adds many points, in [spatial order](super::spatial_order). Returns the vertex of each point.
+    ///
+    /// # Errors
+    /// The first point that is refused, by its position; nothing has changed then.
+    ///
+    /// # Complexity
+    /// For points that are spread evenly, time proportional to their number. For an empty triangulation of the plane
+    /// [`from_points`](Self::from_points) is faster.
+    pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, Refused> {
+        if let Some(bad) = points.iter().position(|p| !self.geometry().admits(p)) {
+            return Err(Refused::Coordinate(bad));
+        }
+        if self.tds().vertex_slots() + points.len() > MAX_VERTICES {
+            return Err(Refused::TooMany);
+        }
+        let geometry = self.geometry();
+        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        for position in order {
+            vertices[position as usize] = self.insert_with(points[position as usize], V::default())?;
+        }
+        Ok(vertices)
     }
 }
 
@@ -109,5 +175,25 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
             triangulation.insert(triangulation.inner.points[index])?;
         }
         Ok((triangulation, vertices))
+    }
+
+    /// The same with payloads: `data` is asked for each site once, by the position of the first point on it, in order.
+    ///
+    /// # Errors
+    /// See [`from_points`](Self::from_points).
+    pub fn from_points_with<V>(
+        geometry: G,
+        points: &[G::Point],
+        mut data: impl FnMut(usize) -> V,
+    ) -> Result<(Delaunay<G, N, V>, Vec<VertexId>), Refused> {
+        let (triangulation, vertices) = Self::from_points(geometry, points)?;
+        let mut payloads: Vec<Option<V>> = Vec::new();
+        payloads.resize_with(triangulation.tds().vertex_slots(), || None);
+        for (position, vertex) in vertices.iter().enumerate() {
+            payloads[vertex.index()].get_or_insert_with(|| data(position));
+        }
+        let Triangulation { geometry, tds, points, zone, last } = triangulation.inner;
+        let tds = tds.with_vertex_data(payloads.into_iter().flatten().collect());
+        Ok((Delaunay { inner: Triangulation { geometry, tds, points, zone, last } }, vertices))
     }
 }

@@ -29,6 +29,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         vertex
     }
 
+    /// The vertex that was removed last, with its payload and another point; in no cell yet.
+    pub(super) fn restore_vertex(&mut self, p: G::Point) -> Option<VertexId> {
+        let vertex = self.tds.restore_vertex()?;
+        self.points[vertex.index()] = p;
+        Some(vertex)
+    }
+
     /// Adds a point unless its site is taken, given where it is; see [`connect`](Self::connect).
     pub(super) fn insert_at(
         &mut self,

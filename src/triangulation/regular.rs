@@ -2,11 +2,11 @@ use std::ops::Deref;
 
 use rustc_hash::FxHashMap;
 
-use crate::geometry::Geometry;
+use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
-use super::{Flaw, Level, Locate, Location, Refused, Triangulation};
+use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order};
 
 /// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2 - w`,
 /// seen from below (Aurenhammer 1987; Edelsbrunner and Shah 1996). The dual of the power diagram.
@@ -238,6 +238,32 @@ impl<G: Geometry<3>, V> Regular<G, V> {
         Some(point)
     }
 
+    /// Moves a point, seen or hidden, which keeps its number and payload, and returns it; `None` if there is none with this number. If
+    /// there is one at the place already, with the same weight, that one is returned, and the one that was moved is gone.
+    ///
+    /// # Errors
+    /// If a coordinate or the weight is not finite or out of range; nothing has changed then.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<Option<VertexId>, Refused> {
+        self.inner.admit(&p)?;
+        if self.remove(vertex).is_none() {
+            return Ok(None);
+        }
+        let location = self.inner.locate(&p, None);
+        if let Some(same) = self.same(&p, location) {
+            return Ok(Some(same));
+        }
+        let vertex = self.inner.restore_vertex(p);
+        if let Some(vertex) = vertex {
+            self.connect(vertex, location);
+        }
+        Ok(vertex)
+    }
+
+    /// The payload of a point, seen or hidden, to change.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+
     /// Whether there is a point with this number that is in no cell.
     pub fn is_hidden(&self, vertex: VertexId) -> bool {
         self.hidden.host.contains_key(&vertex)
@@ -279,6 +305,29 @@ impl<G: Geometry<3>, V> Regular<G, V> {
                 holds && !self.inner.in_conflict(host, p)
             }
         }
+    }
+}
+
+impl<G: Coordinates<3>, V: Default> Regular<G, V> {
+    /// Triangulates many points, put in in [spatial order](super::spatial_order). Returns the number of each; points on one site
+    /// with one weight share theirs.
+    ///
+    /// # Errors
+    /// The first point that is refused, by its position.
+    ///
+    /// # Complexity
+    /// For points that are spread evenly, time proportional to their number.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
+        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
+            return Err(Refused::Coordinate(bad));
+        }
+        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
+        let mut triangulation = Self::new(geometry);
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        for position in order {
+            vertices[position as usize] = triangulation.insert_with(points[position as usize], V::default())?;
+        }
+        Ok((triangulation, vertices))
     }
 }
 

@@ -71,6 +71,11 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
         Ok(vertex)
     }
 
+    /// The payload of a finite vertex, to change.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+
     /// Forces the straight way between two vertices to consist of edges. Triangles that it crosses are replaced.
     ///
     /// # Errors
