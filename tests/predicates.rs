@@ -8,8 +8,9 @@ mod common;
 
 use breakline::geometry::{Crossing, Geometry, Plane};
 use breakline::kernel::{
-    Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, FlooredErrorBound, InCircle, InCircleOfPlane,
-    InSphere, Kernel, OnLattice, Orientation2, Orientation3, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
+    Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, Fixed, FixedBound, FlooredErrorBound, InCircle,
+    InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnLattice, Orientation2, Orientation3,
+    Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
 use breakline::num::Sign;
 use common::random::{Random, ulps};
@@ -122,31 +123,54 @@ struct Tally {
     by_error_bound: usize,
     on_lattice: usize,
     by_floored: usize,
+    by_interval: usize,
+    fixed: usize,
+    by_fixed: usize,
     scaled: usize,
 }
 
+fn coordinates<P: Predicate>(predicate: &P) -> impl Iterator<Item = f64> {
+    (0..P::AXES).flat_map(|axis| predicate.axis(axis))
+}
+
+/// Right, if the kernel is proven for the coordinates.
+fn right<K: Kernel, P: Predicate>(predicate: &P, expected: Sign, context: &impl std::fmt::Debug) -> usize {
+    let is_admitted = coordinates(predicate).all(|x| K::RANGE.admits(x));
+    assert!(!is_admitted || K::sign(predicate) == expected, "{context:?}: {:?} is wrong", K::default());
+    usize::from(is_admitted)
+}
+
+/// Certain, and then right, if the filter is proven for the coordinates.
 fn certain<F: Filter, P: Predicate>(predicate: &P, expected: Sign, context: &impl std::fmt::Debug) -> usize {
+    if !coordinates(predicate).all(|x| F::RANGE.admits(x)) {
+        return 0;
+    }
     let answer = F::try_sign(predicate);
     assert!(answer.is_none_or(|sign| sign == expected), "{context:?}: {answer:?} for {expected:?}");
     usize::from(answer.is_some())
 }
 
 impl Tally {
-    /// Asks every kernel and every filter that is proven for the coordinates.
+    /// Asks every kernel and every filter.
     fn ask<P: Question<D, N>, const D: usize, const N: usize>(&mut self, points: [[f64; D]; N]) {
         let (predicate, expected) = (P::of(points), P::judge(points));
         self.asked += 1;
         self.ties += usize::from(expected == Sign::Zero);
         assert_eq!(Exact::sign(&predicate), expected, "{points:?}");
         assert_eq!(Wide::sign(&predicate), expected, "{points:?}");
+        right::<Adaptive, P>(&predicate, expected, &points);
+        right::<Expansions, P>(&predicate, expected, &points);
+        right::<Interval, P>(&predicate, expected, &points);
+        right::<Lattice, P>(&predicate, expected, &points);
+        right::<Fixed<31>, P>(&predicate, expected, &points);
+        right::<Fixed<52>, P>(&predicate, expected, &points);
+        self.fixed += right::<Fixed, P>(&predicate, expected, &points);
+        self.by_error_bound += certain::<ErrorBound, P>(&predicate, expected, &points);
         self.by_floored += certain::<FlooredErrorBound, P>(&predicate, expected, &points);
+        self.by_interval += certain::<IntervalBound, P>(&predicate, expected, &points);
+        self.by_fixed += certain::<FixedBound<24>, P>(&predicate, expected, &points);
         self.scaled += certain::<Scaled<Adaptive>, P>(&predicate, expected, &points);
         self.on_lattice += certain::<OnLattice, P>(&predicate, expected, &points);
-        if points.iter().flatten().all(|&x| RANGE.admits(x)) {
-            assert_eq!(Adaptive::sign(&predicate), expected, "{points:?}");
-            assert_eq!(Expansions::sign(&predicate), expected, "{points:?}");
-            self.by_error_bound += certain::<ErrorBound, P>(&predicate, expected, &points);
-        }
     }
 }
 
@@ -184,6 +208,7 @@ fn ordinary_points_end_in_the_first_filter() {
     for tally in ask_all(1500, || random.unit()) {
         assert!(tally.by_error_bound * 1000 >= tally.asked * 999, "{tally:?}");
         assert!(tally.by_floored >= tally.by_error_bound, "{tally:?}");
+        assert!(tally.by_interval >= tally.by_error_bound, "{tally:?}");
     }
     let mut random = Random(2);
     for tally in ask_all(1500, || 500_000.0 + 0.001 * random.below(1_000_000) as f64) {
@@ -197,9 +222,34 @@ fn small_whole_numbers_are_decided_on_the_lattice() {
         let mut random = Random(seed);
         for tally in ask_all(1000, || unit * random.around(side) as f64) {
             assert_eq!(tally.on_lattice, tally.asked, "{tally:?}");
+            assert_eq!(tally.by_interval, tally.asked, "{tally:?}");
             assert!(side > 5 || tally.ties > 5, "{tally:?}");
         }
     }
+}
+
+/// At the ends of 24, 31 and 52 bits, and a step beside: ties, near ties, and what is too large.
+#[test]
+fn whole_numbers_of_few_bits() {
+    for bits in [24, 31, 52] {
+        let mut random = Random(30 + bits);
+        let end = 1i64 << bits;
+        let mut tie_or_near = || random.pick(&[-end, end, 0, end / 2]) + random.pick(&[0, 0, 0, 0, 0, -1, 1]);
+        let tallies = ask_all(3000, || tie_or_near().clamp(-end, end) as f64);
+        assert!(tallies.iter().all(|tally| tally.ties > 5 && (bits > 24 || tally.fixed == tally.asked)), "{tallies:?}");
+        let mut random = Random(40 + bits);
+        for tally in ask_all(1500, || random.around(end) as f64) {
+            assert!(bits > 24 || tally.by_fixed * 1000 >= tally.asked * 998, "{tally:?}");
+        }
+    }
+    let mut random = Random(34);
+    let [orientation, .., distance] = ask_all(1000, || random.around(3) as f64);
+    for tally in [orientation, distance] {
+        assert_eq!(tally.by_fixed, tally.asked, "of degree 2 all is exact, ties included: {tally:?}");
+    }
+    let range = <Fixed as Kernel>::RANGE;
+    assert!([0.0, -1.0, 1e7, 2f64.powi(24), -2f64.powi(24)].into_iter().all(|x| range.admits(x)));
+    assert!([0.5, -1e-300, 1e7 + 0.25, 2f64.powi(24) + 1.0, f64::NAN].into_iter().all(|x| !range.admits(x)));
 }
 
 #[test]
@@ -403,13 +453,13 @@ fn circles_in_planes_in_space() {
             let expected = turn * judge(points);
             ties += usize::from(expected == Sign::Zero);
             let predicate = InCircleOfPlane { points, axes };
-            let signs = [
-                Exact::sign(&predicate),
-                Adaptive::sign(&predicate),
-                Expansions::sign(&predicate),
-                Wide::sign(&predicate),
-            ];
-            assert_eq!(signs, [expected; 4], "{predicate:?}");
+            right::<Exact, _>(&predicate, expected, &predicate);
+            right::<Adaptive, _>(&predicate, expected, &predicate);
+            right::<Expansions, _>(&predicate, expected, &predicate);
+            right::<Wide, _>(&predicate, expected, &predicate);
+            right::<Interval, _>(&predicate, expected, &predicate);
+            right::<Fixed, _>(&predicate, expected, &predicate);
+            certain::<IntervalBound, _>(&predicate, expected, &predicate);
             certain::<ErrorBound, _>(&predicate, expected, &predicate);
             certain::<OnLattice, _>(&predicate, expected, &predicate);
         }

@@ -1,5 +1,5 @@
 use super::{Filter, Predicate, RANGE, Range};
-use crate::num::{Bounded, Sign, lattice};
+use crate::num::{self, Bounded, Sign, lattice};
 
 /// Floating point with an error bound that is computed along: the semi-static filter.
 #[derive(Debug, Clone, Copy, Default)]
@@ -25,6 +25,34 @@ impl Filter for FlooredErrorBound {
     #[inline(always)]
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         predicate.value(Bounded::floored_difference).sign()
+    }
+}
+
+/// Intervals that are rounded outward: the dynamic filter of CGAL's kernels (Brönnimann, Burnikel and Pion 2001).
+#[derive(Debug, Clone, Copy, Default)]
+pub struct IntervalBound;
+
+impl Filter for IntervalBound {
+    const RANGE: Range = RANGE;
+
+    // Too long to stand wherever a triangulation asks.
+    #[inline(never)]
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        predicate.value(num::Interval::difference).sign()
+    }
+}
+
+/// Floating point with an error bound that is a constant of each formula, for whole numbers of magnitude `2^BITS` at the most:
+/// the static filter. [`num::Fixed`] derives the constants.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FixedBound<const BITS: i32>;
+
+impl<const BITS: i32> Filter for FixedBound<BITS> {
+    const RANGE: Range = Range { max: f64::from_bits((1023 + BITS as u64) << 52), ..WholeNumbers::RANGE };
+
+    #[inline(always)]
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        predicate.value(num::Fixed::<BITS>::difference).sign()
     }
 }
 

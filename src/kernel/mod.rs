@@ -10,6 +10,8 @@
 //! | [`Exact`] | arbitrary precision | the judge in tests; any finite coordinates |
 //! | [`Expansions`] | sums of `f64` | exact within [`RANGE`], never filtered |
 //! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then expansions | the default |
+//! | [`Interval`] | intervals of `f64`, then as `Adaptive` | for comparison: the dynamic filter of other libraries |
+//! | [`Fixed`] | `f64` with a constant error bound, then as `Lattice` | whole numbers of 24 bits, or of up to 52 |
 //! | [`Lattice`] | error-bounded `f64`, then integers, wide ones if need be | whole numbers up to 2^53, like those of LAS files |
 //! | [`Wide`] | as `Adaptive`, scaled if need be, or arbitrary precision | any finite coordinates, fast |
 //!
@@ -24,7 +26,7 @@ mod formula;
 mod rounding;
 mod scaled;
 
-pub use adaptive::{ErrorBound, FlooredErrorBound, OnLattice, WholeNumbers};
+pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, WholeNumbers};
 pub use formula::{
     CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
@@ -53,7 +55,7 @@ pub trait Predicate {
 }
 
 /// Magnitudes of coordinates for which an arithmetic is proven: `min..=max`; and below, zero and other multiples of the
-/// last place of `min`.
+/// last place of `min`. Where `max` is below `min`, there are these multiples only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Smallest magnitude at which all numbers are admitted.
@@ -184,6 +186,14 @@ impl Kernel for Expansions {
 
 /// The default: as fast as floating point where that is certain, exact everywhere within [`RANGE`].
 pub type Adaptive = Filtered<ErrorBound, Filtered<OnLattice, Expansions>>;
+
+/// As [`Adaptive`], with intervals in place of the error bound: certain a little more often, and slower.
+pub type Interval = Filtered<IntervalBound, Filtered<OnLattice, Expansions>>;
+
+/// For coordinates that are whole numbers of magnitude `2^BITS` at the most (CGAL's `Fixed_precision_nt` has the same 24
+/// bits; [`Steps`](crate::geometry::Steps) have 31): the error bound is known before anything is computed, and an
+/// orientation in the plane costs no more than with [`Fast`].
+pub type Fixed<const BITS: i32 = 24> = Filtered<FixedBound<BITS>, Filtered<WholeNumbers, Expansions>>;
 
 /// For coordinates that are whole numbers, up to `2^53`: 128-bit integers answer what floating point cannot, and expansions
 /// what these cannot hold.

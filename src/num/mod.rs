@@ -8,6 +8,8 @@
 //! |---|---|---|---|
 //! | `f64` | no | 1 | experiments, comparison |
 //! | [`Bounded`] | knows how wrong it may be | 2 | filter: nearly every call ends here |
+//! | [`Fixed`] | knows before how wrong it may be | 1 | filter for whole numbers of few bits |
+//! | [`Interval`] | knows between which two doubles it is | 10 | filter; exact on small whole numbers |
 //! | `i128` | within its range, see [`lattice`] | 5 | coordinates on a common grid: ties are the rule there |
 //! | [`Pair`] | to twice the digits | 15 | places that are then rounded |
 //! | [`Expansion`] | within the exponents of f64 | 100 | what the filters leave open |
@@ -16,12 +18,16 @@
 mod bounded;
 mod dyadic;
 mod expansion;
+mod fixed;
+mod interval;
 pub mod lattice;
 mod pair;
 
 pub use bounded::Bounded;
 pub use dyadic::Dyadic;
 pub use expansion::Expansion;
+pub use fixed::Fixed;
+pub use interval::Interval;
 pub use pair::Pair;
 
 use std::ops::{Add, Mul, Neg, Sub};

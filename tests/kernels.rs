@@ -1,0 +1,100 @@
+//! Every kind of triangulation with every kernel: the triangles of exact arithmetic, by changing one type.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use breakline::geometry::{Plane, Space, Terrain};
+use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Triangulation};
+use common::random::Random;
+
+type Cells = BTreeSet<Vec<Vec<i64>>>;
+
+fn cells<G, const N: usize, V, C>(t: &Triangulation<G, N, V, C>) -> Cells
+where
+    G: breakline::geometry::Coordinates<N>,
+    C: Copy + Default,
+{
+    common::cells::cells(t, |p| p.as_ref().iter().map(|x| *x as i64).collect())
+}
+
+/// Points in space, and lines between them that may cross in plan, and then at points of the grid.
+struct Case {
+    points: Vec<[f64; 3]>,
+    lines: Vec<[u32; 2]>,
+}
+
+fn case(random: &mut Random) -> Case {
+    let (count, side) = (3 + random.index(20), random.pick(&[2, 3, 6, 1 << 22]));
+    let points: Vec<[f64; 3]> = (0..count).map(|_| [(); 3].map(|()| random.around(side) as f64)).collect();
+    let mut lines: Vec<[u32; 2]> = Vec::new();
+    for _ in 0..random.index(6) {
+        lines.push([(); 2].map(|()| random.index(count) as u32));
+        let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
+        let plane = Plane::<Exact>::default();
+        if ConstrainedDelaunay::<_>::from_lines(plane, &plan, &lines, OnCrossing::Reject).is_err() {
+            lines.pop();
+        }
+    }
+    Case { points, lines }
+}
+
+/// What each kind makes of the case.
+fn build<K: Kernel>(Case { points, lines }: &Case) -> [Cells; 5] {
+    let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
+    let (in_bulk, _) = Delaunay::from_points(Plane::<K>::default(), &plan).unwrap();
+    let mut one_by_one = Delaunay::<_, 3>::new(Plane::<K>::default());
+    for &p in &plan {
+        one_by_one.insert(p).unwrap();
+    }
+    let rule = OnCrossing::Reject;
+    let (constrained, _) = ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &plan, lines, rule).unwrap();
+    assert_eq!(constrained.check(Level::Law), [], "{:?} {plan:?} {lines:?}", K::default());
+    let (terrain, _) = ConstrainedDelaunay::<_>::from_lines(Terrain::<K>::default(), points, lines, rule).unwrap();
+    let (space, _) = Delaunay::from_points(Space::<K>::default(), points).unwrap();
+    [cells(&in_bulk), cells(&one_by_one), cells(&constrained), cells(&terrain), cells(&space)]
+}
+
+#[test]
+fn one_answer() {
+    let mut random = Random(1);
+    for _ in 0..500 {
+        let case = case(&mut random);
+        let expected = build::<Exact>(&case);
+        let found = [
+            build::<Adaptive>(&case),
+            build::<Expansions>(&case),
+            build::<Interval>(&case),
+            build::<Fixed>(&case),
+            build::<Fixed<31>>(&case),
+            build::<Lattice>(&case),
+            build::<Wide>(&case),
+        ];
+        assert!(found.iter().all(|found| *found == expected), "{:?} {:?}", case.points, case.lines);
+        // Without a guarantee, and right where nothing is rounded.
+        if case.points.as_flattened().iter().all(|x| x.abs() < 100.0) {
+            assert_eq!(build::<Fast>(&case), expected);
+        }
+    }
+}
+
+/// Where lines cross, each kernel has its own places for it: multiples of its step.
+#[test]
+fn crossings() {
+    fn check<K: Kernel>(Case { points, .. }: &Case) -> usize {
+        let lines: Vec<[u32; 2]> = (0..points.len() as u32 / 2).map(|i| [2 * i, 2 * i + 1]).collect();
+        let rule = OnCrossing::Split;
+        let (t, _) = ConstrainedDelaunay::<_>::from_lines(Terrain::<K>::default(), points, &lines, rule).unwrap();
+        assert_eq!(t.check(Level::Law), [], "{:?} {points:?}", K::default());
+        assert!(t.points().iter().all(|[x, y, _]| K::RANGE.admits(*x) && K::RANGE.admits(*y)));
+        t.crossings().len()
+    }
+    let mut random = Random(2);
+    let mut count = 0;
+    for _ in 0..300 {
+        let case = case(&mut random);
+        count += check::<Exact>(&case) + check::<Interval>(&case) + check::<Fixed>(&case) + check::<Lattice>(&case);
+    }
+    assert!(count > 1000, "{count}");
+}
