@@ -6,11 +6,11 @@
 
 mod common;
 
-use breakline::geometry::{Crossing, Geometry, Plane};
+use breakline::geometry::{Crossing, Geometry, Plane, Weighted};
 use breakline::kernel::{
     Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, Fixed, FixedBound, FlooredErrorBound, InCircle,
     InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnLattice, Orientation2, Orientation3,
-    Predicate, RANGE, Scaled, Wide, crossing, twice_area,
+    PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
 use breakline::num::Sign;
 use common::random::{Random, ulps};
@@ -112,6 +112,42 @@ impl Question<2, 3> for CompareDistance {
         let [from, p, q] = whole(points);
         let to = |p: [RBig; 2]| length(&[&p[0] - &from[0], &p[1] - &from[1]]);
         to(p).cmp(&to(q)).into()
+    }
+}
+
+/// The height of a weighted point's lift.
+fn lift(p: &[RBig; 3]) -> RBig {
+    &p[0] * &p[0] + &p[1] * &p[1] - &p[2]
+}
+
+/// Weights are areas, so that a unit of the coordinates is none of theirs.
+impl Question<3, 4> for PowerTest2 {
+    fn of(points: [[f64; 3]; 4]) -> Self {
+        PowerTest2(points)
+    }
+
+    fn judge(points: [[f64; 3]; 4]) -> Sign {
+        let row = |p: [RBig; 3]| {
+            let lift = lift(&p);
+            let [x, y, _] = p;
+            vec![x, y, lift, RBig::ONE]
+        };
+        sign(&determinant(&points.map(|p| row(p.map(rational)))))
+    }
+}
+
+/// Of points on a line, the first before the second on the axis on which these are further apart.
+impl Question<3, 3> for PowerOnLine {
+    fn of(points: [[f64; 3]; 3]) -> Self {
+        let along = usize::from(points[0][0] == points[1][0]);
+        PowerOnLine { points, along }
+    }
+
+    /// Whether the lift of the third turns to the right of the way from the first's to the second's.
+    fn judge(points: [[f64; 3]; 3]) -> Sign {
+        let PowerOnLine { along, .. } = Self::of(points);
+        let row = |p: [RBig; 3]| vec![p[along].clone(), lift(&p), RBig::ONE];
+        -sign(&determinant(&points.map(|p| row(p.map(rational)))))
     }
 }
 
@@ -465,6 +501,107 @@ fn circles_in_planes_in_space() {
         }
     }
     assert!(ties > 100, "only {ties} ties");
+}
+
+/// Small grids, where ties are the rule, near ones and far, with weights of either sign.
+#[test]
+fn weighted_points() {
+    let mut random = Random(20);
+    let mut tallies: [Tally; 2] = Default::default();
+    for round in 0..6000 {
+        let side = random.pick(&[1, 2, 3, 300]);
+        let unit = random.pick(&[1.0, 0.25, 2f64.powi(9), 2f64.powi(-60), 2f64.powi(60)]);
+        let heaviest = random.pick(&[0, 1, 2, side * side]);
+        let origin = random.pick(&[0.0, 0.0, 1000.0, 2f64.powi(22)]);
+        let weight = |random: &mut Random| unit * unit * random.around(heaviest) as f64;
+        let [plane, line] = &mut tallies;
+        plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| {
+            let [x, y] = [(); 2].map(|()| unit * (origin + random.around(side) as f64));
+            [x, y, weight(&mut random)]
+        }));
+        // Along a line that is not upright, or is.
+        let way = if round % 3 == 0 { [0, 1] } else { [1 + random.below(2) as i64, random.around(3)] };
+        let mut steps = [(); 3].map(|()| random.around(side));
+        (steps[0], steps[1]) = (steps[0].min(steps[1]), steps[0].max(steps[1]) + 1);
+        line.ask::<PowerOnLine, 3, 3>(steps.map(|step| {
+            let [x, y] = way.map(|w| unit * (origin + (step * w) as f64));
+            [x, y, weight(&mut random)]
+        }));
+    }
+    assert!(tallies.iter().all(|tally| tally.ties > 300 && tally.fixed > 1000), "{tallies:?}");
+}
+
+/// Lifts on a common plane, or a rounding above or below.
+#[test]
+fn weights_a_rounding_off() {
+    let mut random = Random(21);
+    let mut tally = Tally::default();
+    for round in 0..3000 {
+        let offset = [0.0, 1.0, 4_649_000.12][round % 3];
+        let size = random.pick(&[0.01, 1.0, 1000.0]);
+        let [s, t] = [random.unit(), random.unit()];
+        tally.ask::<PowerTest2, 3, 4>([(); 4].map(|()| {
+            let [x, y] = [(); 2].map(|()| offset + size * random.unit());
+            let (u, v) = (x - offset, y - offset);
+            [x, y, ulps(u * u + v * v - s * u - t * v, random.around(1))]
+        }));
+    }
+    assert!(10 * tally.by_error_bound < 9 * tally.asked, "{tally:?}");
+}
+
+/// From one end of the range, and of all finite numbers, to the other.
+#[test]
+fn weights_of_every_size() {
+    let (min, max) = (RANGE.min, RANGE.max);
+    let step = min * f64::EPSILON;
+    let within = [0.0, step, 3.0 * step, min, min.next_up(), 2.0 * min, 1.0, max.next_down(), max];
+    let finite = [0.0, 5e-324, 1e-310, f64::MIN_POSITIVE, 1e-160, 1.0, 3.0, 1e150, 1e300, f64::MAX];
+    let mut random = Random(22);
+    let mut tallies: [Tally; 2] = Default::default();
+    for round in 0..1500 {
+        let pool = if round % 3 == 0 { &finite[..] } else { &within[..] };
+        let mut any = || random.pick(pool) * random.pick(&[-1.0, 1.0]);
+        let [plane, line] = &mut tallies;
+        plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| [(); 3].map(|()| any())));
+        // On the diagonal, and upright.
+        let [a, b, x] = [any(), any(), any()];
+        for upright in [false, true] {
+            line.ask::<PowerOnLine, 3, 3>(
+                [a.min(b), a.max(b), any()].map(|t| if upright { [x, t, any()] } else { [t, t, any()] }),
+            );
+        }
+        let mut any_within = || {
+            let exponent = random.around(180) + 20;
+            (random.unit() + 1.0) * 2f64.powi(exponent as i32).clamp(min, max / 2.0) * random.pick(&[-1.0, 1.0])
+        };
+        plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| [(); 3].map(|()| any_within())));
+    }
+    assert!(tallies.iter().all(|tally| tally.by_interval > 100), "{tallies:?}");
+}
+
+/// Without weights the power test is the in-circle test, and on a line it is betweenness.
+#[test]
+fn equal_weights_do_not_count() {
+    let mut random = Random(23);
+    let (plane, weighted) = (Plane::<Adaptive>::default(), Weighted::<Adaptive>::default());
+    for _ in 0..3000 {
+        let weight = random.around(100) as f64;
+        let points = [(); 4].map(|()| [(); 2].map(|()| random.around(3) as f64));
+        let heavy = points.map(|[x, y]| [x, y, weight]);
+        let ([a, b, c, d], [p, q, r, s]) = (points.each_ref(), heavy.each_ref());
+        assert_eq!(weighted.side_of_sphere([p, q, r], s), plane.side_of_sphere([a, b, c], d), "{points:?}");
+        if plane.orientation([a, b, c]) == Sign::Zero {
+            let between = plane.side_of_sphere_in_flat(&[a, b], c);
+            assert!(a == b || weighted.side_of_sphere_in_flat(&[p, q], r) == between, "{points:?}");
+        }
+    }
+    let [low, middle, high] = [[0.0, 0.0, 0.0], [1.0, 1.0, -3.0], [4.0, 4.0, 0.0]];
+    assert_eq!(weighted.side_of_sphere_in_flat(&[&high, &low], &middle), Sign::Positive);
+    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -6.0]), Sign::Zero);
+    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -7.0]), Sign::Negative);
+    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[-1.0, -1.0, 11.0]), Sign::Positive);
+    assert!(weighted.compare_weights(&low, &middle).is_gt() && weighted.compare(&low, &[0.0, 0.0, 9.0]).is_eq());
+    assert!(!weighted.admits(&[0.0, 0.0, f64::NAN]) && !weighted.admits(&[0.0, 0.0, 1e300]));
 }
 
 /// Pairs of segments that cross, mostly at angles of a few roundings.

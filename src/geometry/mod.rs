@@ -9,6 +9,7 @@
 //! | [`Plane`] | `[f64; 2]` | in the plane |
 //! | [`Terrain`] | `[f64; 3]` | in plan: on x and y; z is carried along |
 //! | [`Steps`] | `[i32; 3]` | in plan, of points on a lattice like that of a LAS file |
+//! | [`Weighted`] | `[f64; 3]` | in the plane, with weights: x, y, weight |
 //! | [`Space`] | `[f64; 3]` | in space |
 //!
 //! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
@@ -27,12 +28,14 @@ mod plane;
 mod space;
 mod steps;
 mod terrain;
+mod weighted;
 
 pub(crate) use perturbation::{in_sphere, in_sphere_of_flat, in_tied_circle};
 pub use plane::{Plane, distance_to_segment};
 pub use space::Space;
 pub use steps::Steps;
 pub use terrain::{Terrain, height_along};
+pub use weighted::Weighted;
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
@@ -52,7 +55,7 @@ use crate::num::Sign;
 /// - All answers are those of one and the same set of exact points.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Space`]; users add their own:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Weighted`], [`Space`]; users add their own:
 ///
 /// ```
 /// use std::cmp::Ordering;

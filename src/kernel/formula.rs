@@ -10,7 +10,7 @@ pub(super) fn cross<T: Number>(a: &T, b: &T, c: &T, d: &T) -> T {
 }
 
 #[inline(always)]
-fn square<T: Number>(a: &T) -> T {
+pub(super) fn square<T: Number>(a: &T) -> T {
     a.clone() * a.clone()
 }
 
@@ -45,7 +45,7 @@ impl Predicate for Orientation2 {
 /// The in-circle determinant of three vectors from the point in question, given in a plane, and
 /// their squared lengths.
 #[inline(always)]
-fn in_circle<T: Number>(a: [T; 2], b: [T; 2], c: [T; 2], lengths: [T; 3]) -> T {
+pub(super) fn in_circle<T: Number>(a: [T; 2], b: [T; 2], c: [T; 2], lengths: [T; 3]) -> T {
     let [a_length, b_length, c_length] = lengths;
     let bc = cross(&b[0], &c[1], &b[1], &c[0]);
     let ca = cross(&c[0], &a[1], &c[1], &a[0]);

@@ -23,6 +23,7 @@
 
 mod adaptive;
 mod formula;
+mod power;
 mod rounding;
 mod scaled;
 
@@ -30,6 +31,7 @@ pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnL
 pub use formula::{
     CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
+pub use power::{PowerOnLine, PowerTest2};
 pub use rounding::{CornerSide, CrossingSide};
 pub use scaled::Scaled;
 
@@ -47,7 +49,8 @@ pub trait Predicate {
     /// Number of coordinate axes.
     const AXES: usize;
 
-    /// The coordinates that enter, on one axis. Differences are only taken between these.
+    /// The coordinates that enter, on one axis. Differences are only taken between these; all terms are products of `DEGREE` of
+    /// them.
     fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone;
 
     /// The polynomial, in the arithmetic that `difference` returns.

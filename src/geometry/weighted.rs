@@ -1,0 +1,83 @@
+use std::cmp::Ordering;
+use std::marker::PhantomData;
+
+use super::{Coordinates, Geometry, lexicographic, manhattan};
+use crate::kernel::{Adaptive, Kernel, Orientation2, PowerOnLine, PowerTest2};
+use crate::num::Sign;
+
+/// Points of the plane with a weight: `[x, y, weight]`, the weight in the square of the unit of x and y. A point stands for a
+/// circle of squared radius `weight`, and weights may be negative: only their differences count.
+///
+/// Orientation and order are those of the plane; two weights at one place are one site. In place of a
+/// simplex's circumscribed circle stands the circle that is orthogonal to those of its corners: a point is *inside* if
+/// its [lift](PowerTest2) is below the plane through the lifts of the corners.
+///
+/// For regular triangulations, in which a point may be hidden by others. [`Delaunay`](crate::triangulation::Delaunay) triangulations
+/// know no hidden points: with unequal weights their law is broken.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Weighted<K = Adaptive>(PhantomData<K>);
+
+#[inline(always)]
+fn plan(p: &[f64; 3]) -> [f64; 2] {
+    [p[0], p[1]]
+}
+
+impl<K> Weighted<K> {
+    /// The order of two points' weights: of those at one site, the greater is in the regular triangulation.
+    #[inline]
+    pub fn compare_weights(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
+        lexicographic([p[2]], [q[2]])
+    }
+}
+
+impl<K: Kernel> Geometry<3> for Weighted<K> {
+    type Point = [f64; 3];
+
+    /// Of the weight, too.
+    #[inline]
+    fn admits(&self, p: &[f64; 3]) -> bool {
+        p.iter().all(|&x| K::RANGE.admits(x))
+    }
+
+    #[inline(always)]
+    fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
+        lexicographic(plan(p), plan(q))
+    }
+
+    #[inline]
+    fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
+        manhattan(plan(p), plan(q))
+    }
+
+    #[inline(always)]
+    fn orientation(&self, simplex: [&[f64; 3]; 3]) -> Sign {
+        K::sign(&Orientation2(simplex.map(plan)))
+    }
+
+    #[inline(always)]
+    fn side_of_sphere(&self, [a, b, c]: [&[f64; 3]; 3], q: &[f64; 3]) -> Sign {
+        K::sign(&PowerTest2([*a, *b, *c, *q]))
+    }
+
+    /// Of two points: whether the lift of `q`, anywhere on the line through them, is below the line through theirs.
+    fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
+        let &[a, b] = simplex else { return Sign::Negative };
+        // In lexicographic order, the first has the smaller coordinate on the first axis on which they differ.
+        let (a, b) = match self.compare(a, b) {
+            Ordering::Less => (a, b),
+            Ordering::Equal => return Sign::Negative,
+            Ordering::Greater => (b, a),
+        };
+        K::sign(&PowerOnLine { points: [*a, *b, *q], along: usize::from(a[0] == b[0]) })
+    }
+}
+
+/// For their order and place; the predicates are not those of [`exact_plan`](Coordinates::exact_plan), so that there is none.
+impl<K: Kernel> Coordinates<3> for Weighted<K> {
+    type Coordinates = [f64; 2];
+
+    #[inline]
+    fn coordinates(&self, p: &[f64; 3]) -> [f64; 2] {
+        plan(p)
+    }
+}

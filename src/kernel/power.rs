@@ -1,0 +1,76 @@
+//! The power test: in-circle for points with a weight.
+//!
+//! A weight is an area, of degree 2 in the coordinates, which would break the law that all terms of a predicate have one
+//! degree (integers on a common grid, and [`Scaled`](super::Scaled), count in units). So it is multiplied by a difference
+//! that is one, which counts as well: weights, and that difference, are on axes of their own.
+
+use super::Predicate;
+use super::formula::{cross, in_circle, minus, square};
+use crate::num::Number;
+
+/// The coordinates of weighted points on an axis: x, y, weights, and those whose difference is one.
+fn axis<const N: usize>(points: &[[f64; 3]; N], axis: usize) -> impl Iterator<Item = f64> + Clone {
+    let of_point = move |p: &[f64; 3]| if axis < 3 { p[axis] } else { 1.0 };
+    let zero = (axis == 3).then_some(0.0);
+    points.iter().map(of_point).chain(zero)
+}
+
+/// How far apart two points are in the plane, squared, less what `p` weighs more than `q`: the lift of `p` seen from `q`.
+#[inline(always)]
+fn lift<T: Number>(way: &[T; 2], p: [f64; 3], q: [f64; 3], difference: impl Fn(f64, f64) -> T) -> T {
+    square(&way[0]) + square(&way[1]) - difference(p[2], q[2]) * difference(1.0, 0.0)
+}
+
+/// Of three weighted points `[x, y, w]` that turn counter-clockwise and a fourth: positive if the fourth's lift is below the
+/// plane through theirs, zero if on it. Of equal weights that is [`InCircle`](super::InCircle).
+///
+/// The *lift* of a point is at the height `x^2 + y^2 - w` above it. The lower hull of all lifts is the regular triangulation,
+/// as that of points without weights is Delaunay's (Aurenhammer 1987).
+#[derive(Debug, Clone, Copy)]
+pub struct PowerTest2(pub [[f64; 3]; 4]);
+
+impl Predicate for PowerTest2 {
+    const DEGREE: i32 = 4;
+    const AXES: usize = 4;
+
+    #[inline(always)]
+    fn axis(&self, of: usize) -> impl Iterator<Item = f64> + Clone {
+        axis(&self.0, of)
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c, d] = self.0;
+        let [u, v, w] = [a, b, c].map(|p| minus([p[0], p[1]], [d[0], d[1]], difference));
+        let lifts = [lift(&u, a, d, difference), lift(&v, b, d, difference), lift(&w, c, d, difference)];
+        in_circle(u, v, w, lifts)
+    }
+}
+
+/// Of three weighted points `[x, y, w]` on a line, of which the first has the smaller coordinate on an axis than the second:
+/// positive if the third's lift is below the line through the lifts of these two, zero if on it.
+#[derive(Debug, Clone, Copy)]
+pub struct PowerOnLine {
+    /// The two, and the point in question.
+    pub points: [[f64; 3]; 3],
+    /// The axis on which they differ: 0 or 1.
+    pub along: usize,
+}
+
+impl Predicate for PowerOnLine {
+    const DEGREE: i32 = 3;
+    const AXES: usize = 4;
+
+    #[inline(always)]
+    fn axis(&self, of: usize) -> impl Iterator<Item = f64> + Clone {
+        axis(&self.points, of)
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, q] = self.points;
+        let [u, v] = [a, b].map(|p| minus([p[0], p[1]], [q[0], q[1]], difference));
+        let (a_lift, b_lift) = (lift(&u, a, q, difference), lift(&v, b, q, difference));
+        cross(&a_lift, &v[self.along], &b_lift, &u[self.along])
+    }
+}
