@@ -9,6 +9,7 @@
 //! | [`Plane`] | `[f64; 2]` | in the plane |
 //! | [`Terrain`] | `[f64; 3]` | in plan: on x and y; z is carried along |
 //! | [`Steps`] | `[i32; 3]` | in plan, of points on a lattice like that of a LAS file |
+//! | [`Mapped`] | any type | in the plane, at places that a function gives: other planes ([`seen_along`]), scaled axes |
 //! | [`Weighted`] | `[f64; 3]` | in the plane, with weights: x, y, weight |
 //! | [`Space`] | `[f64; 3]` | in space |
 //!
@@ -23,6 +24,7 @@
 //! Distances are asked for where a walk may start only, angles nowhere, and units play no part.
 
 mod crossed;
+mod mapped;
 mod perturbation;
 mod plane;
 mod space;
@@ -30,6 +32,7 @@ mod steps;
 mod terrain;
 mod weighted;
 
+pub use mapped::{Mapped, seen_along};
 pub(crate) use perturbation::{in_sphere, in_sphere_of_flat, in_tied_circle};
 pub use plane::{Plane, distance_to_segment};
 pub use space::Space;
@@ -55,41 +58,36 @@ use crate::num::Sign;
 /// - All answers are those of one and the same set of exact points.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Weighted`], [`Space`]; users add their own:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`]. For points that have a place in the plane,
+/// `Mapped` is a geometry in one line. Users add their own, here one that counts what it is asked:
 ///
 /// ```
+/// use std::cell::Cell;
 /// use std::cmp::Ordering;
 /// use breakline::geometry::{Geometry, Plane};
 /// use breakline::num::Sign;
 /// use breakline::triangulation::Delaunay;
 ///
-/// #[derive(Clone, Copy, Debug)]
-/// struct Well { east: f64, north: f64, depth: f32 }
-///
 /// #[derive(Default)]
-/// struct Wells(Plane);
+/// struct Counting { plane: Plane, circles: Cell<usize> }
 ///
-/// fn at(well: &Well) -> [f64; 2] { [well.east, well.north] }
-///
-/// impl Geometry<3> for Wells {
-///     type Point = Well;
-///     fn admits(&self, p: &Well) -> bool { self.0.admits(&at(p)) }
-///     fn compare(&self, p: &Well, q: &Well) -> Ordering { self.0.compare(&at(p), &at(q)) }
-///     fn orientation(&self, s: [&Well; 3]) -> Sign {
-///         let s = s.map(at);
-///         self.0.orientation(s.each_ref())
-///     }
-///     fn side_of_sphere(&self, s: [&Well; 3], q: &Well) -> Sign {
-///         let s = s.map(at);
-///         self.0.side_of_sphere(s.each_ref(), &at(q))
+/// impl Geometry<3> for Counting {
+///     type Point = [f64; 2];
+///     fn admits(&self, p: &[f64; 2]) -> bool { self.plane.admits(p) }
+///     fn compare(&self, p: &[f64; 2], q: &[f64; 2]) -> Ordering { self.plane.compare(p, q) }
+///     fn orientation(&self, s: [&[f64; 2]; 3]) -> Sign { self.plane.orientation(s) }
+///     fn side_of_sphere(&self, s: [&[f64; 2]; 3], q: &[f64; 2]) -> Sign {
+///         self.circles.set(self.circles.get() + 1);
+///         self.plane.side_of_sphere(s, q)
 ///     }
 /// }
 ///
-/// let mut wells = Delaunay::new(Wells::default());
-/// for (east, north, depth) in [(0.0, 0.0, 9.5), (4.0, 0.0, 12.0), (0.0, 3.0, 7.0)] {
-///     wells.insert(Well { east, north, depth })?;
+/// let mut delaunay = Delaunay::new(Counting::default());
+/// for p in [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0], [1.0, 1.0]] {
+///     delaunay.insert(p)?;
 /// }
-/// assert_eq!(wells.finite_cells().count(), 1);
+/// assert_eq!(delaunay.finite_cells().count(), 3);
+/// assert!(delaunay.geometry().circles.get() < 4);
 /// # Ok::<(), breakline::triangulation::Refused>(())
 /// ```
 pub trait Geometry<const N: usize> {

@@ -5,15 +5,15 @@ use super::{Coordinates, Geometry, lexicographic, manhattan};
 use crate::kernel::{Adaptive, Kernel, Orientation2, PowerOnLine, PowerTest2};
 use crate::num::Sign;
 
-/// Points of the plane with a weight: `[x, y, weight]`, the weight in the square of the unit of x and y. A point stands for a
-/// circle of squared radius `weight`, and weights may be negative: only their differences count.
+/// Points of the plane with a weight: `[x, y, weight]`, the weight in the square of the unit of x and y. A point stands
+/// for a circle of squared radius `weight`, and weights may be negative: only their differences count.
 ///
 /// Orientation and order are those of the plane; two weights at one place are one site. In place of a
 /// simplex's circumscribed circle stands the circle that is orthogonal to those of its corners: a point is *inside* if
 /// its [lift](PowerTest2) is below the plane through the lifts of the corners.
 ///
-/// For regular triangulations, in which a point may be hidden by others. [`Delaunay`](crate::triangulation::Delaunay) triangulations
-/// know no hidden points: with unequal weights their law is broken.
+/// For regular triangulations, in which a point may be hidden by others. [`Delaunay`](crate::triangulation::Delaunay)
+/// triangulations know no hidden points: with unequal weights their law is broken.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Weighted<K = Adaptive>(PhantomData<K>);
 
@@ -72,7 +72,8 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
     }
 }
 
-/// For their order and place; the predicates are not those of [`exact_plan`](Coordinates::exact_plan), so that there is none.
+/// For their order and place; the predicates are not those of [`exact_plan`](Coordinates::exact_plan), so that there is
+/// none.
 impl<K: Kernel> Coordinates<3> for Weighted<K> {
     type Coordinates = [f64; 2];
 

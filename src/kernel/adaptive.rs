@@ -42,8 +42,8 @@ impl Filter for IntervalBound {
     }
 }
 
-/// Floating point with an error bound that is a constant of each formula, for whole numbers of magnitude `2^BITS` at the most:
-/// the static filter. [`num::Fixed`] derives the constants.
+/// Floating point with an error bound that is a constant of each formula, for whole numbers of magnitude `2^BITS` at the
+/// most: the static filter. [`num::Fixed`] derives the constants.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FixedBound<const BITS: i32>;
 

@@ -49,8 +49,8 @@ pub trait Predicate {
     /// Number of coordinate axes.
     const AXES: usize;
 
-    /// The coordinates that enter, on one axis. Differences are only taken between these; all terms are products of `DEGREE` of
-    /// them.
+    /// The coordinates that enter, on one axis. Differences are only taken between these; all terms are products of
+    /// `DEGREE` of them.
     fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone;
 
     /// The polynomial, in the arithmetic that `difference` returns.

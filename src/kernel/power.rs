@@ -1,8 +1,8 @@
 //! The power test: in-circle for points with a weight.
 //!
-//! A weight is an area, of degree 2 in the coordinates, which would break the law that all terms of a predicate have one
-//! degree (integers on a common grid, and [`Scaled`](super::Scaled), count in units). So it is multiplied by a difference
-//! that is one, which counts as well: weights, and that difference, are on axes of their own.
+//! A weight is an area, of degree 2 in the coordinates, which would break the law that all terms of a predicate have
+//! one degree (integers on a common grid, and [`Scaled`](super::Scaled), count in units). So it is multiplied by a
+//! difference that is one, which counts as well: weights, and that difference, are on axes of their own.
 
 use super::Predicate;
 use super::formula::{cross, in_circle, minus, square};
@@ -15,17 +15,18 @@ fn axis<const N: usize>(points: &[[f64; 3]; N], axis: usize) -> impl Iterator<It
     points.iter().map(of_point).chain(zero)
 }
 
-/// How far apart two points are in the plane, squared, less what `p` weighs more than `q`: the lift of `p` seen from `q`.
+/// How far apart two points are in the plane, squared, less what `p` weighs more than `q`: the lift of `p` seen from
+/// `q`.
 #[inline(always)]
 fn lift<T: Number>(way: &[T; 2], p: [f64; 3], q: [f64; 3], difference: impl Fn(f64, f64) -> T) -> T {
     square(&way[0]) + square(&way[1]) - difference(p[2], q[2]) * difference(1.0, 0.0)
 }
 
-/// Of three weighted points `[x, y, w]` that turn counter-clockwise and a fourth: positive if the fourth's lift is below the
-/// plane through theirs, zero if on it. Of equal weights that is [`InCircle`](super::InCircle).
+/// Of three weighted points `[x, y, w]` that turn counter-clockwise and a fourth: positive if the fourth's lift is
+/// below the plane through theirs, zero if on it. Of equal weights that is [`InCircle`](super::InCircle).
 ///
-/// The *lift* of a point is at the height `x^2 + y^2 - w` above it. The lower hull of all lifts is the regular triangulation,
-/// as that of points without weights is Delaunay's (Aurenhammer 1987).
+/// The *lift* of a point is at the height `x^2 + y^2 - w` above it. The lower hull of all lifts is the regular
+/// triangulation, as that of points without weights is Delaunay's (Aurenhammer 1987).
 #[derive(Debug, Clone, Copy)]
 pub struct PowerTest2(pub [[f64; 3]; 4]);
 
@@ -47,8 +48,8 @@ impl Predicate for PowerTest2 {
     }
 }
 
-/// Of three weighted points `[x, y, w]` on a line, of which the first has the smaller coordinate on an axis than the second:
-/// positive if the third's lift is below the line through the lifts of these two, zero if on it.
+/// Of three weighted points `[x, y, w]` on a line, of which the first has the smaller coordinate on an axis than the
+/// second: positive if the third's lift is below the line through the lifts of these two, zero if on it.
 #[derive(Debug, Clone, Copy)]
 pub struct PowerOnLine {
     /// The two, and the point in question.

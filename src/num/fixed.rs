@@ -2,12 +2,13 @@ use std::ops::{Add, Mul, Sub};
 
 use super::Sign;
 
-/// A floating-point result from whole numbers of magnitude `2^BITS` at the most, 52 bits at the most, whose error bound is
-/// known before it is computed.
+/// A floating-point result from whole numbers of magnitude `2^BITS` at the most, 52 bits at the most, whose error bound
+/// is known before it is computed.
 ///
-/// Beside the value go two numbers that depend on the formula only, so that the optimizer sees constants and what is left at
-/// run time is plain floating point and one comparison (the *static filter* of Fortune and Van Wyk 1996, without their
-/// compiler): the largest magnitude `M` that the value can have, and the largest error `E`. With `u = 2^-53`:
+/// Beside the value go two numbers that depend on the formula only, so that the optimizer sees constants and what is
+/// left at run time is plain floating point and one comparison (the *static filter* of Fortune and Van Wyk 1996,
+/// without their compiler): the largest magnitude `M` that the value can have, and the largest error `E`. Let `u` be
+/// `2^-53`:
 ///
 /// | | `M` | `E` |
 /// |---|---|---|
@@ -18,8 +19,8 @@ use super::Sign;
 /// `M` is computed in floating point, too: rounding keeps the order, so that no computed value exceeds it. The rounding
 /// of a result is at most `u M`; and none where `M <= 2^53`, as all values are whole numbers, rounded ones included.
 ///
-/// With 24 bits, an orientation in the plane is always certain, and in-circle tests are while the determinant is above
-/// `2^53`, where it can reach `2^103`.
+/// With 24 bits, an orientation in the plane is always certain, and an in-circle test is if the determinant, a sum of
+/// products of up to `2^102`, is above `2^53`.
 #[derive(Debug, Clone, Copy)]
 pub struct Fixed<const BITS: i32> {
     value: f64,
@@ -105,7 +106,8 @@ mod tests {
         let mut coordinate = |bits: i32| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             let below = (state >> (63 - bits)) as f64;
-            2f64.powi(bits) - if state.count_ones() % 2 == 0 { below } else { (below / 2f64.powi(bits - 3)).floor() }
+            2f64.powi(bits)
+                - if state.count_ones().is_multiple_of(2) { below } else { (below / 2f64.powi(bits - 3)).floor() }
         };
         fn polynomial<T: super::super::Number>(of: impl Fn(f64, f64) -> T, c: [f64; 8]) -> [T; 3] {
             let [p, q, r, s] = [of(c[0], c[1]), of(c[2], c[3]), of(c[4], c[5]), of(c[6], c[7])];

@@ -89,8 +89,8 @@ impl Mul for Interval {
         if self.is_exact() && other.is_exact() {
             return Self::around(two_product(self.low, other.low));
         }
-        // Rounding keeps the order: the least of the rounded products is the least product, rounded. It moves out even if
-        // it was exact, and if it is zero, perhaps by an underflow.
+        // Rounding keeps the order: the least of the rounded products is the least product, rounded. It moves out even
+        // if it was exact, and if it is zero, perhaps by an underflow.
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         Interval {
             low: products.into_iter().fold(f64::INFINITY, f64::min).next_down(),
