@@ -19,7 +19,9 @@
 //! | the same cell as its neighbor sees it | [`Tds::index_of_neighbor`] |
 //! | all vertices | [`Tds::vertices`] |
 //! | all cells, with or without the infinite ones | [`Tds::cells`], [`Tds::is_infinite`] |
-//! | the triangles around a vertex, an edge | [`Tds::around`], [`Tds::edge`] |
+//! | the triangles, edges, vertices around a vertex | [`Tds::around`], [`Tds::edges_around`], [`Tds::vertices_around`] |
+//! | all edges, or one by its ends | [`Tds::edges`], [`Tds::finite_edges`], [`Tds::edge`] |
+//! | the convex hull | [`Tds::hull`] |
 //! | whether it is a sphere | [`Tds::check_links`], [`Tds::check_manifold`] |
 //!
 //! Removed cells and vertices leave holes in the numbers, which the next ones fill: an array indexed by
@@ -30,6 +32,7 @@
 
 mod check;
 mod id;
+mod plane;
 mod remove;
 mod zone;
 
@@ -166,8 +169,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 
     /// The finite vertices, in order of their numbers.
-    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
-        (0..self.vertex_cell.len()).map(VertexId::new).filter(|&v| self.is_vertex(v))
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
+        let vertices = (0..self.vertex_cell.len()).map(VertexId::new).filter(|&v| self.is_vertex(v));
+        plane::counted(vertices, self.vertex_count())
     }
 
     /// Whether the number stands for a finite vertex.
@@ -177,8 +181,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 
     /// All cells, the infinite ones included, in order of their numbers.
-    pub fn cells(&self) -> impl Iterator<Item = CellId> + '_ {
-        (0..self.links.len()).map(CellId::new).filter(|&c| self.is_used(c))
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = CellId> + '_ {
+        let cells = (0..self.links.len()).map(CellId::new).filter(|&c| self.is_used(c));
+        plane::counted(cells, self.cell_count())
     }
 
     /// Whether the number stands for a cell.
@@ -441,31 +446,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
 /// What exists in the plane only.
 impl<V, C: Copy + Default> Tds<3, V, C> {
-    /// The finite cells and infinite cells around a vertex, counter-clockwise, starting anywhere.
-    ///
-    /// Empty below dimension 2.
-    pub fn around(&self, vertex: VertexId) -> impl Iterator<Item = CellId> + '_ {
-        let start = if self.dimension == 2 { self.cell_of(vertex) } else { None };
-        std::iter::successors(start, move |&cell| {
-            let i = self.index_of(cell, vertex)?;
-            let next = self.neighbor(cell, ccw(i));
-            (Some(next) != start).then_some(next)
-        })
-    }
-
     /// The ends of the edge opposite vertex `i` of a cell, which has it on its left from the first to the second.
     #[inline(always)]
     pub fn edge_ends(&self, cell: CellId, i: usize) -> [VertexId; 2] {
         [self.vertex(cell, ccw(i)), self.vertex(cell, cw(i))]
-    }
-
-    /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the
-    /// vertex opposite), if there is such an edge. Time proportional to the degree of `a`.
-    pub fn edge(&self, a: VertexId, b: VertexId) -> Option<(CellId, usize)> {
-        self.around(a).find_map(|cell| {
-            let i = self.index_of(cell, a)?;
-            (self.vertex(cell, ccw(i)) == b).then_some((cell, cw(i)))
-        })
     }
 }
 

@@ -1,0 +1,184 @@
+//! What is around what, in the plane: edges, the faces and vertices around a vertex, the hull.
+//!
+//! Orders are functions of the cells' numbers, so that a triangulation that was built alike is walked alike. What is
+//! around a vertex comes counter-clockwise from a cell of it ([`Tds::cell_of`]); [`rev`](Iterator::rev) turns that
+//! around: clockwise, ending with that cell.
+//!
+//! | dimension | edges | around a vertex | hull |
+//! |---|---|---|---|
+//! | 2 | two faces each | faces, edges, vertices, the infinite ones included | the ring of its vertices |
+//! | 1 | the cells | no faces, two edges, two vertices (the infinite one beside an end) | both ends |
+//! | 0 | none | nothing | the vertex |
+//! | -1 | none | nothing | nothing |
+
+use std::iter::FusedIterator;
+
+use super::{CellId, Tds, VertexId, ccw, cw};
+
+/// An iterator that knows how many items are left.
+struct Counted<I> {
+    items: I,
+    left: usize,
+}
+
+impl<I: Iterator> Iterator for Counted<I> {
+    type Item = I::Item;
+
+    #[inline]
+    fn next(&mut self) -> Option<I::Item> {
+        let item = self.items.next()?;
+        self.left -= 1;
+        Some(item)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+impl<I: Iterator> ExactSizeIterator for Counted<I> {}
+
+/// Gives an iterator over cells or vertices its exact size.
+pub(super) fn counted<I: Iterator>(items: I, left: usize) -> impl ExactSizeIterator<Item = I::Item> {
+    Counted { items, left }
+}
+
+/// The cells that have a vertex, from `front` counter-clockwise to before `end`.
+struct Star<'a, V, C> {
+    tds: &'a Tds<3, V, C>,
+    vertex: VertexId,
+    front: CellId,
+    /// The same as `front` at the start, when all are left, and when none is.
+    end: CellId,
+    is_over: bool,
+}
+
+impl<V, C: Copy + Default> Star<'_, V, C> {
+    /// The next cell across the side that `turn` gives for the place of the vertex in a face. On a line both ways lead to
+    /// the only other cell.
+    fn beside(&self, cell: CellId, turn: impl Fn(usize) -> usize) -> CellId {
+        let i = self.tds.index_of(cell, self.vertex).unwrap_or(0);
+        self.tds.neighbor(cell, if self.tds.dimension == 1 { 1 - i } else { turn(i) })
+    }
+}
+
+impl<V, C: Copy + Default> Iterator for Star<'_, V, C> {
+    type Item = CellId;
+
+    fn next(&mut self) -> Option<CellId> {
+        if self.is_over {
+            return None;
+        }
+        let cell = self.front;
+        self.front = self.beside(cell, ccw);
+        self.is_over = self.front == self.end;
+        Some(cell)
+    }
+}
+
+impl<V, C: Copy + Default> DoubleEndedIterator for Star<'_, V, C> {
+    fn next_back(&mut self) -> Option<CellId> {
+        if self.is_over {
+            return None;
+        }
+        self.end = self.beside(self.end, cw);
+        self.is_over = self.front == self.end;
+        Some(self.end)
+    }
+}
+
+impl<V, C: Copy + Default> FusedIterator for Star<'_, V, C> {}
+
+impl<V, C: Copy + Default> Tds<3, V, C> {
+    /// The cells around a vertex from dimension 1 on.
+    fn star_of(&self, vertex: VertexId) -> Star<'_, V, C> {
+        let start = self.cell_of(vertex).filter(|_| self.dimension > 0);
+        let at = start.unwrap_or(CellId::NONE);
+        Star { tds: self, vertex, front: at, end: at, is_over: start.is_none() }
+    }
+
+    /// All edges, each once: the cell that has it on its border and the index of the vertex opposite. In order of these
+    /// pairs, of the two that a face on each side gives the smaller one.
+    ///
+    /// On a line an edge is a cell, and the index is 2, of no vertex: [`edge_ends`](Self::edge_ends) takes both.
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
+        let (indices, count) = match self.dimension {
+            2 => (0..3, self.cell_count() / 2 * 3),
+            1 => (2..3, self.cell_count()),
+            _ => (0..0, 0),
+        };
+        let sides = self.cells().flat_map(move |cell| indices.clone().map(move |i| (cell, i)));
+        counted(sides.filter(|&(cell, i)| self.dimension == 1 || cell < self.neighbor(cell, i)), count)
+    }
+
+    /// The edges without the infinite vertex, each once, in the order of [`edges`](Self::edges): of these it leaves out
+    /// as many as the infinite vertex has [`degree`](Self::degree). The cell may be an infinite one.
+    pub fn finite_edges(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
+        self.edges().filter(|&(cell, i)| !self.edge_ends(cell, i).contains(&VertexId::INFINITE))
+    }
+
+    /// The finite and infinite faces around a vertex, counter-clockwise. Empty below dimension 2.
+    pub fn around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = CellId> + FusedIterator + '_ {
+        let mut star = self.star_of(vertex);
+        star.is_over |= self.dimension < 2;
+        star
+    }
+
+    /// The edges that start at a vertex, counter-clockwise, each as the face on its left and the index of the vertex
+    /// opposite; those to the infinite vertex included. On a line as in [`edges`](Self::edges).
+    pub fn edges_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = (CellId, usize)> + '_ {
+        self.star_of(vertex).map(move |cell| match self.dimension {
+            1 => (cell, 2),
+            _ => (cell, cw(self.index_of(cell, vertex).unwrap_or(0))),
+        })
+    }
+
+    /// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included.
+    pub fn vertices_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
+        self.star_of(vertex).map(move |cell| {
+            let i = self.index_of(cell, vertex).unwrap_or(0);
+            self.vertex(cell, if self.dimension == 1 { 1 - i } else { ccw(i) })
+        })
+    }
+
+    /// The number of edges at a vertex, that to the infinite vertex included. Time proportional to it.
+    pub fn degree(&self, vertex: VertexId) -> usize {
+        self.star_of(vertex).count()
+    }
+
+    /// The vertices on the convex hull, those in the middle of its sides included, counter-clockwise from any. Of
+    /// collinear points that is both ends.
+    pub fn hull(&self) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
+        let only = if self.dimension == 0 { self.vertices().next() } else { None };
+        // The infinite vertex sees the plane from behind.
+        only.into_iter().chain(self.vertices_around(VertexId::INFINITE).rev())
+    }
+
+    /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the
+    /// vertex opposite), if there is such an edge and dimension 2. Time proportional to the degree of `a`.
+    pub fn edge(&self, a: VertexId, b: VertexId) -> Option<(CellId, usize)> {
+        self.around(a).find_map(|cell| {
+            let i = self.index_of(cell, a)?;
+            (self.vertex(cell, ccw(i)) == b).then_some((cell, cw(i)))
+        })
+    }
+
+    /// Whether two vertices, one of which may be the infinite one, are the ends of an edge. Time proportional to the
+    /// degree of `a`.
+    pub fn has_edge(&self, a: VertexId, b: VertexId) -> bool {
+        self.vertices_around(a).any(|v| v == b)
+    }
+
+    /// The face with these three vertices, in any order, one of which may be the infinite one. Time proportional to the
+    /// degree of the first.
+    pub fn face(&self, [a, b, c]: [VertexId; 3]) -> Option<CellId> {
+        let has =
+            |cell: &CellId| a != b && b != c && c != a && [b, c].iter().all(|&v| self.index_of(*cell, v).is_some());
+        self.around(a).find(has)
+    }
+
+    /// Whether three vertices, in any order, are those of a [`face`](Self::face).
+    pub fn is_face(&self, corners: [VertexId; 3]) -> bool {
+        self.face(corners).is_some()
+    }
+}
