@@ -20,11 +20,13 @@
 //! | insertion one by one, location, checks | [`Geometry`] |
 //! | construction in bulk | [`Coordinates`], too |
 //! | constraints | [`Crossing`], too |
+//! | the nearest vertices of a place | [`Metric`], too |
 //!
-//! Distances are asked for where a walk may start only, angles nowhere, and units play no part.
+//! Distances are asked for where a walk may start and for what is nearest only, angles nowhere, and units play no part.
 
 mod crossed;
 mod mapped;
+mod metric;
 mod perturbation;
 mod plane;
 mod space;
@@ -33,6 +35,7 @@ mod terrain;
 mod weighted;
 
 pub use mapped::{Mapped, seen_along};
+pub use metric::Metric;
 pub(crate) use perturbation::{in_sphere, in_sphere_of_flat, in_tied_circle};
 pub use plane::{Plane, distance_to_segment};
 pub use space::Space;

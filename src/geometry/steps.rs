@@ -14,7 +14,7 @@ pub struct Steps<K = Lattice>(PhantomData<K>);
 
 /// Every 32-bit number is a double.
 #[inline(always)]
-fn plan(p: &[i32; 3]) -> [f64; 2] {
+pub(super) fn plan(p: &[i32; 3]) -> [f64; 2] {
     [p[0].into(), p[1].into()]
 }
 

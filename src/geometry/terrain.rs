@@ -13,7 +13,7 @@ use crate::num::Sign;
 pub struct Terrain<K = Adaptive>(PhantomData<K>);
 
 #[inline(always)]
-fn plan(p: &[f64; 3]) -> [f64; 2] {
+pub(super) fn plan(p: &[f64; 3]) -> [f64; 2] {
     [p[0], p[1]]
 }
 

@@ -29,6 +29,9 @@
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
 //! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |
 //! | find where a place lies | [`Triangulation::locate`] |
+//! | know what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
+//! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
+//! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
@@ -47,6 +50,7 @@ mod lines;
 mod locate;
 mod nesting;
 mod network;
+mod query;
 mod regular;
 mod remove;
 mod segment;
@@ -62,6 +66,7 @@ pub use lines::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
+pub use query::{ConflictZone, Passage};
 pub use regular::Regular;
 pub use walled::{Blocked, Constrained};
 

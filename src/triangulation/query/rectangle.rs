@@ -1,0 +1,98 @@
+use rustc_hash::FxHashSet;
+
+use crate::geometry::Coordinates;
+use crate::kernel::{Kernel, Orientation2, Wide};
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId};
+
+use super::super::{Location, Triangulation};
+
+/// A rectangle along the axes, its border included.
+#[derive(Clone, Copy)]
+struct Rectangle {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Rectangle {
+    fn new(p: [f64; 2], q: [f64; 2]) -> Self {
+        Rectangle { low: [0, 1].map(|k| p[k].min(q[k])), high: [0, 1].map(|k| p[k].max(q[k])) }
+    }
+
+    fn holds(self, p: [f64; 2]) -> bool {
+        (0..2).all(|k| self.low[k] <= p[k] && p[k] <= self.high[k])
+    }
+
+    fn corners(self) -> [[f64; 2]; 4] {
+        let Rectangle { low, high } = self;
+        [low, [high[0], low[1]], high, [low[0], high[1]]]
+    }
+
+    /// Whether it meets the box around a triangle: it does if it meets the triangle.
+    fn meets_box(self, [a, b, c]: [[f64; 2]; 3]) -> bool {
+        (0..2).all(|k| a[k].min(b[k]).min(c[k]) <= self.high[k] && self.low[k] <= a[k].max(b[k]).max(c[k]))
+    }
+}
+
+fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
+    Wide::sign(&Orientation2([a, b, c]))
+}
+
+impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+    /// The vertices whose coordinates lie in the rectangle along the axes of which two opposite corners are given, its
+    /// border included; in order of their numbers. Exact. The corners must be points that the geometry admits.
+    ///
+    /// # Complexity
+    /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes meet the rectangle and,
+    /// where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at.
+    ///
+    /// ```
+    /// use breakline::{geometry::Plane, triangulation::Delaunay};
+    ///
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
+    /// let (t, v) = Delaunay::from_points(Plane::<breakline::kernel::Adaptive>::default(), &points)?;
+    /// let mut found = t.within_rectangle([&[0.5, 0.0], &[5.0, 3.0]]);
+    /// found.sort_by(|&a, &b| t.point(a)[0].total_cmp(&t.point(b)[0]));
+    /// assert_eq!(found, [v[1], v[2]]);
+    /// # Ok::<(), breakline::triangulation::Refused>(())
+    /// ```
+    pub fn within_rectangle(&self, corners: [&G::Point; 2]) -> Vec<VertexId> {
+        let place = |p: &G::Point| {
+            let coordinates = self.geometry.coordinates(p);
+            [coordinates.as_ref()[0], coordinates.as_ref()[1]]
+        };
+        let [p, q] = corners.map(place);
+        let rectangle = Rectangle::new(p, q);
+        let is_within = |&v: &VertexId| rectangle.holds(place(self.point(v)));
+        if !self.is_full() {
+            return self.tds.vertices().filter(is_within).collect();
+        }
+        let start = match self.locate(corners[0], None) {
+            Location::Vertex(vertex) => self.tds.cell_of(vertex),
+            Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
+            Location::OutsideAffineHull => None,
+        };
+        // The cells that meet the rectangle hang together by edges, the infinite ones with what lies beyond the hull.
+        let meets = |cell: CellId| match self.tds.index_of(cell, VertexId::INFINITE) {
+            None => rectangle.meets_box(self.simplex(cell).map(place)),
+            Some(infinite) => {
+                let [a, b] = self.tds.edge_ends(cell, infinite).map(|v| place(self.point(v)));
+                let inner = self.tds.neighbor(cell, infinite);
+                let apex = self.tds.vertex(inner, self.tds.index_of_neighbor(inner, cell));
+                let inside = turn(a, b, place(self.point(apex)));
+                rectangle.corners().into_iter().any(|corner| turn(a, b, corner) != inside)
+            }
+        };
+        let mut seen: FxHashSet<CellId> = start.into_iter().collect();
+        let mut met: Vec<CellId> = start.into_iter().collect();
+        let mut vertices = Vec::new();
+        while let Some(cell) = met.pop() {
+            vertices
+                .extend(self.tds.corners(cell).iter().filter(|&&v| v != VertexId::INFINITE).copied().filter(is_within));
+            met.extend(self.tds.cell_neighbors(cell).iter().filter(|&&beside| meets(beside) && seen.insert(beside)));
+        }
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+}

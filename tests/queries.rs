@@ -1,0 +1,343 @@
+//! Questions to triangulations of the plane against naive answers, on tiny grids where ties are the rule.
+
+mod common;
+
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
+use breakline::geometry::{Geometry, Metric, Plane, Steps, Terrain};
+use breakline::num::Sign;
+use breakline::tds::{CellId, VertexId};
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, OnCrossing, Passage, Triangulation};
+use common::random::Random;
+
+type Point = [f64; 2];
+type Free = Delaunay<Plane, 3>;
+type Forced = ConstrainedDelaunay<Plane>;
+
+fn plane() -> Plane {
+    Plane::default()
+}
+
+fn build(points: &[Point]) -> Free {
+    Delaunay::from_points(Plane::default(), points).unwrap().0
+}
+
+fn grid_point(dice: &mut Random, side: u64) -> Point {
+    [0, 1].map(|_| dice.below(side) as f64)
+}
+
+/// Even places of a grid, so that odd ones lie between; every fourth time on one line.
+fn points(dice: &mut Random, round: usize) -> Vec<Point> {
+    let side = 1 + dice.below(5);
+    let count = dice.below(20);
+    let mut points: Vec<Point> = (0..count).map(|_| grid_point(dice, side).map(|x| 2.0 * x)).collect();
+    if round.is_multiple_of(4) {
+        points.iter_mut().for_each(|p| p[1] = if round.is_multiple_of(8) { p[0] } else { 4.0 });
+    }
+    points
+}
+
+/// A place on that grid or between, or a bit outside.
+fn place(dice: &mut Random) -> Point {
+    grid_point(dice, 13).map(|x| x - 2.0)
+}
+
+/// All pairs of some points as lines, so that they overlap and touch; some cross.
+fn constrained(dice: &mut Random, points: &[Point]) -> Forced {
+    let index = |dice: &mut Random| dice.index(points.len()) as u32;
+    let lines: Vec<Vec<u32>> = if points.is_empty() {
+        Vec::new()
+    } else {
+        (0..dice.below(5)).map(|_| vec![index(dice), index(dice)]).collect()
+    };
+    Forced::from_lines(Plane::default(), points, &lines, OnCrossing::Split).unwrap().0
+}
+
+/// The cells as their vertices, sorted.
+fn cells<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) -> BTreeSet<Vec<VertexId>> {
+    t.tds().cells().map(|cell| vertices(t, cell)).collect()
+}
+
+fn vertices<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, cell: CellId) -> Vec<VertexId> {
+    let mut vertices = t.tds().cell_vertices(cell).to_vec();
+    vertices.sort();
+    vertices
+}
+
+/// What a conflict zone must be, given the triangulation with the point in.
+fn judge_zone<V, C: Copy + Default>(
+    before: &Triangulation<Plane, 3, V, C>,
+    after: &Triangulation<Plane, 3, V, C>,
+    zone: &breakline::triangulation::ConflictZone,
+) {
+    let destroyed: BTreeSet<_> = cells(before).difference(&cells(after)).cloned().collect();
+    assert_eq!(zone.cells.len(), destroyed.len());
+    assert_eq!(zone.cells.iter().map(|&cell| vertices(before, cell)).collect::<BTreeSet<_>>(), destroyed);
+    let tds = before.tds();
+    for &(cell, i) in &zone.border {
+        assert!(zone.cells.contains(&cell) && !zone.cells.contains(&tds.neighbor(cell, i)));
+    }
+    if before.dimension() == 1 {
+        assert_eq!(zone.border.len(), 2);
+        return;
+    }
+    assert_eq!(zone.border.len(), zone.cells.len() + 2);
+    for (k, &(cell, i)) in zone.border.iter().enumerate() {
+        let (next, j) = zone.border[(k + 1) % zone.border.len()];
+        assert_eq!(tds.edge_ends(cell, i)[1], tds.edge_ends(next, j)[0]);
+    }
+}
+
+#[test]
+fn conflict_zones_are_what_insertion_destroys() {
+    let mut dice = Random(1);
+    for round in 0..4000 {
+        let t = build(&points(&mut dice, round));
+        let q = place(&mut dice);
+        let mut after = t.clone();
+        after.insert(q).unwrap();
+        match t.conflict_zone(&q, None) {
+            Some(zone) => judge_zone(&t, &after, &zone),
+            None => assert!(after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()),
+        }
+    }
+}
+
+#[test]
+fn constraints_bound_conflict_zones() {
+    let mut dice = Random(2);
+    for round in 0..4000 {
+        let points = points(&mut dice, round);
+        let t = constrained(&mut dice, &points);
+        if !t.crossings().is_empty() {
+            continue; // a point may lie on lines that were bent, which are led through it then
+        }
+        let q = place(&mut dice);
+        let mut after = t.clone();
+        after.insert(q).unwrap();
+        match t.conflict_zone(&q, None) {
+            Some(zone) => judge_zone(&t, &after, &zone),
+            None => assert!(after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()),
+        }
+    }
+}
+
+fn squared(p: Point, q: Point) -> f64 {
+    (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
+}
+
+#[test]
+fn nearest_vertices_in_order() {
+    let mut dice = Random(3);
+    for round in 0..4000 {
+        let t = build(&points(&mut dice, round));
+        let (q, rim) = (place(&mut dice), place(&mut dice));
+        let mut expected: Vec<VertexId> = t.tds().vertices().collect();
+        let far = |v: VertexId| squared(*t.point(v), q);
+        expected.sort_by(|&u, &v| far(u).total_cmp(&far(v)).then_with(|| plane().compare(t.point(u), t.point(v))));
+        let near = t.tds().cells().next();
+        assert_eq!(t.nearest(&q, near), expected.first().copied());
+        assert!(t.nearest_first(&q, near).eq(expected.iter().copied()));
+        let within = expected.into_iter().filter(|&v| far(v) <= squared(q, rim));
+        assert!(t.within(&q, &rim).eq(within));
+    }
+}
+
+#[test]
+fn metrics_agree() {
+    let mut dice = Random(4);
+    for _ in 0..1000 {
+        let places: [Point; 3] = [0; 3].map(|_| grid_point(&mut dice, 5));
+        let [q, a, b] = places;
+        let expected = squared(q, a).total_cmp(&squared(q, b));
+        assert_eq!(plane().compare_distance(&q, &a, &b), expected);
+        let [q, a, b] = places.map(|[x, y]| [x, y, dice.unit()]);
+        assert_eq!(Terrain::<breakline::kernel::Exact>::default().compare_distance(&q, &a, &b), expected);
+        let [q, a, b] = places.map(|[x, y]| [x as i32, y as i32, dice.below(9) as i32]);
+        assert_eq!(Steps::<breakline::kernel::Lattice>::default().compare_distance(&q, &a, &b), expected);
+    }
+}
+
+#[test]
+fn rectangles() {
+    let mut dice = Random(5);
+    for round in 0..4000 {
+        let points = points(&mut dice, round);
+        let t = constrained(&mut dice, &points);
+        let corners @ [p, q] = [place(&mut dice), place(&mut dice)];
+        let is_within = |v: &VertexId| {
+            (0..2).all(|k| {
+                let x = t.point(*v)[k];
+                p[k].min(q[k]) <= x && x <= p[k].max(q[k])
+            })
+        };
+        let expected: Vec<VertexId> = t.tds().vertices().filter(is_within).collect();
+        assert_eq!(t.within_rectangle(corners.each_ref()), expected, "{points:?} {corners:?}");
+    }
+}
+
+/// Whether the segment meets a part: the face, edge or vertex with these corners, without its border.
+fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
+    let turn = |p: &Point, q: &Point, r: &Point| plane().orientation([p, q, r]);
+    let holds = |p: &Point| match part {
+        [v] => v == p,
+        [u, v] => turn(u, v, p) == Sign::Zero && plane().side_of_sphere_in_flat(&[u, v], p) == Sign::Positive,
+        _ => (0..3).all(|i| turn(&part[i], &part[(i + 1) % 3], p) == turn(&part[0], &part[1], &part[2])),
+    };
+    if holds(&a) || holds(&b) {
+        return true;
+    }
+    if a == b {
+        return false;
+    }
+    let is_between = |p: &Point| plane().side_of_sphere_in_flat(&[&a, &b], p) == Sign::Positive;
+    match part {
+        [v] => turn(&a, &b, v) == Sign::Zero && is_between(v),
+        [u, v] => {
+            let crosses = |a, b, c, d| turn(a, b, c) * turn(a, b, d) == Sign::Negative;
+            let is_along = turn(u, v, &a) == Sign::Zero && turn(u, v, &b) == Sign::Zero;
+            let sorted = |p: Point, q: Point| if plane().compare(&p, &q).is_lt() { [p, q] } else { [q, p] };
+            let [s, t] = [sorted(a, b), sorted(*u, *v)];
+            let overlaps = is_along && plane().compare(&s[0], &t[1]).is_lt() && plane().compare(&t[0], &s[1]).is_lt();
+            crosses(&a, &b, u, v) && crosses(u, v, &a, &b) || overlaps
+        }
+        // Ends outside: it goes through two of the six parts of the border, which are not on one closed side.
+        [u, v, w] => {
+            let sides = [[u, v], [v, w], [w, u]];
+            let on = |s: &[&Point; 2], p: &Point| turn(s[0], s[1], p) == Sign::Zero;
+            let corners: Vec<&Point> = [u, v, w].into_iter().filter(|p| meets(&[**p], [a, b])).collect();
+            let edges: Vec<&[&Point; 2]> = sides.iter().filter(|s| meets(&[*s[0], *s[1]], [a, b])).collect();
+            let apart = corners.iter().any(|p| edges.iter().any(|s| !on(s, p)));
+            edges.len() == 2 || apart
+        }
+        _ => unreachable!(),
+    }
+}
+
+/// The corners of a part, sorted.
+fn part<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, passage: Passage) -> Vec<VertexId> {
+    let mut corners = match passage {
+        Passage::Face(cell) => t.tds().corners(cell).to_vec(),
+        Passage::Edge(cell, i) => t.tds().edge_ends(cell, i).to_vec(),
+        Passage::Along(ends) => ends.to_vec(),
+        Passage::Vertex(vertex) => vec![vertex],
+    };
+    corners.sort();
+    corners
+}
+
+#[test]
+fn segments_meet_what_they_meet_in_order() {
+    let mut dice = Random(6);
+    let mut kinds = [0; 4];
+    for round in 0..6000 {
+        let points = points(&mut dice, round);
+        let t = constrained(&mut dice, &points);
+        let [a, b] = [place(&mut dice), place(&mut dice)];
+        let met: Vec<Passage> = t.along([&a, &b], None).collect();
+        let told: Vec<Vec<VertexId>> = met.iter().map(|&passage| part(&t, passage)).collect();
+        let mut parts: BTreeSet<Vec<VertexId>> = BTreeSet::new();
+        if t.dimension() == 2 {
+            parts.extend(t.tds().vertices().map(|v| vec![v]));
+            parts.extend(t.tds().finite_edges().map(|(cell, i)| part(&t, Passage::Edge(cell, i))));
+            parts.extend(t.finite_cells().map(|cell| part(&t, Passage::Face(cell))));
+        }
+        parts.retain(|part| meets(&part.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, b]));
+        assert_eq!(told.iter().cloned().collect::<BTreeSet<_>>(), parts, "{points:?} {a:?} {b:?}");
+        assert_eq!(told.len(), parts.len(), "nothing twice");
+        // Each lies on the border of the one before, or the other way around: with what is met told, this leaves one
+        // order and its reverse.
+        for pair in told.windows(2) {
+            let [p, q] = [&pair[0], &pair[1]];
+            assert!(p.iter().all(|v| q.contains(v)) || q.iter().all(|v| p.contains(v)), "{told:?}");
+        }
+        if let [first, .., last] = &told[..] {
+            let first_from_a = meets(&first.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, a]);
+            let last_from_a = meets(&last.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, a]);
+            assert!(first_from_a || !last_from_a);
+        }
+        // And back: the same the other way around.
+        let mut back: Vec<Vec<VertexId>> = t.along([&b, &a], None).map(|passage| part(&t, passage)).collect();
+        back.reverse();
+        assert_eq!(back, told, "{points:?} {a:?} {b:?}");
+        for passage in met {
+            match passage {
+                Passage::Face(_) => kinds[0] += 1,
+                Passage::Edge(cell, i) => {
+                    kinds[1] += 1;
+                    // From the cell outwards.
+                    let [u, v] = t.tds().edge_ends(cell, i).map(|v| *t.point(v));
+                    assert_ne!(plane().orientation([&u, &v, &b]), Sign::Positive);
+                    assert_ne!(plane().orientation([&u, &v, &a]), Sign::Negative);
+                }
+                Passage::Along([from, to]) => {
+                    kinds[2] += 1;
+                    let towards = plane().compare(t.point(from), t.point(to));
+                    assert_eq!(towards, plane().compare(&a, &b));
+                    assert_ne!(towards, Ordering::Equal);
+                }
+                Passage::Vertex(_) => kinds[3] += 1,
+            }
+        }
+    }
+    assert!(kinds.iter().all(|&count| count > 50), "{kinds:?}");
+}
+
+/// Along the lower side of a square, (0, 0) to (4, 0), with a vertex in its middle, and on its line beyond both ends:
+/// from where to where, and what is met. Each is walked in both directions.
+#[test]
+fn collinear_edges_of_the_hull() {
+    let t = build(&[[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]]);
+    // Vertices by their x, edges along the side by that of their middle.
+    let table: [(f64, f64, &[f64]); 12] = [
+        (-3.0, -1.0, &[]),
+        (-1.0, 0.0, &[0.0]),
+        (-1.0, 1.0, &[0.0, 1.0]),
+        (-1.0, 2.0, &[0.0, 1.0, 2.0]),
+        (-1.0, 3.0, &[0.0, 1.0, 2.0, 3.0]),
+        (-1.0, 5.0, &[0.0, 1.0, 2.0, 3.0, 4.0]),
+        (0.0, 2.0, &[0.0, 1.0, 2.0]),
+        (0.5, 1.5, &[1.0]),
+        (0.5, 2.0, &[1.0, 2.0]),
+        (1.0, 3.0, &[1.0, 2.0, 3.0]),
+        (2.0, 5.0, &[2.0, 3.0, 4.0]),
+        (4.0, 5.0, &[4.0]),
+    ];
+    let walk = |a: f64, b: f64| -> Vec<f64> {
+        let x = |v: VertexId| t.point(v)[0];
+        let tell = |passage| match passage {
+            Passage::Vertex(v) => x(v),
+            Passage::Along([u, v]) => (x(u) + x(v)) / 2.0,
+            other => panic!("{other:?}"),
+        };
+        t.along([&[a, 0.0], &[b, 0.0]], None).map(tell).collect()
+    };
+    for (a, b, met) in table {
+        assert_eq!(walk(a, b), met, "from {a} to {b}");
+        assert!(walk(b, a).iter().eq(met.iter().rev()), "from {b} to {a}");
+    }
+}
+
+/// A walk across a grid of squares, each with a diagonal: through vertices all the way, or past them.
+#[test]
+fn walks_across_a_grid() {
+    let points: Vec<Point> = (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)]).collect();
+    let t = build(&points);
+    let count = |a, b| {
+        let met: Vec<Passage> = t.along([&a, &b], None).collect();
+        let of = |is: fn(&Passage) -> bool| met.iter().filter(|p| is(p)).count();
+        [
+            of(|p| matches!(p, Passage::Face(_))),
+            of(|p| matches!(p, Passage::Edge(..))),
+            of(|p| matches!(p, Passage::Along(_))),
+            of(|p| matches!(p, Passage::Vertex(_))),
+        ]
+    };
+    assert_eq!(count([-1.0, 7.0], [25.0, 7.0]), [0, 0, 19, 20]);
+    assert_eq!(count([7.0, 25.0], [7.0, -1.0]), [0, 0, 19, 20]);
+    assert_eq!(count([-1.0, 7.5], [25.0, 7.5]), [38, 39, 0, 0]);
+    let [faces, edges, along, through] = count([-1.0, -1.0], [20.0, 20.0]);
+    assert_eq!((through, faces / 2 + along), (20, 19));
+    assert_eq!(faces, 2 * edges);
+}
