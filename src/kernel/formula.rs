@@ -218,6 +218,6 @@ pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
 }
 
 /// Whether expansions are exact for these coordinates.
-fn in_range<P: Predicate>(predicate: &P) -> bool {
+pub(super) fn in_range<P: Predicate>(predicate: &P) -> bool {
     (0..P::AXES).all(|axis| predicate.axis(axis).all(|x| RANGE.admits(x)))
 }

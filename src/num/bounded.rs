@@ -42,16 +42,29 @@ impl Bounded {
         Bounded { value, magnitude: if size > FLOOR { size } else { FLOOR }, roundings: 1 }
     }
 
-    /// The sign, if the error cannot have changed it.
+    /// The result.
+    #[inline(always)]
+    pub fn value(self) -> f64 {
+        self.value
+    }
+
+    /// How wrong the result may be at most.
     ///
     /// The computed magnitude passes through the same `k` roundings, so that the true one is no larger than it
     /// divided by `(1 - u)^k`, and the error is at most `((1 + u)^k - 1) / (1 - u)^k < k u (1 + 2 k u)` times
     /// the computed one, for `k < 2^40`. The bound is rounded three times more on its way. A fiftieth on
     /// top is ample for all that while `k` is not in the millions.
+    #[inline(always)]
+    pub fn error(self) -> f64 {
+        f64::from(self.roundings) * (1.02 * f64::EPSILON / 2.0) * self.magnitude
+    }
+
+    /// The sign, if the error cannot have changed it.
+    ///
     /// If no term is left (each vanishes because two coordinates are equal), zero is certain, too.
     #[inline(always)]
     pub fn sign(self) -> Option<Sign> {
-        let bound = f64::from(self.roundings) * (1.02 * f64::EPSILON / 2.0) * self.magnitude;
+        let bound = self.error();
         if self.value > bound {
             Some(Sign::Positive)
         } else if self.value < -bound {

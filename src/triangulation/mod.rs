@@ -32,6 +32,7 @@
 //! | know what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
 //! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
 //! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
+//! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
 //! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
@@ -67,6 +68,7 @@ pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, Straig
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
 pub use query::{ConflictZone, Passage};
+pub use query::{ConflictZone, Passage, VoronoiCell, VoronoiEdge};
 pub use regular::Regular;
 pub use walled::{Blocked, Constrained};
 

@@ -57,13 +57,9 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn within_rectangle(&self, corners: [&G::Point; 2]) -> Vec<VertexId> {
-        let place = |p: &G::Point| {
-            let coordinates = self.geometry.coordinates(p);
-            [coordinates.as_ref()[0], coordinates.as_ref()[1]]
-        };
-        let [p, q] = corners.map(place);
+        let [p, q] = corners.map(|corner| self.place_of(corner));
         let rectangle = Rectangle::new(p, q);
-        let is_within = |&v: &VertexId| rectangle.holds(place(self.point(v)));
+        let is_within = |&v: &VertexId| rectangle.holds(self.place(v));
         if !self.is_full() {
             return self.tds.vertices().filter(is_within).collect();
         }
@@ -74,12 +70,12 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         };
         // The cells that meet the rectangle hang together by edges, the infinite ones with what lies beyond the hull.
         let meets = |cell: CellId| match self.tds.index_of(cell, VertexId::INFINITE) {
-            None => rectangle.meets_box(self.simplex(cell).map(place)),
+            None => rectangle.meets_box(self.tds.corners(cell).map(|v| self.place(v))),
             Some(infinite) => {
-                let [a, b] = self.tds.edge_ends(cell, infinite).map(|v| place(self.point(v)));
+                let [a, b] = self.tds.edge_ends(cell, infinite).map(|v| self.place(v));
                 let inner = self.tds.neighbor(cell, infinite);
                 let apex = self.tds.vertex(inner, self.tds.index_of_neighbor(inner, cell));
-                let inside = turn(a, b, place(self.point(apex)));
+                let inside = turn(a, b, self.place(apex));
                 rectangle.corners().into_iter().any(|corner| turn(a, b, corner) != inside)
             }
         };

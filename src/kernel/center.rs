@@ -1,0 +1,39 @@
+//! The center of a circle: a construction, rounded once where it would otherwise be wrong.
+
+use super::formula::{cross, in_range, minus, square};
+use crate::num::{Bounded, Dyadic, Expansion, Number};
+
+/// From the first of three points to the center of their circle: twice the area of the triangle is the last number, and
+/// the first two are the way times twice that.
+fn way<T: Number>([a, b, c]: [[f64; 2]; 3], difference: impl Fn(f64, f64) -> T + Copy) -> [T; 3] {
+    let [u, v] = [minus(b, a, difference), minus(c, a, difference)];
+    let [u_length, v_length] = [&u, &v].map(|w| square(&w[0]) + square(&w[1]));
+    [
+        cross(&u_length, &v[1], &v_length, &u[1]),
+        cross(&v_length, &u[0], &u_length, &v[0]),
+        cross(&u[0], &v[1], &u[1], &v[0]),
+    ]
+}
+
+/// The circumcenter of a triangle that has an area, relative to its first corner. Right to within `2^-40` of its distance
+/// from that corner, however flat the triangle is; not finite where the numbers have no room for it.
+///
+/// # Complexity
+/// Some twenty operations if the triangle is not very flat, exact arithmetic else.
+pub fn circumcenter(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    /// Of numerator and denominator, each.
+    const TOLERANCE: f64 = 1.0 / (1u64 << 42) as f64;
+    let divided = |[x, y, area]: [f64; 3]| [x / area / 2.0, y / area / 2.0];
+    if !in_range(&super::Orientation2(corners)) {
+        let [x, y, area] = way(corners, Dyadic::difference);
+        return [x, y].map(|x| x.quotient(&area) / 2.0);
+    }
+    let rough = way(corners, Bounded::difference);
+    let [x, y, area] = rough.map(Bounded::value);
+    let [x_error, y_error, area_error] = rough.map(Bounded::error);
+    if x_error.max(y_error) <= TOLERANCE * x.abs().max(y.abs()) && area_error <= TOLERANCE * area.abs() {
+        divided([x, y, area])
+    } else {
+        divided(way(corners, Expansion::difference).map(|x| x.estimate()))
+    }
+}

@@ -1,0 +1,173 @@
+//! Voronoi diagrams: against exact centers, clipping by all bisectors, and the law that cells tile.
+
+mod common;
+
+use breakline::geometry::Plane;
+use breakline::kernel::{Exact, circumcenter};
+use breakline::tds::VertexId;
+use breakline::triangulation::{Delaunay, VoronoiEdge};
+use common::random::{Random, ulps};
+use dashu_ratio::RBig;
+
+type Point = [f64; 2];
+type Free = Delaunay<Plane, 3>;
+
+fn build(points: &[Point]) -> Free {
+    Delaunay::from_points(Plane::default(), points).unwrap().0
+}
+
+fn points(dice: &mut Random, round: usize) -> Vec<Point> {
+    let side = 1 + dice.below(6);
+    let count = 1 + dice.below(20);
+    let place = |dice: &mut Random| match round % 3 {
+        0 => [0, 1].map(|_| dice.unit() * 5.0),
+        1 => [dice.below(side) as f64, dice.below(side) as f64],
+        _ => [dice.below(side) as f64, 2.0], // on one line
+    };
+    (0..count).map(|_| place(dice)).collect()
+}
+
+fn exact(x: f64) -> RBig {
+    RBig::try_from(x).unwrap()
+}
+
+/// Asserts that the center is where it must be, to within 2^-40 of its distance.
+fn judge_center(corners: [Point; 3]) {
+    let [a, b, c] = corners.map(|p| p.map(exact));
+    let [ux, uy, vx, vy] = [&b[0] - &a[0], &b[1] - &a[1], &c[0] - &a[0], &c[1] - &a[1]];
+    let area = (&ux * &vy - &uy * &vx) * RBig::from(2);
+    if area == RBig::ZERO {
+        return;
+    }
+    let [lu, lv] = [&ux * &ux + &uy * &uy, &vx * &vx + &vy * &vy];
+    let expected = [(&lu * &vy - &lv * &uy) / &area, (&lv * &ux - &lu * &vx) / &area];
+    let told = circumcenter(corners).map(exact);
+    let squared = |p: [RBig; 2]| &p[0] * &p[0] + &p[1] * &p[1];
+    let error = squared([&told[0] - &expected[0], &told[1] - &expected[1]]);
+    assert!(error * exact(2f64.powi(80)) <= squared(expected), "{corners:?}");
+}
+
+#[test]
+fn centers_are_right_however_flat_the_triangle() {
+    let mut dice = Random(1);
+    for round in 0..3000 {
+        let mut corners: [Point; 3] = [0; 3].map(|_| [0, 1].map(|_| dice.unit() * 100.0 + 5e5));
+        if round % 2 == 0 {
+            // On a line but for some last bits.
+            let along = dice.unit() * 3.0 - 1.0;
+            corners[2] = [0, 1].map(|k| ulps(corners[0][k] + along * (corners[1][k] - corners[0][k]), dice.around(3)));
+        }
+        if round % 5 == 0 {
+            corners = corners.map(|p| p.map(|x| x * 2f64.powi(150)));
+        }
+        judge_center(corners);
+    }
+    judge_center([[0.0, 0.0], [1.0, 0.0], [0.0, 2f64.powi(-160)]]);
+    judge_center([[1.0, 0.0], [2.0, 0.0], [0.0, 1e-290]]);
+}
+
+/// A convex polygon around nearly all, some or none of the points.
+fn window(dice: &mut Random) -> Vec<Point> {
+    let [x, y] = [0, 1].map(|_| dice.around(3) as f64);
+    let [w, h] = [0, 1].map(|_| 1.0 + dice.below(9) as f64);
+    match dice.below(3) {
+        0 => vec![[x, y], [x + w, y], [x, y + h]],
+        1 => vec![[x, y], [x + w, y], [x + w + 1.0, y + 0.5], [x + w, y + h], [x + 0.1, y + h]],
+        _ => vec![[x, y], [x + w, y], [x + w, y + h], [x, y + h]],
+    }
+}
+
+fn area(polygon: &[Point]) -> f64 {
+    (0..polygon.len())
+        .map(|k| (polygon[k], polygon[(k + 1) % polygon.len()]))
+        .map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0)
+        .sum()
+}
+
+/// The part of a convex polygon that is nearer to `p` than to `q`.
+fn nearer(polygon: &[Point], p: Point, q: Point) -> Vec<Point> {
+    let far = |x: Point| (x[0] - p[0]).hypot(x[1] - p[1]).powi(2) - (x[0] - q[0]).hypot(x[1] - q[1]).powi(2);
+    let mut left = Vec::new();
+    for k in 0..polygon.len() {
+        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+        if far(a) <= 0.0 {
+            left.push(a);
+        }
+        if far(a) * far(b) < 0.0 {
+            let t = far(a) / (far(a) - far(b));
+            left.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+        }
+    }
+    left
+}
+
+#[test]
+fn cells_tile_and_are_cut_by_all_bisectors() {
+    let mut dice = Random(2);
+    for round in 0..1500 {
+        let t = build(&points(&mut dice, round));
+        let window = window(&mut dice);
+        let whole = area(&window);
+        let mut sum = 0.0;
+        for v in t.tds().vertices() {
+            let cell = t.voronoi_cell(v, &window);
+            sum += cell.area;
+            assert!((cell.area - area(&cell.corners)).abs() < 1e-9 * whole);
+            assert!(cell.area >= 0.0);
+            let others = t.tds().vertices().filter(|&u| u != v);
+            let naive = others.fold(window.clone(), |left, u| nearer(&left, *t.point(v), *t.point(u)));
+            assert!((cell.area - area(&naive)).abs() < 1e-9 * whole, "{:?} {window:?}", t.points());
+        }
+        assert!((sum - whole).abs() < 1e-9 * whole, "{:?} {window:?}", t.points());
+    }
+}
+
+#[test]
+fn edges_are_nearest_to_both_ends() {
+    let mut dice = Random(3);
+    let mut kinds = [0; 3];
+    for round in 0..1500 {
+        let t = build(&points(&mut dice, round));
+        for (cell, i) in t.tds().edges() {
+            let ends = t.tds().edge_ends(cell, i);
+            let Some(edge) = t.voronoi_edge(cell, i) else {
+                assert!(ends.contains(&VertexId::INFINITE));
+                continue;
+            };
+            let along = |p: Point, d: Point, s: f64| [p[0] + s * d[0], p[1] + s * d[1]];
+            let (kind, places) = match edge {
+                VoronoiEdge::Segment([p, q]) => (0, [0.0, 0.3, 1.0].map(|s| along(p, [q[0] - p[0], q[1] - p[1]], s))),
+                VoronoiEdge::Ray { from, direction } => (1, [0.0, 0.7, 9.0].map(|s| along(from, direction, s))),
+                VoronoiEdge::Line { through, direction } => (2, [-7.0, 0.0, 9.0].map(|s| along(through, direction, s))),
+            };
+            kinds[kind] += 1;
+            for p in places {
+                let far = |v: VertexId| (t.point(v)[0] - p[0]).hypot(t.point(v)[1] - p[1]);
+                let [a, b] = ends.map(far);
+                assert!((a - b).abs() < 1e-8 * (1.0 + a), "{edge:?}");
+                assert!(t.tds().vertices().all(|v| far(v) > a - 1e-8 * (1.0 + a)), "{edge:?}");
+            }
+            assert_eq!(kind == 2, t.dimension() == 1);
+        }
+    }
+    assert!(kinds.iter().all(|&count| count > 1000), "{kinds:?}");
+}
+
+#[test]
+fn infinite_faces_have_no_center() {
+    let t = build(&[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]);
+    let centers: Vec<_> = t.tds().cells().filter_map(|cell| t.circumcenter(cell)).collect();
+    assert_eq!(centers, [[1.0, 1.0]]);
+    let line = build(&[[0.0, 0.0], [2.0, 0.0]]);
+    assert!(line.tds().cells().all(|cell| line.circumcenter(cell).is_none()));
+}
+
+#[test]
+fn magnitudes_without_room_do_no_harm() {
+    let points = [[1e300, 0.0], [-1e300, 1.0], [0.0, 1e300], [1e-300, 0.0]];
+    let (t, vertices) = Delaunay::from_points(Plane::<Exact>::default(), &points).unwrap();
+    for v in vertices {
+        t.voronoi_cell(v, &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    }
+    assert_eq!(t.tds().edges().filter_map(|(cell, i)| t.voronoi_edge(cell, i)).count(), t.tds().finite_edges().count());
+}
