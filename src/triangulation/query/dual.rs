@@ -77,11 +77,11 @@ fn dot(p: Place, q: Place) -> f64 {
     p[0] * q[0] + p[1] * q[1]
 }
 
-fn minus(p: Place, q: Place) -> Place {
+pub(super) fn minus(p: Place, q: Place) -> Place {
     [p[0] - q[0], p[1] - q[1]]
 }
 
-fn plus(p: Place, q: Place) -> Place {
+pub(super) fn plus(p: Place, q: Place) -> Place {
     [p[0] + q[0], p[1] + q[1]]
 }
 

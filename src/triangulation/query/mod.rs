@@ -2,6 +2,7 @@
 
 mod along;
 mod dual;
+mod natural;
 mod nearest;
 mod rectangle;
 mod zone;

@@ -21,7 +21,7 @@ pub struct ConflictZone {
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// What [`insert_at`](Self::insert_at) would replace, given where the point is; `passes` says over which edges the
     /// zone may grow. `None` where a point would destroy nothing: on a vertex, and where it raises the dimension.
-    fn zone_at(
+    pub(super) fn zone_at(
         &self,
         q: &G::Point,
         location: Location,
