@@ -5,7 +5,8 @@ mod common;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use breakline::geometry::Geometry;
+use breakline::geometry::{Geometry, Weighted};
+use breakline::kernel::Adaptive;
 use breakline::num::Sign;
 use breakline::tds::VertexId;
 use breakline::triangulation::{Level, Regular};
@@ -114,6 +115,39 @@ fn is_lower_hull(t: &Regular<Grid>, points: &BTreeSet<Point>) {
         assert_eq!(seen, expected.into_iter().flatten().collect(), "{points:?}");
     } else {
         assert_eq!(expected.len(), 0, "{points:?}");
+    }
+}
+
+/// The same by floating point, whose sums are exact here.
+#[test]
+fn the_weighted_plane_is_the_same() {
+    let mut random = Random(22);
+    for _ in 0..2000 {
+        let (side, weights) = (1 + random.below(6), 1 + random.below(20));
+        let points: Vec<Point> = (0..1 + random.index(20))
+            .map(|_| [random.below(side), random.below(side), random.below(weights)].map(|x| x as i64))
+            .collect();
+        let mut expected: Regular<Grid> = Regular::new(Grid);
+        points.iter().for_each(|&p| _ = expected.insert(p).unwrap());
+        let doubles: Vec<[f64; 3]> = points.iter().map(|p| [p[0] as f64, p[1] as f64, p[2] as f64]).collect();
+        let (t, vertices) = Regular::<_, ()>::from_points(Weighted::<Adaptive>::default(), &doubles).unwrap();
+        assert_eq!(t.check(Level::Law), []);
+        assert!(vertices.iter().zip(&doubles).all(|(&v, p)| t.point(v) == p));
+        let whole = |v: VertexId| t.point(v).map(|x| x as i64);
+        let seen: BTreeSet<Point> = t.tds().vertices().map(whole).collect();
+        assert_eq!(seen, expected.tds().vertices().map(|v| *expected.point(v)).collect());
+        assert_eq!(
+            t.hidden().map(whole).collect::<BTreeSet<_>>(),
+            expected.hidden().map(|v| *expected.point(v)).collect()
+        );
+        if t.dimension() == 2 {
+            let corners = |cell| {
+                let mut corners = t.tds().corners(cell).map(whole);
+                corners.sort_unstable();
+                corners
+            };
+            assert_eq!(t.finite_cells().map(corners).collect::<BTreeSet<_>>(), cells(&expected));
+        }
     }
 }
 

@@ -59,9 +59,14 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
         K::sign(&PowerTest2([*a, *b, *c, *q]))
     }
 
-    /// Of two points: whether the lift of `q`, anywhere on the line through them, is below the line through theirs.
+    /// Of two points: whether the lift of `q`, anywhere on the line through them, is below the line through theirs. Of one:
+    /// whether `q`, on the same site, is heavier.
     fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
-        let &[a, b] = simplex else { return Sign::Negative };
+        let (a, b) = match *simplex {
+            [a] => return self.compare_weights(q, a).into(),
+            [a, b] => (a, b),
+            _ => return Sign::Negative,
+        };
         // In lexicographic order, the first has the smaller coordinate on the first axis on which they differ.
         let (a, b) = match self.compare(a, b) {
             Ordering::Less => (a, b),

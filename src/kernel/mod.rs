@@ -29,7 +29,6 @@ mod rounding;
 mod scaled;
 
 pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, WholeNumbers};
-pub use adaptive::{ErrorBound, FlooredErrorBound, OnLattice, WholeNumbers};
 pub use center::circumcenter;
 pub use formula::{
     CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,

@@ -68,7 +68,6 @@ pub use lines::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
-pub use query::{ConflictZone, Passage};
 pub use query::{ConflictZone, Passage, VoronoiCell, VoronoiEdge};
 pub use regular::Regular;
 pub use walled::{Blocked, Constrained};
