@@ -4,9 +4,9 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use breakline::geometry::{Plane, Space, Terrain};
+use breakline::geometry::{Plane, Space, Terrain, Weighted};
 use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Triangulation};
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
 use common::random::Random;
 
 type Cells = BTreeSet<Vec<Vec<i64>>>;
@@ -77,6 +77,41 @@ fn one_answer() {
             assert_eq!(build::<Fast>(&case), expected);
         }
     }
+}
+
+/// Points whose weights are their heights: the same are hidden, and the others have the same triangles.
+#[test]
+fn one_regular_triangulation() {
+    fn build<K: Kernel>(points: &[[f64; 3]]) -> (Cells, Vec<usize>) {
+        let mut t: Regular<Weighted<K>> = Regular::new(Weighted::default());
+        for &p in points {
+            t.insert(p).unwrap();
+        }
+        assert_eq!(t.check(Level::Law), [], "{:?} {points:?}", K::default());
+        let mut hidden: Vec<usize> = t.hidden().map(|v| v.index()).collect();
+        hidden.sort_unstable();
+        (cells(&t), hidden)
+    }
+    let mut random = Random(3);
+    let (mut triangles, mut hidden) = (0, 0);
+    for _ in 0..400 {
+        let Case { mut points, .. } = case(&mut random);
+        if random.below(4) == 0 {
+            points.iter_mut().for_each(|[x, y, _]| *y = *x);
+        }
+        let expected = build::<Exact>(&points);
+        let found = [
+            build::<Adaptive>(&points),
+            build::<Expansions>(&points),
+            build::<Interval>(&points),
+            build::<Fixed>(&points),
+            build::<Lattice>(&points),
+            build::<Wide>(&points),
+        ];
+        assert!(found.iter().all(|found| *found == expected), "{points:?}");
+        (triangles, hidden) = (triangles + expected.0.len(), hidden + expected.1.len());
+    }
+    assert!(triangles > 1000 && hidden > 500, "{triangles} {hidden}");
 }
 
 /// Where lines cross, each kernel has its own places for it: multiples of its step.

@@ -4,7 +4,7 @@ mod common;
 
 use std::fmt::Debug;
 
-use breakline::geometry::{Coordinates, Mapped, Plane, seen_along};
+use breakline::geometry::{Coordinates, Mapped, Metric, Plane, seen_along};
 use breakline::kernel::{Exact, Fixed};
 use breakline::triangulation::{Delaunay, Level, Triangulation};
 use common::random::Random;
@@ -29,10 +29,10 @@ fn triangles<G: Coordinates<3>, V, C: Copy + Default>(
 /// In bulk and one by one, against the plane. Returns how many triangles there are.
 fn same<G>(geometry: G, points: &[G::Point], place: impl Fn(&G::Point) -> [f64; 2]) -> usize
 where
-    G: Coordinates<3> + Clone,
+    G: Coordinates<3> + Metric + Clone,
     G::Point: Debug,
 {
-    let places: Vec<[f64; 2]> = points.iter().map(place).collect();
+    let places: Vec<[f64; 2]> = points.iter().map(&place).collect();
     let positions = |vertices: &[breakline::tds::VertexId]| {
         let mut first = vec![usize::MAX; vertices.len()];
         for (i, v) in vertices.iter().enumerate().rev() {
@@ -47,6 +47,11 @@ where
     assert_eq!(triangles(&bulk, &positions(&vertices)), expected, "{points:?}");
     let mut one_by_one = Delaunay::<G, 3>::new(geometry);
     let vertices: Vec<_> = points.iter().map(|&p| one_by_one.insert(p).unwrap()).collect();
+    for three in points.windows(3) {
+        let [q, a, b] = [0, 1, 2].map(|i| &three[i]);
+        let expected = Plane::<Exact>::default().compare_distance(&place(q), &place(a), &place(b));
+        assert_eq!(one_by_one.geometry().compare_distance(q, a, b), expected, "{three:?}");
+    }
     assert_eq!(triangles(&one_by_one, &positions(&vertices)), expected, "{points:?}");
     expected.len()
 }

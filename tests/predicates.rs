@@ -600,6 +600,8 @@ fn equal_weights_do_not_count() {
     assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -6.0]), Sign::Zero);
     assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -7.0]), Sign::Negative);
     assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[-1.0, -1.0, 11.0]), Sign::Positive);
+    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 1.0]), Sign::Positive, "on one site");
+    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, -1.0]), Sign::Negative, "on one site");
     assert!(weighted.compare_weights(&low, &middle).is_gt() && weighted.compare(&low, &[0.0, 0.0, 9.0]).is_eq());
     assert!(!weighted.admits(&[0.0, 0.0, f64::NAN]) && !weighted.admits(&[0.0, 0.0, 1e300]));
 }

@@ -2,7 +2,7 @@ use std::cmp::Ordering;
 use std::fmt::{self, Debug};
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, Plane};
+use super::{Coordinates, Geometry, Metric, Plane};
 use crate::kernel::{Adaptive, Kernel};
 use crate::num::Sign;
 
@@ -153,5 +153,18 @@ where
     #[inline(always)]
     fn exact_plan(&self, p: &P) -> Option<[f64; 2]> {
         Plane::<K>::default().exact_plan(&(self.place)(p))
+    }
+}
+
+impl<P, F, K> Metric for Mapped<P, F, K>
+where
+    P: Copy + Debug + Send + Sync,
+    F: Fn(&P) -> [f64; 2],
+    K: Kernel,
+{
+    #[inline]
+    fn compare_distance(&self, q: &P, a: &P, b: &P) -> Ordering {
+        let [q, a, b] = [q, a, b].map(&self.place);
+        Plane::<K>::default().compare_distance(&q, &a, &b)
     }
 }

@@ -11,7 +11,7 @@ use crate::kernel::{CompareDistance, Kernel};
 /// - The answer is exact: `Equal` for equal distances, and `Less` for no two points at once.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`]. A geometry that leaves its points' places to one of these does so here:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`](super::Mapped). A geometry that leaves its points' places to one of these does so here:
 ///
 /// ```
 /// use std::cmp::Ordering;
