@@ -1,0 +1,148 @@
+//! Arithmetic against point location: incremental insertion of points in random order, in the manner of the table in
+//! *Triangulations in CGAL* (Boissonnat, Devillers, Pion, Teillaud and Yvinec 2002).
+//!
+//! ```text
+//! cargo run --release --example table1 -- [--points N] [FILE.xy ...]
+//! ```
+//!
+//! A row is a kernel, a column a strategy that finds where a point lies; what is printed are seconds. A file holds pairs of
+//! coordinates, one after the other, as little-endian 64-bit floating point; they are inserted in an order that looks random,
+//! the same in every run. Without files the points are made: whole numbers in a square of 2^24, and a parabola of fractions.
+//! A kernel that does not take the coordinates has no times. `--points` takes some of the points only: exact arithmetic
+//! without a filter takes long. The walk is that of `Near`: from the last insertion, and on from a nearer vertex if it
+//! takes more than 64 steps.
+
+#![allow(clippy::print_stdout, reason = "what it is for")]
+
+use std::hint::black_box;
+use std::io::Write;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use breakline::geometry::Plane;
+use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel};
+use breakline::triangulation::{Delaunay, Hierarchy, JumpAndWalk, Locate, Near};
+
+/// splitmix64 (Steele, Lea and Flood 2014).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            items.swap(i, (self.next() % (i as u64 + 1)) as usize);
+        }
+    }
+}
+
+struct PointSet {
+    name: String,
+    points: Vec<[f64; 2]>,
+}
+
+fn square(count: usize) -> PointSet {
+    let mut random = Random(1);
+    let points = (0..count).map(|_| [(); 2].map(|()| (random.next() >> 40) as f64)).collect();
+    PointSet { name: "square".into(), points }
+}
+
+fn parabola(count: usize) -> PointSet {
+    let mut random = Random(2);
+    let mut unit = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
+    let points = (0..count).map(|_| 2.0 * unit() - 1.0).map(|x| [x, x * x]).collect();
+    PointSet { name: "parabola".into(), points }
+}
+
+fn read(path: &str) -> Result<PointSet, String> {
+    let bytes = std::fs::read(path).map_err(|error| format!("{path}: {error}"))?;
+    let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number)).collect();
+    let mut points = numbers.as_chunks::<2>().0.to_vec();
+    Random(3).shuffle(&mut points);
+    Ok(PointSet { name: path.into(), points })
+}
+
+/// Seconds of the insertions, and triangles.
+fn time<K: Kernel>(points: &[[f64; 2]], mut strategy: impl Locate<Plane<K>, 3>) -> Result<(f64, usize), String> {
+    let start = Instant::now();
+    let mut delaunay = Delaunay::new(Plane::<K>::default());
+    for &p in points {
+        delaunay.insert_by(&mut strategy, p, ()).map_err(|refused| refused.to_string())?;
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    Ok((seconds, black_box(&delaunay).finite_cells().count()))
+}
+
+const STRATEGIES: [&str; 3] = ["walk", "jump and walk", "hierarchy"];
+
+/// One kernel under all strategies.
+fn row<K: Kernel>(name: &str, points: &[[f64; 2]]) -> Result<(), String> {
+    print!("{name:<28}");
+    if !points.as_flattened().iter().all(|&x| K::RANGE.admits(x)) {
+        println!("{}", format!("{:>15}", "-").repeat(STRATEGIES.len()));
+        return Ok(());
+    }
+    let column = |result: Result<(f64, usize), String>| -> Result<usize, String> {
+        let (seconds, triangles) = result?;
+        print!("{seconds:>15.3}");
+        std::io::stdout().flush().map_err(|error| error.to_string())?;
+        Ok(triangles)
+    };
+    let triangles = [
+        column(time::<K>(points, Near::default()))?,
+        column(time::<K>(points, JumpAndWalk))?,
+        column(time::<K>(points, Hierarchy::new(Plane::<K>::default())))?,
+    ];
+    println!("{:>12}", triangles[0]);
+    Ok(())
+}
+
+fn table(PointSet { name, points }: &PointSet) -> Result<(), String> {
+    println!("{name}, {} points", points.len());
+    print!("{:<28}", "");
+    STRATEGIES.iter().for_each(|strategy| print!("{strategy:>15}"));
+    println!("{:>12}", "triangles");
+    row::<Fast>("double (Fast)", points)?;
+    row::<Fixed>("static filter (Fixed)", points)?;
+    row::<Adaptive>("error bound (Adaptive)", points)?;
+    row::<Interval>("interval filter (Interval)", points)?;
+    row::<Expansions>("no filter (Expansions)", points)?;
+    row::<Exact>("no filter (Exact)", points)?;
+    println!();
+    Ok(())
+}
+
+fn run() -> Result<(), String> {
+    let mut count = 100_000;
+    let mut sets = Vec::new();
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        if argument == "--points" {
+            let number = arguments.next().unwrap_or_default();
+            count = number.parse().map_err(|_| format!("--points {number}: a number is expected"))?;
+        } else {
+            sets.push(read(&argument)?);
+        }
+    }
+    if sets.is_empty() {
+        sets = vec![square(count), parabola(count)];
+    }
+    sets.iter_mut().for_each(|set| set.points.truncate(count));
+    sets.iter().try_for_each(table)
+}
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
