@@ -8,7 +8,8 @@ use std::collections::BTreeSet;
 use breakline::geometry::{Geometry, Metric, Plane, Steps, Terrain};
 use breakline::num::Sign;
 use breakline::tds::{CellId, VertexId};
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, OnCrossing, Passage, Triangulation};
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, Passage, Triangulation};
+use common::picture::OnFailure;
 use common::random::Random;
 
 type Point = [f64; 2];
@@ -98,7 +99,11 @@ fn conflict_zones_are_what_insertion_destroys() {
         let mut after = t.clone();
         after.insert(q).unwrap();
         match t.conflict_zone(&q, None) {
-            Some(zone) => judge_zone(&t, &after, &zone),
+            Some(zone) => {
+                let marks = [Mark::Cells(&zone.cells), Mark::Edges(&zone.border), Mark::Line(&[q])];
+                let _picture = OnFailure { name: "conflict_zone", svg: || t.svg(&marks) };
+                judge_zone(&t, &after, &zone);
+            }
             None => assert!(after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()),
         }
     }
@@ -235,6 +240,7 @@ fn segments_meet_what_they_meet_in_order() {
         let points = points(&mut dice, round);
         let t = constrained(&mut dice, &points);
         let [a, b] = [place(&mut dice), place(&mut dice)];
+        let _picture = OnFailure { name: "along", svg: || t.svg(&[Mark::Line(&[a, b]), Mark::Line(&[a])]) };
         let met: Vec<Passage> = t.along([&a, &b], None).collect();
         let told: Vec<Vec<VertexId>> = met.iter().map(|&passage| part(&t, passage)).collect();
         let mut parts: BTreeSet<Vec<VertexId>> = BTreeSet::new();
@@ -340,4 +346,21 @@ fn walks_across_a_grid() {
     let [faces, edges, along, through] = count([-1.0, -1.0], [20.0, 20.0]);
     assert_eq!((through, faces / 2 + along), (20, 19));
     assert_eq!(faces, 2 * edges);
+}
+
+#[test]
+fn pictures_show_what_is_there_in_every_dimension() {
+    let mut dice = Random(7);
+    for round in 0..500 {
+        let t = build(&points(&mut dice, round));
+        let (cells, edges): (Vec<CellId>, Vec<_>) = (t.tds().cells().collect(), t.tds().edges().collect());
+        let svg = t.svg(&[Mark::Cells(&cells), Mark::Edges(&edges), Mark::Polygon(&[]), Mark::Line(&[[1.0, 2.0]])]);
+        let count = |what: &str| svg.matches(what).count();
+        let finite = t.tds().finite_edges().count();
+        assert_eq!(count("<line"), 2 * finite);
+        assert_eq!(count("class=\"edge\""), finite);
+        assert_eq!(count("class=\"cell\""), t.finite_cells().count());
+        assert_eq!((count("<text"), count("<circle")), (t.vertex_count(), t.vertex_count() + 1));
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    }
 }

@@ -34,6 +34,7 @@
 //! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
+//! | see it | [`Triangulation::svg`] |
 //! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
@@ -71,6 +72,7 @@ pub use network::{OnCrossing, Rounding};
 pub use query::{ConflictZone, Passage, VoronoiCell, VoronoiEdge};
 pub use regular::Regular;
 pub use walled::{Blocked, Constrained};
+pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
 
 use std::fmt;
 

@@ -4,6 +4,7 @@
 pub(crate) mod case;
 pub(crate) mod cells;
 pub(crate) mod judge;
+pub(crate) mod picture;
 pub(crate) mod random;
 pub(crate) mod subject;
 

@@ -5,10 +5,12 @@ mod dual;
 mod natural;
 mod nearest;
 mod rectangle;
+mod svg;
 mod zone;
 
 pub use along::Passage;
 pub use dual::{VoronoiCell, VoronoiEdge};
+pub use svg::Mark;
 pub use zone::ConflictZone;
 
 use crate::geometry::Coordinates;
