@@ -237,9 +237,11 @@ fn segments_meet_what_they_meet_in_order() {
     let mut dice = Random(6);
     let mut kinds = [0; 4];
     for round in 0..6000 {
-        let points = points(&mut dice, round);
+        // Every other time nearly on lines, for most: the judge is exact.
+        let scale = if round % 2 == 0 { 1.0 } else { 0.37 };
+        let points: Vec<Point> = points(&mut dice, round).into_iter().map(|p| p.map(|x| x * scale)).collect();
         let t = constrained(&mut dice, &points);
-        let [a, b] = [place(&mut dice), place(&mut dice)];
+        let [a, b] = [0; 2].map(|_| place(&mut dice).map(|x| x * scale));
         let _picture = OnFailure { name: "along", svg: || t.svg(&[Mark::Line(&[a, b]), Mark::Line(&[a])]) };
         let met: Vec<Passage> = t.along([&a, &b], None).collect();
         let told: Vec<Vec<VertexId>> = met.iter().map(|&passage| part(&t, passage)).collect();

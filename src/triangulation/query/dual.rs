@@ -91,7 +91,8 @@ pub(super) fn twice_area(polygon: &[Place]) -> f64 {
     polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
 }
 
-/// The cell of a site: the part of a convex polygon in half planes that are given relative to the site.
+/// The cell of a site: the part of a convex polygon in half planes that are given relative to the site. Of sites with
+/// weights, the half planes would have other offsets.
 fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>, within: &[Place]) -> VoronoiCell {
     let polygon = within.iter().map(|&p| minus(p, site)).collect();
     let cell: Vec<Place> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(&polygon));
