@@ -7,7 +7,7 @@ use crate::tds::{CellId, VertexId};
 use super::bulk::{self, Sites};
 use super::lines::Lines;
 use super::segment::Scratch;
-use super::{Flaw, Level, Location, Refused, Rounding, Triangulation};
+use super::{Flaw, Level, Refused, Rounding, Triangulation};
 
 /// Which edges of a triangle are constraints: bit `i` is set for the one opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -5,6 +5,7 @@
 //! anew would have given, with other numbers.
 
 use std::collections::{HashMap, HashSet};
+use std::fmt;
 
 use rustc_hash::FxHashMap;
 
@@ -16,6 +17,29 @@ use crate::tds::VertexId;
 use super::lines::{segments_of, undirected};
 use super::network::points_added;
 use super::{ConstrainedDelaunay, LineId, Refused};
+
+/// Why a vertex cannot be taken out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kept {
+    /// This line was given by it.
+    Line(LineId),
+    /// Lines cross in it.
+    Crossing,
+    /// There is no such vertex.
+    Absent,
+}
+
+impl fmt::Display for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Kept::Line(line) => write!(f, "line {} was given by the vertex", line.index()),
+            Kept::Crossing => f.write_str("lines cross in the vertex"),
+            Kept::Absent => f.write_str("there is no such vertex"),
+        }
+    }
+}
+
+impl std::error::Error for Kept {}
 
 /// What lines ask for: segments over the vertices that were given.
 struct Demand {
@@ -53,6 +77,52 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         self.insert_waiting();
         Ok(vertex)
+    }
+
+    /// Takes a vertex that was given out and returns its point. Constraints that merely run through it go on without it. Other
+    /// vertices keep their numbers; the next one that is added gets the number that is now free.
+    ///
+    /// # Errors
+    /// Why it stays.
+    ///
+    /// # Complexity
+    /// A look at all lines; then as [`Delaunay::remove`](super::Delaunay::remove), or, on a constraint, as
+    /// [`remove_line`](Self::remove_line).
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, Kept> {
+        if vertex == VertexId::INFINITE || !self.tds().is_vertex(vertex) {
+            return Err(Kept::Absent);
+        }
+        if self.is_added(vertex) {
+            return Err(Kept::Crossing);
+        }
+        if let Some(line) = self.lines().find(|&line| self.line_vertices(line).contains(&vertex)) {
+            return Err(Kept::Line(line));
+        }
+        let p = *self.point(vertex);
+        if self.was_tangled || self.remove_free(vertex).is_none() {
+            self.lent.insert(vertex); // needed by nothing but lines, if by these
+            self.rearrange();
+        }
+        Ok(p)
+    }
+
+    /// The same with all lines that were given by the vertex, whose ids are returned.
+    ///
+    /// # Errors
+    /// If there is no such vertex, or it is one that lines cross in.
+    pub fn remove_with_lines(&mut self, vertex: VertexId) -> Result<(G::Point, Vec<LineId>), Kept> {
+        let lines: Vec<LineId> = self.lines().filter(|&line| self.line_vertices(line).contains(&vertex)).collect();
+        // With its last line, a vertex that came with it would go, too.
+        let p = self.tds().is_vertex(vertex).then(|| *self.point(vertex)).ok_or(Kept::Absent)?;
+        for &line in &lines {
+            self.lines.given[line.index()] = None;
+        }
+        if !lines.is_empty() {
+            self.lent.insert(vertex);
+            self.rearrange();
+            return Ok((p, lines));
+        }
+        Ok((self.remove(vertex)?, lines))
     }
 
     /// Makes a vertex that was added for a crossing, if it was, one that is given.

@@ -24,7 +24,7 @@
 //! |---|---|
 //! | triangulate many points at once | [`Delaunay::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
-//! | take points out again | [`Delaunay::remove`], in the plane |
+//! | take points out again, or move them | `remove`, `move_to`; in the plane |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
 //! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |
@@ -65,14 +65,14 @@ pub use bulk::spatial_order;
 pub use check::{Flaw, Level};
 pub use constrained::{ConstrainedDelaunay, Walls};
 pub use delaunay::Delaunay;
+pub use edit::Kept;
 pub use lines::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub(crate) use network::VertexLines;
 pub use network::{OnCrossing, Rounding};
-pub use query::{ConflictZone, Passage, VoronoiCell, VoronoiEdge};
+pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
 pub use regular::Regular;
 pub use walled::{Blocked, Constrained};
-pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
 
 use std::fmt;
 

@@ -1,0 +1,180 @@
+//! Insert-remove identity: whatever was put in and taken out, what is left is the triangulation of the rest; for Delaunay,
+//! regular and constrained Delaunay, with every exact arithmetic, on tiny grids.
+//!
+//! Takes the number of sequences of each kind and arithmetic from the environment:
+//!
+//! ```text
+//! BREAKLINE_SEQUENCES=50000 cargo test --release --test sequences
+//! ```
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use breakline::geometry::{Coordinates, Plane, Weighted};
+use breakline::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Kernel, Lattice, Wide};
+use breakline::tds::VertexId;
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Kept, Level, LineId, Regular, Triangulation};
+use common::random::Random;
+
+fn sequences() -> u64 {
+    std::env::var("BREAKLINE_SEQUENCES").ok().and_then(|n| n.parse().ok()).unwrap_or(150)
+}
+
+/// Once with each arithmetic.
+fn with_each_kernel(seed: u64, sequence: &[fn(&mut Random)]) {
+    for (k, run) in sequence.iter().enumerate() {
+        let mut random = Random(seed + k as u64);
+        (0..sequences()).for_each(|_| run(&mut random));
+    }
+}
+
+/// The finite cells as sorted places, and the points that are seen.
+fn shape<G, V, C>(t: &Triangulation<G, 3, V, C>) -> (i32, BTreeSet<Vec<[i64; 2]>>, BTreeSet<[i64; 2]>)
+where
+    G: Coordinates<3>,
+    C: Copy + Default,
+{
+    // Of crossings, too.
+    let whole = |c: G::Coordinates| [0, 1].map(|k| (c.as_ref()[k] * 1e6) as i64);
+    let seen = t.tds().vertices().map(|v| whole(t.geometry().coordinates(t.point(v)))).collect();
+    (t.dimension(), common::cells::cells(t, whole), seen)
+}
+
+fn tiny<const D: usize>(random: &mut Random, side: u64) -> [f64; D] {
+    std::array::from_fn(|_| random.below(side) as f64)
+}
+
+fn delaunay<K: Kernel>(random: &mut Random) {
+    let side = 1 + random.below(5);
+    let mut t: Delaunay<Plane<K>, 3> = Delaunay::new(Plane::default());
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for _ in 0..4 + random.index(16) {
+        let p = tiny(random, side);
+        let at = points.iter().position(|q| *q == p);
+        let vertex = t.insert(p).unwrap();
+        match at {
+            Some(at) if random.below(4) > 0 => {
+                points.swap_remove(at);
+                assert_eq!(t.remove(vertex), Some(p));
+            }
+            Some(_) => {}
+            None => points.push(p),
+        }
+    }
+    assert_eq!(t.check(Level::Law), []);
+    let (fresh, _) = Delaunay::from_points(Plane::<K>::default(), &points).unwrap();
+    assert_eq!(shape(&t), shape(&fresh), "{points:?}");
+}
+
+fn regular<K: Kernel>(random: &mut Random) {
+    let (side, weights) = (1 + random.below(5), 1 + random.below(12));
+    let mut t: Regular<Weighted<K>> = Regular::new(Weighted::default());
+    let mut points: Vec<([f64; 3], VertexId)> = Vec::new();
+    for _ in 0..4 + random.index(16) {
+        if points.is_empty() || random.below(5) > 1 {
+            let [x, y, _]: [f64; 3] = tiny(random, side);
+            let p = [x, y, random.below(weights) as f64];
+            let vertex = t.insert(p).unwrap();
+            let there = points.iter().find(|(q, _)| *q == p).map(|&(_, v)| v);
+            assert!(there.is_none_or(|there| there == vertex));
+            if there.is_none() {
+                points.push((p, vertex));
+            }
+        } else {
+            let (p, vertex) = points.swap_remove(random.index(points.len()));
+            assert_eq!(t.remove(vertex), Some(p));
+        }
+    }
+    assert_eq!(t.check(Level::Law), []);
+    let points: Vec<[f64; 3]> = points.into_iter().map(|(p, _)| p).collect();
+    let (fresh, _) = Regular::<_, ()>::from_points(Weighted::<K>::default(), &points).unwrap();
+    assert_eq!(shape(&t), shape(&fresh), "{points:?}");
+    let hidden = |t: &Regular<Weighted<K>>| t.hidden().map(|v| t.point(v).map(|x| x as i64)).collect::<BTreeSet<_>>();
+    assert_eq!(hidden(&t), hidden(&fresh), "{points:?}");
+}
+
+fn constrained<K: Kernel>(random: &mut Random) {
+    let side = 2 + random.below(4);
+    let mut t: ConstrainedDelaunay<Plane<K>> = ConstrainedDelaunay::new(Plane::default());
+    let mut lines: Vec<(Vec<[f64; 2]>, LineId)> = Vec::new();
+    // Those that were given as points.
+    let mut points: BTreeSet<[u64; 2]> = BTreeSet::new();
+    let key = |p: [f64; 2]| p.map(f64::to_bits);
+    for _ in 0..4 + random.index(10) {
+        match random.below(6) {
+            0 | 1 => {
+                let p = tiny(random, side);
+                t.insert(p).unwrap();
+                points.insert(key(p));
+            }
+            2 | 3 => {
+                let line: Vec<[f64; 2]> = (0..2 + random.index(2)).map(|_| tiny(random, side)).collect();
+                let ids = t.insert_lines(&[&line]).unwrap();
+                lines.push((line, ids[0]));
+            }
+            4 if !lines.is_empty() => {
+                let (_, id) = lines.swap_remove(random.index(lines.len()));
+                assert!(t.remove_line(id));
+            }
+            _ => {
+                let vertices: Vec<VertexId> = t.tds().vertices().collect();
+                let Some(&vertex) = vertices.get(random.index(vertices.len().max(1))) else { continue };
+                let p = *t.point(vertex);
+                let users: BTreeSet<LineId> =
+                    lines.iter().filter(|(line, _)| line.contains(&p)).map(|&(_, id)| id).collect();
+                if random.below(3) == 0 && !t.is_added(vertex) {
+                    let (gone, with) = t.remove_with_lines(vertex).unwrap();
+                    assert_eq!((gone, with.into_iter().collect()), (p, users.clone()));
+                    lines.retain(|(_, id)| !users.contains(id));
+                    points.remove(&key(p));
+                    continue;
+                }
+                match t.remove(vertex) {
+                    Ok(gone) => {
+                        assert!(gone == p && users.is_empty());
+                        assert!(points.remove(&key(p)), "it was given as a point");
+                    }
+                    Err(Kept::Line(id)) => assert!(users.contains(&id)),
+                    Err(Kept::Crossing) => assert!(!points.contains(&key(p))),
+                    Err(Kept::Absent) => unreachable!(),
+                }
+            }
+        }
+    }
+    assert_eq!(t.check(Level::Law), []);
+    let mut fresh: ConstrainedDelaunay<Plane<K>> = ConstrainedDelaunay::new(Plane::default());
+    points.iter().for_each(|p| _ = fresh.insert(p.map(f64::from_bits)).unwrap());
+    let rest: Vec<&Vec<[f64; 2]>> = lines.iter().map(|(line, _)| line).collect();
+    fresh.insert_lines(&rest).unwrap();
+    assert_eq!(shape(&t), shape(&fresh), "{points:?} {rest:?}");
+    let walls = |t: &ConstrainedDelaunay<Plane<K>>| {
+        let ends = |[a, b]: [VertexId; 2]| {
+            let mut ends = [a, b].map(|v| t.point(v).map(f64::to_bits));
+            ends.sort_unstable();
+            ends
+        };
+        t.constrained_edges().map(ends).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(walls(&t), walls(&fresh), "{points:?} {rest:?}");
+}
+
+/// An arithmetic for the whole numbers of the grids; crossings of lines are others, which the ones for whole numbers refuse.
+macro_rules! each {
+    ($sequence:ident, $($kernel:ty),*) => { &[$($sequence::<$kernel>),*] };
+}
+
+#[test]
+fn of_delaunay() {
+    with_each_kernel(41, each!(delaunay, Adaptive, Exact, Expansions, Interval, Fixed, Lattice, Wide));
+}
+
+#[test]
+fn of_regular() {
+    with_each_kernel(42, each!(regular, Adaptive, Exact, Expansions, Interval, Fixed, Lattice, Wide));
+}
+
+#[test]
+fn of_constrained_delaunay() {
+    with_each_kernel(43, each!(constrained, Adaptive, Exact, Expansions, Interval, Lattice, Wide));
+}
