@@ -55,6 +55,20 @@ pub enum Location {
     OutsideAffineHull,
 }
 
+impl Location {
+    /// A cell at the place: where to start looking for what is near.
+    pub fn cell<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
+        self,
+        triangulation: &Triangulation<G, N, V, C>,
+    ) -> Option<CellId> {
+        match self {
+            Location::Vertex(vertex) => triangulation.tds.cell_of(vertex),
+            Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
+            Location::OutsideAffineHull => None,
+        }
+    }
+}
+
 /// Marsaglia's xorshift: the walk turns corners in an order that no input can foresee, the same in
 /// every run.
 #[derive(Debug, Clone)]
