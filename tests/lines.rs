@@ -284,3 +284,17 @@ fn edits_at_the_edges() {
     assert_eq!(t.insert([2.0, 2.0, 9.0]).unwrap(), crossing);
     assert_eq!((t.point(crossing)[2], t.is_added(crossing)), (9.0, false));
 }
+
+/// Points that are collinear for a while have no triangles that could hold a line; what lay on its way before is forgotten.
+#[test]
+fn lines_between_dimensions() {
+    let mut t = Constrained::new(Plane::default());
+    let long = t.insert_lines(&[[[0.0, 0.0], [0.0, 2.0]]]).unwrap()[0];
+    let halves = t.insert_lines(&[[[0.0, 0.0], [0.0, 1.0], [0.0, 2.0]]]).unwrap()[0];
+    let beside = t.insert_lines(&[[[1.0, 2.0], [2.0, 1.0]]]).unwrap()[0];
+    assert_eq!(t.chain(long).len(), 3);
+    assert!(t.remove_line(beside) && t.remove_line(halves));
+    assert_eq!((t.dimension(), t.vertex_count(), t.chain(long).len()), (1, 2, 2));
+    t.insert([2.0, 1.0]).unwrap();
+    assert_eq!((t.chain(long).len(), t.check(Level::Law)), (2, vec![]));
+}

@@ -100,27 +100,32 @@ fn constrained<K: Kernel>(random: &mut Random) {
     let mut lines: Vec<(Vec<[f64; 2]>, LineId)> = Vec::new();
     // Those that were given as points.
     let mut points: BTreeSet<[u64; 2]> = BTreeSet::new();
+    let mut history = Vec::new();
     let key = |p: [f64; 2]| p.map(f64::to_bits);
     for _ in 0..4 + random.index(10) {
         match random.below(6) {
             0 | 1 => {
                 let p = tiny(random, side);
+                history.push(format!("point {p:?}"));
                 t.insert(p).unwrap();
                 points.insert(key(p));
             }
             2 | 3 => {
                 let line: Vec<[f64; 2]> = (0..2 + random.index(2)).map(|_| tiny(random, side)).collect();
+                history.push(format!("line {line:?}"));
                 let ids = t.insert_lines(&[&line]).unwrap();
                 lines.push((line, ids[0]));
             }
             4 if !lines.is_empty() => {
                 let (_, id) = lines.swap_remove(random.index(lines.len()));
+                history.push(format!("no line {id:?}"));
                 assert!(t.remove_line(id));
             }
             _ => {
                 let vertices: Vec<VertexId> = t.tds().vertices().collect();
                 let Some(&vertex) = vertices.get(random.index(vertices.len().max(1))) else { continue };
                 let p = *t.point(vertex);
+                history.push(format!("no point {p:?}"));
                 let users: BTreeSet<LineId> =
                     lines.iter().filter(|(line, _)| line.contains(&p)).map(|&(_, id)| id).collect();
                 if random.below(3) == 0 && !t.is_added(vertex) {
@@ -142,12 +147,12 @@ fn constrained<K: Kernel>(random: &mut Random) {
             }
         }
     }
-    assert_eq!(t.check(Level::Law), []);
+    assert_eq!(t.check(Level::Law), [], "{history:#?}");
     let mut fresh: ConstrainedDelaunay<Plane<K>> = ConstrainedDelaunay::new(Plane::default());
     points.iter().for_each(|p| _ = fresh.insert(p.map(f64::from_bits)).unwrap());
     let rest: Vec<&Vec<[f64; 2]>> = lines.iter().map(|(line, _)| line).collect();
     fresh.insert_lines(&rest).unwrap();
-    assert_eq!(shape(&t), shape(&fresh), "{points:?} {rest:?}");
+    assert_eq!(shape(&t), shape(&fresh), "{history:#?}");
     let walls = |t: &ConstrainedDelaunay<Plane<K>>| {
         let ends = |[a, b]: [VertexId; 2]| {
             let mut ends = [a, b].map(|v| t.point(v).map(f64::to_bits));
@@ -156,7 +161,7 @@ fn constrained<K: Kernel>(random: &mut Random) {
         };
         t.constrained_edges().map(ends).collect::<BTreeSet<_>>()
     };
-    assert_eq!(walls(&t), walls(&fresh), "{points:?} {rest:?}");
+    assert_eq!(walls(&t), walls(&fresh), "{history:#?}");
 }
 
 /// An arithmetic for the whole numbers of the grids; crossings of lines are others, which the ones for whole numbers refuse.

@@ -235,6 +235,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let demand = self.demand(&leaving);
         if self.dimension() < 2 {
             self.waiting = demand.segments.iter().map(|ends| ends.map(|i| demand.given[i as usize])).collect();
+            // What lay between their ends may be there no more.
+            self.lines.led.clear();
+            self.lines.splits.clear();
             self.take_out(leaving);
             return;
         }
