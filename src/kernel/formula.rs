@@ -190,6 +190,29 @@ impl Predicate for CompareDistance {
     }
 }
 
+/// Of three points in the plane: positive if the angle at the second is acute, zero if it is right or one of the others
+/// is there. Negative, the second point lies inside of the circle that has the other two as its diameter.
+#[derive(Debug, Clone, Copy)]
+pub struct DotProduct(pub [[f64; 2]; 3]);
+
+impl Predicate for DotProduct {
+    const DEGREE: i32 = 2;
+    const AXES: usize = 2;
+
+    #[inline(always)]
+    fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.0.iter().map(move |p| p[axis])
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [p, apex, q] = self.0;
+        let [ux, uy] = minus(p, apex, difference);
+        let [vx, vy] = minus(q, apex, difference);
+        ux * vx + uy * vy
+    }
+}
+
 /// Twice the signed area of the triangle of three points, right to the last bits: positive if they turn
 /// counter-clockwise, zero only if they are collinear (or the area is too small for a number).
 pub fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {

@@ -31,7 +31,7 @@ mod scaled;
 pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, WholeNumbers};
 pub use center::circumcenter;
 pub use formula::{
-    CompareDistance, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
+    CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
 pub use power::{PowerOnLine, PowerTest2};
 pub use rounding::{CornerSide, CrossingSide};

@@ -340,7 +340,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         crossing
     }
 
-    fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
+    pub(super) fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
         self.inner.geometry.plan(self.point(vertex))
     }
 }

@@ -55,6 +55,7 @@ mod nesting;
 mod network;
 mod query;
 mod regular;
+pub mod refine;
 mod remove;
 mod segment;
 mod simplify;

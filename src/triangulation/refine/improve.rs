@@ -1,0 +1,136 @@
+//! Delaunay refinement: triangles that are too thin or too large are destroyed by a vertex in their circles.
+
+use crate::geometry::Crossing;
+use crate::tds::{CellId, VertexId, ccw};
+
+use super::draft::{Attempt, Draft, Origin};
+use super::queue::{Bad, Queue};
+use super::shape::{Shape, length, minus};
+use super::{Quality, Shortfall};
+
+/// Two lengths that differ by less than this part are those of one circle, rounded.
+const SAME_CIRCLE: f64 = 1e-3;
+
+/// A shortest edge below so many last places of a coordinate is not worth a vertex.
+const LAST_PLACES: f64 = 64.0;
+
+/// The part of the distance, at which the smallest angle is just the one that is wanted, to which off-centers go: a
+/// little nearer, so that the rounded angle is not missed.
+const REACH: f64 = 0.95;
+
+pub(super) struct Refiner<'a, G: Crossing, V> {
+    pub(super) draft: Draft<G, V>,
+    quality: &'a Quality<'a>,
+    queue: Queue,
+    /// The square of the cosine of the smallest angle that is wanted.
+    cosine: f64,
+    reach: f64,
+}
+
+impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
+    pub(super) fn new(draft: Draft<G, V>, quality: &'a Quality<'a>) -> Self {
+        let angle = quality.angle().to_radians();
+        let reach = REACH / 2.0 / (angle / 2.0).tan();
+        Refiner { draft, quality, queue: Queue::default(), cosine: angle.cos().powi(2), reach }
+    }
+
+    pub(super) fn run(&mut self) {
+        self.draft.settle();
+        self.draft.fresh.clear();
+        let cells: Vec<CellId> = self.draft.t.tds().cells().collect();
+        cells.into_iter().for_each(|cell| self.test(cell));
+        while self.draft.budget > 0
+            && let Some(bad) = self.queue.pop()
+        {
+            let tds = self.draft.t.tds();
+            if !tds.is_used(bad.cell) || *tds.corners(bad.cell) != bad.corners {
+                continue;
+            }
+            let place = self.shape(bad.cell).off_center(self.reach);
+            let was_changed = match self.draft.add_in(bad.cell, place) {
+                Attempt::Encroaches => {
+                    let was_changed = self.draft.settle();
+                    if was_changed {
+                        self.queue.push(bad);
+                    }
+                    was_changed
+                }
+                attempt => attempt == Attempt::Added,
+            };
+            if was_changed {
+                let mut fresh = std::mem::take(&mut self.draft.fresh);
+                fresh.drain(..).for_each(|cell| self.test(cell));
+                self.draft.fresh = fresh;
+            }
+        }
+    }
+
+    fn shape(&self, cell: CellId) -> Shape {
+        Shape::of(self.draft.t.tds().corners(cell).map(|v| self.draft.t.plan_of(v)))
+    }
+
+    /// Queues a cell if it is to be destroyed.
+    fn test(&mut self, cell: CellId) {
+        if self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell) {
+            let shape = self.shape(cell);
+            if self.is_too_large(cell, &shape)
+                || self.is_too_thin(cell, &shape) && self.why_thin(cell, &shape).is_none()
+            {
+                let corners = *self.draft.t.tds().corners(cell);
+                self.queue.push(Bad { cell, corners, shortest: shape.shortest });
+            }
+        }
+    }
+
+    fn is_too_large(&self, cell: CellId, shape: &Shape) -> bool {
+        let quality = self.quality;
+        let region = (self.draft.regions[cell.index()] as usize).checked_sub(1);
+        let of_region = region.and_then(|k| quality.regions.get(k)).map_or(f64::INFINITY, |region| region.max_area);
+        let bound = quality.max_area.min(of_region);
+        let area = shape.area();
+        area > bound || quality.area_at.is_some_and(|area_at| area > area_at(shape.center()))
+    }
+
+    fn is_too_thin(&self, _: CellId, shape: &Shape) -> bool {
+        shape.cosine > self.cosine
+    }
+
+    /// Why a triangle that is too thin is left as it is, if it is.
+    fn why_thin(&self, cell: CellId, shape: &Shape) -> Option<Shortfall> {
+        let corners = self.draft.t.tds().corners(cell);
+        let ends = [corners[shape.first], corners[ccw(shape.first)]];
+        if self.spans_small_angle(ends) {
+            return Some(Shortfall::SmallAngle);
+        }
+        let largest =
+            ends.map(|v| self.draft.t.plan_of(v).map(f64::abs)).as_flattened().iter().copied().fold(0.0, f64::max);
+        (shape.shortest.sqrt() < LAST_PLACES * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
+    }
+
+    /// Whether an edge leads across a small angle between two constraints, from the one to the other, on a circle around
+    /// the apex. A triangle over it can be no better than that angle is, and splitting it would make the next one as thin
+    /// (Miller, Pav and Walkington 2003).
+    fn spans_small_angle(&self, [a, b]: [VertexId; 2]) -> bool {
+        let (Origin::Wall(ab), Origin::Wall(cd)) = (self.draft.origin(a), self.draft.origin(b)) else { return false };
+        let apex = ab.into_iter().find(|v| cd.contains(v));
+        ab != cd
+            && apex.is_some_and(|apex| {
+                let [to_a, to_b] = [a, b].map(|v| length(minus(self.draft.t.plan_of(v), self.draft.t.plan_of(apex))));
+                (to_a - to_b).abs() < SAME_CIRCLE * to_a
+            })
+    }
+
+    /// The triangles that are not what was asked for, and why.
+    pub(super) fn shortfall(&self) -> Vec<(CellId, Shortfall)> {
+        let inside = self.draft.t.tds().cells().filter(|&cell| self.draft.is_inside(cell));
+        let why = |cell: CellId| {
+            let shape = self.shape(cell);
+            let is_thin = self.is_too_thin(cell, &shape);
+            let is_bad = is_thin || self.is_too_large(cell, &shape);
+            let reason = if is_thin { self.why_thin(cell, &shape) } else { None };
+            let rest = if self.draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
+            is_bad.then(|| (cell, reason.unwrap_or(rest)))
+        };
+        inside.filter_map(why).collect()
+    }
+}

@@ -1,0 +1,83 @@
+//! Which triangles are to be improved, and in which region each lies.
+
+use crate::geometry::Crossing;
+use crate::tds::{CellId, VertexId};
+
+use super::super::{ConstrainedDelaunay, Location};
+use super::{Domain, OUTSIDE, Region};
+
+/// Of each cell, by its number: [`OUTSIDE`], or 0, or one more than the position of its region. Makes the hull's edges
+/// constraints where the domain needs it.
+pub(super) fn regions_of<G: Crossing, V: Default>(
+    t: &mut ConstrainedDelaunay<G, V>,
+    domain: &Domain,
+    regions: &[Region],
+) -> Vec<u32> {
+    let mut marks = match domain {
+        Domain::Hull => {
+            let hull: Vec<CellId> = t.tds().around(VertexId::INFINITE).collect();
+            for cell in hull {
+                if let Some(i) = t.tds().index_of(cell, VertexId::INFINITE) {
+                    let [a, b] = t.tds().edge_ends(cell, i);
+                    t.set_wall(a, b, true);
+                }
+            }
+            enclosed(t, &[])
+        }
+        Domain::Enclosed { holes } => enclosed(t, holes),
+        Domain::Nested => {
+            let is_inside = |level: u32| level % 2 == 1;
+            t.nesting().into_iter().map(|level| if is_inside(level) { 0 } else { OUTSIDE }).collect()
+        }
+        Domain::Seeded { seeds } => {
+            let mut marks = vec![OUTSIDE; t.tds().cell_slots()];
+            let closed = enclosed(t, &[]);
+            let is_closed = |cell: &CellId| closed[cell.index()] != OUTSIDE;
+            let cells: Vec<CellId> = seeds.iter().flat_map(|&seed| cells_at(t, seed)).filter(is_closed).collect();
+            spread(t, &mut marks, cells, 0);
+            marks
+        }
+    };
+    for (mark, region) in (1..).zip(regions) {
+        let is_inside = |cell: &CellId| marks[cell.index()] != OUTSIDE;
+        let cells: Vec<CellId> = cells_at(t, region.seed).into_iter().filter(is_inside).collect();
+        spread(t, &mut marks, cells, mark);
+    }
+    marks
+}
+
+/// All that cannot be reached from outside of the hull, nor from a hole.
+fn enclosed<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, holes: &[[f64; 2]]) -> Vec<u32> {
+    let mut marks = vec![0; t.tds().cell_slots()];
+    let mut outer: Vec<CellId> = t.tds().around(VertexId::INFINITE).collect();
+    outer.extend(holes.iter().flat_map(|&hole| cells_at(t, hole)));
+    spread(t, &mut marks, outer, OUTSIDE);
+    marks
+}
+
+/// Marks all that can be reached from some cells without crossing a constraint.
+fn spread<G: Crossing, V: Default>(
+    t: &ConstrainedDelaunay<G, V>,
+    marks: &mut [u32],
+    mut cells: Vec<CellId>,
+    mark: u32,
+) {
+    while let Some(cell) = cells.pop() {
+        if std::mem::replace(&mut marks[cell.index()], mark) != mark {
+            let open = (0..3).filter(|&i| !t.is_constrained(cell, i));
+            cells.extend(open.map(|i| t.tds().neighbor(cell, i)));
+        }
+    }
+}
+
+/// The finite cell in which a place lies; none for one outside of the hull.
+fn cells_at<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, place: [f64; 2]) -> Option<CellId> {
+    let cell = t.finite_cells().next()?;
+    let [a, b, _] = t.tds().corners(cell).map(|v| t.point(v));
+    let p = t.geometry().meet(place, &[[a, b]]);
+    match t.geometry().admits(&p).then(|| t.locate(&p, None))? {
+        Location::Cell { cell, .. } => Some(cell),
+        Location::Vertex(vertex) => t.tds().around(vertex).find(|&cell| !t.tds().is_infinite(cell)),
+        Location::OutsideHull { .. } | Location::OutsideAffineHull => None,
+    }
+}

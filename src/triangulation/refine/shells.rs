@@ -1,0 +1,137 @@
+//! Where constrained edges are split: in the middle, and around small angles on concentric circles.
+//!
+//! Where two constraints meet at a small angle, middles on one come too near to the other, which is split in turn, and
+//! so on without end. Split at distances from the apex that are powers of two apart, the pieces of both end on common
+//! circles, and no vertex encroaches upon a piece of the other (Ruppert 1995, section 5; Shewchuk 2002, section 4).
+
+use rustc_hash::FxHashMap;
+
+use crate::geometry::Crossing;
+use crate::num::Sign;
+use crate::tds::{VertexId, ccw, cw};
+
+use super::super::ConstrainedDelaunay;
+use super::shape::{dot, length, minus};
+
+/// Around each vertex, constraints that follow each other at less than 60 degrees form a cluster, which shares its
+/// circles. One of them has as its radius the shortest edge that the cluster has at its apex.
+#[derive(Debug, Default)]
+pub(super) struct Shells {
+    /// By apex and other end of a constrained edge, as the edges were in the beginning: the cluster.
+    cluster: FxHashMap<[VertexId; 2], u32>,
+    /// Of the clusters.
+    radius: Vec<f64>,
+}
+
+impl Shells {
+    /// Those of a triangulation.
+    pub(super) fn of<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>) -> Self {
+        let mut shells = Shells::default();
+        let mut ends = Vec::new();
+        for apex in t.tds().vertices() {
+            ends.clear();
+            ends.extend(t.tds().around(apex).filter_map(|cell| {
+                let i = t.tds().index_of(cell, apex)?;
+                t.is_constrained(cell, cw(i)).then(|| t.tds().vertex(cell, ccw(i)))
+            }));
+            shells.add(t, apex, &ends);
+        }
+        shells
+    }
+
+    /// Takes in the clusters of a vertex, given the other ends of its constraints counter-clockwise.
+    fn add<G: Crossing, V: Default>(&mut self, t: &ConstrainedDelaunay<G, V>, apex: VertexId, ends: &[VertexId]) {
+        let count = ends.len();
+        let is_narrow = |k: usize| count > 1 && is_below_60_degrees(t, ends[k % count], apex, ends[(k + 1) % count]);
+        // Begin behind a gap, if there is one.
+        let first = (0..count).find(|&k| !is_narrow(k)).map_or(0, |k| k + 1);
+        let mut k = first;
+        while k < first + count {
+            let mut last = k;
+            while last + 1 < first + count && is_narrow(last) {
+                last += 1;
+            }
+            if last > k {
+                let cluster = (k..=last).map(|k| ends[k % count]);
+                let vectors = cluster.clone().map(|end| minus(t.plan_of(end), t.plan_of(apex)));
+                let radius = vectors.map(length).fold(f64::INFINITY, f64::min);
+                let number = self.radius.len() as u32;
+                self.radius.push(radius);
+                self.cluster.extend(cluster.map(|end| ([apex, end], number)));
+            }
+            k = last + 1;
+        }
+    }
+
+    /// The cluster of a constraint, given as it was in the beginning, at one of its ends; none at other vertices on it.
+    fn cluster_at(&self, end: VertexId, constraint: [VertexId; 2]) -> Option<usize> {
+        let other = match constraint {
+            [p, q] if p == end => q,
+            [p, q] if q == end => p,
+            _ => return None,
+        };
+        self.cluster.get(&[end, other]).map(|&cluster| cluster as usize)
+    }
+
+    /// Whether a constraint meets another one at a small angle at one of its ends.
+    pub(super) fn is_in_cluster(&self, constraint: [VertexId; 2]) -> bool {
+        constraint.into_iter().any(|end| self.cluster_at(end, constraint).is_some())
+    }
+
+    /// How far along a piece from `a` to `b` of a constraint it is to be split, as a fraction between 1/3 and 2/3.
+    pub(super) fn fraction(&mut self, [a, b]: [VertexId; 2], constraint: [VertexId; 2], length: f64) -> f64 {
+        let clusters = [a, b].map(|end| self.cluster_at(end, constraint));
+        let fraction = match clusters {
+            [Some(at_a), None] => nearest_to_middle(self.radius[at_a], length),
+            [None, Some(at_b)] => 1.0 - nearest_to_middle(self.radius[at_b], length),
+            _ => 0.5,
+        };
+        for (cluster, part) in clusters.into_iter().zip([fraction, 1.0 - fraction]) {
+            if let Some(cluster) = cluster {
+                self.radius[cluster] = self.radius[cluster].min(part * length);
+            }
+        }
+        fraction
+    }
+}
+
+/// The fraction of a length at which a power of two times the radius comes nearest to the middle.
+fn nearest_to_middle(radius: f64, length: f64) -> f64 {
+    let mut fraction = radius / length;
+    if !fraction.is_normal() {
+        return 0.5;
+    }
+    while fraction <= 1.0 / 3.0 {
+        fraction *= 2.0;
+    }
+    while fraction > 2.0 / 3.0 {
+        fraction /= 2.0;
+    }
+    fraction
+}
+
+/// Whether the way from `u` counter-clockwise to `w` around the apex is that short.
+fn is_below_60_degrees<G: Crossing, V: Default>(
+    t: &ConstrainedDelaunay<G, V>,
+    u: VertexId,
+    apex: VertexId,
+    w: VertexId,
+) -> bool {
+    let [to_u, to_w] = [u, w].map(|end| minus(t.plan_of(end), t.plan_of(apex)));
+    let cosine = dot(to_u, to_w) / (length(to_u) * length(to_w));
+    u != w && cosine > 0.5 && t.geometry().orientation([apex, u, w].map(|v| t.point(v))) == Sign::Positive
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest_to_middle;
+
+    #[test]
+    fn circles_are_a_power_of_two_apart() {
+        for (radius, length, at) in
+            [(1.0, 2.0, 1.0), (1.0, 5.0, 2.0), (1.0, 7.0, 4.0), (8.0, 3.0, 2.0), (3.0, 3.0, 1.5)]
+        {
+            assert_eq!(nearest_to_middle(radius, length), at / length, "{radius} on {length}");
+        }
+    }
+}
