@@ -155,7 +155,10 @@ fn conforming_takes_as_many_vertices_as_in_cgal() {
         let Some(pslg) = Pslg::shared(&format!("cgal/{name}")) else { return };
         let t = pslg.triangulated();
         let conformed = [Conformity::Delaunay, Conformity::Gabriel].map(|c| t.clone().conformed(c));
-        conformed.iter().for_each(|after| is_sound(&t, after));
+        for after in &conformed {
+            is_sound(&t, after);
+            assert_eq!(after.shortfall(), []);
+        }
         let [delaunay, gabriel] = conformed.map(|after| after.vertex_count());
         assert_eq!([t.vertex_count(), delaunay, gabriel], expected, "{name}");
     }
@@ -207,7 +210,8 @@ fn random_drawings_are_refined_to_the_end() {
     let mut random = Random(12);
     for round in 0..300 {
         let pslg = Pslg::random(&mut random);
-        let domain = [Domain::Hull, Domain::Nested, Domain::Enclosed { holes: vec![] }][round % 3].clone();
+        let domain =
+            [Domain::Hull { holes: vec![] }, Domain::Nested, Domain::Enclosed { holes: vec![] }][round % 3].clone();
         let quality = Quality { max_area: 0.7, domain, max_added: 100_000, ..Quality::default() };
         let before = pslg.triangulated();
         let after = pslg.refined(&quality);
@@ -285,7 +289,7 @@ fn domains_are_holes_seeds_nesting_or_the_hull() {
     near(covered(Domain::Enclosed { holes: vec![[3.0, 3.0], [-7.0, 0.0], [f64::NAN, 0.0]] }), 81.0 - 24.0);
     near(covered(Domain::Nested), 81.0 - 25.0 + 1.0);
     near(covered(Domain::Seeded { seeds: vec![[3.0, 3.0], [11.0, 4.0], [30.0, 0.0]] }), 24.0);
-    near(covered(Domain::Hull), 81.0 + 9.0 * 3.0 / 2.0);
+    near(covered(Domain::Hull { holes: vec![] }), 81.0 + 9.0 * 3.0 / 2.0);
 }
 
 #[test]
@@ -301,6 +305,10 @@ fn a_limit_is_kept_and_told() {
         assert!(too_large.into_iter().all(|cell| named.contains(&cell)));
         assert!(t.shortfall().iter().all(|&(_, why)| why == Shortfall::Limit) && !named.is_empty());
     }
+    // None, below no angle: slivers are left.
+    let sliver = Pslg::ring(&[[0.0, 0.0], [1e9, 0.0], [5e8, 1e-9]]);
+    let t = sliver.refined(&Quality { min_angle: 0.0, ..Quality::default() });
+    assert_eq!((t.added(), t.shortfall()), (&[][..], &[][..]));
     // More than can be had: it ends all the same.
     let t = square.refined(&Quality { min_angle: 60.0, max_added: 3000, ..Quality::default() });
     assert_eq!(t.check(Level::Law), []);
@@ -323,7 +331,7 @@ fn what_spans_no_plane_stays_as_it_is() {
         let segments = if points.len() == 3 { vec![[0, 2]] } else { vec![] };
         let flat = Pslg { points: points.clone(), segments, holes: vec![] };
         for t in [
-            flat.refined(&Quality { domain: Domain::Hull, ..Quality::default() }),
+            flat.refined(&Quality { domain: Domain::Hull { holes: vec![] }, ..Quality::default() }),
             flat.triangulated().conformed(Conformity::Gabriel),
         ] {
             assert_eq!((t.vertex_count(), t.inside().count(), t.check(Level::Law)), (points.len(), 0, vec![]));

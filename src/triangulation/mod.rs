@@ -28,6 +28,7 @@
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
 //! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |
+//! | have no small angles, no large triangles | [`ConstrainedDelaunay::refined`], see [`refine`] |
 //! | find where a place lies | [`Triangulation::locate`] |
 //! | know what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
 //! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |

@@ -31,7 +31,9 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     pub(super) fn new(draft: Draft<G, V>, quality: &'a Quality<'a>) -> Self {
         let angle = quality.angle().to_radians();
         let reach = REACH / 2.0 / (angle / 2.0).tan();
-        Refiner { draft, quality, queue: Queue::default(), cosine: angle.cos().powi(2), reach }
+        // The rounded cosine of a sliver may be larger than one.
+        let cosine = if angle > 0.0 { angle.cos().powi(2) } else { f64::INFINITY };
+        Refiner { draft, quality, queue: Queue::default(), cosine, reach }
     }
 
     pub(super) fn run(&mut self) {
@@ -73,9 +75,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     fn test(&mut self, cell: CellId) {
         if self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell) {
             let shape = self.shape(cell);
-            if self.is_too_large(cell, &shape)
-                || self.is_too_thin(cell, &shape) && self.why_thin(cell, &shape).is_none()
-            {
+            if self.is_too_large(cell, &shape) || self.is_too_thin(&shape) && self.why_thin(cell, &shape).is_none() {
                 let corners = *self.draft.t.tds().corners(cell);
                 self.queue.push(Bad { cell, corners, shortest: shape.shortest });
             }
@@ -91,7 +91,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         area > bound || quality.area_at.is_some_and(|area_at| area > area_at(shape.center()))
     }
 
-    fn is_too_thin(&self, _: CellId, shape: &Shape) -> bool {
+    fn is_too_thin(&self, shape: &Shape) -> bool {
         shape.cosine > self.cosine
     }
 
@@ -125,7 +125,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         let inside = self.draft.t.tds().cells().filter(|&cell| self.draft.is_inside(cell));
         let why = |cell: CellId| {
             let shape = self.shape(cell);
-            let is_thin = self.is_too_thin(cell, &shape);
+            let is_thin = self.is_too_thin(&shape);
             let is_bad = is_thin || self.is_too_large(cell, &shape);
             let reason = if is_thin { self.why_thin(cell, &shape) } else { None };
             let rest = if self.draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };

@@ -30,6 +30,7 @@ mod queue;
 mod regions;
 mod shape;
 mod shells;
+mod walls;
 
 use std::fmt;
 use std::ops::Deref;
@@ -59,8 +60,11 @@ pub enum Conformity {
 /// What is to be improved.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Domain {
-    /// All triangles. The edges of the hull become constraints.
-    Hull,
+    /// All triangles, but holes. The edges of the hull become constraints.
+    Hull {
+        /// As for [`Domain::Enclosed`].
+        holes: Vec<[f64; 2]>,
+    },
     /// What constraints close off from outside, but holes.
     Enclosed {
         /// A place in each hole; ones outside of the hull make no difference.
@@ -197,7 +201,7 @@ impl<G: Crossing, V: Default> Refined<G, V> {
         if self.is_inside(cell) { (self.regions[cell.index()] as usize).checked_sub(1) } else { None }
     }
 
-    /// The triangles that are not what was asked for, in order of their numbers, and why.
+    /// The triangles that are not what was asked for, or have an edge that is not, in order of their numbers, and why.
     pub fn shortfall(&self) -> &[(CellId, Shortfall)] {
         &self.shortfall
     }
@@ -222,7 +226,10 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         };
         let mut draft = Draft::new(self, regions, law, MAX_ADDED);
         draft.settle();
-        Refined::of(draft, Vec::new())
+        let why = if draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
+        let does_not_conform = |&cell: &CellId| (0..3).any(|i| draft.is_encroached(cell, i));
+        let shortfall = draft.t.tds().cells().filter(does_not_conform).map(|cell| (cell, why)).collect();
+        Refined::of(draft, shortfall)
     }
 
     /// Adds vertices until the triangles of a domain have no smaller angles and no larger areas than is asked for.
@@ -252,7 +259,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             return Refined::unchanged(self);
         }
         let regions = regions::regions_of(&mut self, &quality.domain, &quality.regions);
-        let lens = (2.0 * quality.angle().to_radians()).cos();
+        // Without an angle nothing is too thin, rounded or not.
+        let lens = if quality.angle() > 0.0 { (2.0 * quality.angle().to_radians()).cos() } else { f64::INFINITY };
         let draft = Draft::new(self, regions, Law::Lens(lens), quality.max_added);
         let mut refiner = Refiner::new(draft, quality);
         refiner.run();

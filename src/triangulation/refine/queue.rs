@@ -1,4 +1,4 @@
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 
 use crate::tds::{CellId, VertexId};
 
@@ -11,21 +11,24 @@ pub(super) struct Bad {
     pub(super) shortest: f64,
 }
 
-/// Triangles by their shortest edges, the shortest first, up to a factor of the root of two; then in the order in which
-/// they came. What is repaired on a small scale is not disturbed again from a larger one (Shewchuk 2002).
+/// Triangles by their shortest edges, the shortest first, up to a factor of the root of two; of those the
+/// last that came. What is repaired on a small scale is not disturbed again from a larger one (Shewchuk 2002).
+///
+/// PERF: with the first that came instead, 370 000 vertices (`la` of Triangle's samples, area 0.001) took about 1.4 times
+/// as long, beside Triangle in the same minute, and there were as many: the last is still in the cache.
 #[derive(Debug, Default)]
-pub(super) struct Queue(BTreeMap<u16, VecDeque<Bad>>);
+pub(super) struct Queue(BTreeMap<u16, Vec<Bad>>);
 
 impl Queue {
     pub(super) fn push(&mut self, bad: Bad) {
         // The exponent, and the first bit behind the point.
         let scale = (bad.shortest.to_bits() >> 51) as u16;
-        self.0.entry(scale).or_default().push_back(bad);
+        self.0.entry(scale).or_default().push(bad);
     }
 
     pub(super) fn pop(&mut self) -> Option<Bad> {
         let mut least = self.0.first_entry()?;
-        let bad = least.get_mut().pop_front();
+        let bad = least.get_mut().pop();
         if least.get().is_empty() {
             least.remove();
         }

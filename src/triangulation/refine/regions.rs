@@ -14,7 +14,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
     regions: &[Region],
 ) -> Vec<u32> {
     let mut marks = match domain {
-        Domain::Hull => {
+        Domain::Hull { holes } => {
             let hull: Vec<CellId> = t.tds().around(VertexId::INFINITE).collect();
             for cell in hull {
                 if let Some(i) = t.tds().index_of(cell, VertexId::INFINITE) {
@@ -22,7 +22,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
                     t.set_wall(a, b, true);
                 }
             }
-            enclosed(t, &[])
+            enclosed(t, holes)
         }
         Domain::Enclosed { holes } => enclosed(t, holes),
         Domain::Nested => {

@@ -36,7 +36,8 @@ impl Shape {
     pub(super) fn of(corners: [[f64; 2]; 3]) -> Self {
         let edges = [0, 1, 2].map(|k| minus(corners[(k + 1) % 3], corners[k]));
         let squares = edges.map(|v| dot(v, v));
-        let first = (0..3).min_by(|&j, &k| squares[j].total_cmp(&squares[k])).unwrap_or(0);
+        let lesser = |j: usize, k: usize| if squares[k] < squares[j] { k } else { j };
+        let first = lesser(lesser(0, 1), 2);
         let [next, last] = [(first + 1) % 3, (first + 2) % 3];
         let along = dot(edges[next], edges[last]);
         Shape {
