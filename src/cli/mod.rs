@@ -39,7 +39,7 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use self::args::{Cli, TalkArgs, Verb, join_corners};
+use self::args::{Cli, TalkArgs, Verb, expand_switches, join_corners};
 use self::talk::Talk;
 use crate::error::{Kind, Result};
 
@@ -62,7 +62,7 @@ impl From<Exit> for ExitCode {
 
 /// Runs the program with these arguments, the first of which is its name.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
-    let cli = match Cli::try_parse_from(join_corners(args)) {
+    let cli = match Cli::try_parse_from(join_corners(expand_switches(args))) {
         Ok(cli) => cli,
         Err(error) => {
             // Help goes to stdout and is no failure; a closed pipe is none either.

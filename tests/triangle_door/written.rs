@@ -1,5 +1,7 @@
 use std::collections::BTreeSet;
 
+use tempfile::TempDir;
+
 use crate::common::random::Random;
 use crate::{BOX, files_of, folder_with, run, table, triangles, twice_area};
 
@@ -392,4 +394,44 @@ fn hull_area(mut points: Vec<[f64; 2]>) -> f64 {
     let upper = half(&mut points.iter().rev().copied());
     let ring = [lower, upper].concat();
     (1..ring.len().saturating_sub(1)).map(|i| twice_area([ring[0], ring[i], ring[i + 1]])).sum()
+}
+
+/// The angles of `NAME.ele`, in degrees, and the areas.
+fn shapes(folder: &TempDir, name: &str) -> (Vec<f64>, Vec<f64>) {
+    let triangles = triangles(folder, name);
+    let angle = |[a, b, c]: [[f64; 2]; 3]| {
+        let ([ux, uy], [vx, vy]) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        (ux * vy - uy * vx).atan2(ux * vx + uy * vy).to_degrees()
+    };
+    let angles = triangles.iter().flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]].map(angle));
+    (angles.collect(), triangles.iter().map(|&t| twice_area(t) / 2.0).collect())
+}
+
+#[test]
+fn switches_of_triangle_refine() {
+    let folder = folder_with(&[("box.poly", BOX), ("plain.node", "4 2 1 0\n1 0 0 0\n2 9 0 9\n3 9 1 10\n4 0 1 1\n")]);
+    for (switches, smallest, largest) in [
+        ("-pq", 20.0, f64::INFINITY),
+        ("-q30", 30.0, f64::INFINITY),
+        ("-pq25a.1", 25.0, 0.1),
+        ("--max-area 0.2", 0.0, 0.2),
+    ] {
+        run(&folder, &format!("triangulate {switches} box.poly -o out.ele --overwrite"))
+            .ends(0, &["for angles and areas"]);
+        let (angles, areas) = shapes(&folder, "out");
+        assert!(angles.iter().all(|&angle| angle >= smallest - 1e-9), "{switches}");
+        assert!(areas.iter().all(|&area| area <= largest), "{switches}");
+        assert!((areas.iter().sum::<f64>() - 8.0).abs() < 1e-9, "{switches}: the hole stays one");
+    }
+    // Without segments the hull is refined; attributes, here the sum of the coordinates, are those of the place.
+    run(&folder, "triangulate -a0.05 plain.node -o fine.ele").ends(0, &["for angles and areas"]);
+    assert!(shapes(&folder, "fine").1.iter().all(|&area| area <= 0.05));
+    for row in &table(&folder, "fine.node")[1..] {
+        assert!((row[3] - row[1] - row[2]).abs() < 1e-9, "{row:?}");
+    }
+    // The checker sees nothing wrong.
+    assert_eq!(run(&folder, "check fine.ele").code, 0);
+    for wrong in ["--min-angle 60", "-q0", "-a0", "--max-area=-1"] {
+        assert_eq!(run(&folder, &format!("triangulate {wrong} box.poly -o wrong.ele")).code, 2, "{wrong}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod parse;
 mod surface;
+mod switches;
 mod verbs;
 
 use std::num::NonZeroUsize;
@@ -10,6 +11,7 @@ use clap::{Args, Parser, Subcommand};
 
 pub(super) use parse::{Corners, EdgeLength, join_corners};
 pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
+pub(super) use switches::expand_switches;
 pub(super) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OnCrossingArg,
     OutputArgs, TinArgs, TriangulateArgs,

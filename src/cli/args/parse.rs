@@ -100,6 +100,14 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Degrees of a triangle's smallest angle.
+pub(super) fn smallest_angle(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        value if value < 60.0 => Ok(value),
+        value => Err(format!("{value} degrees: no triangle has three angles above 60")),
+    }
+}
+
 /// A finite number above zero.
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {

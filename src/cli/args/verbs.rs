@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::SurfaceArgs;
-use super::parse::{Corners, altitude, finite, positive};
+use super::parse::{Corners, altitude, finite, positive, smallest_angle};
 
 /// Where the result goes.
 #[derive(Debug, Clone, Args)]
@@ -81,7 +81,7 @@ pub(in crate::cli) struct TinArgs {
 /// Triangulate points and segments of the plane, with Triangle's files
 ///
 /// Reads a .node or .poly file of Triangle (Shewchuk) and writes its constrained Delaunay triangulation;
-/// points are added only where segments cross. Of a .poly with segments, what is outside of its outer
+/// points are added only where segments cross, unless angles or areas are asked for. Of a .poly with segments, what is outside of its outer
 /// boundary or in a hole is eaten away; regional attributes go to the triangles. Vertices keep their
 /// numbers, attributes and markers; those at the place of an earlier one have no triangle.
 ///
@@ -92,6 +92,7 @@ pub(in crate::cli) struct TinArgs {
 Example:
   breakline triangulate plate.poly -o plate.1.ele -o plate.1.neigh
   breakline triangulate points.node -o points.1.ele -o points.off
+  breakline triangulate -pq30a0.5 plate.poly -o plate.1.ele
   breakline check plate.1.ele")]
 pub(in crate::cli) struct TriangulateArgs {
     /// A .node or .poly file
@@ -109,6 +110,22 @@ pub(in crate::cli) struct TriangulateArgs {
     /// What to do where two segments cross between their ends
     #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Triangulation")]
     pub(in crate::cli) on_crossing: OnCrossingArg,
+
+    /// Add vertices until no angle is smaller (also `-q[DEGREES]`: 20)
+    ///
+    /// Up to 20.7 degrees are always reached, up to about 33 nearly always; not where segments meet at
+    /// small angles. Triangles that fall short are counted. `-q`, `-a`, `-p` and `-c` are written as for
+    /// Triangle, alone or in one word: `-pq30a0.5`; they are not `--quiet` here.
+    #[arg(long, value_name = "DEGREES", value_parser = smallest_angle, help_heading = "Quality")]
+    pub(in crate::cli) min_angle: Option<f64>,
+
+    /// Add vertices until no triangle is larger (also `-aAREA`)
+    #[arg(long, value_name = "AREA", value_parser = positive, help_heading = "Quality")]
+    pub(in crate::cli) max_area: Option<f64>,
+
+    /// Keep to the largest areas of the .poly's regions (also `-a`)
+    #[arg(long, help_heading = "Quality")]
+    pub(in crate::cli) region_areas: bool,
 
     /// The arithmetic that decides on which side a point lies
     #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]

@@ -68,12 +68,12 @@ fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32>
     for (segment, chain) in graph.segments.iter().zip(&built.chains) {
         chain.iter().for_each(|&vertex| _ = segment_of[vertex as usize].get_or_insert(segment));
     }
-    let numbered = node_of.into_iter().enumerate().map(|(vertex, node)| {
+    let numbered = node_of.iter().enumerate().map(|(vertex, node)| {
         node.unwrap_or_else(|| {
             let at = built.vertices[vertex];
             let attributes = match segment_of[vertex] {
                 Some(segment) => attributes_between(nodes, segment.ends.map(|end| end as usize), at),
-                None => vec![0.0; nodes.attribute_count],
+                None => attributes_within(nodes, built, &node_of, vertex as u32),
             };
             nodes.points.push(at);
             nodes.attributes.extend(attributes);
@@ -82,6 +82,20 @@ fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32>
         })
     });
     numbered.collect()
+}
+
+/// Linear in the triangle of the input's vertices that an added vertex lies in. Zero where one of these has none itself,
+/// where segments cross.
+fn attributes_within(nodes: &Nodes, built: &Built, node_of: &[Option<u32>], vertex: u32) -> Vec<f64> {
+    let mut attributes = vec![0.0; nodes.attribute_count];
+    if let Some((corners, weights)) = built.between.get(&vertex) {
+        for (corner, weight) in corners.iter().zip(weights) {
+            let Some(node) = node_of[*corner as usize] else { continue };
+            let values = nodes.attributes_of(node as usize);
+            attributes.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        }
+    }
+    attributes
 }
 
 /// Linear between two vertices, at a place on the way.

@@ -1,8 +1,11 @@
 //! The one place where the verb meets the triangulation.
 
+use std::collections::HashMap;
+
 use crate::geometry::{Geometry, Plane};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, twice_area};
 use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::triangulation::refine::{Quality, Shortfall};
 use crate::triangulation::{ConstrainedDelaunay, LineId, Location, OnCrossing, Refused};
 
 /// A triangulation of points and segments, as plain lists. Vertices have numbers of their own.
@@ -18,6 +21,11 @@ pub(super) struct Built {
     pub(super) chains: Vec<Vec<u32>>,
     /// Where each place that was asked for lies.
     pub(super) places: Vec<Place>,
+    /// Of added vertices that are not where segments cross: the corners of the triangle around each as it was before, and
+    /// the weights of these there.
+    pub(super) between: HashMap<u32, ([u32; 3], [f64; 3])>,
+    /// Why triangles are not what was asked for.
+    pub(super) shortfall: Vec<Shortfall>,
 }
 
 /// A triangle: side `i` is opposite corner `i`.
@@ -39,20 +47,29 @@ pub(super) enum Place {
     Outside,
 }
 
-/// Triangulates points and segments between them, and finds where places lie. Each segment is a line of the
-/// triangulation, by its position.
+/// Triangulates points and segments between them, refines them if that is asked for, and finds where places lie. Each
+/// segment is a line of the triangulation, by its position.
 pub(super) fn build<K: Kernel>(
     points: &[[f64; 2]],
     segments: &[[u32; 2]],
     places: &[[f64; 2]],
     on_crossing: OnCrossing,
+    quality: Option<&Quality<'_>>,
 ) -> Result<Built, Refused> {
     // Zero has one sign only: places are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
-    let (t, vertices) = ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
+    let (coarse, vertices) =
+        ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
+    let refined = quality.map(|quality| coarse.clone().refined(quality));
+    let t = refined.as_deref().unwrap_or(&coarse);
     let chains: Vec<Vec<VertexId>> = (0..segments.len()).map(|i| t.chain(LineId::new(i))).collect();
 
-    let number = |v: &VertexId| v.index() as u32;
+    // Vertices that were added and taken out again leave numbers behind.
+    let mut numbers = vec![u32::MAX; t.tds().vertex_slots()];
+    for (number, v) in (0..).zip(t.tds().vertices()) {
+        numbers[v.index()] = number;
+    }
+    let number = |v: &VertexId| numbers[v.index()];
     let cells: Vec<CellId> = if t.dimension() == 2 { t.finite_cells().collect() } else { Vec::new() };
     let mut face_of = vec![None; t.tds().cell_slots()];
     for (face, cell) in (0u32..).zip(&cells) {
@@ -64,12 +81,35 @@ pub(super) fn build<K: Kernel>(
         is_wall: [0, 1, 2].map(|i| t.is_constrained(*cell, i)),
     };
     Ok(Built {
-        vertices: t.points().to_vec(),
+        vertices: t.tds().vertices().map(|v| *t.point(v)).collect(),
         vertex_of: vertices.iter().map(number).collect(),
         faces: cells.iter().map(face).collect(),
         chains: chains.iter().map(|chain| chain.iter().map(number).collect()).collect(),
-        places: places.iter().map(|p| place(&t, &face_of, p.map(|x| x + 0.0))).collect(),
+        places: places.iter().map(|p| place(t, &face_of, p.map(|x| x + 0.0))).collect(),
+        between: refined
+            .iter()
+            .flat_map(|refined| refined.added())
+            .filter_map(|v| {
+                let (corners, weights) = weights(&coarse, t.point(*v))?;
+                Some((number(v), (corners.map(|v| number(&v)), weights)))
+            })
+            .collect(),
+        shortfall: refined.iter().flat_map(|refined| refined.shortfall()).map(|&(_, why)| why).collect(),
     })
+}
+
+/// The corners of the triangle in which a point lies, and the part that each has in it.
+fn weights<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, p: &[f64; 2]) -> Option<([VertexId; 3], [f64; 3])> {
+    let cell = match t.locate(p, None) {
+        Location::Cell { cell, .. } => cell,
+        // By a rounding, on the hull.
+        Location::OutsideHull { cell } => t.tds().neighbor(cell, t.tds().index_of(cell, VertexId::INFINITE)?),
+        Location::Vertex(_) | Location::OutsideAffineHull => return None,
+    };
+    let corners = *t.tds().corners(cell);
+    let [a, b, c] = corners.map(|v| *t.point(v));
+    let whole = twice_area(a, b, c);
+    Some((corners, [twice_area(b, c, *p), twice_area(c, a, *p), twice_area(a, b, *p)].map(|part| part / whole)))
 }
 
 fn place<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], p: [f64; 2]) -> Place {

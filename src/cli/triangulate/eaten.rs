@@ -77,7 +77,7 @@ mod tests {
             ..LineGraph::default()
         };
         let places = [holes, regions].concat();
-        (build::<Adaptive>(&points, &segments, &places, OnCrossing::Split).unwrap(), graph)
+        (build::<Adaptive>(&points, &segments, &places, OnCrossing::Split, None).unwrap(), graph)
     }
 
     #[test]

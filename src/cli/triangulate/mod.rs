@@ -17,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::io::contain;
 use crate::io::triangle::{LineGraph, Triangulated};
 use crate::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
+use crate::triangulation::refine::{Domain, Quality, Region, Shortfall};
 use crate::triangulation::{OnCrossing, Refused};
 
 /// Whose format an output has.
@@ -63,16 +64,20 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     let targets = outputs::resolve(&args.output, formats, &read)?;
     let graph = open::line_graph(path)?;
     graph.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
-    if graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute)) {
+    if !args.region_areas
+        && graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute))
+    {
         talk.warning(format_args!(
-            "{}: largest areas of regions are not used: no vertex is added for them",
+            "{}: largest areas of regions are not used: no vertex is added for them without -a",
             path.display()
         ));
     }
 
     let built = build(&graph, args, path)?;
     tell_places(&built, &graph, path, talk);
-    let outside = if args.convex || graph.segments.is_empty() { Outside::Keep } else { Outside::Eat };
+    let keeps_hull = args.convex || graph.segments.is_empty();
+    // Refined, the hull is a constraint, beyond which there may be less than a rounding.
+    let outside = if keeps_hull && quality(args, &graph).is_none() { Outside::Keep } else { Outside::Eat };
     let is_kept = eaten::kept(&built, &graph, outside);
     let attributes = eaten::attributes(&built, &graph, &is_kept);
     let triangulated = assemble::assemble(&graph, &built, &is_kept, &attributes);
@@ -121,7 +126,24 @@ fn build_with<K: Kernel>(graph: &LineGraph, args: &TriangulateArgs) -> std::resu
         OnCrossingArg::Split => OnCrossing::Split,
         OnCrossingArg::Reject => OnCrossing::Reject,
     };
-    build::build::<K>(&graph.nodes.points, &segments, &places, on_crossing)
+    build::build::<K>(&graph.nodes.points, &segments, &places, on_crossing, quality(args, graph).as_ref())
+}
+
+/// What triangles are to be, if anything is asked for.
+fn quality(args: &TriangulateArgs, graph: &LineGraph) -> Option<Quality<'static>> {
+    if args.min_angle.is_none() && args.max_area.is_none() && !args.region_areas {
+        return None;
+    }
+    let holes = graph.holes.iter().map(|hole| hole.at).collect();
+    let is_hull = args.convex || graph.segments.is_empty();
+    let bounds = graph.regions.iter().filter(|_| args.region_areas);
+    Some(Quality {
+        min_angle: args.min_angle.unwrap_or(0.0),
+        max_area: args.max_area.unwrap_or(f64::INFINITY),
+        regions: bounds.filter_map(|region| Some(Region { seed: region.at, max_area: region.max_area? })).collect(),
+        domain: if is_hull { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
+        ..Quality::default()
+    })
 }
 
 /// With the numbers and lines of the file.
@@ -214,7 +236,13 @@ fn tell(graph: &LineGraph, built: &Built, triangulated: &Triangulated, talk: &Ta
     let given = graph.nodes.points.len();
     let added = triangulated.nodes.points.len() - given;
     let doubled = given + added - built.vertices.len();
-    talk.line(format_args!("vertices    {} ({given} in, {added} added where segments cross)", given + added));
+    let between = built.between.len();
+    let refined = if between > 0 { format!(", {between} for angles and areas") } else { String::new() };
+    let crossings = added - between.min(added);
+    talk.line(format_args!(
+        "vertices    {} ({given} in, {crossings} added where segments cross{refined})",
+        given + added
+    ));
     if doubled > 0 {
         talk.line(format_args!("            {doubled} at the place of an earlier one, without a triangle"));
     }
@@ -226,6 +254,16 @@ fn tell(graph: &LineGraph, built: &Built, triangulated: &Triangulated, talk: &Ta
     let (all, kept) = (built.faces.len(), triangulated.triangles.len());
     let eaten = if kept < all { format!(" ({} outside or in holes eaten away)", all - kept) } else { String::new() };
     talk.line(format_args!("triangles   {kept}{eaten}"));
+    for (why, text) in [
+        (Shortfall::SmallAngle, "at small angles between segments"),
+        (Shortfall::Limit, "left when the limit of added vertices was reached"),
+        (Shortfall::Coordinates, "too small for the coordinates to tell more vertices"),
+    ] {
+        let count = built.shortfall.iter().filter(|&&other| other == why).count();
+        if count > 0 {
+            talk.warning(format_args!("{count} triangles are not as asked for: {text}"));
+        }
+    }
     if all == 0 {
         talk.warning("all vertices are on one line or at one place: there is no triangle");
     }
