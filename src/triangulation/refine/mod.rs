@@ -60,7 +60,8 @@ pub enum Conformity {
 /// What is to be improved.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Domain {
-    /// All triangles, but holes. The edges of the hull become constraints.
+    /// All triangles, but holes. The edges of the hull become constraints, which added vertices may bend by a rounding:
+    /// what then lies beyond them, and still in the hull, is outside.
     Hull {
         /// As for [`Domain::Enclosed`].
         holes: Vec<[f64; 2]>,
