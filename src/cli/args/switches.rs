@@ -2,8 +2,8 @@
 
 use std::ffi::OsString;
 
-/// Writes the words for `triangulate` that are made of Triangle's switches `p`, `q`, `a` and `c` only, like `-pq30a0.5`,
-/// as the options that they mean. `-p` says nothing that the name of the file does not.
+/// Writes the words for `triangulate` that are made of Triangle's switches `p`, `q`, `a` and `c` only, like
+/// `-pq30a0.5`, as the options that they mean. `-p` says nothing that the name of the file does not.
 pub(in crate::cli) fn expand_switches(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut is_verb = false;
     let mut is_over = false;

@@ -84,8 +84,8 @@ fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32>
     numbered.collect()
 }
 
-/// Linear in the triangle of the input's vertices that an added vertex lies in. Zero where one of these has none itself,
-/// where segments cross.
+/// Linear in the triangle of the input's vertices that an added vertex lies in. Zero where one of these has none
+/// itself, where segments cross.
 fn attributes_within(nodes: &Nodes, built: &Built, node_of: &[Option<u32>], vertex: u32) -> Vec<f64> {
     let mut attributes = vec![0.0; nodes.attribute_count];
     if let Some((corners, weights)) = built.between.get(&vertex) {

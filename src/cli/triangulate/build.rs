@@ -21,8 +21,8 @@ pub(super) struct Built {
     pub(super) chains: Vec<Vec<u32>>,
     /// Where each place that was asked for lies.
     pub(super) places: Vec<Place>,
-    /// Of added vertices that are not where segments cross: the corners of the triangle around each as it was before, and
-    /// the weights of these there.
+    /// Of added vertices that are not where segments cross: the corners of the triangle around each as it was before,
+    /// and the weights of these there.
     pub(super) between: HashMap<u32, ([u32; 3], [f64; 3])>,
     /// Why triangles are not what was asked for.
     pub(super) shortfall: Vec<Shortfall>,

@@ -178,8 +178,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         Attempt::Added
     }
 
-    /// The point at a place in one of some triangles: on the way from a corner to the other side, which it meets where the
-    /// way goes on.
+    /// The point at a place in one of some triangles: on the way from a corner to the other side, which it meets where
+    /// the way goes on.
     fn interpolate(&self, cells: &[CellId], place: [f64; 2]) -> G::Point {
         let weights = |&cell: &CellId| {
             let [a, b, c] = self.t.tds().corners(cell).map(|v| self.t.plan_of(v));

@@ -107,9 +107,9 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         (shape.shortest.sqrt() < LAST_PLACES * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
     }
 
-    /// Whether an edge leads across a small angle between two constraints, from the one to the other, on a circle around
-    /// the apex. A triangle over it can be no better than that angle is, and splitting it would make the next one as thin
-    /// (Miller, Pav and Walkington 2003).
+    /// Whether an edge leads across a small angle between two constraints, from the one to the other, on a circle
+    /// around the apex. A triangle over it can be no better than that angle is, and splitting it would make the next
+    /// one as thin (Miller, Pav and Walkington 2003).
     fn spans_small_angle(&self, [a, b]: [VertexId; 2]) -> bool {
         let (Origin::Wall(ab), Origin::Wall(cd)) = (self.draft.origin(a), self.draft.origin(b)) else { return false };
         let apex = ab.into_iter().find(|v| cd.contains(v));

@@ -1,25 +1,27 @@
-//! Quality meshes: vertices are added until constraints keep to the law of Delaunay, or triangles to an angle and an area.
+//! Quality meshes: vertices are added until constraints keep to the law of Delaunay, or triangles to an angle and an
+//! area.
 //!
 //! | to | use |
 //! |---|---|
-//! | split constraints until the triangulation is one of Delaunay | [`ConstrainedDelaunay::conformed`], [`Conformity::Delaunay`] |
-//! | split them until nothing lies in the circle on any as its diameter | [`Conformity::Gabriel`] |
+//! | make a Delaunay triangulation of it by splitting | [`ConstrainedDelaunay::conformed`], [`Conformity::Delaunay`] |
+//! | have nothing in the circle on a constraint as its diameter | the same, [`Conformity::Gabriel`] |
 //! | have no angle below 20.7 degrees, and areas bounded | [`ConstrainedDelaunay::refined`] |
 //!
 //! What comes out, [`Refined`], is for reading: it is a triangulation with all questions of one, lines and their chains
 //! included, but the places of added vertices follow from all that is there, so that a line could not be taken out
 //! again as if it had never been. To edit, edit the triangulation and refine a copy.
 //!
-//! **Method.** Constrained edges that are encroached upon are split in the middle, at small angles on concentric circles
-//! (Ruppert 1995). Then triangles, the one with the shortest edge first, get a vertex at the center of their circle, or
-//! at the off-center if that is nearer (Üngör 2004), unless it encroaches upon constrained edges, which are split
-//! instead. What lies between a constrained edge and its lens, as Chew (1993) and Shewchuk (2002) have it, encroaches upon
-//! it; vertices that were added before and lie in its circle are taken out before it is split.
+//! **Method.** Constrained edges that are encroached upon are split in the middle, at small angles on concentric
+//! circles (Ruppert 1995). Then triangles, the one with the shortest edge first, get a vertex at the center of their
+//! circle, or at the off-center if that is nearer (Üngör 2004), unless it encroaches upon constrained edges, which are
+//! split instead. What lies in the lens of a constrained edge, as Chew (1993) and Shewchuk (2002) have it,
+//! encroaches upon it; vertices that were added before and lie in its circle are taken out before it is split.
 //!
-//! **Ends.** Angles up to 20.7 degrees are proven to be reached, up to about 33 in practice; where constraints themselves
-//! meet at less than 60 degrees, no better than they allow: triangles across a small angle are left (Miller, Pav and
-//! Walkington 2003). A bound on the number of vertices and one on the smallest edge that coordinates can tell make an end
-//! whatever was asked for. [`Refined::shortfall`] names every triangle that is not as it should be, and why.
+//! **Ends.** Angles up to 20.7 degrees are proven to be reached, up to about 33 in practice; where constraints
+//! themselves meet at less than 60 degrees, no better than they allow: triangles across a small angle are left (Miller,
+//! Pav and Walkington 2003). A bound on the number of vertices and one on the smallest edge that coordinates can tell
+//! make an end whatever was asked for. [`Refined::shortfall`] names every triangle that is not as it should be, and
+//! why.
 //!
 //! Added vertices are rounded, and constraints go through the rounded places: by a last place beside the segments that
 //! were given. All tests that decide who is whose neighbor are exact nevertheless.
@@ -71,8 +73,8 @@ pub enum Domain {
         /// A place in each hole; ones outside of the hull make no difference.
         holes: Vec<[f64; 2]>,
     },
-    /// What an odd number of constraints closes off: polygons with holes and islands, as [`ConstrainedDelaunay::nesting`]
-    /// counts.
+    /// What an odd number of constraints closes off: polygons with holes and islands, as
+    /// [`ConstrainedDelaunay::nesting`] counts.
     Nested,
     /// What constraints close off around some places.
     Seeded {
@@ -93,8 +95,8 @@ pub struct Region {
 /// What triangles are to be. Of several bounds on an area the smallest counts.
 #[derive(Clone)]
 pub struct Quality<'a> {
-    /// In degrees, between 0 and 60 (others are taken for these): up to 20.7 is proven to be reached, up to about 33 is in
-    /// practice.
+    /// In degrees, between 0 and 60 (others are taken for these): up to 20.7 is proven to be reached, up to about 33 is
+    /// in practice.
     pub min_angle: f64,
     /// In the square of the unit of the coordinates.
     pub max_area: f64,
@@ -211,8 +213,8 @@ impl<G: Crossing, V: Default> Refined<G, V> {
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// Splits constrained edges until all of them conform. All is domain.
     ///
-    /// Where constraints cross or meet at less than 60 degrees, around clusters of them, edges are split at distances from
-    /// the common vertex that are powers of two apart.
+    /// Where constraints cross or meet at less than 60 degrees, around clusters of them, edges are split at distances
+    /// from the common vertex that are powers of two apart.
     ///
     /// # Complexity
     /// For each vertex that is added, the triangles it replaces; how many are added depends on lengths and angles.
@@ -253,8 +255,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// ```
     ///
     /// # Complexity
-    /// Expected time proportional to the triangles that come out, in practice; the number of these is within a constant of
-    /// the least possible (Ruppert 1995).
+    /// Expected time proportional to the triangles that come out, in practice; the number of these is within a constant
+    /// of the least possible (Ruppert 1995).
     pub fn refined(mut self, quality: &Quality<'_>) -> Refined<G, V> {
         if self.dimension() < 2 {
             return Refined::unchanged(self);

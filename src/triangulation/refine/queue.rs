@@ -14,8 +14,8 @@ pub(super) struct Bad {
 /// Triangles by their shortest edges, the shortest first, up to a factor of the root of two; of those the
 /// last that came. What is repaired on a small scale is not disturbed again from a larger one (Shewchuk 2002).
 ///
-/// PERF: with the first that came instead, 370 000 vertices (`la` of Triangle's samples, area 0.001) took about 1.4 times
-/// as long, beside Triangle in the same minute, and there were as many: the last is still in the cache.
+/// PERF: with the first that came instead, 370 000 vertices (`la` of Triangle's samples, area 0.001) took about 1.4
+/// times as long, beside Triangle in the same minute, and there were as many: the last is still in the cache.
 #[derive(Debug, Default)]
 pub(super) struct Queue(BTreeMap<u16, Vec<Bad>>);
 

@@ -56,8 +56,8 @@ impl Shape {
         [0, 1].map(|axis| self.corners.iter().map(|p| p[axis] / 3.0).sum())
     }
 
-    /// The center of the circumscribed circle, or the off-center if that is nearer to the shortest edge: the place above
-    /// its middle, `reach` times its length away, from which it is seen under the smallest angle that is wanted
+    /// The center of the circumscribed circle, or the off-center if that is nearer to the shortest edge: the place
+    /// above its middle, `reach` times its length away, from which it is seen under the smallest angle that is wanted
     /// (Üngör 2004). Fewer vertices do than with circumscribed circles only.
     pub(super) fn off_center(&self, reach: f64) -> [f64; 2] {
         let [p, q, r] = self.corners;

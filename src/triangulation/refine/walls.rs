@@ -46,8 +46,9 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             return false;
         }
 
-        // Phase 2: the triangles on both sides that see the new vertex, which may lie beside the edge by a rounding, and
-        // have it in their circles, are replaced by its star; unless something is nearer to the edge than the rounding.
+        // Phase 2: the triangles on both sides that see the new vertex, which may lie beside the edge by a rounding,
+        // and have it in their circles, are replaced by its star; unless something is nearer to the edge than the
+        // rounding.
         let beside = self.t.tds().neighbor(cell, i);
         let sides = [(a, b, self.regions[cell.index()]), (b, a, self.regions[beside.index()])];
         self.t.set_wall(a, b, false);
@@ -115,8 +116,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         self.encroached = queue;
     }
 
-    /// Takes out vertices that were added between constraints and now are in the circle with the edge from `a` to `b` as
-    /// its diameter, on the left, in sight (Chew 1993).
+    /// Takes out vertices that were added between constraints and now are in the circle with the edge from `a` to `b`
+    /// as its diameter, on the left, in sight (Chew 1993).
     fn clear_circle(&mut self, a: VertexId, b: VertexId) {
         while let Some((cell, i)) = self.t.tds().edge(a, b) {
             let apex = self.t.tds().vertex(cell, i);
