@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 
-use super::{Geometry, Plane, Steps, Terrain};
-use crate::kernel::{CompareDistance, Kernel};
+use super::{Geometry, Plane, Steps, Terrain, Weighted};
+use crate::kernel::{CompareDistance, ComparePower, Kernel};
 
 /// A geometry of the plane that can tell which of two points is nearer: what queries for nearest vertices need.
 ///
@@ -11,7 +11,7 @@ use crate::kernel::{CompareDistance, Kernel};
 /// - The answer is exact: `Equal` for equal distances, and `Less` for no two points at once.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`](super::Mapped). A geometry that leaves its points' places to one of these does so here:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`](super::Mapped); [`Weighted`], whose distance is the power. A geometry that leaves its points' places to one of these does so here:
 ///
 /// ```
 /// use std::cmp::Ordering;
@@ -49,5 +49,13 @@ impl<K: Kernel> Metric for Steps<K> {
     #[inline]
     fn compare_distance(&self, q: &[i32; 3], a: &[i32; 3], b: &[i32; 3]) -> Ordering {
         compare::<K>([q, a, b].map(super::steps::plan))
+    }
+}
+
+impl<K: Kernel> Metric for Weighted<K> {
+    /// By power: squared distance less weight. That of `q` counts for neither.
+    #[inline]
+    fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
+        (K::sign(&ComparePower([*q, *a, *b])) as i8).cmp(&0)
     }
 }

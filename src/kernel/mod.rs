@@ -33,7 +33,7 @@ pub use center::circumcenter;
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
-pub use power::{PowerOnLine, PowerTest2};
+pub use power::{ComparePower, PowerOnLine, PowerTest2};
 pub use rounding::{CornerSide, CrossingSide};
 pub use scaled::Scaled;
 

@@ -75,3 +75,25 @@ impl Predicate for PowerOnLine {
         cross(&a_lift, &v[self.along], &b_lift, &u[self.along])
     }
 }
+
+/// Of a place and two weighted points `[x, y, w]`: positive if the first of these has the larger power there, which is its
+/// squared distance less its weight. The weight of the place counts for neither.
+#[derive(Debug, Clone, Copy)]
+pub struct ComparePower(pub [[f64; 3]; 3]);
+
+impl Predicate for ComparePower {
+    const DEGREE: i32 = 2;
+    const AXES: usize = 4;
+
+    #[inline(always)]
+    fn axis(&self, of: usize) -> impl Iterator<Item = f64> + Clone {
+        axis(&self.0, of)
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [q, a, b] = self.0;
+        let [u, v] = [a, b].map(|p| minus([p[0], p[1]], [q[0], q[1]], difference));
+        lift(&u, a, q, difference) - lift(&v, b, q, difference)
+    }
+}

@@ -34,12 +34,13 @@
 //! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
 //! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
+//! | weigh points | [`Regular`]: [`Regular::hidden`], [`Regular::nearest`], [`Regular::power_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | see it | [`Triangulation::svg`] |
 //! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
-//! All questions take `&self`. In space points cannot be removed, and there is no weighted (regular) kind.
+//! All questions take `&self`. In space points cannot be removed, and there are the basic and the Delaunay kind.
 
 mod basic;
 mod bulk;

@@ -43,7 +43,7 @@ pub struct VoronoiCell {
 }
 
 /// The places whose product with `normal` is at most `offset`.
-struct HalfPlane {
+pub(super) struct HalfPlane {
     normal: Place,
     offset: f64,
 }
@@ -51,7 +51,12 @@ struct HalfPlane {
 impl HalfPlane {
     /// What is nearer to the origin than to `p`.
     fn nearer_than(p: Place) -> Self {
-        HalfPlane { normal: p, offset: dot(p, p) / 2.0 }
+        Self::of_less_power(p, 0.0)
+    }
+
+    /// The same by power, the origin weighing more than `p` by this.
+    pub(super) fn of_less_power(p: Place, by: f64) -> Self {
+        HalfPlane { normal: p, offset: (dot(p, p) + by) / 2.0 }
     }
 
     /// The part of a convex polygon in it (Sutherland and Hodgman 1974, for one line).
@@ -91,9 +96,8 @@ pub(super) fn twice_area(polygon: &[Place]) -> f64 {
     polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
 }
 
-/// The cell of a site: the part of a convex polygon in half planes that are given relative to the site. Of sites with
-/// weights, the half planes would have other offsets.
-fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>, within: &[Place]) -> VoronoiCell {
+/// The cell of a site: the part of a convex polygon in half planes that are given relative to the site.
+pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>, within: &[Place]) -> VoronoiCell {
     let polygon = within.iter().map(|&p| minus(p, site)).collect();
     let cell: Vec<Place> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(&polygon));
     if cell.len() < 3 {

@@ -4,6 +4,7 @@ mod along;
 mod dual;
 mod natural;
 mod nearest;
+mod power;
 mod rectangle;
 mod svg;
 mod zone;

@@ -1,0 +1,87 @@
+//! Power diagrams: against all bisectors, and the law that cells tile; nearest points by power against all points.
+
+mod common;
+
+use breakline::geometry::{Geometry, Weighted};
+use breakline::kernel::Adaptive;
+use breakline::tds::VertexId;
+use breakline::triangulation::Regular;
+use common::random::Random;
+
+type Point = [f64; 3];
+type Weights = Regular<Weighted>;
+
+fn build(dice: &mut Random, round: usize) -> Weights {
+    let (side, weights) = (1 + dice.below(6), 1 + dice.below(9));
+    let place = |dice: &mut Random| match round % 3 {
+        0 => [dice.unit() * 5.0, dice.unit() * 5.0, dice.unit() * 4.0],
+        1 => [dice.below(side) as f64, dice.below(side) as f64, dice.below(weights) as f64],
+        _ => [dice.below(side) as f64, 2.0, dice.below(weights) as f64], // on one line
+    };
+    let points: Vec<Point> = (0..1 + dice.below(20)).map(|_| place(dice)).collect();
+    Regular::from_points(Weighted::<Adaptive>::default(), &points).unwrap().0
+}
+
+fn area(polygon: &[[f64; 2]]) -> f64 {
+    let pairs = (0..polygon.len()).map(|k| (polygon[k], polygon[(k + 1) % polygon.len()]));
+    pairs.map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0).sum()
+}
+
+fn power(p: &Point, x: [f64; 2]) -> f64 {
+    (x[0] - p[0]).powi(2) + (x[1] - p[1]).powi(2) - p[2]
+}
+
+/// The part of a convex polygon with less power of `p` than of `q`.
+fn part(polygon: &[[f64; 2]], p: &Point, q: &Point) -> Vec<[f64; 2]> {
+    let far = |x: [f64; 2]| power(p, x) - power(q, x);
+    let mut left = Vec::new();
+    for k in 0..polygon.len() {
+        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+        if far(a) <= 0.0 {
+            left.push(a);
+        }
+        if far(a) * far(b) < 0.0 {
+            let t = far(a) / (far(a) - far(b));
+            left.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+        }
+    }
+    left
+}
+
+#[test]
+fn cells_tile_and_are_cut_by_all_bisectors() {
+    let mut dice = Random(1);
+    let window = [[-1.0, -1.5], [7.0, -1.0], [6.5, 6.0], [-2.0, 7.0]];
+    let whole = area(&window);
+    for round in 0..1500 {
+        let t = build(&mut dice, round);
+        let mut sum = 0.0;
+        for v in t.tds().vertices() {
+            let cell = t.power_cell(v, &window);
+            let others = t.tds().vertices().filter(|&u| u != v);
+            let naive = others.fold(window.to_vec(), |left, u| part(&left, t.point(v), t.point(u)));
+            assert!((cell.area - area(&naive)).abs() < 1e-9 * whole, "{:?}", t.points());
+            sum += cell.area;
+        }
+        assert!((sum - whole).abs() < 1e-9 * whole, "{:?}", t.points());
+        assert!(t.hidden().all(|v| t.power_cell(v, &window).corners.is_empty()));
+    }
+}
+
+#[test]
+fn the_nearest_by_power() {
+    let mut dice = Random(2);
+    for round in 0..1500 {
+        let t = build(&mut dice, 1 + round % 2);
+        for _ in 0..20 {
+            // Halves: all sums below are exact.
+            let q = [dice.below(14) as f64 / 2.0 - 1.0, dice.below(14) as f64 / 2.0 - 1.0];
+            let far = |v: &VertexId| power(t.point(*v), q);
+            let order = |a: &VertexId, b: &VertexId| t.geometry().compare(t.point(*a), t.point(*b));
+            let seen = t.tds().vertices().min_by(|a, b| far(a).total_cmp(&far(b)).then(order(a, b)));
+            assert_eq!(t.nearest(&[q[0], q[1], 77.0]), seen, "{q:?} {:?}", t.points());
+            let least = far(&seen.unwrap());
+            assert!(t.hidden().all(|v| far(&v) >= least), "{q:?} {:?}", t.points());
+        }
+    }
+}
