@@ -47,7 +47,7 @@
 //!
 //! What a point is, how exactly its predicates are computed and which law the triangulation obeys are
 //! three choices that do not depend on each other: a [`geometry`], a [`kernel`], a kind of
-//! [`triangulation`].
+//! [`triangulation`]. The [`guide`] is for those who come from CGAL, spade or Triangle.
 //!
 //! # The floors
 //!
@@ -74,6 +74,7 @@ pub mod crs;
 pub mod data;
 pub mod error;
 pub mod geometry;
+pub mod guide;
 pub mod io;
 pub mod kernel;
 pub mod num;

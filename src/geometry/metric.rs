@@ -3,7 +3,10 @@ use std::cmp::Ordering;
 use super::{Geometry, Plane, Steps, Terrain, Weighted};
 use crate::kernel::{CompareDistance, ComparePower, Kernel};
 
-/// A geometry of the plane that can tell which of two points is nearer: what queries for nearest vertices need.
+/// A geometry of the plane that can tell which of two points is nearer.
+///
+/// Needed for [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest),
+/// [`nearest_first`](crate::triangulation::Delaunay::nearest_first) and [`within`](crate::triangulation::Delaunay::within).
 ///
 /// # Laws
 /// - The distance is the one that the circles of the [geometry](Geometry::side_of_sphere) are circles of: walks to the
@@ -11,14 +14,44 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// - The answer is exact: `Equal` for equal distances, and `Less` for no two points at once.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`](super::Mapped); [`Weighted`], whose distance is the power. A geometry that leaves its points' places to one of these does so here:
+/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`], whose
+/// distance is the power. A geometry of one's own that leaves places to
+/// one of these leaves distances to it, too. Here on a map whose y axis points down:
 ///
 /// ```
 /// use std::cmp::Ordering;
-/// use breakline::geometry::{Metric, Plane};
+/// use breakline::geometry::{Geometry, Metric, Plane};
+/// use breakline::num::Sign;
+/// use breakline::triangulation::Delaunay;
 ///
-/// let plane: Plane = Plane::default();
-/// assert_eq!(plane.compare_distance(&[0.0, 0.0], &[3.0, 4.0], &[0.0, 5.0]), Ordering::Equal);
+/// type Pixel = [u16; 2];
+/// struct Screen(Plane);
+/// fn place([x, y]: &Pixel) -> [f64; 2] { [f64::from(*x), -f64::from(*y)] }
+///
+/// impl Geometry<3> for Screen {
+///     type Point = Pixel;
+///     fn admits(&self, _: &Pixel) -> bool { true }
+///     fn compare(&self, p: &Pixel, q: &Pixel) -> Ordering { self.0.compare(&place(p), &place(q)) }
+///     fn orientation(&self, s: [&Pixel; 3]) -> Sign { self.0.orientation(s.map(place).each_ref()) }
+///     fn side_of_sphere(&self, s: [&Pixel; 3], q: &Pixel) -> Sign {
+///         self.0.side_of_sphere(s.map(place).each_ref(), &place(q))
+///     }
+/// }
+///
+/// impl Metric for Screen {
+///     fn compare_distance(&self, q: &Pixel, a: &Pixel, b: &Pixel) -> Ordering {
+///         self.0.compare_distance(&place(q), &place(a), &place(b))
+///     }
+/// }
+///
+/// let mut t = Delaunay::new(Screen(Plane::default()));
+/// for pixel in [[0, 0], [300, 400], [0, 501]] {
+///     t.insert(pixel)?;
+/// }
+/// let by_distance: Vec<Pixel> = t.nearest_first(&[0, 0], None).map(|v| *t.point(v)).collect();
+/// assert_eq!(by_distance, [[0, 0], [300, 400], [0, 501]]);
+/// assert_eq!(t.within(&[0, 0], &[500, 0]).count(), 2, "a point on the rim is within");
+/// # Ok::<(), breakline::triangulation::Refused>(())
 /// ```
 pub trait Metric: Geometry<3> {
     /// Whether `a` is nearer to `q` than `b` is (`Less`), or further away.

@@ -141,10 +141,51 @@ pub trait Geometry<const N: usize> {
 
 /// A geometry that knows numbers for its points.
 ///
+/// Needed for: construction from many points at once ([`Delaunay::from_points`](crate::triangulation::Delaunay::from_points),
+/// [`spatial_order`](crate::triangulation::spatial_order)), questions about rectangles, Voronoi cells, natural neighbor
+/// coordinates, pictures, and as a part of [`Crossing`].
+///
 /// # Laws
 /// - In space coordinates are for sorting only: no answer depends on them.
 /// - In the plane they are exact: two sites have different ones, and if the predicates say that points lie along a line in some order,
 ///   the coordinates say so, too.
+///
+/// # Models
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with three. Here a type of
+/// one's own, which passes all questions on to `Plane`:
+///
+/// ```
+/// use std::cmp::Ordering;
+/// use breakline::geometry::{Coordinates, Geometry, Plane};
+/// use breakline::num::Sign;
+/// use breakline::triangulation::Delaunay;
+///
+/// #[derive(Debug, Clone, Copy)]
+/// struct Tree { kind: &'static str, at: [f64; 2] }
+/// struct Forest(Plane);
+///
+/// impl Geometry<3> for Forest {
+///     type Point = Tree;
+///     fn admits(&self, p: &Tree) -> bool { self.0.admits(&p.at) }
+///     fn compare(&self, p: &Tree, q: &Tree) -> Ordering { self.0.compare(&p.at, &q.at) }
+///     fn orientation(&self, s: [&Tree; 3]) -> Sign { self.0.orientation(s.map(|p| &p.at)) }
+///     fn side_of_sphere(&self, s: [&Tree; 3], q: &Tree) -> Sign { self.0.side_of_sphere(s.map(|p| &p.at), &q.at) }
+/// }
+///
+/// impl Coordinates<3> for Forest {
+///     type Coordinates = [f64; 2];
+///     fn coordinates(&self, p: &Tree) -> [f64; 2] { p.at }
+///     // The predicates are those of floating point numbers in the plane: construction takes half the time.
+///     fn exact_plan(&self, p: &Tree) -> Option<[f64; 2]> { self.0.exact_plan(&p.at) }
+/// }
+///
+/// let trees = [("oak", [0.0, 0.0]), ("elm", [4.0, 0.0]), ("ash", [0.0, 3.0])].map(|(kind, at)| Tree { kind, at });
+/// let (forest, v) = Delaunay::from_points(Forest(Plane::default()), &trees)?;
+/// assert_eq!(forest.point(v[1]).kind, "elm");
+/// let field = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
+/// assert_eq!(forest.voronoi_cell(v[0], &field).area, 3.0);
+/// # Ok::<(), breakline::triangulation::Refused>(())
+/// ```
 pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     /// The coordinates, up to three of them.
     type Coordinates: AsRef<[f64]>;
@@ -170,8 +211,51 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 /// - `plan` of `meet` is the place that was asked for.
 /// - `meet` does not depend on the order of the segments, nor of their ends.
 ///
+/// Needed for [`ConstrainedDelaunay`](crate::triangulation::ConstrainedDelaunay). The other kind with constraints,
+/// [`Constrained`](crate::triangulation::Constrained), makes no points and does without.
+///
 /// # Models
-/// [`Plane`], [`Terrain`].
+/// [`Plane`]; [`Terrain`], where the lowest of the lines' heights is taken. Here points that know whether they were
+/// surveyed or made:
+///
+/// ```
+/// use std::cmp::Ordering;
+/// use breakline::geometry::{Coordinates, Crossing, Geometry, Plane};
+/// use breakline::num::Sign;
+/// use breakline::triangulation::{ConstrainedDelaunay, OnCrossing};
+///
+/// #[derive(Debug, Clone, Copy)]
+/// struct Station { at: [f64; 2], is_surveyed: bool }
+/// struct Site(Plane);
+///
+/// impl Geometry<3> for Site {
+///     type Point = Station;
+///     fn admits(&self, p: &Station) -> bool { self.0.admits(&p.at) }
+///     fn compare(&self, p: &Station, q: &Station) -> Ordering { self.0.compare(&p.at, &q.at) }
+///     fn orientation(&self, s: [&Station; 3]) -> Sign { self.0.orientation(s.map(|p| &p.at)) }
+///     fn side_of_sphere(&self, s: [&Station; 3], q: &Station) -> Sign {
+///         self.0.side_of_sphere(s.map(|p| &p.at), &q.at)
+///     }
+/// }
+///
+/// impl Coordinates<3> for Site {
+///     type Coordinates = [f64; 2];
+///     fn coordinates(&self, p: &Station) -> [f64; 2] { p.at }
+/// }
+///
+/// impl Crossing for Site {
+///     fn plan(&self, p: &Station) -> [f64; 2] { p.at }
+///     fn step(&self) -> f64 { self.0.step() }
+///     fn meet(&self, place: [f64; 2], _: &[[&Station; 2]]) -> Station { Station { at: place, is_surveyed: false } }
+/// }
+///
+/// let stations = [[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]].map(|at| Station { at, is_surveyed: true });
+/// let lines = [[0, 1], [2, 3]];
+/// let (t, _) = ConstrainedDelaunay::<_>::from_lines(Site(Plane::default()), &stations, &lines, OnCrossing::Split)?;
+/// let made: Vec<_> = t.points().iter().filter(|p| !p.is_surveyed).map(|p| p.at).collect();
+/// assert_eq!(made, [[2.0, 2.0]]);
+/// # Ok::<(), breakline::triangulation::Refused>(())
+/// ```
 pub trait Crossing: Coordinates<3> {
     /// The point's coordinates in the plane, exactly.
     fn plan(&self, p: &Self::Point) -> [f64; 2];

@@ -42,7 +42,46 @@ use std::marker::PhantomData;
 
 use crate::num::{Dyadic, Expansion, Number, Sign};
 
-/// A polynomial whose sign answers a question.
+/// A polynomial in differences of coordinates, whose sign answers a question.
+///
+/// # Laws
+/// - Homogeneous: all terms are products of [`DEGREE`](Self::DEGREE) differences, so that coordinates times a power of two
+///   leave the sign.
+/// - [`axis`](Self::axis) tells all coordinates that [`value`](Self::value) takes differences of, and these only.
+/// - `value` decides nothing by what it computes: it is one formula in any [`Number`].
+///
+/// # Models
+/// [`Orientation2`], [`Orientation3`], [`InCircle`], [`InSphere`], [`InCircleOfPlane`], [`CompareDistance`],
+/// [`PowerTest2`], [`PowerOnLine`], and the questions of snap rounding, [`CornerSide`] and [`CrossingSide`]. One of one's
+/// own is exact at once, with every kernel:
+///
+/// ```
+/// use breakline::kernel::{Adaptive, Exact, Kernel, Predicate};
+/// use breakline::num::{Number, Sign};
+///
+/// /// Positive if the third point lies inside of the circle that has the first two as its diameter.
+/// struct InDiameter([[f64; 2]; 3]);
+///
+/// impl Predicate for InDiameter {
+///     const DEGREE: i32 = 2;
+///     const AXES: usize = 2;
+///
+///     fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+///         self.0.iter().map(move |p| p[axis])
+///     }
+///
+///     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+///         let [a, b, q] = self.0;
+///         let [x, y] = [0, 1].map(|k| difference(a[k], q[k]) * difference(q[k], b[k]));
+///         x + y
+///     }
+/// }
+///
+/// let side = |q| Adaptive::sign(&InDiameter([[0.0, 0.0], [1.0, 1.0], q]));
+/// assert_eq!(side([0.0, 1.0]), Sign::Zero);
+/// assert_eq!(side([1e-20, 1.0]), Sign::Positive);
+/// assert_eq!(side([-1e-20, 1.0]), Exact::sign(&InDiameter([[0.0, 0.0], [1.0, 1.0], [-1e-20, 1.0]])));
+/// ```
 pub trait Predicate {
     /// Degree in the differences: 5 at the most, with fewer than 2^7 terms, which is what the arithmetics are
     /// proven for.
@@ -111,7 +150,41 @@ impl Range {
     }
 }
 
-/// A choice of arithmetic that can always tell a predicate's sign.
+/// A choice of arithmetic that can always tell a predicate's sign. All that is exact in a triangulation rests on it.
+///
+/// # Laws
+/// - For coordinates in [`RANGE`](Self::RANGE) the answer is the sign of the real number, and the same each time. Of the
+///   models [`Fast`] alone breaks this law.
+/// - Outside of the range nothing is promised: a geometry does not [admit](crate::geometry::Geometry::admits) such points.
+///
+/// # Models
+/// See the table on the [module's page](self). Geometries take a kernel as their parameter. For one of one's own,
+/// [`Filtered`] puts a quick [`Filter`] before a sure kernel; or, as here, one watches the other:
+///
+/// ```
+/// use breakline::geometry::Plane;
+/// use breakline::kernel::{Adaptive, Exact, Kernel, Predicate, Range};
+/// use breakline::num::Sign;
+/// use breakline::triangulation::Delaunay;
+///
+/// #[derive(Debug, Clone, Copy, Default)]
+/// struct Watched;
+///
+/// impl Kernel for Watched {
+///     const RANGE: Range = Adaptive::RANGE;
+///
+///     fn sign<P: Predicate>(predicate: &P) -> Sign {
+///         let sign = Adaptive::sign(predicate);
+///         assert_eq!(sign, Exact::sign(predicate));
+///         sign
+///     }
+/// }
+///
+/// let grid: Vec<[f64; 2]> = (0..25).map(|k| [k % 5, k / 5].map(|i| f64::from(i) * 0.1)).collect();
+/// let (t, _) = Delaunay::<Plane<Watched>, 3>::from_points(Plane::default(), &grid)?;
+/// assert_eq!(t.vertex_count(), 25);
+/// # Ok::<(), breakline::triangulation::Refused>(())
+/// ```
 pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
     /// The coordinates it is proven for.
     const RANGE: Range;
@@ -121,6 +194,12 @@ pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
 }
 
 /// An arithmetic that is quick and sometimes cannot tell.
+///
+/// # Laws
+/// Within [`RANGE`](Self::RANGE), a sign that it does tell is that of the real number.
+///
+/// # Models
+/// [`ErrorBound`], [`FlooredErrorBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`], [`WholeNumbers`]; [`Scaled`].
 pub trait Filter: Copy + Default + Debug + Send + Sync + 'static {
     /// The coordinates it is proven for.
     const RANGE: Range;

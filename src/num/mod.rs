@@ -96,7 +96,31 @@ impl From<std::cmp::Ordering> for Sign {
     }
 }
 
-/// What the polynomials are computed in: a ring.
+/// What the polynomials are computed in: a commutative ring.
+///
+/// # Laws
+/// Sum, difference and product are those of real numbers; or a number knows by how much they may be off, so that whoever
+/// asks for its sign can be told that it is not certain. `f64` breaks this law, and is for experiments.
+///
+/// # Models
+/// Everything that can be added, subtracted, multiplied and cloned is a `Number`; see the table on the
+/// [module's page](self). Here one that counts products:
+///
+/// ```
+/// use std::ops::{Add, Mul, Sub};
+/// use breakline::kernel::{InCircle, Orientation2, Predicate};
+///
+/// #[derive(Clone)]
+/// struct Products(u32);
+///
+/// impl Add for Products { type Output = Self; fn add(self, other: Self) -> Self { Products(self.0 + other.0) } }
+/// impl Sub for Products { type Output = Self; fn sub(self, other: Self) -> Self { Products(self.0 + other.0) } }
+/// impl Mul for Products { type Output = Self; fn mul(self, other: Self) -> Self { Products(self.0 + other.0 + 1) } }
+///
+/// let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+/// assert_eq!(Orientation2([a, b, c]).value(|_, _| Products(0)).0, 2);
+/// assert_eq!(InCircle([a, b, c, d]).value(|_, _| Products(0)).0, 15);
+/// ```
 pub trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}

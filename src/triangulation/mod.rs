@@ -1,46 +1,76 @@
 //! Triangulations: geometry times combinatorics.
 //!
-//! One engine, [`Triangulation`], locates points, grows the zone that a new point is in conflict with,
-//! and replaces it by the point's star. It knows neither the dimension nor the law that the
-//! triangulation obeys. The kinds are thin:
+//! A [`Geometry`] says what a point is and answers questions about a few of them, with the arithmetic of a
+//! [kernel](crate::kernel). A [`Tds`] knows which cells are neighbors, and no coordinates. One engine, [`Triangulation`],
+//! joins them: it locates points, grows the zone that a new point is in conflict with, and replaces it by the point's
+//! star. It knows neither the dimension nor the law. The kinds are thin: they own an engine and lend it for reading only.
 //!
-//! | kind | law |
-//! |---|---|
-//! | [`Triangulation`] | none: a point splits what it lies on |
-//! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere; in the plane and in space |
-//! | [`Regular`] | the same with weights: no vertex of less power than the cell's; in the plane |
-//! | [`Constrained`] | some edges are there whatever comes; in the plane |
-//! | [`ConstrainedDelaunay`] | the same among vertices that see each other past the constraints; in the plane |
+//! | kind | law | |
+//! |---|---|---|
+//! | [`Triangulation`] | none: a point splits what it lies on | plane, space |
+//! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere | plane, space |
+//! | [`Regular`] | the same with weights; points of too little weight are hidden | plane |
+//! | [`Constrained`] | some edges are forced, and do not cross | plane |
+//! | [`ConstrainedDelaunay`] | Delaunay among vertices that see each other past lines, which may cross | plane |
 //!
-//! They own an engine and lend it for reading only.
+//! ```
+//! use breakline::geometry::Plane;
+//! use breakline::triangulation::{Delaunay, Level, Location};
 //!
-//! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among
-//! the triangulations, so that each is a function of the set of points (and constraints): the order of
-//! insertion does not show in the cells.
+//! let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+//! let (mut t, v) = Delaunay::<Plane, 3>::from_points(Plane::default(), &corners)?;
+//! let middle = t.insert([2.0, 2.0])?;
+//! assert_eq!(t.tds().vertices_around(middle).count(), 4);
+//! assert!(matches!(t.locate(&[3.0, 2.0], None), Location::Cell { touching: 0, .. }));
+//! assert_eq!(t.nearest(&[3.5, 0.0], None), Some(v[1]));
+//! t.remove(middle);
+//! assert!(t.check(Level::Law).is_empty());
+//! # Ok::<(), breakline::triangulation::Refused>(())
+//! ```
 //!
-//! The core cannot fail on points that it admitted; [`Refused`] says which are not.
+//! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear, 2 in the plane or
+//! while all are coplanar, and 3 in space. Each is a state of the same structure: it is traversed, asked and checked, grows
+//! by insertion and, in the plane, shrinks by removal.
+//!
+//! **Infinity.** Beyond each facet of the convex hull there is a cell that ends in one vertex,
+//! [`VertexId::INFINITE`]. So every cell has all its neighbors. What is called *finite* leaves these out.
+//!
+//! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among the triangulations, so
+//! that each is a function of the set of points (and constraints): the order of insertion does not show in the cells. The
+//! core cannot fail on points that it admitted; [`Refused`] says which are not.
 //!
 //! | to | use |
 //! |---|---|
-//! | triangulate many points at once | [`Delaunay::from_points`], [`ConstrainedDelaunay::from_points`] |
+//! | triangulate many points at once | [`Delaunay::from_points`], [`Regular::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
 //! | take points out again, or move them | `remove`, `move_to`; in the plane |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
 //! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |
 //! | have no small angles, no large triangles | [`ConstrainedDelaunay::refined`], see [`refine`] |
-//! | find where a place lies | [`Triangulation::locate`] |
+//! | find where a place lies | [`Triangulation::locate`]; from elsewhere, by a [strategy](Locate) |
 //! | know what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
 //! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
 //! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
-//! | weigh points | [`Regular`]: [`Regular::hidden`], [`Regular::nearest`], [`Regular::power_cell`] |
+//! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`], [`Regular::power_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | see it | [`Triangulation::svg`] |
-//! | walk over cells | [`Triangulation::finite_cells`], [`Triangulation::tds`] |
+//! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], and all of [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
 //! All questions take `&self`. In space points cannot be removed, and there are the basic and the Delaunay kind.
+//!
+//! A walk starts where the last insertion was, if nothing else is said. [`Near`] a cell, [`JumpAndWalk`], [`Buckets`] and
+//! [`Hierarchy`] say from where, [`StraightLine`] which way: a place has one answer with all of them.
+//!
+//! Who knows another package finds its calls beside ours in the [guides](crate::guide).
+//!
+//! Below: what a new point, the dot, is in conflict with; the edges that its star will stand on are red.
+//!
+#![doc = "<div style=\"max-width: 24em\">"]
+#![doc = include_str!("../../docs/pictures/conflict-zone.svg")]
+#![doc = "</div>"]
 
 mod basic;
 mod bulk;

@@ -30,7 +30,8 @@ const RATIO: usize = 30;
 /// use breakline::geometry::Plane;
 /// use breakline::triangulation::{Delaunay, Hierarchy, Locate, Location};
 ///
-/// let (mut t, mut hierarchy) = (Delaunay::new(Plane::default()), Hierarchy::new(Plane::default()));
+/// let plane: Plane = Plane::default();
+/// let (mut t, mut hierarchy) = (Delaunay::new(plane), Hierarchy::new(plane));
 /// for i in 0..1000 {
 ///     t.insert_by(&mut hierarchy, [f64::from(i * 7919 % 1000), f64::from(i * 104_729 % 997)], ())?;
 /// }

@@ -4,7 +4,10 @@ use crate::tds::{CellId, VertexId};
 use super::super::Triangulation;
 use super::{Dice, Location};
 
-/// A strategy to find where a point lies.
+/// A strategy to find where a point lies: a value of the caller's, which may learn from insertions and removals.
+///
+/// Needed for nothing: [`Triangulation::locate`] walks from the last insertion. Taken by `insert_by`, `remove_by`, and to
+/// be asked itself.
 ///
 /// # Laws
 /// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same place relative to the complex; of the
@@ -12,7 +15,36 @@ use super::{Dice, Location};
 /// - What [`inserted`](Self::inserted) and [`removed`](Self::removed) have not been told changes the time only.
 ///
 /// # Models
-/// [`Near`], [`JumpAndWalk`], [`StraightLine`], [`Buckets`], [`Hierarchy`](super::Hierarchy). All take any kind of triangulation.
+/// [`Near`], [`JumpAndWalk`], [`StraightLine`](super::StraightLine), [`Buckets`](super::Buckets),
+/// [`Hierarchy`](super::Hierarchy). All take any kind of triangulation. One of one's own says where a walk starts; here,
+/// where the last question ended:
+///
+/// ```
+/// use std::cell::Cell;
+/// use breakline::geometry::{Geometry, Plane};
+/// use breakline::tds::CellId;
+/// use breakline::triangulation::{Delaunay, Locate, Location, Triangulation};
+///
+/// #[derive(Default)]
+/// struct LastAnswer(Cell<Option<CellId>>);
+///
+/// impl<G: Geometry<N>, const N: usize> Locate<G, N> for LastAnswer {
+///     fn locate<V, C: Copy + Default>(&self, t: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
+///         let location = t.locate(q, self.0.get()); // a cell that is there no more does no harm
+///         if let Location::Cell { cell, .. } = location {
+///             self.0.set(Some(cell));
+///         }
+///         location
+///     }
+/// }
+///
+/// let points: Vec<[f64; 2]> = (0..100).map(|k| [k % 10, k / 10].map(f64::from)).collect();
+/// let (t, v) = Delaunay::<Plane, 3>::from_points(Plane::default(), &points)?;
+/// let last = LastAnswer::default();
+/// assert!(matches!(last.locate(&t, &[8.5, 8.25]), Location::Cell { touching: 0, .. }));
+/// assert_eq!(last.locate(&t, &[8.0, 8.0]), Location::Vertex(v[88]));
+/// # Ok::<(), breakline::triangulation::Refused>(())
+/// ```
 pub trait Locate<G: Geometry<N>, const N: usize> {
     /// Where a point lies, which the geometry must [admit](Geometry::admits).
     fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location;

@@ -25,10 +25,11 @@ const MARGIN: f64 = 30.0;
 /// Vertices are numbered where there is room.
 const MOST_NUMBERED: usize = 400;
 
+/// In a picture of this class only, as it may stand in a page with styles of its own.
 const STYLE: &str = "\
-    line{stroke:#777;stroke-width:1}.edge{stroke:#c33;stroke-width:4}\
-    .cell{fill:#fc6;fill-opacity:.6}.polygon{fill:#6cf;fill-opacity:.5;stroke:#36c}\
-    .line{fill:none;stroke:#36c;stroke-width:3}.dot{fill:#36c}text{font:14px sans-serif}";
+    .tri{background:#fff}.tri line{stroke:#777;stroke-width:1}.tri .edge{stroke:#c33;stroke-width:4}\
+    .tri .cell{fill:#fc6;fill-opacity:.6}.tri .polygon{fill:#6cf;fill-opacity:.5;stroke:#36c}\
+    .tri .line{fill:none;stroke:#36c;stroke-width:3}.tri .dot{fill:#36c}.tri text{font:14px sans-serif}";
 
 /// From coordinates to the picture: y runs upwards, and a unit is as long on one axis as on the other.
 struct Frame {
@@ -85,7 +86,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         });
         let frame = Frame::around(self.tds.vertices().map(|v| self.place(v)).chain(drawn.copied()));
         let side = SIZE + 2.0 * MARGIN;
-        writeln!(svg, r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {side} {side}">"#)?;
+        writeln!(svg, r#"<svg xmlns="http://www.w3.org/2000/svg" class="tri" viewBox="0 0 {side} {side}">"#)?;
         writeln!(svg, "<style>{STYLE}</style>")?;
         for mark in marks {
             match *mark {
