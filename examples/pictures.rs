@@ -9,10 +9,13 @@ use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, 
 
 type Place = [f64; 2];
 
+/// To the text of an SVG file.
+type Draw = fn() -> Result<String, Refused>;
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("the folder for the pictures is missing")?;
     fs::create_dir_all(&folder)?;
-    let pictures: [(&str, fn() -> Result<String, Refused>); 5] = [
+    let pictures: [(&str, Draw); 5] = [
         ("conflict-zone", conflict_zone),
         ("walk", walk),
         ("voronoi-cell", voronoi_cell),

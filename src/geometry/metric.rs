@@ -6,7 +6,8 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// A geometry of the plane that can tell which of two points is nearer.
 ///
 /// Needed for [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest),
-/// [`nearest_first`](crate::triangulation::Delaunay::nearest_first) and [`within`](crate::triangulation::Delaunay::within).
+/// [`nearest_first`](crate::triangulation::Delaunay::nearest_first) and
+/// [`within`](crate::triangulation::Delaunay::within).
 ///
 /// # Laws
 /// - The distance is the one that the circles of the [geometry](Geometry::side_of_sphere) are circles of: walks to the
@@ -17,6 +18,8 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`], whose
 /// distance is the power. A geometry of one's own that leaves places to
 /// one of these leaves distances to it, too. Here on a map whose y axis points down:
+/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped). A geometry of one's own that leaves
+/// places to one of these leaves distances to it, too. Here on a map whose y axis points down:
 ///
 /// ```
 /// use std::cmp::Ordering;

@@ -141,7 +141,7 @@ pub trait Geometry<const N: usize> {
 
 /// A geometry that knows numbers for its points.
 ///
-/// Needed for: construction from many points at once ([`Delaunay::from_points`](crate::triangulation::Delaunay::from_points),
+/// Needed for: construction from many points at once ([`from_points`](crate::triangulation::Delaunay::from_points),
 /// [`spatial_order`](crate::triangulation::spatial_order)), questions about rectangles, Voronoi cells, natural neighbor
 /// coordinates, pictures, and as a part of [`Crossing`].
 ///
@@ -151,8 +151,8 @@ pub trait Geometry<const N: usize> {
 ///   the coordinates say so, too.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with three. Here a type of
-/// one's own, which passes all questions on to `Plane`:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with three. Here a type
+/// of one's own, which passes all questions on to `Plane`:
 ///
 /// ```
 /// use std::cmp::Ordering;

@@ -45,15 +45,15 @@ use crate::num::{Dyadic, Expansion, Number, Sign};
 /// A polynomial in differences of coordinates, whose sign answers a question.
 ///
 /// # Laws
-/// - Homogeneous: all terms are products of [`DEGREE`](Self::DEGREE) differences, so that coordinates times a power of two
-///   leave the sign.
+/// - Homogeneous: all terms are products of [`DEGREE`](Self::DEGREE) differences, so that coordinates times a power of
+///   two leave the sign.
 /// - [`axis`](Self::axis) tells all coordinates that [`value`](Self::value) takes differences of, and these only.
 /// - `value` decides nothing by what it computes: it is one formula in any [`Number`].
 ///
 /// # Models
 /// [`Orientation2`], [`Orientation3`], [`InCircle`], [`InSphere`], [`InCircleOfPlane`], [`CompareDistance`],
-/// [`PowerTest2`], [`PowerOnLine`], and the questions of snap rounding, [`CornerSide`] and [`CrossingSide`]. One of one's
-/// own is exact at once, with every kernel:
+/// [`PowerTest2`], [`PowerOnLine`], and the questions of snap rounding, [`CornerSide`] and [`CrossingSide`]. One of
+/// one's own is exact at once, with every kernel but [`Fast`]:
 ///
 /// ```
 /// use breakline::kernel::{Adaptive, Exact, Kernel, Predicate};
@@ -153,9 +153,10 @@ impl Range {
 /// A choice of arithmetic that can always tell a predicate's sign. All that is exact in a triangulation rests on it.
 ///
 /// # Laws
-/// - For coordinates in [`RANGE`](Self::RANGE) the answer is the sign of the real number, and the same each time. Of the
-///   models [`Fast`] alone breaks this law.
-/// - Outside of the range nothing is promised: a geometry does not [admit](crate::geometry::Geometry::admits) such points.
+/// - For coordinates in [`RANGE`](Self::RANGE) the answer is the sign of the real number, and the same each time. Of
+///   the models [`Fast`] alone breaks this law.
+/// - Outside of the range nothing is promised: a geometry does not [admit](crate::geometry::Geometry::admits) such
+///   points.
 ///
 /// # Models
 /// See the table on the [module's page](self). Geometries take a kernel as their parameter. For one of one's own,
@@ -199,7 +200,8 @@ pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
 /// Within [`RANGE`](Self::RANGE), a sign that it does tell is that of the real number.
 ///
 /// # Models
-/// [`ErrorBound`], [`FlooredErrorBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`], [`WholeNumbers`]; [`Scaled`].
+/// [`ErrorBound`], [`FlooredErrorBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`], [`WholeNumbers`];
+/// [`Scaled`].
 pub trait Filter: Copy + Default + Debug + Send + Sync + 'static {
     /// The coordinates it is proven for.
     const RANGE: Range;

@@ -99,8 +99,8 @@ impl From<std::cmp::Ordering> for Sign {
 /// What the polynomials are computed in: a commutative ring.
 ///
 /// # Laws
-/// Sum, difference and product are those of real numbers; or a number knows by how much they may be off, so that whoever
-/// asks for its sign can be told that it is not certain. `f64` breaks this law, and is for experiments.
+/// Sum, difference and product are those of real numbers; or a number knows by how much they may be off, so that
+/// whoever asks for its sign can be told that it is not certain. `f64` breaks this law, and is for experiments.
 ///
 /// # Models
 /// Everything that can be added, subtracted, multiplied and cloned is a `Number`; see the table on the

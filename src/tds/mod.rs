@@ -33,11 +33,15 @@
 mod check;
 mod id;
 mod plane;
+#[cfg(feature = "serde")]
+mod rebuild;
 mod remove;
 mod zone;
 
 pub use check::Flaw;
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
+#[cfg(feature = "serde")]
+pub(crate) use rebuild::Parts;
 pub use zone::Zone;
 
 /// The vertices and neighbors of one cell.

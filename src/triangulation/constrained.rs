@@ -11,6 +11,7 @@ use super::{Flaw, Level, Refused, Rounding, Triangulation};
 
 /// Which edges of a triangle are constraints: bit `i` is set for the one opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Walls(u8);
 
 impl Walls {

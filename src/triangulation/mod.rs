@@ -1,9 +1,10 @@
 //! Triangulations: geometry times combinatorics.
 //!
 //! A [`Geometry`] says what a point is and answers questions about a few of them, with the arithmetic of a
-//! [kernel](crate::kernel). A [`Tds`] knows which cells are neighbors, and no coordinates. One engine, [`Triangulation`],
-//! joins them: it locates points, grows the zone that a new point is in conflict with, and replaces it by the point's
-//! star. It knows neither the dimension nor the law. The kinds are thin: they own an engine and lend it for reading only.
+//! [kernel](crate::kernel). A [`Tds`] knows which cells are neighbors, and no coordinates. One engine,
+//! [`Triangulation`], joins them: it locates points, grows the zone that a new point is in conflict with, and replaces
+//! it by the point's star. It knows neither the dimension nor the law. The kinds are thin: they own an engine and lend
+//! it for reading only.
 //!
 //! | kind | law | |
 //! |---|---|---|
@@ -29,15 +30,15 @@
 //! ```
 //!
 //! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear, 2 in the plane or
-//! while all are coplanar, and 3 in space. Each is a state of the same structure: it is traversed, asked and checked, grows
-//! by insertion and, in the plane, shrinks by removal.
+//! while all are coplanar, and 3 in space. Each is a state of the same structure: it is traversed, asked and checked,
+//! grows by insertion and, in the plane, shrinks by removal.
 //!
 //! **Infinity.** Beyond each facet of the convex hull there is a cell that ends in one vertex,
 //! [`VertexId::INFINITE`]. So every cell has all its neighbors. What is called *finite* leaves these out.
 //!
-//! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among the triangulations, so
-//! that each is a function of the set of points (and constraints): the order of insertion does not show in the cells. The
-//! core cannot fail on points that it admitted; [`Refused`] says which are not.
+//! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among the triangulations,
+//! so that each is a function of the set of points (and constraints): the order of insertion does not show in the
+//! cells. The core cannot fail on points that it admitted; [`Refused`] says which are not.
 //!
 //! | to | use |
 //! |---|---|
@@ -56,13 +57,14 @@
 //! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`], [`Regular::power_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | see it | [`Triangulation::svg`] |
+//! | save it | serde, with the feature `serde`: all kinds but [`ConstrainedDelaunay`], in the plane |
 //! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], and all of [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
 //! All questions take `&self`. In space points cannot be removed, and there are the basic and the Delaunay kind.
 //!
-//! A walk starts where the last insertion was, if nothing else is said. [`Near`] a cell, [`JumpAndWalk`], [`Buckets`] and
-//! [`Hierarchy`] say from where, [`StraightLine`] which way: a place has one answer with all of them.
+//! A walk starts where the last insertion was, if nothing else is said. [`Near`] a cell, [`JumpAndWalk`], [`Buckets`]
+//! and [`Hierarchy`] say from where, [`StraightLine`] which way: a place has one answer with all of them.
 //!
 //! Who knows another package finds its calls beside ours in the [guides](crate::guide).
 //!
@@ -89,6 +91,8 @@ mod query;
 mod regular;
 pub mod refine;
 mod remove;
+#[cfg(feature = "serde")]
+mod saved;
 mod segment;
 mod simplify;
 mod walled;

@@ -104,6 +104,15 @@ impl<G: Geometry<3>, V> Regular<G, V> {
         Regular { inner: Triangulation::over(geometry), hidden: Hidden::default() }
     }
 
+    /// Finds what hides the vertices that are in no cell. Those that nothing hides are put in.
+    #[cfg(feature = "serde")]
+    pub(super) fn over(inner: Triangulation<G, 3, V>) -> Self {
+        let hidden = inner.tds.detached_vertices();
+        let mut regular = Regular { inner, hidden: Hidden::default() };
+        regular.connect_again(hidden);
+        regular
+    }
+
     /// Adds a point with a payload, seen or [hidden](Self::is_hidden); the one that is there already, with the payload it
     /// has, if there is one on the same site and with the same weight.
     ///

@@ -26,8 +26,8 @@ use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Constrained<G: Geometry<3>, V = ()> {
-    inner: Triangulation<G, 3, V, Walls>,
-    scratch: Scratch,
+    pub(super) inner: Triangulation<G, 3, V, Walls>,
+    pub(super) scratch: Scratch,
 }
 
 /// Why a constraint cannot be put in.

@@ -6,8 +6,8 @@ use super::{Dice, Location};
 
 /// A strategy to find where a point lies: a value of the caller's, which may learn from insertions and removals.
 ///
-/// Needed for nothing: [`Triangulation::locate`] walks from the last insertion. Taken by `insert_by`, `remove_by`, and to
-/// be asked itself.
+/// Needed for nothing: [`Triangulation::locate`] walks from the last insertion. Taken by `insert_by`, `remove_by`, and
+/// to be asked itself.
 ///
 /// # Laws
 /// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same place relative to the complex; of the
@@ -16,8 +16,8 @@ use super::{Dice, Location};
 ///
 /// # Models
 /// [`Near`], [`JumpAndWalk`], [`StraightLine`](super::StraightLine), [`Buckets`](super::Buckets),
-/// [`Hierarchy`](super::Hierarchy). All take any kind of triangulation. One of one's own says where a walk starts; here,
-/// where the last question ended:
+/// [`Hierarchy`](super::Hierarchy). All take any kind of triangulation. One of one's own says where a walk starts;
+/// here, where the last question ended:
 ///
 /// ```
 /// use std::cell::Cell;

@@ -1,0 +1,247 @@
+//! Serde, behind the feature `serde`: a triangulation of the plane as its points, payloads, and the vertices of its
+//! cells.
+//!
+//! The geometry is not saved: what is read has the default one. Vertices keep their numbers, and so do those that have
+//! been removed; cells are numbered anew. Neighbors follow from common edges.
+//!
+//! What is read is checked like what a stranger says: [links and manifold](Level::Manifold), orientation and convexity,
+//! the law of the kind, with exact predicates, in linear time. Damage is an error, and never a panic.
+
+use std::fmt;
+
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::geometry::Geometry;
+use crate::num::Sign;
+use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
+
+use super::segment::Scratch;
+use super::{Constrained, Delaunay, Flaw, Level, MAX_VERTICES, Refused, Regular, Triangulation};
+
+/// What is saved. Written from slices, read into vectors.
+#[derive(Serialize, Deserialize)]
+struct Saved<Points, VertexData, CellData> {
+    dimension: i32,
+    /// By number, those of removed vertices included.
+    points: Points,
+    vertex_data: VertexData,
+    /// Numbers of removed vertices, the next to be used last.
+    removed: Vec<u32>,
+    /// The vertices of the cells, `dimension + 1` each; the infinite one is `None`.
+    cells: Vec<Option<u32>>,
+    cell_data: CellData,
+}
+
+/// Why a saved triangulation cannot be read.
+enum Damage {
+    /// Lengths or numbers do not fit.
+    Shape(&'static str),
+    Point(Refused),
+    Flaw(Flaw),
+}
+
+impl fmt::Display for Damage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Damage::Shape(what) => write!(f, "damaged triangulation: {what}"),
+            Damage::Point(refused) => write!(f, "damaged triangulation: {refused}"),
+            Damage::Flaw(flaw) => write!(f, "damaged triangulation: {flaw:?}"),
+        }
+    }
+}
+
+fn first(flaws: Vec<Flaw>) -> Result<(), Damage> {
+    flaws.first().map_or(Ok(()), |&flaw| Err(Damage::Flaw(flaw)))
+}
+
+type Owned<P, V, C> = Saved<Vec<P>, Vec<V>, Vec<C>>;
+
+impl<P, V, C: Copy + Default> Owned<P, V, C> {
+    /// The triangulation, if it is one; not yet whether it keeps to a law, nor what hides points that are in no cell.
+    fn restore<G: Geometry<3, Point = P> + Default>(self) -> Result<Triangulation<G, 3, V, C>, Damage> {
+        let Saved { dimension, points, vertex_data, removed, cells, cell_data } = self;
+        let geometry = G::default();
+        if !(-1..=2).contains(&dimension) {
+            return Err(Damage::Shape("the dimension is not -1, 0, 1 or 2"));
+        }
+        if points.len() > MAX_VERTICES {
+            return Err(Damage::Point(Refused::TooMany));
+        }
+        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
+            return Err(Damage::Point(Refused::Coordinate(bad)));
+        }
+        if vertex_data.len() != points.len() {
+            return Err(Damage::Shape("there are not as many payloads as points"));
+        }
+        let is_complete = cells.len() == cell_data.len() * (dimension + 1) as usize;
+        if !is_complete || cell_data.len() >= CellId::LIMIT || dimension == -1 && !cell_data.is_empty() {
+            return Err(Damage::Shape("the number of cells does not fit"));
+        }
+        let vertex = |number: u32| match (number as usize) < points.len() {
+            true => Ok(VertexId::new(number as usize)),
+            false => Err(Damage::Shape("a number is that of no vertex")),
+        };
+        let cells = cells.into_iter().map(|number| number.map_or(Ok(VertexId::INFINITE), vertex));
+        let cells = cells.collect::<Result<Vec<_>, _>>()?;
+        let free = removed.into_iter().map(vertex).collect::<Result<Vec<_>, _>>()?;
+        let parts = Parts { dimension, cells, cell_data, vertex_data, free };
+        let tds = Tds::from_parts(parts).map_err(|flaws| match flaws.first() {
+            Some(&flaw) => Damage::Flaw(Flaw::Structure(flaw)),
+            None => Damage::Shape("cells do not fit"),
+        })?;
+        let restored = Triangulation { geometry, tds, points, zone: Zone::default(), last: None };
+        first(restored.flaws(Level::Orientation, |_, _| false))?;
+        if restored.is_in_order_on_line() {
+            Ok(restored)
+        } else {
+            Err(Damage::Shape("points are not in order on a line"))
+        }
+    }
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+    fn save(&self) -> Saved<&[G::Point], &[V], Vec<C>> {
+        let number = |v: &VertexId| (*v != VertexId::INFINITE).then(|| v.index() as u32);
+        Saved {
+            dimension: self.dimension(),
+            points: &self.points,
+            vertex_data: self.tds.payloads(),
+            removed: self.tds.free_vertices().iter().map(|v| v.index() as u32).collect(),
+            cells: self.tds.cells().flat_map(|cell| self.tds.cell_vertices(cell).iter().map(number)).collect(),
+            cell_data: self.tds.cells().map(|cell| *self.tds.cell_data(cell)).collect(),
+        }
+    }
+
+    /// Of dimension 1: whether all points are collinear, and each edge leads from a smaller to a larger one, so that
+    /// none lies over another. Of dimension 0 and -1: whether there is one finite cell, or none.
+    fn is_in_order_on_line(&self) -> bool {
+        let tds = &self.tds;
+        match self.dimension() {
+            1 => {
+                // From the first vertex to the second.
+                let edges = || self.finite_cells().map(|cell| [0, 1].map(|i| self.point(tds.vertex(cell, i))));
+                let Some([a, b]) = edges().next() else { return false };
+                edges().all(|[p, q]| {
+                    self.geometry.compare(p, q).is_lt()
+                        && [p, q].iter().all(|r| self.geometry.orientation([a, b, r]) == Sign::Zero)
+                })
+            }
+            0 => self.finite_cells().count() == 1 && tds.cell_count() == 2,
+            _ => true,
+        }
+    }
+
+    /// Of dimension 1: whether no vertex is in conflict with the edges next to its own.
+    fn is_regular_on_line(&self) -> bool {
+        let neighbors = |cell| self.tds.cell_neighbors(cell).iter().map(move |&beside| (cell, beside));
+        let mut sides = self.finite_cells().filter(|_| self.dimension() == 1).flat_map(neighbors);
+        sides.all(|(cell, beside)| {
+            let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
+            far == VertexId::INFINITE || !self.in_conflict(cell, self.point(far))
+        })
+    }
+
+    fn has_no_hidden_points(&self) -> Result<(), Damage> {
+        match self.tds.detached_vertices()[..] {
+            [] => Ok(()),
+            _ => Err(Damage::Shape("a vertex is in no cell")),
+        }
+    }
+}
+
+/// Reads a triangulation of some kind, and does the rest that its kind asks for.
+fn read<'de, D: Deserializer<'de>, G, V, C, T>(
+    deserializer: D,
+    finish: impl FnOnce(Triangulation<G, 3, V, C>) -> Result<T, Damage>,
+) -> Result<T, D::Error>
+where
+    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
+{
+    let saved = Owned::<G::Point, V, C>::deserialize(deserializer)?;
+    saved.restore().and_then(finish).map_err(D::Error::custom)
+}
+
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize
+    for Triangulation<G, 3, V, C>
+{
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.save().serialize(serializer)
+    }
+}
+
+impl<'de, G, V, C> Deserialize<'de> for Triangulation<G, 3, V, C>
+where
+    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
+{
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        read(deserializer, |t: Self| t.has_no_hidden_points().map(|()| t))
+    }
+}
+
+impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Delaunay<G, 3, V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.inner.save().serialize(serializer)
+    }
+}
+
+impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de>
+    for Delaunay<G, 3, V>
+{
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        read(deserializer, |inner| {
+            inner.has_no_hidden_points()?;
+            let t = Delaunay { inner };
+            first(t.check(Level::Law)).map(|()| t)
+        })
+    }
+}
+
+impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Regular<G, V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.save().serialize(serializer)
+    }
+}
+
+impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de> for Regular<G, V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        read(deserializer, |inner| {
+            first(inner.flaws(Level::Law, |_, _| true))?;
+            if !inner.is_regular_on_line() {
+                return Err(Damage::Shape("a vertex on a line ought to be hidden"));
+            }
+            let seen = inner.vertex_count();
+            let t = Regular::over(inner);
+            if t.vertex_count() != seen {
+                return Err(Damage::Shape("a vertex is in no cell, and nothing hides it"));
+            }
+            first(t.check(Level::Law)).map(|()| t)
+        })
+    }
+}
+
+impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Constrained<G, V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.save().serialize(serializer)
+    }
+}
+
+impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de>
+    for Constrained<G, V>
+{
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        read(deserializer, |inner| {
+            inner.has_no_hidden_points()?;
+            let edges = if inner.dimension() == 2 { 3 } else { 0 };
+            if inner.tds.cells().any(|cell| (edges..8).any(|i| inner.is_constrained(cell, i))) {
+                return Err(Damage::Shape("an edge that is not there is constrained"));
+            }
+            let t = Constrained { inner, scratch: Scratch::default() };
+            first(t.check(Level::Law)).map(|()| t)
+        })
+    }
+}

@@ -1,0 +1,231 @@
+//! Triangulations through serde: what is read is what was saved, and damage is an error.
+#![cfg(feature = "serde")]
+
+use std::collections::BTreeSet;
+
+use breakline::geometry::{Geometry, Plane, Weighted};
+use breakline::tds::VertexId;
+use breakline::triangulation::{Constrained, Delaunay, Level, Regular, Triangulation};
+use proptest::prelude::*;
+use serde_json::Value;
+
+/// The cells by their vertices, each from its smallest on.
+fn cells<G: Geometry<3>, V, C: Copy + Default>(t: &Triangulation<G, 3, V, C>) -> BTreeSet<Vec<VertexId>> {
+    let turned = |cell| {
+        let mut vertices = t.tds().cell_vertices(cell).to_vec();
+        let smallest = (0..vertices.len()).min_by_key(|&i| vertices[i]).unwrap_or(0);
+        vertices.rotate_left(smallest);
+        vertices
+    };
+    t.tds().cells().map(turned).collect()
+}
+
+fn through<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T) -> T {
+    serde_json::from_str(&serde_json::to_string(t).unwrap()).unwrap()
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Edit {
+    Insert([i8; 2], i8),
+    Remove(u8),
+}
+
+fn edits() -> impl Strategy<Value = Vec<Edit>> {
+    let insert = ([0i8..5, 0i8..5], 0i8..6).prop_map(|(place, weight)| Edit::Insert(place, weight));
+    prop::collection::vec(prop_oneof![3 => insert, 1 => (0u8..12).prop_map(Edit::Remove)], 0..24)
+}
+
+fn place([x, y]: [i8; 2]) -> [f64; 2] {
+    [f64::from(x), f64::from(y)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn delaunay_comes_back_and_goes_on_as_before(before in edits(), after in edits()) {
+        let edit = |t: &mut Delaunay<Plane, 3, u8>, edits: &[Edit]| {
+            for (k, edit) in edits.iter().enumerate() {
+                match *edit {
+                    Edit::Insert(p, _) => drop(t.insert_with(place(p), k as u8).unwrap()),
+                    Edit::Remove(k) => drop(t.remove(VertexId::new(k.into()))),
+                }
+            }
+        };
+        let mut t = Delaunay::new(Plane::default());
+        edit(&mut t, &before);
+        let mut read = through(&t);
+        for edits in [&[], &after[..]] {
+            edit(&mut t, edits);
+            edit(&mut read, edits);
+            prop_assert_eq!(cells(&t), cells(&read));
+            prop_assert_eq!(t.points(), read.points());
+            for v in t.tds().vertices() {
+                prop_assert_eq!(t.tds().vertex_data(v), read.tds().vertex_data(v));
+            }
+            prop_assert_eq!(read.check(Level::Law), []);
+        }
+    }
+
+    #[test]
+    fn regular_comes_back_with_what_it_hides(before in edits(), after in edits()) {
+        let edit = |t: &mut Regular<Weighted>, edits: &[Edit]| {
+            for edit in edits {
+                match *edit {
+                    Edit::Insert([x, y], w) => drop(t.insert([x.into(), y.into(), w.into()]).unwrap()),
+                    Edit::Remove(k) => drop(t.remove(VertexId::new(k.into()))),
+                }
+            }
+        };
+        let mut t = Regular::new(Weighted::default());
+        edit(&mut t, &before);
+        let mut read = through(&t);
+        for edits in [&[], &after[..]] {
+            edit(&mut t, edits);
+            edit(&mut read, edits);
+            prop_assert_eq!(cells(&t), cells(&read));
+            prop_assert!(t.hidden().eq(read.hidden()));
+            prop_assert_eq!(read.check(Level::Law), []);
+        }
+    }
+
+    #[test]
+    fn constraints_come_back(
+        points in prop::collection::vec([0i8..5, 0i8..5], 3..14),
+        pairs in prop::collection::vec([0usize..14, 0..14], 0..8),
+    ) {
+        let mut t: Constrained<Plane> = Constrained::new(Plane::default());
+        let vertices: Vec<_> = points.into_iter().map(|p| t.insert(place(p)).unwrap()).collect();
+        for [a, b] in pairs {
+            if let (Some(&a), Some(&b)) = (vertices.get(a), vertices.get(b)) {
+                let _ = t.constrain(a, b);
+            }
+        }
+        let read = through(&t);
+        prop_assert_eq!(cells(&t), cells(&read));
+        prop_assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), read.constrained_edges().collect());
+        prop_assert_eq!(read.check(Level::Law), []);
+    }
+}
+
+/// Everything that differs from a value in one place: a number, an item that is missing, twice, or elsewhere.
+fn damaged(value: &Value) -> Vec<Value> {
+    let mut all = Vec::new();
+    match value {
+        Value::Array(items) => {
+            for (k, item) in items.iter().enumerate() {
+                let with = |replaced: Value| {
+                    let mut items = items.clone();
+                    items[k] = replaced;
+                    Value::Array(items)
+                };
+                all.extend(damaged(item).into_iter().map(with));
+                let mut fewer = items.clone();
+                fewer.remove(k);
+                all.push(Value::Array(fewer));
+                let mut more = items.clone();
+                more.insert(k, item.clone());
+                all.push(Value::Array(more));
+                let mut swapped = items.clone();
+                swapped.swap(k, (k + 1) % items.len());
+                all.push(Value::Array(swapped));
+            }
+        }
+        Value::Object(fields) => {
+            for (name, field) in fields {
+                for replaced in damaged(field) {
+                    let mut fields = fields.clone();
+                    fields.insert(name.clone(), replaced);
+                    all.push(Value::Object(fields));
+                }
+            }
+        }
+        Value::Number(number) if number.is_f64() => {
+            all.extend([0.0, -1.0, -9.0, 0.5, 2.0, 3.5, 1e300, f64::MIN_POSITIVE].map(Value::from));
+        }
+        _ => {
+            all.extend((0..12).chain([255, i64::from(u32::MAX), -1]).map(Value::from));
+            all.push(Value::Null);
+        }
+    }
+    all
+}
+
+/// Reads everything that is damaged in one place; what is taken for sound must be, and stand edits.
+fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sound: impl Fn(T) -> bool) {
+    let saved = serde_json::to_value(t).unwrap();
+    let mut errors = 0;
+    for value in damaged(&saved) {
+        match serde_json::from_value::<T>(value.clone()) {
+            Ok(read) => assert!(is_sound(read), "{value}"),
+            Err(_) => errors += 1,
+        }
+    }
+    assert!(errors > 0);
+}
+
+const PLACES: [&[[f64; 2]]; 7] = [
+    &[],
+    &[[1.0, 2.0]],
+    &[[0.0, 0.0], [1.0, 1.0]],
+    &[[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]],
+    &[[0.0, 0.0], [2.0, 2.0], [1.0, 1.0], [3.0, 3.0]],
+    &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+    &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [0.0, 2.0], [2.0, 2.0]],
+];
+
+#[test]
+fn damage_to_the_basic_and_delaunay_kinds_is_an_error() {
+    for places in PLACES {
+        let mut basic: Triangulation<Plane, 3, u8> = Triangulation::new(Plane::default());
+        let mut delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
+        for &p in places {
+            basic.insert_with(p, 7).unwrap();
+            delaunay.insert(p).unwrap();
+        }
+        if places.len() > 2 {
+            basic.remove(VertexId::new(1));
+            delaunay.remove(VertexId::new(1));
+        }
+        read_damaged(&basic, |mut t| {
+            let is_sound = t.check(Level::Law).is_empty();
+            t.insert_with([0.25, 1.0], 1).unwrap();
+            t.remove(VertexId::new(0));
+            is_sound && t.check(Level::Law).is_empty()
+        });
+        read_damaged(&delaunay, |mut t| {
+            let is_sound = t.check(Level::Law).is_empty();
+            t.insert([0.25, 1.0]).unwrap();
+            t.insert([1.25, 1.0]).unwrap();
+            t.remove(VertexId::new(0));
+            is_sound && t.check(Level::Law).is_empty()
+        });
+    }
+}
+
+#[test]
+fn damage_to_regular_and_constrained_kinds_is_an_error() {
+    for places in PLACES {
+        let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
+        let mut constrained: Constrained<Plane> = Constrained::new(Plane::default());
+        for (k, &[x, y]) in places.iter().enumerate() {
+            regular.insert([x, y, if k % 3 == 1 { -4.0 } else { 0.0 }]).unwrap();
+            constrained.insert([x, y]).unwrap();
+        }
+        let _ = constrained.constrain(VertexId::new(0), VertexId::new(places.len().saturating_sub(1)));
+        read_damaged(&regular, |mut t| {
+            // On a line a check looks for no law: the judge is a fresh build.
+            let (fresh, _) = Regular::<Weighted>::from_points(Weighted::default(), t.points()).unwrap();
+            let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
+            t.insert([0.25, 1.0, 0.5]).unwrap();
+            t.remove(VertexId::new(0));
+            is_sound && t.check(Level::Law).is_empty()
+        });
+        read_damaged(&constrained, |mut t| {
+            let is_sound = t.check(Level::Law).is_empty();
+            t.insert([0.25, 1.0]).unwrap();
+            t.remove(VertexId::new(0));
+            is_sound && t.check(Level::Law).is_empty()
+        });
+    }
+}
