@@ -15,11 +15,9 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// - The answer is exact: `Equal` for equal distances, and `Less` for no two points at once.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`], whose
-/// distance is the power. A geometry of one's own that leaves places to
-/// one of these leaves distances to it, too. Here on a map whose y axis points down:
-/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped). A geometry of one's own that leaves
-/// places to one of these leaves distances to it, too. Here on a map whose y axis points down:
+/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`], whose distance
+/// is the power. A geometry of one's own that leaves places to one of these leaves distances to it, too. Here on a map
+/// whose y axis points down:
 ///
 /// ```
 /// use std::cmp::Ordering;
