@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::geometry::{Geometry, Metric, Weighted};
+use crate::geometry::{Metric, Weighted};
 use crate::kernel::Kernel;
 use crate::tds::VertexId;
 
@@ -11,7 +11,7 @@ use super::dual::{HalfPlane, VoronoiCell, cell_of, minus};
 
 impl<G: Metric, V> Regular<G, V> {
     /// The point of the least power at a place, its squared distance less its weight; of several, the first in the
-    /// [order](Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be one of the same power. `None` if
+    /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be one of the same power. `None` if
     /// there are no points. Exact. The place must be one that the geometry admits; its weight does not count.
     ///
     /// *Neighbors suffice.* A point that is not the nearest has a neighbor that is nearer, as its cell of the power diagram is
