@@ -1,13 +1,13 @@
-//! A triangulation built, asked and taken apart one point at a time, with the Delaunay hierarchy: lines in the format of
-//! `bench_triangulation`, to be put beside those of `benches/cgal_editing.cpp`.
+//! A triangulation built, asked and taken apart one point at a time, with the Delaunay hierarchy: lines in the format
+//! of `bench_triangulation`, to be put beside those of `benches/cgal_editing.cpp`.
 //!
 //! ```text
 //! bench_editing FILE.xy
 //! ```
 //!
-//! The points (pairs of 64-bit little-endian floating-point numbers) are inserted in the order of the file; the middles between
-//! two that follow each other are located, and their nearest vertices found; then every second point is removed. The last number but
-//! one of a line is that of triangles, or of places that were found.
+//! The points (pairs of 64-bit little-endian floating-point numbers) are inserted in the order of the file; the middles
+//! between two that follow each other are located, and their nearest vertices found; then every second point is
+//! removed. The last number but one of a line is that of triangles, or of places that were found.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 

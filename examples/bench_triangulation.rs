@@ -5,14 +5,15 @@
 //! bench_triangulation FILE.xyz [--threads N] [--one-by-one] [--check]
 //! ```
 //!
-//! A file holds coordinates one after the other, little-endian 64-bit floating point: pairs (`.xy`) to be triangulated in the
-//! plane, or triples (`.xyz`) in space. Segments (`.seg`) are pairs of 32-bit numbers of points. What is printed: program,
-//! data, points, threads, seconds, peak memory in MB and what of it was added by the construction, triangles (or tetrahedra), and
-//! processor seconds. The caller's indices are part of the time, reading the file is not.
+//! A file holds coordinates one after the other, little-endian 64-bit floating point: pairs (`.xy`) to be triangulated
+//! in the plane, or triples (`.xyz`) in space. Segments (`.seg`) are pairs of 32-bit numbers of points. What is
+//! printed: program, data, points, threads, seconds, peak memory in MB and what of it was added by the construction,
+//! triangles (or tetrahedra), and processor seconds. The caller's indices are part of the time, reading the file is
+//! not.
 //!
-//! `--one-by-one` inserts the points one after the other, in the order of the file. `--check` proves the result right, and
-//! counts the questions that got as far as each stage of the arithmetic; both take time of their own, so that the line is of
-//! a build without.
+//! `--one-by-one` inserts the points one after the other, in the order of the file. `--check` proves the result right,
+//! and counts the questions that got as far as each stage of the arithmetic; both take time of their own, so that the
+//! line is of a build without.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 

@@ -5,12 +5,12 @@
 //! cargo run --release --example table1 -- [--points N] [FILE.xy ...]
 //! ```
 //!
-//! A row is a kernel, a column a strategy that finds where a point lies; what is printed are seconds. A file holds pairs of
-//! coordinates, one after the other, as little-endian 64-bit floating point; they are inserted in an order that looks random,
-//! the same in every run. Without files the points are made: whole numbers in a square of 2^24, and a parabola of fractions.
-//! A kernel that does not take the coordinates has no times. `--points` takes some of the points only: exact arithmetic
-//! without a filter takes long. The walk is that of `Near`: from the last insertion, and on from a nearer vertex if it
-//! takes more than 64 steps.
+//! A row is a kernel, a column a strategy that finds where a point lies; what is printed are seconds. A file holds
+//! pairs of coordinates, one after the other, as little-endian 64-bit floating point; they are inserted in an order
+//! that looks random, the same in every run. Without files the points are made: whole numbers in a square of 2^24, and
+//! a parabola of fractions. A kernel that does not take the coordinates has no times. `--points` takes some of the
+//! points only: exact arithmetic without a filter takes long. The walk is that of `Near`: from the last insertion, and
+//! on from a nearer vertex if it takes more than 64 steps.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 

@@ -211,8 +211,8 @@ fn simplified_lines_cross_no_other() {
     }
 }
 
-/// Random lines, made simpler one after the other: no two of them cross that did not before, and none is further off than
-/// it may be.
+/// Random lines, made simpler one after the other: no two of them cross that did not before, and none is further off
+/// than it may be.
 #[test]
 fn simplification_keeps_the_topology() {
     let mut random = Random(6);
@@ -285,7 +285,8 @@ fn edits_at_the_edges() {
     assert_eq!((t.point(crossing)[2], t.is_added(crossing)), (9.0, false));
 }
 
-/// Points that are collinear for a while have no triangles that could hold a line; what lay on its way before is forgotten.
+/// Points that are collinear for a while have no triangles that could hold a line; what lay on its way before is
+/// forgotten.
 #[test]
 fn lines_between_dimensions() {
     let mut t = Constrained::new(Plane::default());

@@ -63,8 +63,8 @@ impl Geometry<3> for Grid {
     }
 }
 
-/// The faces of the lower hull of the lifted points, ties decided by raising the lifts by powers of a small number, the largest
-/// point most.
+/// The faces of the lower hull of the lifted points, ties decided by raising the lifts by powers of a small number, the
+/// largest point most.
 fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 3]> {
     // In order of site and weight, the heaviest of a site last; raised by whole numbers far below a step of the lift.
     let sites: Vec<Point> = {

@@ -1,5 +1,5 @@
-//! Insert-remove identity: whatever was put in and taken out, what is left is the triangulation of the rest; for Delaunay,
-//! regular and constrained Delaunay, with every exact arithmetic, on tiny grids.
+//! Insert-remove identity: whatever was put in and taken out, what is left is the triangulation of the rest; for
+//! Delaunay, regular and constrained Delaunay, with every exact arithmetic, on tiny grids.
 //!
 //! Takes the number of sequences of each kind and arithmetic from the environment:
 //!
@@ -164,7 +164,8 @@ fn constrained<K: Kernel>(random: &mut Random) {
     assert_eq!(walls(&t), walls(&fresh), "{history:#?}");
 }
 
-/// An arithmetic for the whole numbers of the grids; crossings of lines are others, which the ones for whole numbers refuse.
+/// An arithmetic for the whole numbers of the grids; crossings of lines are others, which the ones for whole numbers
+/// refuse.
 macro_rules! each {
     ($sequence:ident, $($kernel:ty),*) => { &[$($sequence::<$kernel>),*] };
 }

@@ -26,7 +26,8 @@ pub(super) struct Builder<'a, F> {
     ends: &'a [[u32; 2]],
     segments: Vec<Segment>,
     added: Vec<Place>,
-    /// The segments whose crossing was rounded to an added site, each once, site after site; and where those of each end.
+    /// The segments whose crossing was rounded to an added site, each once, site after site; and where those of each
+    /// end.
     crossed: Vec<u32>,
     crossed_ends: Vec<u32>,
 }

@@ -69,8 +69,8 @@ impl Arrangement {
     /// Arranges segments between places, given by their numbers below `places`, which are all different. Of the places
     /// that are no end of a segment, those count that lie exactly on a segment that is bent: it is led through them.
     ///
-    /// All coordinates are finite. Segments are different; one from a place to itself is none. Coordinates are multiples of
-    /// `step`, a power of two or zero, and so will be those that are added.
+    /// All coordinates are finite. Segments are different; one from a place to itself is none. Coordinates are
+    /// multiples of `step`, a power of two or zero, and so will be those that are added.
     ///
     /// # Complexity
     /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at
@@ -177,8 +177,8 @@ impl Arrangement {
         self.unit
     }
 
-    /// Whether all ends of segments, and all places on those that are led through sites, are multiples of the unit, so that
-    /// the pieces are proven not to cross.
+    /// Whether all ends of segments, and all places on those that are led through sites, are multiples of the unit, so
+    /// that the pieces are proven not to cross.
     pub fn is_on_grid(&self) -> bool {
         self.on_grid
     }

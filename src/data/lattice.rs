@@ -1,5 +1,5 @@
-/// An integer lattice in space, as the header of a LAS file has it: a number `n` of steps on an axis stands for the coordinate
-/// `n * scale + offset`.
+/// An integer lattice in space, as the header of a LAS file has it: a number `n` of steps on an axis stands for the
+/// coordinate `n * scale + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
     /// The length of a step on each axis.
@@ -22,8 +22,9 @@ impl Lattice {
         (self.point(steps) == point).then_some(steps)
     }
 
-    /// The way from this lattice into another one that has all of its points, up to roundings of coordinates to doubles: a
-    /// step here is a whole number of steps there, and so is the way between the origins. `None` if it is not.
+    /// The way from this lattice into another one that has all of its points, up to roundings of coordinates to
+    /// doubles: a step here is a whole number of steps there, and so is the way between the origins. `None` if it is
+    /// not.
     pub fn embed(&self, into: &Lattice) -> Option<Embedding> {
         let mut embedding = Embedding { factor: [1; 3], shift: [0; 3] };
         for k in 0..3 {

@@ -110,8 +110,8 @@ pub trait Geometry<const N: usize> {
     /// is positively oriented.
     fn side_of_sphere(&self, simplex: [&Self::Point; N], q: &Self::Point) -> Sign;
 
-    /// About how far two points are from each other, in any measure: for choosing where a walk starts, no answer depends on it.
-    /// Without one, which is NaN, walks from far away take long.
+    /// About how far two points are from each other, in any measure: for choosing where a walk starts, no answer
+    /// depends on it. Without one, which is NaN, walks from far away take long.
     #[inline]
     fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> f64 {
         f64::NAN
@@ -127,10 +127,10 @@ pub trait Geometry<const N: usize> {
         }
     }
 
-    /// Whether `q`, which lies in the flat of the simplex, lies inside (positive), on or outside of
-    /// the sphere around it there; whatever the orientation of the simplex. Two points: between
-    /// them. One point: `q` is on the same site, and inside if its weight is larger; asked of weighted points only, of which
-    /// the answer without weights, that no point is inside of another, is wrong.
+    /// Whether `q`, which lies in the flat of the simplex, lies inside (positive), on or outside of the sphere around
+    /// it there; whatever the orientation of the simplex. Two points: between them. One point: `q` is on the same site,
+    /// and inside if its weight is larger; asked of weighted points only, of which the answer without weights, that no
+    /// point is inside of another, is wrong.
     fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
         match simplex {
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
@@ -147,8 +147,8 @@ pub trait Geometry<const N: usize> {
 ///
 /// # Laws
 /// - In space coordinates are for sorting only: no answer depends on them.
-/// - In the plane they are exact: two sites have different ones, and if the predicates say that points lie along a line in some order,
-///   the coordinates say so, too.
+/// - In the plane they are exact: two sites have different ones, and if the predicates say that points lie along a line
+///   in some order, the coordinates say so, too.
 ///
 /// # Models
 /// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with three. Here a type
@@ -194,9 +194,9 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     fn coordinates(&self, p: &Self::Point) -> Self::Coordinates;
 
     /// Where a point lies in the plane, if the predicates' answers are the signs of
-    /// [`Orientation2`](crate::kernel::Orientation2) and [`InCircle`](crate::kernel::InCircle) of such places, within the
-    /// [range](crate::kernel::RANGE) of floating point. Construction in bulk then asks the geometry what floating point cannot
-    /// answer with certainty only, and takes half the time.
+    /// [`Orientation2`](crate::kernel::Orientation2) and [`InCircle`](crate::kernel::InCircle) of such places, within
+    /// the [range](crate::kernel::RANGE) of floating point. Construction in bulk then asks the geometry what floating
+    /// point cannot answer with certainty only, and takes half the time.
     #[inline(always)]
     fn exact_plan(&self, _: &Self::Point) -> Option<[f64; 2]> {
         None
@@ -260,7 +260,8 @@ pub trait Crossing: Coordinates<3> {
     /// The point's coordinates in the plane, exactly.
     fn plan(&self, p: &Self::Point) -> [f64; 2];
 
-    /// A power of two that all coordinates that are admitted are multiples of, those near zero included; zero if there is none.
+    /// A power of two that all coordinates that are admitted are multiples of, those near zero included; zero if there
+    /// is none.
     fn step(&self) -> f64 {
         0.0
     }

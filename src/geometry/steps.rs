@@ -5,8 +5,8 @@ use super::{Coordinates, Geometry, Plane, manhattan};
 use crate::kernel::{Kernel, Lattice};
 use crate::num::Sign;
 
-/// Points as LAS files hold them, in whole steps on three axes, seen in plan: 12 bytes a point, and nothing is rounded. See
-/// [`data::Lattice`](crate::data::Lattice) for the way from coordinates to steps and back.
+/// Points as LAS files hold them, in whole steps on three axes, seen in plan: 12 bytes a point, and nothing is rounded.
+/// See [`data::Lattice`](crate::data::Lattice) for the way from coordinates to steps and back.
 ///
 /// A step is as long on one axis as on the other. Two heights over one footprint are one site.
 #[derive(Debug, Clone, Copy, Default)]

@@ -59,8 +59,8 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
         K::sign(&PowerTest2([*a, *b, *c, *q]))
     }
 
-    /// Of two points: whether the lift of `q`, anywhere on the line through them, is below the line through theirs. Of one:
-    /// whether `q`, on the same site, is heavier.
+    /// Of two points: whether the lift of `q`, anywhere on the line through them, is below the line through theirs. Of
+    /// one: whether `q`, on the same site, is heavier.
     fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
         let (a, b) = match *simplex {
             [a] => return self.compare_weights(q, a).into(),

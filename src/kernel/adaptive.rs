@@ -42,8 +42,8 @@ impl Filter for IntervalBound {
     }
 }
 
-/// Floating point with an error bound that is a constant of each formula, for whole numbers of magnitude `2^BITS` at the
-/// most: the static filter. [`num::Fixed`] derives the constants.
+/// Floating point with an error bound that is a constant of each formula, for whole numbers of magnitude `2^BITS` at
+/// the most: the static filter. [`num::Fixed`] derives the constants.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FixedBound<const BITS: i32>;
 
@@ -56,8 +56,9 @@ impl<const BITS: i32> Filter for FixedBound<BITS> {
     }
 }
 
-/// The bits that differences may have so that 128 hold the polynomial: one of degree `d` in differences below `2^b` is below
-/// `2^(b d + 7)` for every formula of this crate (in-sphere has 4 * 3 * 6 terms), and a difference must fit a double.
+/// The bits that differences may have so that 128 hold the polynomial: one of degree `d` in differences below `2^b` is
+/// below `2^(b d + 7)` for every formula of this crate (in-sphere has 4 * 3 * 6 terms), and a difference must fit a
+/// double.
 const fn bits(degree: i32) -> i32 {
     let bits = 120 / degree;
     if bits < 53 { bits } else { 53 }

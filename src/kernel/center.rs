@@ -15,8 +15,8 @@ fn way<T: Number>([a, b, c]: [[f64; 2]; 3], difference: impl Fn(f64, f64) -> T +
     ]
 }
 
-/// The circumcenter of a triangle that has an area, relative to its first corner. Right to within `2^-40` of its distance
-/// from that corner, however flat the triangle is; not finite where the numbers have no room for it.
+/// The circumcenter of a triangle that has an area, relative to its first corner. Right to within `2^-40` of its
+/// distance from that corner, however flat the triangle is; not finite where the numbers have no room for it.
 ///
 /// # Complexity
 /// Some twenty operations if the triangle is not very flat, exact arithmetic else.

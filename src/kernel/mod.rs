@@ -276,13 +276,13 @@ pub type Adaptive = Filtered<ErrorBound, Filtered<OnLattice, Expansions>>;
 /// As [`Adaptive`], with intervals in place of the error bound: certain a little more often, and slower.
 pub type Interval = Filtered<IntervalBound, Filtered<OnLattice, Expansions>>;
 
-/// For coordinates that are whole numbers of magnitude `2^BITS` at the most (CGAL's `Fixed_precision_nt` has the same 24
-/// bits; [`Steps`](crate::geometry::Steps) have 31): the error bound is known before anything is computed, and an
+/// For coordinates that are whole numbers of magnitude `2^BITS` at the most (CGAL's `Fixed_precision_nt` has the same
+/// 24 bits; [`Steps`](crate::geometry::Steps) have 31): the error bound is known before anything is computed, and an
 /// orientation in the plane costs no more than with [`Fast`].
 pub type Fixed<const BITS: i32 = 24> = Filtered<FixedBound<BITS>, Filtered<WholeNumbers, Expansions>>;
 
-/// For coordinates that are whole numbers, up to `2^53`: 128-bit integers answer what floating point cannot, and expansions
-/// what these cannot hold.
+/// For coordinates that are whole numbers, up to `2^53`: 128-bit integers answer what floating point cannot, and
+/// expansions what these cannot hold.
 pub type Lattice = Filtered<ErrorBound, Filtered<WholeNumbers, Expansions>>;
 
 /// For every finite coordinate, from `5e-324` to `1.8e308`: nearly as fast as [`Adaptive`] within its range, and where

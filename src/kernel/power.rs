@@ -76,8 +76,8 @@ impl Predicate for PowerOnLine {
     }
 }
 
-/// Of a place and two weighted points `[x, y, w]`: positive if the first of these has the larger power there, which is its
-/// squared distance less its weight. The weight of the place counts for neither.
+/// Of a place and two weighted points `[x, y, w]`: positive if the first of these has the larger power there, which is
+/// its squared distance less its weight. The weight of the place counts for neither.
 #[derive(Debug, Clone, Copy)]
 pub struct ComparePower(pub [[f64; 3]; 3]);
 

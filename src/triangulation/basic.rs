@@ -6,9 +6,9 @@ use crate::tds::{CellId, VertexId, ccw, cw};
 
 use super::{Flaw, Level, Locate, Location, Refused, Triangulation};
 
-/// A point splits the cell, facet or edge that it lies on, or is joined to the part of the hull that it sees. Nothing is
-/// done for the shape of cells; what is there stays but for that. ("Lazy" insertion in Boissonnat, Devillers, Pion, Teillaud
-/// and Yvinec 2002.)
+/// A point splits the cell, facet or edge that it lies on, or is joined to the part of the hull that it sees. Nothing
+/// is done for the shape of cells; what is there stays but for that. ("Lazy" insertion in Boissonnat, Devillers, Pion,
+/// Teillaud and Yvinec 2002.)
 ///
 /// Cells that are new inherit the payload of the cell that they take the place of; those that come with a dimension
 /// have the default one.
@@ -38,8 +38,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A [walk](Self::locate) from the last insertion; constant time in the hull, outside of it time proportional to the
-    /// number of its facets that are seen.
+    /// A [walk](Self::locate) from the last insertion; constant time in the hull, outside of it time proportional to
+    /// the number of its facets that are seen.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
         self.insert_by(&mut super::Near(None), p, data)
     }
@@ -58,8 +58,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         Ok(vertex)
     }
 
-    /// Whether a finite cell has the point inside or on its border, or an infinite one has its facet in the point's sight or
-    /// under it.
+    /// Whether a finite cell has the point inside or on its border, or an infinite one has its facet in the point's
+    /// sight or under it.
     pub(super) fn is_split_by(&self, cell: CellId, p: &G::Point) -> bool {
         let vertices = self.tds.cell_vertices(cell);
         match vertices.iter().position(|&v| v == VertexId::INFINITE) {
@@ -101,8 +101,8 @@ impl<G: Geometry<N>, const N: usize, C: Copy + Default> Triangulation<G, N, (), 
 }
 
 impl<G: Geometry<3>, V> Triangulation<G, 3, V> {
-    /// Takes a vertex out and returns its point; `None` if there is no such vertex. The others keep their numbers; the next
-    /// point that is added gets the number that is now free. Cells without the vertex stay.
+    /// Takes a vertex out and returns its point; `None` if there is no such vertex. The others keep their numbers; the
+    /// next point that is added gets the number that is now free. Cells without the vertex stay.
     ///
     /// # Complexity
     /// Linear in the degree of the vertex.

@@ -78,8 +78,8 @@ impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
 }
 
 impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
-    /// Moves a vertex, which keeps its number and payload, and returns it; `None` if there is no such vertex. If another one is
-    /// at the place already, that one is returned, and the one that was moved is gone.
+    /// Moves a vertex, which keeps its number and payload, and returns it; `None` if there is no such vertex. If
+    /// another one is at the place already, that one is returned, and the one that was moved is gone.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.

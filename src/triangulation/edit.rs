@@ -79,8 +79,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Ok(vertex)
     }
 
-    /// Takes a vertex that was given out and returns its point. Constraints that merely run through it go on without it. Other
-    /// vertices keep their numbers; the next one that is added gets the number that is now free.
+    /// Takes a vertex that was given out and returns its point. Constraints that merely run through it go on without
+    /// it. Other vertices keep their numbers; the next one that is added gets the number that is now free.
     ///
     /// # Errors
     /// Why it stays.

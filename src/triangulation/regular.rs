@@ -8,18 +8,19 @@ use crate::tds::{CellId, VertexId};
 
 use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order};
 
-/// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2 - w`,
-/// seen from below (Aurenhammer 1987; Edelsbrunner and Shah 1996). The dual of the power diagram.
+/// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2
+/// - w`, seen from below (Aurenhammer 1987; Edelsbrunner and Shah 1996). The dual of the power diagram.
 ///
 /// It takes a geometry whose [`side_of_sphere`](Geometry::side_of_sphere) is the power test, like
 /// [`Weighted`](crate::geometry::Weighted). Of any other it is the Delaunay triangulation.
 ///
-/// Points above the lower hull are *hidden*: they have a number and a payload, and no cell. They are kept with the cell that
-/// hides them, and come to light when enough is removed.
+/// Points above the lower hull are *hidden*: they have a number and a payload, and no cell. They are kept with the cell
+/// that hides them, and come to light when enough is removed.
 ///
-/// Ties are broken as in [`Delaunay`](super::Delaunay): so the cells, and which points are hidden, are a function of the
-/// set. A point *on* the lower hull is always seen, inside of a face of it, too: it lies below where the perturbation raises
-/// the larger corners around it. Of points on one site the heaviest counts; of those with equal weights, the first.
+/// Ties are broken as in [`Delaunay`](super::Delaunay): so the cells, and which points are hidden, are a function of
+/// the set. A point *on* the lower hull is always seen, inside of a face of it, too: it lies below where the
+/// perturbation raises the larger corners around it. Of points on one site the heaviest counts; of those with equal
+/// weights, the first.
 ///
 /// ```
 /// use breakline::geometry::Weighted;
@@ -113,15 +114,15 @@ impl<G: Geometry<3>, V> Regular<G, V> {
         regular
     }
 
-    /// Adds a point with a payload, seen or [hidden](Self::is_hidden); the one that is there already, with the payload it
-    /// has, if there is one on the same site and with the same weight.
+    /// Adds a point with a payload, seen or [hidden](Self::is_hidden); the one that is there already, with the payload
+    /// it has, if there is one on the same site and with the same weight.
     ///
     /// # Errors
     /// If a coordinate or the weight is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced and of
-    /// points hidden under these.
+    /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced
+    /// and of points hidden under these.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
         self.inner.admit(&p)?;
         let location = self.inner.locate(&p, None);
@@ -218,7 +219,8 @@ impl<G: Geometry<3>, V> Regular<G, V> {
     }
 
     /// Takes a point out, seen or hidden, and returns it; `None` if there is none with this number. The result is the
-    /// triangulation of the others, which keep their numbers; the next point that is added gets the number that is now free.
+    /// triangulation of the others, which keep their numbers; the next point that is added gets the number that is now
+    /// free.
     ///
     /// # Complexity
     /// As [`Delaunay::remove`](super::Delaunay::remove), and an insertion for each point under the cells around it.
@@ -247,8 +249,9 @@ impl<G: Geometry<3>, V> Regular<G, V> {
         Some(point)
     }
 
-    /// Moves a point, seen or hidden, which keeps its number and payload, and returns it; `None` if there is none with this number. If
-    /// there is one at the place already, with the same weight, that one is returned, and the one that was moved is gone.
+    /// Moves a point, seen or hidden, which keeps its number and payload, and returns it; `None` if there is none with
+    /// this number. If there is one at the place already, with the same weight, that one is returned, and the one that
+    /// was moved is gone.
     ///
     /// # Errors
     /// If a coordinate or the weight is not finite or out of range; nothing has changed then.
@@ -318,8 +321,8 @@ impl<G: Geometry<3>, V> Regular<G, V> {
 }
 
 impl<G: Coordinates<3>, V: Default> Regular<G, V> {
-    /// Triangulates many points, put in in [spatial order](super::spatial_order). Returns the number of each; points on one site
-    /// with one weight share theirs.
+    /// Triangulates many points, put in in [spatial order](super::spatial_order). Returns the number of each; points on
+    /// one site with one weight share theirs.
     ///
     /// # Errors
     /// The first point that is refused, by its position.

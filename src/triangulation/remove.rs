@@ -55,8 +55,8 @@ impl Ring {
 
 #[expect(private_bounds, reason = "the methods are private, too")]
 impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
-    /// Takes out a vertex on no wall and restores the law. Cells are replaced only where they had it as a corner; all of
-    /// them where the rest are collinear.
+    /// Takes out a vertex on no wall and restores the law. Cells are replaced only where they had it as a corner; all
+    /// of them where the rest are collinear.
     ///
     /// # Complexity
     /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.

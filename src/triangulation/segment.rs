@@ -275,11 +275,12 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         }
     }
 
-    /// Replaces the corridor by triangles on both sides of the segment, which is a constraint then. What was a constrained
-    /// Delaunay triangulation is one again: triangles that the segment does not cross see no more than before.
+    /// Replaces the corridor by triangles on both sides of the segment, which is a constraint then. What was a
+    /// constrained Delaunay triangulation is one again: triangles that the segment does not cross see no more than
+    /// before.
     ///
-    /// In any other triangulation, too, the triangles fit the polygon: from each vertex of the border an edge went over the
-    /// segment, so that no edge of the border can hide it from the base.
+    /// In any other triangulation, too, the triangles fit the polygon: from each vertex of the border an edge went over
+    /// the segment, so that no edge of the border can hide it from the base.
     fn retriangulate(&mut self, Scratch { corridor, left, right, parts, .. }: &mut Scratch) {
         for &cell in corridor.iter() {
             *self.tds.cell_data_mut(cell) = Walls::TAKEN_OUT;
@@ -287,8 +288,8 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         for edge in left.edges.iter_mut().chain(&mut right.edges) {
             edge.is_spike = *self.tds.cell_data(edge.cell) == Walls::TAKEN_OUT;
         }
-        // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end, has
-        // it on its left. On the right it is the other way around.
+        // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end,
+        // has it on its left. On the right it is the other way around.
         right.chain.reverse();
         right.edges.reverse();
         let sides = [self.fill(left, corridor, parts), self.fill(right, corridor, parts)];
@@ -302,8 +303,8 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         debug_assert!(corridor.is_empty(), "the corridor was not filled");
     }
 
-    /// Triangulates a side, over the base from its chain's first to its last vertex, with cells from `free`. Returns the
-    /// triangle on the base.
+    /// Triangulates a side, over the base from its chain's first to its last vertex, with cells from `free`. Returns
+    /// the triangle on the base.
     fn fill(&mut self, side: &mut Side, free: &mut Vec<CellId>, parts: &mut Vec<Part>) -> Option<CellId> {
         let mut on_base = None;
         parts.push((0, side.chain.len() - 1, None));

@@ -6,8 +6,8 @@ use crate::tds::{CellId, VertexId};
 use super::segment::{Met, Scratch};
 use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 
-/// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the basic
-/// [`Triangulation`]; where one lies on a constraint, it splits it.
+/// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
+/// basic [`Triangulation`]; where one lies on a constraint, it splits it.
 ///
 /// Constraints are edges here, between vertices. For lines that cross, are told apart, and are taken out again, and for
 /// triangles of good shape there is [`ConstrainedDelaunay`](super::ConstrainedDelaunay).

@@ -93,8 +93,8 @@ impl Curve {
         u64::from((steps + WHOLE).to_bits() as u32)
     }
 
-    /// Where a point lies on the curve, in the high bits. The highest bit is one of the first axis, the others follow in
-    /// turn; a larger coordinate never has the smaller bits.
+    /// Where a point lies on the curve, in the high bits. The highest bit is one of the first axis, the others follow
+    /// in turn; a larger coordinate never has the smaller bits.
     #[inline(always)]
     pub(super) fn key(&self, point: &[f64]) -> u64 {
         match *point {

@@ -60,8 +60,8 @@ impl Edge {
 
 /// The faces of a range of points, and what is needed to build them.
 ///
-/// `PERF:` indexes are checked: without that it is 7 % fewer instructions, and no difference in time that stands out of the
-/// noise (183 against 185 ns a point of 100 000).
+/// `PERF:` indexes are checked: without that it is 7 % fewer instructions, and no difference in time that stands out of
+/// the noise (183 against 185 ns a point of 100 000).
 pub(super) struct Range<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> {
     pub(super) seen: &'a Seen<'a, G, N, FILTERED>,
     /// Of the points from number `first` on.

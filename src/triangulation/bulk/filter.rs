@@ -1,7 +1,7 @@
 //! The questions of a merge, answered by floating point where that is certain.
 //!
-//! All questions are about points seen from one of them, `a`. With `u = b - a`, `v = c - a`, `w = q - a` and the squares
-//! of their lengths `U`, `V`, `W`:
+//! All questions are about points seen from one of them, `a`. With `u = b - a`, `v = c - a`, `w = q - a` and the
+//! squares of their lengths `U`, `V`, `W`:
 //!
 //! ```text
 //!                | ux uy U |
@@ -9,23 +9,23 @@
 //!                | wx wy W |
 //! ```
 //!
-//! The three factors are the plane through the lifted points: two questions about one circle share them, and the last is
-//! the orientation of `a b c`.
+//! The three factors are the plane through the lifted points: two questions about one circle share them, and the last
+//! is the orientation of `a b c`.
 //!
-//! *Error.* A rounding changes a value by a factor between `1 - e` and `1 + e`, `e = 2^-53`. Of each term count those that it
-//! passes through: a difference takes 1, and `U` 4 (two of its differences, the product, the sum). `U vy` has 6 with its
-//! own, 7 after the subtraction; times `wx`, 9 with its own, and 11 after the two sums. `W ux vy` has 10. So the error is
-//! at most `((1 + e)^11 - 1) M`, where `M` is the sum of the terms' magnitudes (Higham 2002, lemma 3.1). By Cauchy and
-//! Schwarz `|wx vy| + |wy vx| <= |w| |v|`; a product of three lengths is no larger than their quadratic mean cubed, and their
-//! sum no larger than that mean three times. With `S = U + V + W`:
+//! *Error.* A rounding changes a value by a factor between `1 - e` and `1 + e`, `e = 2^-53`. Of each term count those
+//! that it passes through: a difference takes 1, and `U` 4 (two of its differences, the product, the sum). `U vy` has 6
+//! with its own, 7 after the subtraction; times `wx`, 9 with its own, and 11 after the two sums. `W ux vy` has 10. So
+//! the error is at most `((1 + e)^11 - 1) M`, where `M` is the sum of the terms' magnitudes (Higham 2002, lemma 3.1).
+//! By Cauchy and Schwarz `|wx vy| + |wy vx| <= |w| |v|`; a product of three lengths is no larger than their quadratic
+//! mean cubed, and their sum no larger than that mean three times. With `S = U + V + W`:
 //!
 //! ```text
 //!   M <= U |v| |w| + V |u| |w| + W |u| |v| = |u| |v| |w| (|u| + |v| + |w|) <= (S / 3)^(3/2) (3 S)^(1/2) = S^2 / 3
 //! ```
 //!
-//! So the bound is `11/3 e S^2 = 4.08e-16 S^2`, but for terms in `e^2` and the 14 roundings of the computed bound itself, for
-//! which a tenth on top is ample. In the [range](crate::kernel::RANGE) of expansions nothing overflows, and nothing
-//! underflows: all is a multiple of `2^-848`.
+//! So the bound is `11/3 e S^2 = 4.08e-16 S^2`, but for terms in `e^2` and the 14 roundings of the computed bound
+//! itself, for which a tenth on top is ample. In the [range](crate::kernel::RANGE) of expansions nothing overflows, and
+//! nothing underflows: all is a multiple of `2^-848`.
 //!
 //! *Orientation.* `ux vy - uy vx` with Shewchuk's bound (1997, section 4.3).
 //!
@@ -204,8 +204,8 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> Seen<'a, G, N,
         self.geometry.orientation(std::array::from_fn(|i| corners[i]))
     }
 
-    /// Whether `q` lies in the circle of a counter-clockwise triangle, ties decided. Seen from `opposite`, it lies beyond the
-    /// edge between the `ends`.
+    /// Whether `q` lies in the circle of a counter-clockwise triangle, ties decided. Seen from `opposite`, it lies
+    /// beyond the edge between the `ends`.
     #[inline(always)]
     pub(super) fn in_circle(&self, opposite: VertexId, ends: [VertexId; 2], q: VertexId) -> bool {
         let at = self.place(opposite);
@@ -216,9 +216,10 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> Seen<'a, G, N,
 
     /// The same; never at infinity.
     ///
-    /// `PERF:` on a grid two to three questions a point come here. Where the unit of all coordinates is known, it is seen at
-    /// once that they are few units apart, so that floating point is exact. The kernel looks for the unit of four points
-    /// each time: the prototype's time on a grid of 1 million points was 300 ns a point by that road, 88 by this one.
+    /// `PERF:` on a grid two to three questions a point come here. Where the unit of all coordinates is known, it is
+    /// seen at once that they are few units apart, so that floating point is exact. The kernel looks for the unit of
+    /// four points each time: the prototype's time on a grid of 1 million points was 300 ns a point by that road, 88 by
+    /// this one.
     #[cold]
     #[inline(never)]
     pub(super) fn in_circle_slowly(&self, opposite: VertexId, ends: [VertexId; 2], q: VertexId) -> bool {

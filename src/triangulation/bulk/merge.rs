@@ -28,7 +28,8 @@ pub(super) const NONE: u32 = u32::MAX;
 const LEFT: usize = 0;
 const RIGHT: usize = 1;
 
-/// The slot of the edge from the nearer end of the hull edge to infinity, or back: over it lies the ghost further up ...
+/// The slot of the edge from the nearer end of the hull edge to infinity, or back: over it lies the ghost further up
+/// ...
 const fn onward(side: usize) -> usize {
     2 - side
 }
@@ -66,16 +67,16 @@ struct Climb {
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
     /// Joins two halves, of which the right one starts at point `mid`.
     ///
-    /// A candidate that is valid stays so while the other side climbs. Say `d` was chosen, and `c` is above `a b` but not
-    /// above `a d`. Then `c`, which is not in the circle of `a b d`, is beyond `b d` as seen from `a`: in the right half,
-    /// but it is one of the left.
+    /// A candidate that is valid stays so while the other side climbs. Say `d` was chosen, and `c` is above `a b` but
+    /// not above `a d`. Then `c`, which is not in the circle of `a b d`, is beyond `b d` as seen from `a`: in the right
+    /// half, but it is one of the left.
     ///
-    /// `PERF:` (callgrind and time of 100 000 points) questions are asked of valid candidates only, and an invalid
-    /// one is not asked for its circle: -10 % on a parabola, where one side alone climbs for long, and no loss elsewhere. What the
-    /// loop needs of a hull edge is in variables, and a ghost is written once after all its flips: -8 % of the
-    /// instructions, -5 % on the parabola. Reading places one ghost ahead, as the prototype did against mispredictions: +7 % instructions, no
-    /// gain. Asking both candidates without branches: 8.6 instead of 11.6 simulated mispredictions a point, no gain on
-    /// 1 million uniform points, and +10 % on a parabola.
+    /// `PERF:` (callgrind and time of 100 000 points) questions are asked of valid candidates only, and an invalid one
+    /// is not asked for its circle: -10 % on a parabola, where one side alone climbs for long, and no loss elsewhere.
+    /// What the loop needs of a hull edge is in variables, and a ghost is written once after all its flips: -8 % of the
+    /// instructions, -5 % on the parabola. Reading places one ghost ahead, as the prototype did against mispredictions:
+    /// +7 % instructions, no gain. Asking both candidates without branches: 8.6 instead of 11.6 simulated
+    /// mispredictions a point, no gain on 1 million uniform points, and +10 % on a parabola.
     pub(super) fn merge(&mut self, left: Part, right: Part, mid: usize, axis: Axis) -> Part {
         let [Foot { vertex: mut a, at: mut at_a, ghost: gl }, Foot { vertex: mut b, at: mut at_b, ghost: gr }] =
             self.lower_tangent(self.extreme::<LEFT>(left, axis), self.extreme::<RIGHT>(right, axis));
@@ -296,7 +297,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
     }
 
-    /// Takes out a hull edge: the triangle behind it becomes the ghost of its far edge, the near one is the next to look at.
+    /// Takes out a hull edge: the triangle behind it becomes the ghost of its far edge, the near one is the next to
+    /// look at.
     ///
     /// ```text
     ///       c                    c
@@ -338,8 +340,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         self.link_to((climb.ghost, onward(SIDE)), climb.onward);
     }
 
-    /// The chosen candidate's ghost becomes the triangle on the base, whose other end is given. Returns the edge that is open
-    /// then, and its new end.
+    /// The chosen candidate's ghost becomes the triangle on the base, whose other end is given. Returns the edge that
+    /// is open then, and its new end.
     #[inline(always)]
     fn step<const SIDE: usize>(&mut self, climb: &mut Climb, open: Edge, other: VertexId) -> (Edge, VertexId) {
         let Climb { ghost, vertex, onward: next, .. } = *climb;

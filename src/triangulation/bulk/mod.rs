@@ -122,8 +122,8 @@ where
     if N != 3 || !(3..=MAX_POINTS).contains(&count) {
         return (points, None);
     }
-    // PERF: filling in the faces of each part just before it is built, when its memory is then in the cache, made no difference
-    // (262 against 253 ns a point), at the price of unsafe code.
+    // PERF: filling in the faces of each part just before it is built, when its memory is then in the cache, made no
+    // difference (262 against 253 ns a point), at the price of unsafe code.
     let mut faces: Vec<Links<3>> =
         (0..2 * count - 2).into_par_iter().with_min_len(grain.points).map(|_| Links::UNUSED).collect();
     if have_plans {

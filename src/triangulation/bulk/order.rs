@@ -100,16 +100,16 @@ impl Sorted {
     }
 }
 
-/// The positions `0..count` in the order of a Morton curve through the points' coordinates (one to three of
-/// them; Morton 1966). Points that it cannot tell apart are in the order of a curve through these alone, and so on; points
-/// in one place keep the order of their positions. For distinct points the order is a function of the set.
+/// The positions `0..count` in the order of a Morton curve through the points' coordinates (one to three of them;
+/// Morton 1966). Points that it cannot tell apart are in the order of a curve through these alone, and so on; points in
+/// one place keep the order of their positions. For distinct points the order is a function of the set.
 ///
 /// # Errors
 /// If there are more than 2^31 - 2 points.
 ///
 /// # Complexity
-/// O(n), on all threads, for points that are spread evenly; where many fall into one of a few million squares, O(n log n) for each
-/// factor of 2^31 in their distances. 12 bytes a point.
+/// O(n), on all threads, for points that are spread evenly; where many fall into one of a few million squares, O(n log
+/// n) for each factor of 2^31 in their distances. 12 bytes a point.
 pub fn spatial_order<A: AsRef<[f64]>>(
     count: usize,
     coordinates: impl Fn(usize) -> A + Sync,
@@ -295,8 +295,8 @@ struct Sorter<'a, C, S> {
 }
 
 impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<'_, C, S> {
-    /// Sorts a group, moves the sites to its front and counts them; the points that are not the first on their site come
-    /// beside.
+    /// Sorts a group, moves the sites to its front and counts them; the points that are not the first on their site
+    /// come beside.
     fn sort(&self, group: &[AtomicU64], scratch: &mut Scratch) -> (usize, Vec<(u32, u32)>) {
         let Scratch { records, spare } = scratch;
         records.clear();
@@ -370,7 +370,8 @@ fn sort_records(records: &mut Vec<u64>, spare: &mut Vec<u64>, low: u64) {
         records.sort_unstable();
         return;
     }
-    // A group has the smallest and the largest key in its first and last bucket; what lies below the first one is in no record.
+    // A group has the smallest and the largest key in its first and last bucket; what lies below the first one is in no
+    // record.
     let (least, largest) = records.iter().fold((u64::MAX, 0), |(least, largest), &r| (least.min(r), largest.max(r)));
     let shift = low.count_ones();
     let key = |record: u64| (record >> shift) - (least >> shift);

@@ -45,7 +45,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
 
     /// Four points, if no three of them are collinear: two triangles, or three around the point within.
     ///
-    /// `PERF:` makes a quarter of the merges unnecessary (0.46 to 0.35 a point; -3 to -4 % of their time in the prototype).
+    /// `PERF:` makes a quarter of the merges unnecessary (0.46 to 0.35 a point; -3 to -4 % of their time in the
+    /// prototype).
     pub(super) fn quadruple(&mut self, lo: usize) -> Option<Part> {
         let mut v = [0, 1, 2, 3].map(|k| VertexId::new(lo + k));
         match self.seen.turn([v[0], v[1], v[2]]) {

@@ -17,7 +17,8 @@ pub struct Buckets {
 }
 
 impl Buckets {
-    /// About `count` squares over a box, which need not hold all points: what lies outside belongs to the squares on its border.
+    /// About `count` squares over a box, which need not hold all points: what lies outside belongs to the squares on
+    /// its border.
     pub fn over([low, high]: [[f64; 2]; 2], count: usize) -> Self {
         let count = count.clamp(1, 1 << 28) as f64;
         let [width, height] = [0, 1].map(|k| (high[k] - low[k]).max(0.0));

@@ -11,15 +11,16 @@ use super::dual::{HalfPlane, VoronoiCell, cell_of, minus};
 
 impl<G: Metric, V> Regular<G, V> {
     /// The point of the least power at a place, its squared distance less its weight; of several, the first in the
-    /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be one of the same power. `None` if
-    /// there are no points. Exact. The place must be one that the geometry admits; its weight does not count.
+    /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be
+    /// one of the same power. `None` if there are no points. Exact. The place must be one that the geometry admits; its
+    /// weight does not count.
     ///
-    /// *Neighbors suffice.* A point that is not the nearest has a neighbor that is nearer, as its cell of the power diagram is
-    /// bounded by those of its neighbors; and cells that meet in a place are connected there by neighbors.
+    /// *Neighbors suffice.* A point that is not the nearest has a neighbor that is nearer, as its cell of the power
+    /// diagram is bounded by those of its neighbors; and cells that meet in a place are connected there by neighbors.
     ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate), and the degrees of a few vertices; below dimension 2 a look at all
-    /// vertices.
+    /// A [walk](crate::triangulation::Triangulation::locate), and the degrees of a few vertices; below dimension 2 a
+    /// look at all vertices.
     pub fn nearest(&self, q: &G::Point) -> Option<VertexId> {
         let far = |a: VertexId, b: VertexId| self.geometry().compare_distance(q, self.point(a), self.point(b));
         let order = |a: VertexId, b: VertexId| self.geometry().compare(self.point(a), self.point(b));
@@ -51,8 +52,8 @@ impl<G: Metric, V> Regular<G, V> {
 }
 
 impl<K: Kernel, V> Regular<Weighted<K>, V> {
-    /// What of a convex polygon, counter-clockwise, has no less power with any other point than with this one. The cells of all
-    /// points tile it; that of a hidden point has no corners. What is computed is rounded.
+    /// What of a convex polygon, counter-clockwise, has no less power with any other point than with this one. The
+    /// cells of all points tile it; that of a hidden point has no corners. What is computed is rounded.
     ///
     /// # Complexity
     /// The degree of the vertex times the corners of the polygon and the cell.
