@@ -4,10 +4,10 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use breakline::geometry::{Plane, Space};
+use breakline::geometry::{Plane, Space, Weighted};
 use breakline::kernel::Adaptive;
-use breakline::tds::VertexId;
-use breakline::triangulation::{Blocked, Constrained, Delaunay, Level, Triangulation, Walls};
+use breakline::tds::{Tds, VertexId};
+use breakline::triangulation::{Blocked, Constrained, Delaunay, Level, Regular, Triangulation, Walls};
 use common::random::Random;
 
 type Point = [f64; 2];
@@ -171,4 +171,26 @@ fn constraints_hold() {
             assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), walls, "{:?}", t.points());
         }
     }
+}
+
+/// 20 x 20 points, in any order: 400 vertices, two triangles to each of 19 x 19 squares.
+#[test]
+fn a_grid_of_twenty() {
+    let mut random = Random(35);
+    let mut points: Vec<Point> = (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)]).collect();
+    random.shuffle(&mut points);
+    let mut basic: Triangulation<Plane, 3> = Triangulation::new(Plane::default());
+    let mut delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
+    let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
+    for &p in &points {
+        basic.insert(p).unwrap();
+        delaunay.insert(p).unwrap();
+        regular.insert([p[0], p[1], 3.0]).unwrap();
+    }
+    let counts =
+        |t: &Tds<3>| (t.vertex_count(), t.cells().filter(|&cell| !t.is_infinite(cell)).count(), t.hull().count());
+    for tds in [basic.tds(), delaunay.tds(), regular.tds()] {
+        assert_eq!(counts(tds), (400, 722, 76));
+    }
+    assert_eq!((basic.check(Level::Law), delaunay.check(Level::Law), regular.check(Level::Law)), Default::default());
 }
