@@ -22,6 +22,7 @@
 //! | the triangles, edges, vertices around a vertex | [`Tds::around`], [`Tds::edges_around`], [`Tds::vertices_around`] |
 //! | all edges, or one by its ends | [`Tds::edges`], [`Tds::finite_edges`], [`Tds::edge`] |
 //! | the convex hull | [`Tds::hull`] |
+//! | what does not depend on where links are kept | [`Complex`] |
 //! | whether it is a sphere | [`Tds::check_links`], [`Tds::check_manifold`] |
 //!
 //! Removed cells and vertices leave holes in the numbers, which the next ones fill: an array indexed by
@@ -31,6 +32,7 @@
 //! [`triangulation`](crate::triangulation).
 
 mod check;
+mod complex;
 mod id;
 mod plane;
 #[cfg(feature = "serde")]
@@ -39,6 +41,8 @@ mod remove;
 mod zone;
 
 pub use check::Flaw;
+pub use complex::Complex;
+pub(crate) use complex::{Star, edges_around, vertices, vertices_around};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 #[cfg(feature = "serde")]
 pub(crate) use rebuild::Parts;

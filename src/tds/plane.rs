@@ -13,6 +13,7 @@
 
 use std::iter::FusedIterator;
 
+use super::complex::{self, Star};
 use super::{CellId, Tds, VertexId, ccw, cw};
 
 /// An iterator that knows how many items are left.
@@ -43,60 +44,7 @@ pub(super) fn counted<I: Iterator>(items: I, left: usize) -> impl ExactSizeItera
     Counted { items, left }
 }
 
-/// The cells that have a vertex, from `front` counter-clockwise to before `end`.
-struct Star<'a, V, C> {
-    tds: &'a Tds<3, V, C>,
-    vertex: VertexId,
-    front: CellId,
-    /// The same as `front` at the start, when all are left, and when none is.
-    end: CellId,
-    is_over: bool,
-}
-
-impl<V, C: Copy + Default> Star<'_, V, C> {
-    /// The next cell across the side that `turn` gives for the place of the vertex in a face. On a line both ways lead to
-    /// the only other cell.
-    fn beside(&self, cell: CellId, turn: impl Fn(usize) -> usize) -> CellId {
-        let i = self.tds.index_of(cell, self.vertex).unwrap_or(0);
-        self.tds.neighbor(cell, if self.tds.dimension == 1 { 1 - i } else { turn(i) })
-    }
-}
-
-impl<V, C: Copy + Default> Iterator for Star<'_, V, C> {
-    type Item = CellId;
-
-    fn next(&mut self) -> Option<CellId> {
-        if self.is_over {
-            return None;
-        }
-        let cell = self.front;
-        self.front = self.beside(cell, ccw);
-        self.is_over = self.front == self.end;
-        Some(cell)
-    }
-}
-
-impl<V, C: Copy + Default> DoubleEndedIterator for Star<'_, V, C> {
-    fn next_back(&mut self) -> Option<CellId> {
-        if self.is_over {
-            return None;
-        }
-        self.end = self.beside(self.end, cw);
-        self.is_over = self.front == self.end;
-        Some(self.end)
-    }
-}
-
-impl<V, C: Copy + Default> FusedIterator for Star<'_, V, C> {}
-
 impl<V, C: Copy + Default> Tds<3, V, C> {
-    /// The cells around a vertex from dimension 1 on.
-    fn star_of(&self, vertex: VertexId) -> Star<'_, V, C> {
-        let start = self.cell_of(vertex).filter(|_| self.dimension > 0);
-        let at = start.unwrap_or(CellId::NONE);
-        Star { tds: self, vertex, front: at, end: at, is_over: start.is_none() }
-    }
-
     /// All edges, each once: the cell that has it on its border and the index of the vertex opposite. In order of these
     /// pairs, of the two that a face on each side gives the smaller one.
     ///
@@ -119,31 +67,26 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
 
     /// The finite and infinite faces around a vertex, counter-clockwise. Empty below dimension 2.
     pub fn around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = CellId> + FusedIterator + '_ {
-        let mut star = self.star_of(vertex);
-        star.is_over |= self.dimension < 2;
-        star
+        let Ok(star) = Star::new(self, vertex, 2);
+        star.map(|Ok(cell)| cell)
     }
 
     /// The edges that start at a vertex, counter-clockwise, each as the face on its left and the index of the vertex
     /// opposite; those to the infinite vertex included. On a line as in [`edges`](Self::edges).
     pub fn edges_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = (CellId, usize)> + '_ {
-        self.star_of(vertex).map(move |cell| match self.dimension {
-            1 => (cell, 2),
-            _ => (cell, cw(self.index_of(cell, vertex).unwrap_or(0))),
-        })
+        let Ok(edges) = complex::edges_around(self, vertex);
+        edges.map(|Ok(edge)| edge)
     }
 
     /// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included.
     pub fn vertices_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
-        self.star_of(vertex).map(move |cell| {
-            let i = self.index_of(cell, vertex).unwrap_or(0);
-            self.vertex(cell, if self.dimension == 1 { 1 - i } else { ccw(i) })
-        })
+        let Ok(vertices) = complex::vertices_around(self, vertex);
+        vertices.map(|Ok(v)| v)
     }
 
     /// The number of edges at a vertex, that to the infinite vertex included. Time proportional to it.
     pub fn degree(&self, vertex: VertexId) -> usize {
-        self.star_of(vertex).count()
+        self.vertices_around(vertex).count()
     }
 
     /// The vertices on the convex hull, those in the middle of its sides included, counter-clockwise from any. Of

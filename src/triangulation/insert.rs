@@ -104,7 +104,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             let positive = if self.is_full() {
                 self.geometry.orientation(self.simplex(cell)) == Sign::Positive
             } else {
-                let simplex = self.flat_with(cell, usize::MAX, self.point(vertex));
+                let simplex: Vec<_> = self.tds.cell_vertices(cell).iter().map(|&v| self.point(v)).collect();
                 self.geometry.orientation_in_flat(&simplex) == Sign::Positive
             };
             if !positive {

@@ -14,6 +14,9 @@
 //! | [`Constrained`] | some edges are forced, and do not cross | plane |
 //! | [`ConstrainedDelaunay`] | Delaunay among vertices that see each other past lines, which may cross | plane |
 //!
+//! [`Compact`] is read where it lies, in a file mapped to memory, say: what the kinds write with `write_compact`.
+//! Questions are the same there, and are written once, over [`Embedded`].
+//!
 //! ```
 //! use breakline::geometry::Plane;
 //! use breakline::triangulation::{Delaunay, Level, Location};
@@ -58,6 +61,7 @@
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | see it | [`Triangulation::svg`] |
 //! | save it | serde, with the feature `serde`: all kinds but [`ConstrainedDelaunay`], in the plane |
+//! | keep it in a file, and ask without loading it | [`Delaunay::write_compact`], [`Compact`] |
 //! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], and all of [`Triangulation::tds`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
@@ -77,10 +81,12 @@
 mod basic;
 mod bulk;
 mod check;
+mod compact;
 mod constrained;
 mod crossed;
 mod delaunay;
 mod edit;
+mod embedded;
 mod flip;
 mod insert;
 mod lines;
@@ -94,15 +100,18 @@ mod remove;
 #[cfg(feature = "serde")]
 mod saved;
 mod segment;
+mod sides;
 mod simplify;
 mod walled;
 
 pub(crate) use bulk::Sites;
 pub use bulk::spatial_order;
 pub use check::{Flaw, Level};
+pub use compact::{Compact, Damaged, Law};
 pub use constrained::{ConstrainedDelaunay, Walls};
 pub use delaunay::Delaunay;
 pub use edit::Kept;
+pub use embedded::{Embedded, PointOf};
 pub use lines::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub(crate) use network::VertexLines;
@@ -113,7 +122,7 @@ pub use walled::{Blocked, Constrained};
 
 use std::fmt;
 
-use crate::geometry::{Geometry, in_sphere, in_sphere_of_flat};
+use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Tds, VertexId, Zone};
 
@@ -239,75 +248,15 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.tds.dimension() as usize == N - 1
     }
 
-    /// The points of a finite cell of any dimension, with `q` in place of the vertex at `replaced`.
-    fn flat_with<'a>(&'a self, cell: CellId, replaced: usize, q: &'a G::Point) -> Vec<&'a G::Point> {
-        let vertices = self.tds.cell_vertices(cell).iter().enumerate();
-        vertices.map(|(i, v)| if i == replaced { q } else { &self.points[v.index()] }).collect()
-    }
-
-    /// The orientation of a cell with `q` in place of one vertex, all others finite. Positive if `q` is
-    /// on the side of the facet opposite that vertex on which the cell is (or, with the infinite vertex
-    /// replaced, beyond the hull there).
     #[inline(always)]
     fn side_of_facet(&self, cell: CellId, replaced: usize, q: &G::Point) -> Sign {
-        if self.is_full() {
-            let corners = self.tds.corners(cell);
-            let simplex = std::array::from_fn(|i| if i == replaced { q } else { &self.points[corners[i].index()] });
-            self.geometry.orientation(simplex)
-        } else {
-            self.side_of_facet_in_flat(cell, replaced, q)
-        }
+        let Ok(sign) = sides::side_of_facet(self, cell, replaced, q);
+        sign
     }
 
-    #[cold]
-    fn side_of_facet_in_flat(&self, cell: CellId, replaced: usize, q: &G::Point) -> Sign {
-        self.geometry.orientation_in_flat(&self.flat_with(cell, replaced, q))
-    }
-
-    /// Whether a new point `q` destroys the cell under the empty sphere law, ties decided. The sphere of
-    /// an infinite cell is the open half space beyond its finite facet, with the inside of the facet's
-    /// own sphere.
     #[inline(always)]
     fn in_conflict(&self, cell: CellId, q: &G::Point) -> bool {
-        if !self.is_full() {
-            return self.in_conflict_in_flat(cell, q);
-        }
-        let corners = self.tds.corners(cell);
-        match corners.iter().position(|&v| v == VertexId::INFINITE) {
-            None => in_sphere(&self.geometry, self.simplex(cell), q),
-            Some(infinite) => self.beyond_hull(cell, infinite, q),
-        }
-    }
-
-    fn beyond_hull(&self, cell: CellId, infinite: usize, q: &G::Point) -> bool {
-        match self.side_of_facet(cell, infinite, q) {
-            Sign::Positive => true,
-            Sign::Negative => false,
-            Sign::Zero => {
-                let mut facet = self.flat_with(cell, infinite, q);
-                facet.remove(infinite);
-                in_sphere_of_flat(&self.geometry, &facet, q)
-            }
-        }
-    }
-
-    #[cold]
-    fn in_conflict_in_flat(&self, cell: CellId, q: &G::Point) -> bool {
-        let vertices = self.tds.cell_vertices(cell);
-        match vertices.iter().position(|&v| v == VertexId::INFINITE) {
-            None => in_sphere_of_flat(&self.geometry, &self.flat_with(cell, usize::MAX, q), q),
-            Some(infinite) if vertices.len() == 2 => {
-                // The end of a line: the edge inwards says which way is out.
-                let inner = self.tds.neighbor(cell, infinite);
-                let end = vertices[1 - infinite];
-                let replaced = 1 - self.tds.index_of(inner, end).unwrap_or(0);
-                match self.side_of_facet(inner, replaced, q) {
-                    Sign::Negative => true,
-                    Sign::Zero => in_sphere_of_flat(&self.geometry, &[self.point(end)], q), // on its site
-                    Sign::Positive => false,
-                }
-            }
-            Some(infinite) => self.beyond_hull(cell, infinite, q),
-        }
+        let Ok(is_in_conflict) = sides::in_conflict(self, cell, q);
+        is_in_conflict
     }
 }

@@ -65,7 +65,7 @@ impl<L: Geometry<3>> Level<L> {
             Location::OutsideAffineHull => return (None, tds.vertices().next()),
         };
         let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
-        let far = |v: &VertexId| self.sample.rough_distance(*v, q);
+        let far = |v: &VertexId| self.sample.geometry().rough_distance(self.sample.point(*v), q);
         (Some(cell), finite.min_by(|p, q| far(p).total_cmp(&far(q))))
     }
 

@@ -26,11 +26,16 @@ pub use hierarchy::Hierarchy;
 pub use start::{JumpAndWalk, Locate, Near};
 pub use straight::StraightLine;
 
+use std::borrow::Borrow;
+use std::cmp::Ordering;
+
 use crate::geometry::Geometry;
 use crate::num::Sign;
-use crate::tds::{CellId, VertexId};
+use crate::tds::{CellId, Complex, VertexId};
 
 use super::Triangulation;
+use super::embedded::{Embedded, PointOf};
+use super::sides::{points_with, side_of_facet};
 
 /// Where a point lies in a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,6 +98,10 @@ impl Dice {
 /// Steps after which a walk looks for a better place to start from. In spatial order nearly all are over long before.
 const PATIENCE: usize = 64;
 
+/// A walk of that many times more steps than there are cells is lost: on a Delaunay triangulation none comes to a cell
+/// twice, and on others the chance is halved, at the least, with each round.
+const WANDERING: usize = 8;
+
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Finds where `q` lies, by a remembering stochastic walk (Devillers, Pion, Teillaud 2002) from a
     /// cell nearby, or from the last insertion. Ends on any triangulation, with probability one. If it takes long, it goes on
@@ -102,99 +111,128 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// The point must be one that the geometry [admits](Geometry::admits): for others the predicates have no
     /// answer, and so has this.
     pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
-        let start = near.filter(|&c| self.tds.is_used(c)).or(self.last.filter(|&c| self.tds.is_used(c)));
-        let Some(mut cell) = start.or_else(|| self.tds.cell_of(VertexId::INFINITE)) else {
-            return Location::OutsideAffineHull;
-        };
-        let width = self.tds.cell_vertices(cell).len();
-        if let Some(infinite) = self.tds.index_of(cell, VertexId::INFINITE) {
-            cell = self.tds.neighbor(cell, infinite);
-        }
-        if width == 1 {
-            let only = self.tds.vertex(cell, 0);
-            return match self.geometry.compare(q, self.point(only)) {
-                std::cmp::Ordering::Equal => Location::Vertex(only),
-                _ => Location::OutsideAffineHull,
-            };
-        }
-        if !self.is_full() && self.leaves_flat(cell, q) {
-            return Location::OutsideAffineHull;
-        }
-        let mut dice = Dice::default();
-        let mut from = None;
-        let mut steps = 0;
-        'walk: loop {
-            steps += 1;
-            if steps == PATIENCE
-                && let Some(nearer) = self.jump(cell, q, &mut dice)
-            {
-                (cell, from) = (nearer, None);
-            }
-            let mut touching = 0u8;
-            let first = dice.below(width);
-            for turn in 0..width {
-                let i = if first + turn < width { first + turn } else { first + turn - width };
-                let beyond = self.tds.neighbor(cell, i);
-                if from == Some(beyond) {
-                    continue; // we came from there: `q` lies strictly on this side
-                }
-                match self.side_of_facet(cell, i, q) {
-                    Sign::Positive => {}
-                    Sign::Zero => touching |= 1 << i,
-                    Sign::Negative if self.tds.is_infinite(beyond) => return Location::OutsideHull { cell: beyond },
-                    Sign::Negative => {
-                        from = Some(cell);
-                        cell = beyond;
-                        continue 'walk;
-                    }
-                }
-            }
-            if touching.count_ones() as usize == width - 1 {
-                // On all facets but one: on the vertex opposite that one.
-                return Location::Vertex(self.tds.vertex(cell, (!touching).trailing_zeros() as usize));
-            }
-            return Location::Cell { cell, touching };
-        }
+        let start = near.filter(|&c| self.tds.is_used(c)).or(self.last);
+        let Ok(location) = walk(self, q, start);
+        location
     }
 
-    /// A finite cell that is nearer to `q` than this one, as far as some vertices tell.
-    #[cold]
-    fn jump(&self, cell: CellId, q: &G::Point, dice: &mut Dice) -> Option<CellId> {
-        let nearer = self.nearest_of_some(q, self.rough_distance(self.tds.vertex(cell, 0), q), dice)?;
-        let cell = self.tds.cell_of(nearer)?;
-        let infinite = self.tds.index_of(cell, VertexId::INFINITE);
-        Some(infinite.map_or(cell, |i| self.tds.neighbor(cell, i)))
-    }
-
-    fn rough_distance(&self, vertex: VertexId, q: &G::Point) -> f64 {
-        self.geometry.rough_distance(self.point(vertex), q)
-    }
-
-    /// Of `n^(1/3)` vertices the one nearest to `q`, if it is nearer than that.
-    fn nearest_of_some(&self, q: &G::Point, mut than: f64, dice: &mut Dice) -> Option<VertexId> {
-        let slots = self.tds.vertex_slots();
-        let mut nearest = None;
-        for _ in 0..(slots as f64).cbrt() as usize {
-            let vertex = VertexId::new(dice.below(slots));
-            if !self.tds.is_vertex(vertex) {
-                continue;
-            }
-            let distance = self.rough_distance(vertex, q);
-            if distance < than {
-                (than, nearest) = (distance, Some(vertex));
-            }
-        }
+    fn nearest_of_some(&self, q: &G::Point) -> Option<VertexId> {
+        let Ok(nearest) = nearest_of_some(self, q, f64::INFINITY, &mut Dice::default());
         nearest
     }
+}
 
-    /// Whether `q` lies outside of the line or plane of all points, which a finite cell spans.
-    fn leaves_flat(&self, cell: CellId, q: &G::Point) -> bool {
-        let mut simplex = self.flat_with(cell, usize::MAX, q);
-        simplex.push(q);
-        let sign = match <[&G::Point; N]>::try_from(simplex) {
-            Ok(full) => self.geometry.orientation(full),
-            Err(flat) => self.geometry.orientation_in_flat(&flat),
-        };
-        sign != Sign::Zero
+/// Where `q` lies, by a walk from a cell, or if there is none by that number, from one at infinity.
+///
+/// On links that are damaged it ends with an error: if a link leads nowhere, or if there are many times more steps than cells.
+pub(super) fn walk<const N: usize, T: Embedded<N>>(
+    t: &T,
+    q: &PointOf<T, N>,
+    start: Option<CellId>,
+) -> Result<Location, T::Error> {
+    let complex = t.complex();
+    let start = match start.filter(|&c| complex.is_used(c)) {
+        Some(cell) => Some(cell),
+        None => complex.cell_of(VertexId::INFINITE)?,
+    };
+    let Some(start) = start else {
+        return Ok(Location::OutsideAffineHull);
+    };
+    let width = complex.width();
+    let mut cell = complex.inner(start)?;
+    if width == 1 {
+        let only = complex.vertex(cell, 0)?;
+        return Ok(match t.geometry().compare(q, t.point(only)?.borrow()) {
+            Ordering::Equal => Location::Vertex(only),
+            _ => Location::OutsideAffineHull,
+        });
     }
+    if width < N && leaves_flat(t, cell, q)? {
+        return Ok(Location::OutsideAffineHull);
+    }
+    let mut dice = Dice::default();
+    let mut from = None;
+    let mut steps = 0;
+    'walk: loop {
+        steps += 1;
+        complex.ensure(cell, || steps < WANDERING * (complex.cell_slots() + PATIENCE))?;
+        if steps == PATIENCE
+            && let Some(nearer) = jump(t, cell, q, &mut dice)?
+        {
+            (cell, from) = (nearer, None);
+        }
+        let mut touching = 0u8;
+        let first = dice.below(width);
+        for turn in 0..width {
+            let i = if first + turn < width { first + turn } else { first + turn - width };
+            let beyond = complex.neighbor(cell, i)?;
+            if from == Some(beyond) {
+                continue; // we came from there: `q` lies strictly on this side
+            }
+            match side_of_facet(t, cell, i, q)? {
+                Sign::Positive => {}
+                Sign::Zero => touching |= 1 << i,
+                Sign::Negative if complex.is_infinite(beyond)? => return Ok(Location::OutsideHull { cell: beyond }),
+                Sign::Negative => {
+                    from = Some(cell);
+                    cell = beyond;
+                    continue 'walk;
+                }
+            }
+        }
+        if touching.count_ones() as usize == width - 1 {
+            // On all facets but one: on the vertex opposite that one.
+            return Ok(Location::Vertex(complex.vertex(cell, (!touching).trailing_zeros() as usize)?));
+        }
+        return Ok(Location::Cell { cell, touching });
+    }
+}
+
+/// A finite cell that is nearer to `q` than this one, as far as some vertices tell.
+#[cold]
+fn jump<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    q: &PointOf<T, N>,
+    dice: &mut Dice,
+) -> Result<Option<CellId>, T::Error> {
+    let distance = t.geometry().rough_distance(t.point(t.complex().vertex(cell, 0)?)?.borrow(), q);
+    let Some(nearer) = nearest_of_some(t, q, distance, dice)? else {
+        return Ok(None);
+    };
+    t.complex().cell_of(nearer)?.map(|cell| t.complex().inner(cell)).transpose()
+}
+
+/// Of `n^(1/3)` vertices the one nearest to `q`, if it is nearer than that.
+fn nearest_of_some<const N: usize, T: Embedded<N>>(
+    t: &T,
+    q: &PointOf<T, N>,
+    mut than: f64,
+    dice: &mut Dice,
+) -> Result<Option<VertexId>, T::Error> {
+    let slots = t.complex().vertex_slots();
+    let mut nearest = None;
+    for _ in 0..(slots as f64).cbrt() as usize {
+        let vertex = VertexId::new(dice.below(slots));
+        if t.complex().cell_of(vertex)?.is_none() {
+            continue;
+        }
+        let distance = t.geometry().rough_distance(t.point(vertex)?.borrow(), q);
+        if distance < than {
+            (than, nearest) = (distance, Some(vertex));
+        }
+    }
+    Ok(nearest)
+}
+
+/// Whether `q` lies outside of the line or plane of all points, which a finite cell spans.
+fn leaves_flat<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<bool, T::Error> {
+    let points = points_with(t, cell, usize::MAX, q)?;
+    let mut simplex: Vec<&PointOf<T, N>> = points.iter().collect();
+    simplex.push(q);
+    let sign = match <[&PointOf<T, N>; N]>::try_from(simplex) {
+        Ok(full) => t.geometry().orientation(full),
+        Err(flat) => t.geometry().orientation_in_flat(&flat),
+    };
+    Ok(sign != Sign::Zero)
 }

@@ -2,7 +2,7 @@ use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};
 
 use super::super::Triangulation;
-use super::{Dice, Location};
+use super::Location;
 
 /// A strategy to find where a point lies: a value of the caller's, which may learn from insertions and removals.
 ///
@@ -75,7 +75,7 @@ pub struct JumpAndWalk;
 
 impl<G: Geometry<N>, const N: usize> Locate<G, N> for JumpAndWalk {
     fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
-        let nearest = triangulation.nearest_of_some(q, f64::INFINITY, &mut Dice::default());
+        let nearest = triangulation.nearest_of_some(q);
         triangulation.locate(q, nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)))
     }
 }

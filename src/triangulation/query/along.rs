@@ -1,11 +1,13 @@
 //! What a segment meets on its way.
 
+use std::borrow::Borrow;
 use std::cmp::Ordering;
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
-use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::tds::{self, CellId, Complex, Star, VertexId, ccw, cw};
 
+use super::super::embedded::{Embedded, PointOf};
 use super::super::{Location, Triangulation};
 
 /// A face, edge or vertex whose inside a segment meets: the faces are open, and so are the edges.
@@ -52,139 +54,197 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         [a, b]: [&G::Point; 2],
         near: Option<CellId>,
     ) -> impl Iterator<Item = Passage> + use<'t, G, V, C> {
-        let way = Way { triangulation: self, a: *a, b: *b };
-        let first = if self.is_full() { way.first(near) } else { None };
-        std::iter::successors(first, move |passage| way.after(passage))
+        let location = if self.is_full() { self.locate(a, near) } else { Location::OutsideAffineHull };
+        Along::new(self, [a, b], location).map(|Ok(passage)| passage)
+    }
+}
+
+/// What a segment meets, from its start on.
+pub(in crate::triangulation) struct Along<'t, T: Embedded<3>> {
+    way: Way<'t, T>,
+    next: Result<Option<Passage>, T::Error>,
+    /// Each face is met once: if there are more, links lead astray.
+    faces: usize,
+}
+
+impl<'t, T: Embedded<3>> Along<'t, T> {
+    /// Given where the segment starts.
+    pub(in crate::triangulation) fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
+        let way = Way { t, a: *a, b: *b };
+        let next = way.first(location);
+        Along { way, next, faces: 0 }
+    }
+
+    fn after(&mut self, passage: Passage) -> Result<Option<Passage>, T::Error> {
+        if let Passage::Face(cell) = passage {
+            self.faces += 1;
+            let complex = self.way.t.complex();
+            complex.ensure(cell, || self.faces <= complex.cell_slots())?;
+        }
+        self.way.after(passage)
+    }
+}
+
+impl<T: Embedded<3>> Iterator for Along<'_, T> {
+    type Item = Result<Passage, T::Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let passage = std::mem::replace(&mut self.next, Ok(None)).transpose()?;
+        if let Ok(passage) = passage {
+            self.next = self.after(passage);
+        }
+        Some(passage)
     }
 }
 
 /// A segment on its way.
-struct Way<'a, G: Geometry<3>, V, C> {
-    triangulation: &'a Triangulation<G, 3, V, C>,
-    a: G::Point,
-    b: G::Point,
+struct Way<'t, T: Embedded<3>> {
+    t: &'t T,
+    a: PointOf<T, 3>,
+    b: PointOf<T, 3>,
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Way<'_, G, V, C> {
+impl<T: Embedded<3>> Way<'_, T> {
     /// On which side of the line a vertex lies: positive on the left.
-    fn side(&self, vertex: VertexId) -> Sign {
-        let t = self.triangulation;
-        t.geometry.orientation([&self.a, &self.b, t.point(vertex)])
+    fn side(&self, vertex: VertexId) -> Result<Sign, T::Error> {
+        Ok(self.t.geometry().orientation([&self.a, &self.b, self.t.point(vertex)?.borrow()]))
+    }
+
+    /// On which side of an edge a point lies.
+    fn beside(&self, [from, to]: [VertexId; 2], p: &PointOf<T, 3>) -> Result<Sign, T::Error> {
+        Ok(self.t.geometry().orientation([self.t.point(from)?.borrow(), self.t.point(to)?.borrow(), p]))
     }
 
     /// On which side of an edge the segment ends.
-    fn end_side(&self, [from, to]: [VertexId; 2]) -> Sign {
-        let t = self.triangulation;
-        t.geometry.orientation([t.point(from), t.point(to), &self.b])
+    fn end_side(&self, edge: [VertexId; 2]) -> Result<Sign, T::Error> {
+        self.beside(edge, &self.b)
     }
 
     /// Of points on the line: `Greater` if `q` comes after `p` on the way.
-    fn order(&self, p: &G::Point, q: &G::Point) -> Ordering {
-        let g = &self.triangulation.geometry;
+    fn order(&self, p: &PointOf<T, 3>, q: &PointOf<T, 3>) -> Ordering {
+        let g = self.t.geometry();
         let order = g.compare(q, p);
         if g.compare(&self.b, &self.a).is_lt() { order.reverse() } else { order }
     }
 
-    /// A vertex on the line, as what comes next, if the segment goes that far.
-    fn up_to(&self, vertex: VertexId) -> Option<Passage> {
-        self.order(self.triangulation.point(vertex), &self.b).is_ge().then_some(Passage::Vertex(vertex))
+    /// The same of vertices.
+    fn order_of(&self, p: VertexId, q: VertexId) -> Result<Ordering, T::Error> {
+        Ok(self.order(self.t.point(p)?.borrow(), self.t.point(q)?.borrow()))
     }
 
-    fn first(&self, near: Option<CellId>) -> Option<Passage> {
-        let t = self.triangulation;
-        match t.locate(&self.a, near) {
+    /// The same of a vertex and the end.
+    fn order_to_end(&self, vertex: VertexId) -> Result<Ordering, T::Error> {
+        Ok(self.order(self.t.point(vertex)?.borrow(), &self.b))
+    }
+
+    /// A vertex on the line, as what comes next, if the segment goes that far.
+    fn up_to(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
+        Ok(self.order_to_end(vertex)?.is_ge().then_some(Passage::Vertex(vertex)))
+    }
+
+    fn first(&self, location: Location) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        Ok(match location {
             Location::Vertex(vertex) => Some(Passage::Vertex(vertex)),
             Location::Cell { cell, touching: 0 } => Some(Passage::Face(cell)),
             Location::Cell { cell, touching } => {
                 let i = touching.trailing_zeros() as usize;
-                let ends @ [from, to] = t.tds.edge_ends(cell, i);
-                let beyond = t.tds.neighbor(cell, i);
-                match self.end_side(ends) {
-                    Sign::Negative => Some(Passage::Edge(cell, i)),
-                    Sign::Positive => Some(Passage::Edge(beyond, t.tds.index_of_neighbor(beyond, cell))),
-                    Sign::Zero if self.order(&self.a, &self.b).is_eq() => Some(Passage::Edge(cell, i)),
-                    Sign::Zero if self.order(t.point(from), t.point(to)).is_gt() => Some(Passage::Along([from, to])),
-                    Sign::Zero => Some(Passage::Along([to, from])),
-                }
+                let ends @ [from, to] = complex.edge_ends(cell, i)?;
+                let beyond = complex.neighbor(cell, i)?;
+                Some(match self.end_side(ends)? {
+                    Sign::Negative => Passage::Edge(cell, i),
+                    Sign::Positive => Passage::Edge(beyond, complex.index_of_neighbor(beyond, cell)?),
+                    Sign::Zero if self.order(&self.a, &self.b).is_eq() => Passage::Edge(cell, i),
+                    Sign::Zero if self.order_of(from, to)?.is_gt() => Passage::Along([from, to]),
+                    Sign::Zero => Passage::Along([to, from]),
+                })
             }
-            Location::OutsideHull { .. } => self.entry(),
+            Location::OutsideHull { .. } => self.entry()?,
             Location::OutsideAffineHull => None,
-        }
+        })
     }
 
     /// Where a segment from outside comes upon the hull: over an edge that runs from its left to its right, or, if the
     /// line has none such, at the first vertex that it goes through.
-    fn entry(&self) -> Option<Passage> {
-        let t = self.triangulation;
-        let g = &t.geometry;
+    fn entry(&self) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
         let mut touched: Option<VertexId> = None;
-        for (cell, i) in
-            t.tds.around(VertexId::INFINITE).filter_map(|c| Some((c, t.tds.index_of(c, VertexId::INFINITE)?)))
-        {
+        for cell in Star::new(complex, VertexId::INFINITE, 2)? {
+            let cell = cell?;
+            let Some(i) = complex.index_of(cell, VertexId::INFINITE)? else { continue };
             // Of the infinite face: the hull runs from `to` to `from`.
-            let ends @ [to, from] = t.tds.edge_ends(cell, i);
-            let sides = [from, to].map(|v| self.side(v));
+            let ends @ [to, from] = complex.edge_ends(cell, i)?;
+            let sides = [self.side(from)?, self.side(to)?];
             if sides == [Sign::Positive, Sign::Negative] {
-                let starts_outside = g.orientation([t.point(to), t.point(from), &self.a]) == Sign::Positive;
-                let arrives = self.end_side(ends) != Sign::Positive;
-                return (starts_outside && arrives).then_some(Passage::Edge(cell, i));
+                let starts_outside = self.beside([to, from], &self.a)? == Sign::Positive;
+                let arrives = self.end_side(ends)? != Sign::Positive;
+                return Ok((starts_outside && arrives).then_some(Passage::Edge(cell, i)));
             }
-            let is_first = |v| touched.is_none_or(|first| self.order(t.point(v), t.point(first)).is_gt());
-            if sides[0] == Sign::Zero && is_first(from) {
+            let is_first = match touched {
+                Some(first) => self.order_of(from, first)?.is_gt(),
+                None => true,
+            };
+            if sides[0] == Sign::Zero && is_first {
                 touched = Some(from);
             }
         }
-        let vertex = touched.filter(|&v| self.order(&self.a, t.point(v)).is_gt())?;
-        self.up_to(vertex)
+        match touched {
+            Some(v) if self.order(&self.a, self.t.point(v)?.borrow()).is_gt() => self.up_to(v),
+            _ => Ok(None),
+        }
     }
 
-    fn after(&self, passage: &Passage) -> Option<Passage> {
-        let t = self.triangulation;
-        match *passage {
+    fn after(&self, passage: Passage) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        match passage {
             Passage::Vertex(vertex) => self.after_vertex(vertex),
             Passage::Along([_, to]) => self.up_to(to),
             Passage::Edge(cell, i) => {
-                let beyond = t.tds.neighbor(cell, i);
-                let goes_on = self.end_side(t.tds.edge_ends(cell, i)) == Sign::Negative;
-                (goes_on && !t.tds.is_infinite(beyond)).then_some(Passage::Face(beyond))
+                let beyond = complex.neighbor(cell, i)?;
+                let goes_on = self.end_side(complex.edge_ends(cell, i)?)? == Sign::Negative;
+                Ok((goes_on && !complex.is_infinite(beyond)?).then_some(Passage::Face(beyond)))
             }
             Passage::Face(cell) => self.after_face(cell),
         }
     }
 
     /// A line leaves a triangle where, counter-clockwise, its border comes over from the right.
-    fn after_face(&self, cell: CellId) -> Option<Passage> {
-        let t = self.triangulation;
-        let corners = *t.tds.corners(cell);
-        let sides = corners.map(|v| self.side(v));
-        let last = (0..3).find(|&i| sides[i] == Sign::Negative && sides[ccw(i)] != Sign::Negative)?;
+    fn after_face(&self, cell: CellId) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        let corners @ [u, v, w] = complex.corners(cell)?;
+        let sides = [self.side(u)?, self.side(v)?, self.side(w)?];
+        let Some(last) = (0..3).find(|&i| sides[i] == Sign::Negative && sides[ccw(i)] != Sign::Negative) else {
+            return Ok(None);
+        };
         if sides[ccw(last)] == Sign::Zero {
             return self.up_to(corners[ccw(last)]);
         }
         let i = cw(last);
-        (self.end_side(t.tds.edge_ends(cell, i)) != Sign::Positive).then_some(Passage::Edge(cell, i))
+        Ok((self.end_side(complex.edge_ends(cell, i)?)? != Sign::Positive).then_some(Passage::Edge(cell, i)))
     }
 
-    fn after_vertex(&self, vertex: VertexId) -> Option<Passage> {
-        let t = self.triangulation;
-        if self.order(t.point(vertex), &self.b).is_le() {
-            return None;
+    fn after_vertex(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        if self.order_to_end(vertex)?.is_le() {
+            return Ok(None);
         }
-        t.tds.edges_around(vertex).find_map(|(cell, i)| {
+        for edge in tds::edges_around(complex, vertex)? {
+            let (cell, i) = edge?;
             // The next edge of the cell is opposite the vertex.
-            let [right, left] = [t.tds.vertex(cell, cw(i)), t.tds.vertex(cell, i)];
+            let [right, left] = [complex.vertex(cell, cw(i))?, complex.vertex(cell, i)?];
             if right == VertexId::INFINITE {
-                return None;
+                continue;
             }
-            match self.side(right) {
-                Sign::Zero if self.order(t.point(vertex), t.point(right)).is_gt() => {
-                    Some(Passage::Along([vertex, right]))
+            match self.side(right)? {
+                Sign::Zero if self.order_of(vertex, right)?.is_gt() => {
+                    return Ok(Some(Passage::Along([vertex, right])));
                 }
-                Sign::Negative if left != VertexId::INFINITE && self.side(left) == Sign::Positive => {
-                    Some(Passage::Face(cell))
+                Sign::Negative if left != VertexId::INFINITE && self.side(left)? == Sign::Positive => {
+                    return Ok(Some(Passage::Face(cell)));
                 }
-                _ => None,
+                _ => {}
             }
-        })
+        }
+        Ok(None)
     }
 }

@@ -110,7 +110,7 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
         near: Option<CellId>,
         inside: impl FnOnce(&ConflictZone, Place, &[Place]) -> Weights,
     ) -> Option<Weights> {
-        let at = self.place_of(q);
+        let at = super::place_of(&self.geometry, q);
         let location = self.locate(q, near);
         let mut weights = match location {
             Location::Vertex(vertex) => return Some(vec![(vertex, 1.0)]),
@@ -122,7 +122,8 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
                 if let Some(i) = on_hull {
                     self.between(self.tds().edge_ends(cell, i), at)
                 } else {
-                    let zone = self.zone_at(q, location, |_, _, _| true)?;
+                    let Ok(zone) = super::zone::zone_at(&self.inner, q, location, |_, _| Ok(true));
+                    let zone = zone?;
                     let center = |&(cell, i): &(CellId, usize)| {
                         let [a, b] = self.tds().edge_ends(cell, i).map(|v| self.place(v));
                         kernel::circumcenter([at, a, b])

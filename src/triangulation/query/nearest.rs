@@ -5,42 +5,155 @@
 //! vertex; and each vertex is a neighbor of one that comes before it in the order of distance, so that none is missed if
 //! the nearest of all neighbors of what has been found comes next.
 
+use std::borrow::Borrow;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashSet;
 
-use crate::geometry::Metric;
-use crate::tds::{CellId, VertexId};
+use crate::geometry::{Geometry, Metric};
+use crate::tds::{self, CellId, Complex, VertexId};
 
+use super::super::embedded::{Embedded, PointOf};
 use super::super::{Delaunay, Location};
 
 /// A vertex found, but not yet told: the nearest is the greatest.
-struct Candidate<'a, G: Metric, V> {
-    delaunay: &'a Delaunay<G, 3, V>,
-    q: G::Point,
-    vertex: VertexId,
+pub(in crate::triangulation) struct Candidate<'t, T: Embedded<3>> {
+    t: &'t T,
+    q: PointOf<T, 3>,
+    pub(in crate::triangulation) vertex: VertexId,
+    point: T::Held<'t>,
 }
 
-impl<G: Metric, V> Ord for Candidate<'_, G, V> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.delaunay.by_distance(&self.q, other.vertex, self.vertex)
+impl<T: Embedded<3, Geometry: Metric>> Candidate<'_, T> {
+    /// Whether it is no further from the place than `rim` is.
+    pub(in crate::triangulation) fn is_within(&self, rim: &PointOf<T, 3>) -> bool {
+        self.t.geometry().compare_distance(&self.q, self.point.borrow(), rim).is_le()
     }
 }
 
-impl<G: Metric, V> PartialOrd for Candidate<'_, G, V> {
+impl<T: Embedded<3, Geometry: Metric>> Ord for Candidate<'_, T> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let (geometry, ours, theirs) = (self.t.geometry(), self.point.borrow(), other.point.borrow());
+        geometry.compare_distance(&self.q, theirs, ours).then_with(|| geometry.compare(theirs, ours))
+    }
+}
+
+impl<T: Embedded<3, Geometry: Metric>> PartialOrd for Candidate<'_, T> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl<G: Metric, V> PartialEq for Candidate<'_, G, V> {
+impl<T: Embedded<3, Geometry: Metric>> PartialEq for Candidate<'_, T> {
     fn eq(&self, other: &Self) -> bool {
-        self.vertex == other.vertex
+        self.cmp(other).is_eq()
     }
 }
 
-impl<G: Metric, V> Eq for Candidate<'_, G, V> {}
+impl<T: Embedded<3, Geometry: Metric>> Eq for Candidate<'_, T> {}
+
+/// The vertices of a Delaunay triangulation by their distance from a place.
+pub(in crate::triangulation) struct NearestFirst<'t, T: Embedded<3, Geometry: Metric>> {
+    t: &'t T,
+    q: PointOf<T, 3>,
+    found: FxHashSet<VertexId>,
+    next: BinaryHeap<Candidate<'t, T>>,
+}
+
+impl<'t, T: Embedded<3, Geometry: Metric>> NearestFirst<'t, T> {
+    /// Given where the place is.
+    pub(in crate::triangulation) fn new(t: &'t T, q: &PointOf<T, 3>, location: Location) -> Result<Self, T::Error> {
+        let mut nearest = NearestFirst { t, q: *q, found: FxHashSet::default(), next: BinaryHeap::new() };
+        all_nearest(t, q, location)?.into_iter().try_for_each(|vertex| nearest.find(vertex))?;
+        Ok(nearest)
+    }
+
+    fn find(&mut self, vertex: VertexId) -> Result<(), T::Error> {
+        if self.found.insert(vertex) {
+            self.next.push(Candidate { t: self.t, q: self.q, vertex, point: self.t.point(vertex)? });
+        }
+        Ok(())
+    }
+}
+
+impl<'t, T: Embedded<3, Geometry: Metric>> Iterator for NearestFirst<'t, T> {
+    type Item = Result<Candidate<'t, T>, T::Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let nearest = self.next.pop()?;
+        let around = finite_neighbors(self.t, nearest.vertex);
+        let all_found = around.and_then(|mut around| around.try_for_each(|vertex| self.find(vertex?)));
+        Some(match all_found {
+            Ok(()) => Ok(nearest),
+            Err(error) => {
+                self.next.clear();
+                Err(error)
+            }
+        })
+    }
+}
+
+fn finite_neighbors<T: Embedded<3>>(
+    t: &T,
+    vertex: VertexId,
+) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
+    let around = tds::vertices_around(t.complex(), vertex)?;
+    Ok(around.filter(|v| !v.as_ref().is_ok_and(|&v| v == VertexId::INFINITE)))
+}
+
+/// The vertex nearest to a place; of several, the first in the order of the geometry.
+pub(in crate::triangulation) fn nearest<T: Embedded<3, Geometry: Metric>>(
+    t: &T,
+    q: &PointOf<T, 3>,
+    location: Location,
+) -> Result<Option<VertexId>, T::Error> {
+    let mut first: Option<(VertexId, T::Held<'_>)> = None;
+    for vertex in all_nearest(t, q, location)? {
+        let point = t.point(vertex)?;
+        if first.is_none_or(|(_, best)| t.geometry().compare(point.borrow(), best.borrow()).is_lt()) {
+            first = Some((vertex, point));
+        }
+    }
+    Ok(first.map(|(vertex, _)| vertex))
+}
+
+/// All vertices that no other is nearer than. They lie on an empty circle around the place, on whose chords edges
+/// join them all.
+fn all_nearest<T: Embedded<3, Geometry: Metric>>(
+    t: &T,
+    q: &PointOf<T, 3>,
+    location: Location,
+) -> Result<Vec<VertexId>, T::Error> {
+    let complex = t.complex();
+    let start = match location {
+        Location::Vertex(vertex) => return Ok(vec![vertex]),
+        Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
+            complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
+        }
+        Location::OutsideAffineHull => tds::vertices(complex).next().transpose()?,
+    };
+    let mut nearest: Vec<VertexId> = start.into_iter().collect();
+    let mut next = 0;
+    while next < nearest.len() {
+        let vertex = nearest[next];
+        let point = t.point(vertex)?;
+        next += 1;
+        for v in finite_neighbors(t, vertex)? {
+            let v = v?;
+            match t.geometry().compare_distance(q, t.point(v)?.borrow(), point.borrow()) {
+                Ordering::Less => {
+                    nearest = vec![v];
+                    next = 0;
+                    break;
+                }
+                Ordering::Equal if !nearest.contains(&v) => nearest.push(v),
+                _ => {}
+            }
+        }
+    }
+    Ok(nearest)
+}
 
 impl<G: Metric, V> Delaunay<G, 3, V> {
     /// The vertex nearest to a place; of several, the first in the [order](crate::geometry::Geometry::compare) of the
@@ -61,7 +174,8 @@ impl<G: Metric, V> Delaunay<G, 3, V> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn nearest(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexId> {
-        self.all_nearest(q, near).into_iter().min_by(|&u, &v| self.geometry().compare(self.point(u), self.point(v)))
+        let Ok(nearest) = nearest(&self.inner, q, self.locate(q, near));
+        nearest
     }
 
     /// All vertices from the nearest to the furthest: [`take`](Iterator::take) as many as are wanted. Those that are
@@ -74,16 +188,8 @@ impl<G: Metric, V> Delaunay<G, 3, V> {
         q: &G::Point,
         near: Option<CellId>,
     ) -> impl Iterator<Item = VertexId> + use<'a, G, V> {
-        let q = *q;
-        let first = self.all_nearest(&q, near);
-        let mut found: FxHashSet<VertexId> = first.iter().copied().collect();
-        let candidate = move |vertex| Candidate { delaunay: self, q, vertex };
-        let mut next: BinaryHeap<_> = first.into_iter().map(candidate).collect();
-        std::iter::from_fn(move || {
-            let vertex = next.pop()?.vertex;
-            next.extend(self.finite_neighbors(vertex).filter(|&v| found.insert(v)).map(candidate));
-            Some(vertex)
-        })
+        let Ok(nearest) = NearestFirst::new(&self.inner, q, self.locate(q, near));
+        nearest.map(|Ok(candidate)| candidate.vertex)
     }
 
     /// The vertices no further from a place than `rim` is, nearest first. Exact: the circle is given by a point on it, as
@@ -92,47 +198,8 @@ impl<G: Metric, V> Delaunay<G, 3, V> {
     /// # Complexity
     /// As [`nearest_first`](Self::nearest_first).
     pub fn within<'a>(&'a self, center: &G::Point, rim: &G::Point) -> impl Iterator<Item = VertexId> + use<'a, G, V> {
-        let (from, rim) = (*center, *rim);
-        let is_within = move |&v: &VertexId| self.geometry().compare_distance(&from, self.point(v), &rim).is_le();
-        self.nearest_first(center, None).take_while(is_within)
-    }
-
-    fn by_distance(&self, q: &G::Point, u: VertexId, v: VertexId) -> Ordering {
-        let (u, v) = (self.point(u), self.point(v));
-        self.geometry().compare_distance(q, u, v).then_with(|| self.geometry().compare(u, v))
-    }
-
-    fn finite_neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
-        self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE)
-    }
-
-    /// All vertices that no other is nearer than. They lie on an empty circle around the place, on whose chords edges
-    /// join them all.
-    fn all_nearest(&self, q: &G::Point, near: Option<CellId>) -> Vec<VertexId> {
-        let start = match self.locate(q, near) {
-            Location::Vertex(vertex) => return vec![vertex],
-            Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
-                self.tds().cell_vertices(cell).iter().copied().find(|&v| v != VertexId::INFINITE)
-            }
-            Location::OutsideAffineHull => self.tds().vertices().next(),
-        };
-        let mut nearest: Vec<VertexId> = start.into_iter().collect();
-        let mut next = 0;
-        while next < nearest.len() {
-            let vertex = nearest[next];
-            next += 1;
-            for v in self.finite_neighbors(vertex) {
-                match self.geometry().compare_distance(q, self.point(v), self.point(vertex)) {
-                    Ordering::Less => {
-                        nearest = vec![v];
-                        next = 0;
-                        break;
-                    }
-                    Ordering::Equal if !nearest.contains(&v) => nearest.push(v),
-                    _ => {}
-                }
-            }
-        }
-        nearest
+        let Ok(nearest) = NearestFirst::new(&self.inner, center, self.locate(center, None));
+        let rim = *rim;
+        nearest.map(|Ok(candidate)| candidate).take_while(move |c| c.is_within(&rim)).map(|candidate| candidate.vertex)
     }
 }

@@ -3,9 +3,11 @@ use rustc_hash::FxHashSet;
 use crate::geometry::Coordinates;
 use crate::kernel::{Kernel, Orientation2, Wide};
 use crate::num::Sign;
-use crate::tds::{CellId, VertexId};
+use crate::tds::{self, CellId, Complex, VertexId};
 
+use super::super::embedded::{Embedded, PointOf};
 use super::super::{Location, Triangulation};
+use super::{place, place_of};
 
 /// A rectangle along the axes, its border included.
 #[derive(Clone, Copy)]
@@ -57,38 +59,71 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn within_rectangle(&self, corners: [&G::Point; 2]) -> Vec<VertexId> {
-        let [p, q] = corners.map(|corner| self.place_of(corner));
-        let rectangle = Rectangle::new(p, q);
-        let is_within = |&v: &VertexId| rectangle.holds(self.place(v));
-        if !self.is_full() {
-            return self.tds.vertices().filter(is_within).collect();
-        }
-        let start = match self.locate(corners[0], None) {
-            Location::Vertex(vertex) => self.tds.cell_of(vertex),
-            Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
-            Location::OutsideAffineHull => None,
-        };
-        // The cells that meet the rectangle hang together by edges, the infinite ones with what lies beyond the hull.
-        let meets = |cell: CellId| match self.tds.index_of(cell, VertexId::INFINITE) {
-            None => rectangle.meets_box(self.tds.corners(cell).map(|v| self.place(v))),
-            Some(infinite) => {
-                let [a, b] = self.tds.edge_ends(cell, infinite).map(|v| self.place(v));
-                let inner = self.tds.neighbor(cell, infinite);
-                let apex = self.tds.vertex(inner, self.tds.index_of_neighbor(inner, cell));
-                let inside = turn(a, b, self.place(apex));
-                rectangle.corners().into_iter().any(|corner| turn(a, b, corner) != inside)
-            }
-        };
-        let mut seen: FxHashSet<CellId> = start.into_iter().collect();
-        let mut met: Vec<CellId> = start.into_iter().collect();
-        let mut vertices = Vec::new();
-        while let Some(cell) = met.pop() {
-            vertices
-                .extend(self.tds.corners(cell).iter().filter(|&&v| v != VertexId::INFINITE).copied().filter(is_within));
-            met.extend(self.tds.cell_neighbors(cell).iter().filter(|&&beside| meets(beside) && seen.insert(beside)));
-        }
-        vertices.sort_unstable();
-        vertices.dedup();
+        let Ok(vertices) = within_rectangle(self, corners, self.locate(corners[0], None));
         vertices
     }
+}
+
+/// The vertices in a rectangle, given where the first of its corners lies.
+pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordinates<3>>>(
+    t: &T,
+    corners: [&PointOf<T, 3>; 2],
+    location: Location,
+) -> Result<Vec<VertexId>, T::Error> {
+    let complex = t.complex();
+    let [p, q] = corners.map(|corner| place_of(t.geometry(), corner));
+    let rectangle = Rectangle::new(p, q);
+    let mut vertices = Vec::new();
+    let start = match location {
+        _ if complex.width() < 3 => {
+            for vertex in tds::vertices(complex) {
+                let vertex = vertex?;
+                if rectangle.holds(place(t, vertex)?) {
+                    vertices.push(vertex);
+                }
+            }
+            return Ok(vertices);
+        }
+        Location::Vertex(vertex) => complex.cell_of(vertex)?,
+        Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
+        Location::OutsideAffineHull => None,
+    };
+    let mut seen: FxHashSet<CellId> = start.into_iter().collect();
+    let mut met: Vec<CellId> = start.into_iter().collect();
+    while let Some(cell) = met.pop() {
+        for vertex in complex.corners(cell)? {
+            if vertex != VertexId::INFINITE && rectangle.holds(place(t, vertex)?) {
+                vertices.push(vertex);
+            }
+        }
+        for i in 0..3 {
+            let beside = complex.neighbor(cell, i)?;
+            if meets(t, rectangle, beside)? && seen.insert(beside) {
+                met.push(beside);
+            }
+        }
+    }
+    vertices.sort_unstable();
+    vertices.dedup();
+    Ok(vertices)
+}
+
+/// Whether a cell meets the rectangle, or may. Such cells hang together by edges, the infinite ones with what lies beyond
+/// the hull.
+fn meets<T: Embedded<3, Geometry: Coordinates<3>>>(
+    t: &T,
+    rectangle: Rectangle,
+    cell: CellId,
+) -> Result<bool, T::Error> {
+    let complex = t.complex();
+    let Some(infinite) = complex.index_of(cell, VertexId::INFINITE)? else {
+        let [a, b, c] = complex.corners(cell)?;
+        return Ok(rectangle.meets_box([place(t, a)?, place(t, b)?, place(t, c)?]));
+    };
+    let [a, b] = complex.edge_ends(cell, infinite)?;
+    let [a, b] = [place(t, a)?, place(t, b)?];
+    let inner = complex.inner(cell)?;
+    let apex = complex.vertex(inner, complex.index_of_neighbor(inner, cell)?)?;
+    let inside = turn(a, b, place(t, apex)?);
+    Ok(rectangle.corners().into_iter().any(|corner| turn(a, b, corner) != inside))
 }

@@ -1,9 +1,11 @@
 use rustc_hash::FxHashSet;
 
 use crate::geometry::{Crossing, Geometry};
-use crate::tds::{CellId, Tds};
+use crate::tds::{CellId, Complex};
 
-use super::super::{ConstrainedDelaunay, Delaunay, Location, Triangulation};
+use super::super::embedded::{Embedded, PointOf};
+use super::super::sides::in_conflict;
+use super::super::{ConstrainedDelaunay, Delaunay, Location};
 
 /// The cells that a new point would destroy, and the edges around them, which the cells of its star would stand on.
 ///
@@ -18,46 +20,45 @@ pub struct ConflictZone {
     pub border: Vec<(CellId, usize)>,
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// What [`insert_at`](Self::insert_at) would replace, given where the point is; `passes` says over which edges the
-    /// zone may grow. `None` where a point would destroy nothing: on a vertex, and where it raises the dimension.
-    pub(super) fn zone_at(
-        &self,
-        q: &G::Point,
-        location: Location,
-        passes: impl Fn(&Tds<3, V, C>, CellId, usize) -> bool,
-    ) -> Option<ConflictZone> {
-        let (start, touching) = match location {
-            Location::Vertex(_) | Location::OutsideAffineHull => return None,
-            Location::Cell { cell, touching } => (cell, touching),
-            Location::OutsideHull { cell } => (cell, 0),
-        };
-        let takes = |from: CellId, i: usize, beyond: CellId| {
-            // A point on an edge destroys the cells on both sides, wall or not.
-            let is_split = from == start && touching >> i & 1 == 1;
-            is_split || passes(&self.tds, from, i) && self.in_conflict(beyond, q)
-        };
-        let width = self.tds.cell_vertices(start).len();
-        let mut taken = FxHashSet::from_iter([start]);
-        let mut zone = ConflictZone { cells: vec![start], border: Vec::new() };
-        // Depth first, over the sides of each cell counter-clockwise from where it was entered: the border comes in order.
-        let mut sides: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
-        while let Some((cell, i)) = sides.pop() {
-            let beyond = self.tds.neighbor(cell, i);
-            if taken.contains(&beyond) {
-                continue;
-            }
-            if takes(cell, i, beyond) {
-                taken.insert(beyond);
-                zone.cells.push(beyond);
-                let entry = self.tds.index_of_neighbor(beyond, cell);
-                sides.extend((1..width).rev().map(|turn| (beyond, (entry + turn) % width)));
-            } else {
-                zone.border.push((cell, i));
-            }
+/// What insertion would replace, given where the point is; `passes` says over which edges the
+/// zone may grow. `None` where a point would destroy nothing: on a vertex, and where it raises the dimension.
+pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
+    t: &T,
+    q: &PointOf<T, 3>,
+    location: Location,
+    passes: impl Fn(CellId, usize) -> Result<bool, T::Error>,
+) -> Result<Option<ConflictZone>, T::Error> {
+    let complex = t.complex();
+    let (start, touching) = match location {
+        Location::Vertex(_) | Location::OutsideAffineHull => return Ok(None),
+        Location::Cell { cell, touching } => (cell, touching),
+        Location::OutsideHull { cell } => (cell, 0),
+    };
+    let takes = |from: CellId, i: usize, beyond: CellId| {
+        // A point on an edge destroys the cells on both sides, wall or not.
+        let is_split = from == start && touching >> i & 1 == 1;
+        Ok(is_split || passes(from, i)? && in_conflict(t, beyond, q)?)
+    };
+    let width = complex.width();
+    let mut taken = FxHashSet::from_iter([start]);
+    let mut zone = ConflictZone { cells: vec![start], border: Vec::new() };
+    // Depth first, over the sides of each cell counter-clockwise from where it was entered: the border comes in order.
+    let mut sides: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
+    while let Some((cell, i)) = sides.pop() {
+        let beyond = complex.neighbor(cell, i)?;
+        if taken.contains(&beyond) {
+            continue;
         }
-        Some(zone)
+        if takes(cell, i, beyond)? {
+            taken.insert(beyond);
+            zone.cells.push(beyond);
+            let entry = complex.index_of_neighbor(beyond, cell)?;
+            sides.extend((1..width).rev().map(|turn| (beyond, (entry + turn) % width)));
+        } else {
+            zone.border.push((cell, i));
+        }
     }
+    Ok(Some(zone))
 }
 
 impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
@@ -79,7 +80,8 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
-        self.zone_at(q, self.locate(q, near), |_, _, _| true)
+        let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), |_, _| Ok(true));
+        zone
     }
 }
 
@@ -88,6 +90,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// zone has both sides of it. Of a point on a segment that was bent at crossings, insertion replaces more: it leads the
     /// segment through the point.
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
-        self.zone_at(q, self.locate(q, near), |tds, cell, i| !tds.cell_data(cell).has(i))
+        let passes = |cell: CellId, i| Ok(!self.tds().cell_data(cell).has(i));
+        let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), passes);
+        zone
     }
 }

@@ -1,0 +1,135 @@
+use crate::geometry::{Geometry, in_sphere};
+use crate::num::Sign;
+use crate::tds::{self, CellId, Complex, Star, VertexId};
+
+use super::super::Level;
+use super::super::sides::{side_of_facet, simplex};
+use super::{Compact, Damaged, Law};
+
+impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
+    /// Looks at everything, up to a level: no error means that the bytes are a triangulation, of the law that they claim if that
+    /// is the level. Exact, in time proportional to the number of cells, and in constant memory.
+    ///
+    /// # Errors
+    /// The first damage that is found.
+    pub fn check(&self, level: Level) -> Result<(), Damaged> {
+        self.check_links()?;
+        if level >= Level::Manifold {
+            self.check_manifold()?;
+        }
+        if level >= Level::Orientation {
+            self.check_orientation()?;
+        }
+        if level >= Level::Law && self.dimension() == 2 {
+            self.check_law()?;
+        }
+        Ok(())
+    }
+
+    fn cells(&self) -> impl Iterator<Item = CellId> {
+        (0..self.cell_count()).map(CellId::new)
+    }
+
+    /// Every number exists, every point is admitted, and neighbors know each other and share their facet turned around.
+    fn check_links(&self) -> Result<(), Damaged> {
+        let vertices = tds::vertices(self).chain(self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE)));
+        for vertex in vertices {
+            let vertex = vertex?;
+            if vertex != VertexId::INFINITE {
+                self.point(vertex)?;
+            }
+            if let Some(cell) = self.cell_of(vertex)? {
+                let has_it = self.index_of(cell, vertex)?.is_some();
+                self.ensure(cell, || has_it)?;
+            }
+        }
+        let width = self.width();
+        for cell in self.cells() {
+            let corners = self.corners(cell)?;
+            self.ensure(cell, || (1..width).all(|i| !corners[..i].contains(&corners[i])))?;
+            for i in 0..width {
+                let beside = self.neighbor(cell, i)?;
+                let j = self.index_of_neighbor(beside, cell)?;
+                let others = self.corners(beside)?;
+                // From the vertex opposite on, one time around: as in a mirror on the other side.
+                let is_shared = (1..width).all(|k| corners[(i + k) % width] == others[(j + width - k) % width]);
+                let is_turned = width != 2 || i != j;
+                self.ensure(cell, || beside != cell && is_shared && is_turned)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The cells that one meets around each vertex are all that have it. With Euler's numbers, which the header has been held
+    /// against, and what comes next that leaves a sphere.
+    fn check_manifold(&self) -> Result<(), Damaged> {
+        if self.dimension() < 1 {
+            return Ok(());
+        }
+        let mut corners = 0;
+        for vertex in tds::vertices(self).chain([Ok(VertexId::INFINITE)]) {
+            for cell in Star::new(self, vertex?, 1)? {
+                cell?;
+                corners += 1;
+            }
+        }
+        if corners == self.width() * self.cell_count() { Ok(()) } else { Err(Damaged::Header("pieces hang apart")) }
+    }
+
+    /// Finite cells are turned counter-clockwise, and the hull is convex: see [`Level::Orientation`]. On a line all follow each
+    /// other.
+    fn check_orientation(&self) -> Result<(), Damaged> {
+        for cell in self.cells().filter(|_| self.dimension() > 0) {
+            let corners = self.corners(cell)?;
+            let Some(infinite) = corners.iter().position(|&v| v == VertexId::INFINITE) else {
+                let sign = if self.dimension() == 2 {
+                    self.geometry.orientation(simplex(self, cell)?.each_ref())
+                } else {
+                    self.geometry.orientation_in_flat(&[&self.point(corners[0])?, &self.point(corners[1])?])
+                };
+                self.ensure(cell, || sign == Sign::Positive)?;
+                continue;
+            };
+            for i in (0..self.width()).filter(|&i| i != infinite && self.dimension() == 2) {
+                let beside = self.neighbor(cell, i)?;
+                let far = self.vertex(beside, self.index_of_neighbor(beside, cell)?)?;
+                if far != VertexId::INFINITE {
+                    let side = side_of_facet(self, cell, infinite, &self.point(far)?)?;
+                    self.ensure(cell, || side != Sign::Positive)?;
+                }
+            }
+        }
+        if self.dimension() == 1 {
+            let [a, b] = [0, 1].map(|index| self.point(VertexId::new(index)));
+            let [a, b] = [a?, b?];
+            for vertex in tds::vertices(self) {
+                let vertex = vertex?;
+                if self.geometry.orientation([&a, &b, &self.point(vertex)?]) != Sign::Zero {
+                    return Err(Damaged::Vertex(vertex));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Constraints have two sides; circles are empty, as far as the law says so.
+    fn check_law(&self) -> Result<(), Damaged> {
+        let is_delaunay = matches!(self.law(), Law::Delaunay | Law::ConstrainedDelaunay);
+        for cell in self.cells() {
+            let is_finite = !self.is_infinite(cell)?;
+            for i in 0..3 {
+                let beside = self.neighbor(cell, i)?;
+                let j = self.index_of_neighbor(beside, cell)?;
+                let is_wall = self.is_constrained(cell, i)?;
+                let is_other = self.is_constrained(beside, j)?;
+                self.ensure(cell, || is_wall == is_other)?;
+                let far = self.vertex(beside, j)?;
+                if is_delaunay && is_finite && !is_wall && far != VertexId::INFINITE {
+                    let is_in = in_sphere(&self.geometry, simplex(self, cell)?.each_ref(), &self.point(far)?);
+                    self.ensure(cell, || !is_in)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! What the header says, and where the arrays are that follow from it.
+
+use super::{Damaged, Law};
+use crate::tds::CellId;
+
+/// The first bytes of a file; its line ends and control character do not survive a transfer as text.
+const MAGIC: [u8; 8] = *b"brkTIN\n\x1a";
+pub(super) const VERSION: u32 = 1;
+pub(super) const HEADER: usize = 48;
+
+/// Bytes of a cell: three vertices and three neighbors.
+pub(super) const CELL: usize = 24;
+
+/// Stands for the vertex at infinity.
+pub(super) const INFINITE: u32 = u32::MAX;
+
+/// Stands for what is not there below full dimension.
+pub(super) const NONE: u32 = u32::MAX - 1;
+
+/// What the header says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Header {
+    /// Vertices to a cell: the dimension and one.
+    pub(super) width: u32,
+    /// Coordinates of a point.
+    pub(super) doubles: u32,
+    pub(super) law: Law,
+    pub(super) vertices: u64,
+    pub(super) cells: u64,
+    /// One that has the infinite vertex.
+    pub(super) infinite_cell: u32,
+}
+
+/// Where each array begins, and where all ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Offsets {
+    pub(super) cells_of_vertices: usize,
+    pub(super) cells: usize,
+    pub(super) walls: usize,
+    pub(super) end: usize,
+}
+
+/// The first bytes of a slice as a number of that many bytes.
+fn taken<const W: usize>(bytes: &mut &[u8]) -> [u8; W] {
+    let (first, rest) = bytes.split_first_chunk().unwrap_or((&[0; W], &[]));
+    *bytes = rest;
+    *first
+}
+
+impl Header {
+    pub(super) fn to_bytes(self) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        let numbers = [VERSION, self.width, self.doubles, self.law as u32];
+        numbers.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        [self.vertices, self.cells].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        [self.infinite_cell, 0].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        bytes
+    }
+
+    /// Reads a header and holds what it says against itself.
+    pub(super) fn read(mut bytes: &[u8]) -> Result<Self, Damaged> {
+        let found = bytes.len();
+        let bytes = &mut bytes;
+        if taken(bytes) != MAGIC {
+            return Err(Damaged::Foreign);
+        }
+        if found < HEADER {
+            return Err(Damaged::Length { expected: HEADER as u64, found: found as u64 });
+        }
+        let version = u32::from_le_bytes(taken(bytes));
+        if version != VERSION {
+            return Err(Damaged::Version(version));
+        }
+        let [width, doubles, law] = [0; 3].map(|_| u32::from_le_bytes(taken(bytes)));
+        let [vertices, cells] = [0; 2].map(|_| u64::from_le_bytes(taken(bytes)));
+        let [infinite_cell, reserved] = [0; 2].map(|_| u32::from_le_bytes(taken(bytes)));
+        let law = Law::from_number(law).ok_or(Damaged::Header("the law"))?;
+        // On a sphere these numbers follow from each other (Euler).
+        let fits = match width {
+            0 => vertices == 0 && cells == 0,
+            1 => vertices == 1 && cells == 2,
+            2 => vertices >= 2 && cells.checked_sub(1) == Some(vertices),
+            3 => vertices >= 3 && cells.checked_add(2) == vertices.checked_mul(2),
+            _ => false,
+        };
+        if !fits || cells >= CellId::LIMIT as u64 {
+            return Err(Damaged::Header("the dimension and the numbers of vertices and cells"));
+        }
+        let is_cell = u64::from(infinite_cell) < cells || width == 0 && infinite_cell == NONE;
+        if !is_cell || reserved != 0 {
+            return Err(Damaged::Header("the cell of the infinite vertex"));
+        }
+        Ok(Header { width, doubles, law, vertices, cells, infinite_cell })
+    }
+
+    /// Where the arrays are; `None` if there is not so much memory in the world of this machine.
+    pub(super) fn offsets(&self) -> Option<Offsets> {
+        let points = self.vertices.checked_mul(8)?.checked_mul(self.doubles.into())?;
+        let cells_of_vertices = points.checked_add(HEADER as u64)?;
+        let cells = cells_of_vertices.checked_add(padded(4 * self.vertices))?;
+        let walls = cells.checked_add(CELL as u64 * self.cells)?;
+        let end = walls.checked_add(if self.law.has_walls() { padded(self.cells) } else { 0 })?;
+        let [cells_of_vertices, cells, walls] = [cells_of_vertices, cells, walls].map(usize::try_from);
+        Some(Offsets {
+            cells_of_vertices: cells_of_vertices.ok()?,
+            cells: cells.ok()?,
+            walls: walls.ok()?,
+            end: usize::try_from(end).ok()?,
+        })
+    }
+}
+
+/// Up to the next multiple of 8.
+pub(super) fn padded(bytes: u64) -> u64 {
+    bytes.div_ceil(8) * 8
+}

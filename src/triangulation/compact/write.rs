@@ -1,0 +1,144 @@
+use std::io::{self, Write};
+
+use crate::geometry::{Crossing, Geometry};
+use crate::tds::{CellId, Tds, VertexId};
+
+use super::super::{Constrained, ConstrainedDelaunay, Delaunay, Triangulation, Walls};
+use super::Law;
+use super::layout::{HEADER, Header, INFINITE, NONE, padded};
+
+/// Numbers without gaps, in the same order.
+struct Dense(Option<Vec<u32>>);
+
+impl Dense {
+    fn of(slots: usize, used: impl ExactSizeIterator<Item = usize>) -> Self {
+        if used.len() == slots {
+            return Dense(None);
+        }
+        let mut numbers = vec![NONE; slots];
+        used.zip(0..).for_each(|(slot, number)| numbers[slot] = number);
+        Dense(Some(numbers))
+    }
+
+    fn at(&self, slot: usize) -> u32 {
+        self.0.as_ref().map_or(slot as u32, |numbers| numbers[slot])
+    }
+}
+
+struct Numbers {
+    vertices: Dense,
+    cells: Dense,
+}
+
+impl Numbers {
+    fn vertex(&self, vertex: VertexId) -> u32 {
+        match vertex {
+            v if v == VertexId::INFINITE => INFINITE,
+            v if v == VertexId::NONE => NONE,
+            v => self.vertices.at(v.index()),
+        }
+    }
+
+    fn cell(&self, cell: CellId) -> u32 {
+        if cell == CellId::NONE { NONE } else { self.cells.at(cell.index()) }
+    }
+}
+
+/// Zeros up to a multiple of 8 bytes.
+fn pad(out: &mut impl Write, written: usize) -> io::Result<()> {
+    let gap = padded(written as u64) as usize - written;
+    out.write_all(&[0; 8][..gap])
+}
+
+fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>(
+    t: &Triangulation<G, 3, V, C>,
+    law: Law,
+    walls: impl Fn(&C) -> u8,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let tds: &Tds<3, V, C> = t.tds();
+    let numbers = Numbers {
+        vertices: Dense::of(tds.vertex_slots(), tds.vertices().map(VertexId::index)),
+        cells: Dense::of(tds.cell_slots(), tds.cells().map(CellId::index)),
+    };
+    let header = Header {
+        width: (tds.dimension() + 1) as u32,
+        doubles: D as u32,
+        law,
+        vertices: tds.vertex_count() as u64,
+        cells: tds.cell_count() as u64,
+        infinite_cell: tds.cell_of(VertexId::INFINITE).map_or(NONE, |cell| numbers.cell(cell)),
+    };
+    let bytes = header.to_bytes();
+    debug_assert_eq!(bytes.len(), HEADER);
+    out.write_all(&bytes)?;
+    for x in tds.vertices().flat_map(|v| t.point(v)) {
+        out.write_all(&x.to_le_bytes())?;
+    }
+    for vertex in tds.vertices() {
+        let cell = tds.cell_of(vertex).map_or(NONE, |cell| numbers.cell(cell));
+        out.write_all(&cell.to_le_bytes())?;
+    }
+    pad(out, 4 * tds.vertex_count())?;
+    for cell in tds.cells() {
+        for vertex in tds.corners(cell) {
+            out.write_all(&numbers.vertex(*vertex).to_le_bytes())?;
+        }
+        for i in 0..3 {
+            out.write_all(&numbers.cell(tds.neighbor(cell, i)).to_le_bytes())?;
+        }
+    }
+    if law.has_walls() {
+        for cell in tds.cells() {
+            out.write_all(&[walls(tds.cell_data(cell))])?;
+        }
+        pad(out, tds.cell_count())?;
+    }
+    Ok(())
+}
+
+/// Bit `i` for the edge opposite vertex `i`.
+fn bits(walls: &Walls) -> u8 {
+    (0..3).map(|i| u8::from(walls.has(i)) << i).sum()
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Triangulation<G, 3, V, C> {
+    /// Writes the triangulation for [`Compact`](super::Compact) to read, without payloads. Numbers of vertices and cells stay
+    /// as they are, unless some have been removed: then the gaps close. In small pieces: `out` is better buffered.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
+        write(self, Law::None, |_| 0, out)
+    }
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, V, const D: usize> Delaunay<G, 3, V> {
+    /// See [`Triangulation::write_compact`]; with its law, which makes questions for what is nearest possible.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
+        write(&self.inner, Law::Delaunay, |()| 0, out)
+    }
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, V, const D: usize> Constrained<G, V> {
+    /// See [`Triangulation::write_compact`]; with the constraints.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
+        write(self, Law::Constrained, bits, out)
+    }
+}
+
+impl<G: Crossing<Point = [f64; D]>, V, const D: usize> ConstrainedDelaunay<G, V> {
+    /// See [`Triangulation::write_compact`]; with the constrained edges. What is known of their lines stays behind.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
+        write(&self.inner, Law::ConstrainedDelaunay, bits, out)
+    }
+}
