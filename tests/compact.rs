@@ -129,6 +129,9 @@ fn answers_are_those_of_the_triangulation_that_was_written() {
         for vertex in t.tds().vertices().chain([VertexId::INFINITE]) {
             let around: Vec<VertexId> = t.tds().vertices_around(vertex).collect();
             assert_eq!(all(compact.vertices_around(vertex)), Ok(around));
+            let faces = t.faces_from(vertex).map(|cell| Dense(&t).cell(cell)).collect();
+            let exists = vertex != VertexId::INFINITE;
+            assert_eq!(all(compact.faces_from(vertex)), if exists { Ok(faces) } else { Err(Damaged::Vertex(vertex)) });
         }
     }
     assert!(dimensions.iter().all(|&count| count > 20), "{dimensions:?}");
@@ -285,6 +288,7 @@ fn ask_everything(compact: &Opened<'_>, places: &[Point]) -> bool {
     }
     for vertex in (0..compact.vertex_slots() + 2).map(VertexId::new).chain([VertexId::INFINITE]) {
         note(all(compact.vertices_around(vertex)).is_err());
+        note(all(compact.faces_from(vertex)).is_err());
     }
     is_damaged
 }

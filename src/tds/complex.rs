@@ -215,8 +215,8 @@ impl<'a, T: Complex<3>> Star<'a, T> {
         Ok(Star { complex, vertex, front: at, end: at, is_over: start.is_none() })
     }
 
-    /// The next cell across the side that `turn` gives for the place of the vertex in a face. On a line both ways lead to
-    /// the only other cell.
+    /// The next cell across the side that `turn` gives for the place of the vertex in a face. On a line both ways
+    /// lead to the only other cell.
     #[inline(always)]
     fn beside(
         &self,

@@ -62,7 +62,7 @@
 //! | see it | [`Triangulation::svg`] |
 //! | save it | serde, with the feature `serde`: all kinds but [`ConstrainedDelaunay`], in the plane |
 //! | keep it in a file, and ask without loading it | [`Delaunay::write_compact`], [`Compact`] |
-//! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], and all of [`Triangulation::tds`] |
+//! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], [`Triangulation::tds`]; outwards: [`Triangulation::faces_from`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
 //! All questions take `&self`. In space points cannot be removed, and there are the basic and the Delaunay kind.

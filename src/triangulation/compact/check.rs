@@ -7,8 +7,8 @@ use super::super::sides::{side_of_facet, simplex};
 use super::{Compact, Damaged, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Looks at everything, up to a level: no error means that the bytes are a triangulation, of the law that they claim if that
-    /// is the level. Exact, in time proportional to the number of cells, and in constant memory.
+    /// Looks at everything, up to a level: no error means that the bytes are a triangulation, of the law that they
+    /// claim if that is the level. Exact, in time proportional to the number of cells, and in constant memory.
     ///
     /// # Errors
     /// The first damage that is found.
@@ -60,8 +60,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         Ok(())
     }
 
-    /// The cells that one meets around each vertex are all that have it. With Euler's numbers, which the header has been held
-    /// against, and what comes next that leaves a sphere.
+    /// The cells that one meets around each vertex are all that have it. With Euler's numbers, which the header has
+    /// been held against, and what comes next that leaves a sphere.
     fn check_manifold(&self) -> Result<(), Damaged> {
         if self.dimension() < 1 {
             return Ok(());
@@ -76,8 +76,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         if corners == self.width() * self.cell_count() { Ok(()) } else { Err(Damaged::Header("pieces hang apart")) }
     }
 
-    /// Finite cells are turned counter-clockwise, and the hull is convex: see [`Level::Orientation`]. On a line all follow each
-    /// other.
+    /// Finite cells are turned counter-clockwise, and the hull is convex: see [`Level::Orientation`]. On a line all
+    /// follow each other.
     fn check_orientation(&self) -> Result<(), Damaged> {
         for cell in self.cells().filter(|_| self.dimension() > 0) {
             let corners = self.corners(cell)?;

@@ -94,16 +94,17 @@ impl std::error::Error for Damaged {}
 ///
 /// The kinds write it: [`Delaunay::write_compact`](super::Delaunay::write_compact),
 /// [`ConstrainedDelaunay::write_compact`](super::ConstrainedDelaunay::write_compact) and so on. `B` is whatever lends
-/// bytes: a slice, a vector, or a file that another crate maps to memory. Opening looks at the header and at the number of bytes, in
-/// constant time however many points there are; a question then touches the bytes that it needs. Answers are those of the
-/// triangulation that was written.
+/// bytes: a slice, a vector, or a file that another crate maps to memory. Opening looks at the header and at the
+/// number of bytes, in constant time however many points there are; a question then touches the bytes that it needs.
+/// Answers are those of the triangulation that was written.
 ///
-/// Nothing in the bytes is trusted: each number is held against its limits where it is used, each point is one that the geometry
-/// [admits](Geometry::admits), and walks are bounded by the number of cells. So damaged bytes lead to an error that names the cell
-/// or vertex, or to an answer that is wrong, never to a panic or an endless loop. [`check`](Self::check) looks at all of them.
+/// Nothing in the bytes is trusted: each number is held against its limits where it is used, each point is one that
+/// the geometry [admits](Geometry::admits), and walks are bounded by the number of cells. So damaged bytes lead to an
+/// error that names the cell or vertex, or to an answer that is wrong, never to a panic or an endless loop.
+/// [`check`](Self::check) looks at all of them.
 ///
-/// A point takes 8 bytes a coordinate, 4 bytes for a cell of its vertex, and 48 bytes for its two triangles; two bytes more
-/// with constraints. The format is described in `docs/formats.md`.
+/// A point takes 8 bytes a coordinate, 4 bytes for a cell of its vertex, and 48 bytes for its two triangles; two
+/// bytes more with constraints. The format is described in `docs/formats.md`.
 ///
 /// ```
 /// use breakline::{geometry::Plane, triangulation::{Compact, Damaged, Delaunay}};

@@ -3,13 +3,13 @@
 use crate::geometry::{Coordinates, Geometry, Metric};
 use crate::tds::{self, CellId, VertexId};
 
-use super::super::query::{self, Along, ConflictZone, NearestFirst, Passage};
+use super::super::query::{self, Along, ConflictZone, Faces, NearestFirst, Passage};
 use super::super::{Location, locate};
 use super::{Compact, Damaged, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Where a point lies: see [`Triangulation::locate`](crate::triangulation::Triangulation::locate). Without a cell nearby, a
-    /// long walk goes on from the nearest of `n^(1/3)` of the `n` vertices.
+    /// Where a point lies: see [`Triangulation::locate`](crate::triangulation::Triangulation::locate). Without a cell
+    /// nearby, a long walk goes on from the nearest of `n^(1/3)` of the `n` vertices.
     ///
     /// # Errors
     /// If what it meets is damaged.
@@ -17,8 +17,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         locate::walk(self, q, near)
     }
 
-    /// All that a segment meets: see [`Triangulation::along`](crate::triangulation::Triangulation::along). Ends at the first
-    /// error.
+    /// All that a segment meets: see [`Triangulation::along`](crate::triangulation::Triangulation::along). Ends at
+    /// the first error.
     ///
     /// # Errors
     /// If what it meets is damaged.
@@ -43,6 +43,21 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         query::within_rectangle(self, corners, self.locate(corners[0], None)?)
     }
 
+    /// All finite faces in constant memory: see
+    /// [`Triangulation::faces_from`](crate::triangulation::Triangulation::faces_from). Ends at the first error.
+    ///
+    /// # Errors
+    /// If there is no such vertex, or its cell or its point cannot be.
+    pub fn faces_from(
+        &self,
+        start: VertexId,
+    ) -> Result<impl Iterator<Item = Result<CellId, Damaged>> + use<'_, G, B, D>, Damaged>
+    where
+        G: Coordinates<3>,
+    {
+        Faces::new(self, start)
+    }
+
     /// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included; of
     /// [`INFINITE`](VertexId::INFINITE) those on the hull, clockwise. Ends at the first error.
     ///
@@ -55,8 +70,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         tds::vertices_around(self, vertex)
     }
 
-    /// What a new point would destroy: see [`Delaunay::conflict_zone`](crate::triangulation::Delaunay::conflict_zone) and
-    /// [`ConstrainedDelaunay::conflict_zone`](crate::triangulation::ConstrainedDelaunay::conflict_zone).
+    /// What a new point would destroy: see [`Delaunay::conflict_zone`](crate::triangulation::Delaunay::conflict_zone)
+    /// and [`ConstrainedDelaunay::conflict_zone`](crate::triangulation::ConstrainedDelaunay::conflict_zone).
     ///
     /// # Errors
     /// If what it meets is damaged, and on other kinds.
@@ -81,8 +96,8 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         query::nearest(self, q, self.locate(q, near)?)
     }
 
-    /// All vertices from the nearest on: see [`Delaunay::nearest_first`](crate::triangulation::Delaunay::nearest_first). Ends
-    /// at the first error.
+    /// All vertices from the nearest on: see
+    /// [`Delaunay::nearest_first`](crate::triangulation::Delaunay::nearest_first). Ends at the first error.
     ///
     /// # Errors
     /// See [`nearest`](Self::nearest).
@@ -96,7 +111,8 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         Ok(nearest.map(|candidate| Ok(candidate?.vertex)))
     }
 
-    /// The vertices in a circle: see [`Delaunay::within`](crate::triangulation::Delaunay::within). Ends at the first error.
+    /// The vertices in a circle: see [`Delaunay::within`](crate::triangulation::Delaunay::within). Ends at the first
+    /// error.
     ///
     /// # Errors
     /// See [`nearest`](Self::nearest).

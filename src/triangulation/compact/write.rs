@@ -103,8 +103,9 @@ fn bits(walls: &Walls) -> u8 {
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Triangulation<G, 3, V, C> {
-    /// Writes the triangulation for [`Compact`](super::Compact) to read, without payloads. Numbers of vertices and cells stay
-    /// as they are, unless some have been removed: then the gaps close. In small pieces: `out` is better buffered.
+    /// Writes the triangulation for [`Compact`](super::Compact) to read, without payloads. Numbers of vertices and
+    /// cells stay as they are, unless some have been removed: then the gaps close. In small pieces: `out` is better
+    /// buffered.
     ///
     /// # Errors
     /// Those of `out`.

@@ -124,7 +124,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
 /// Where `q` lies, by a walk from a cell, or if there is none by that number, from one at infinity.
 ///
-/// On links that are damaged it ends with an error: if a link leads nowhere, or if there are many times more steps than cells.
+/// On links that are damaged it ends with an error: if a link leads nowhere, or if there are many times more steps than
+/// cells.
 pub(super) fn walk<const N: usize, T: Embedded<N>>(
     t: &T,
     q: &PointOf<T, N>,

@@ -2,6 +2,7 @@
 
 mod along;
 mod dual;
+mod faces;
 mod natural;
 mod nearest;
 mod power;
@@ -12,6 +13,7 @@ mod zone;
 pub(super) use along::Along;
 pub use along::Passage;
 pub use dual::{VoronoiCell, VoronoiEdge};
+pub(super) use faces::Faces;
 pub(super) use nearest::{Candidate, NearestFirst, nearest};
 pub(super) use rectangle::within_rectangle;
 pub use svg::Mark;
