@@ -29,8 +29,10 @@ fn with_each_kernel(seed: u64, sequence: &[fn(&mut Random)]) {
     }
 }
 
-/// The finite cells as sorted places, and the points that are seen.
-fn shape<G, V, C>(t: &Triangulation<G, 3, V, C>) -> (i32, BTreeSet<Vec<[i64; 2]>>, BTreeSet<[i64; 2]>)
+/// The dimension, the finite cells as sorted places, and the places of vertices.
+type Shape = (i32, BTreeSet<Vec<[i64; 2]>>, BTreeSet<[i64; 2]>);
+
+fn shape<G, V, C>(t: &Triangulation<G, 3, V, C>) -> Shape
 where
     G: Coordinates<3>,
     C: Copy + Default,

@@ -94,8 +94,8 @@ mod locate;
 mod nesting;
 mod network;
 mod query;
-mod regular;
 pub mod refine;
+mod regular;
 mod remove;
 #[cfg(feature = "serde")]
 mod saved;

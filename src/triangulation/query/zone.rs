@@ -68,7 +68,7 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
     /// The point must be one that the geometry [admits](Geometry::admits).
     ///
     /// # Complexity
-    /// A [walk](Triangulation::locate) from a cell nearby, and time proportional to the size of the zone.
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of the zone.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::Delaunay};
