@@ -126,7 +126,12 @@ fn answers_are_those_of_the_triangulation_that_was_written() {
         let [p, q] = [place(&mut dice), place(&mut dice)];
         judge(&t, &compact, [p, q]);
         assert_eq!(all(compact.nearest_first(&p, None)), Ok(t.nearest_first(&p, None).collect()));
-        for vertex in t.tds().vertices().chain([VertexId::INFINITE]) {
+        let vertices: Vec<VertexId> = t.tds().vertices().chain([VertexId::INFINITE]).collect();
+        for &vertex in &vertices {
+            let [b, c] = [dice.pick(&vertices), dice.pick(&vertices)];
+            let edge = t.tds().edge(vertex, b).map(|(cell, i)| (Dense(&t).cell(cell), i));
+            assert_eq!(compact.edge(vertex, b), Ok(edge));
+            assert_eq!(compact.face([vertex, b, c]), Ok(t.tds().face([vertex, b, c]).map(|cell| Dense(&t).cell(cell))));
             let around: Vec<VertexId> = t.tds().vertices_around(vertex).collect();
             assert_eq!(all(compact.vertices_around(vertex)), Ok(around));
             let faces = t.faces_from(vertex).map(|cell| Dense(&t).cell(cell)).collect();
@@ -289,6 +294,8 @@ fn ask_everything(compact: &Opened<'_>, places: &[Point]) -> bool {
     for vertex in (0..compact.vertex_slots() + 2).map(VertexId::new).chain([VertexId::INFINITE]) {
         note(all(compact.vertices_around(vertex)).is_err());
         note(all(compact.faces_from(vertex)).is_err());
+        note(compact.edge(vertex, VertexId::new(0)).is_err());
+        note(compact.face([vertex, VertexId::INFINITE, VertexId::new(0)]).is_err());
     }
     is_damaged
 }

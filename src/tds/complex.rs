@@ -312,3 +312,29 @@ pub(crate) fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Resul
     let numbers = (0..complex.vertex_slots()).map(VertexId::new);
     numbers.filter_map(|vertex| complex.cell_of(vertex).map(|cell| cell.map(|_| vertex)).transpose())
 }
+
+/// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the vertex opposite), if
+/// there is such an edge and dimension 2.
+pub(crate) fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<Option<Edge>, T::Error> {
+    for cell in Star::new(complex, a, 2)? {
+        let cell = cell?;
+        if let Some(i) = complex.index_of(cell, a)?
+            && complex.vertex(cell, ccw(i))? == b
+        {
+            return Ok(Some((cell, cw(i))));
+        }
+    }
+    Ok(None)
+}
+
+/// The face with these three vertices, in any order, one of which may be the infinite one.
+pub(crate) fn face<T: Complex<3>>(complex: &T, [a, b, c]: [VertexId; 3]) -> Result<Option<CellId>, T::Error> {
+    for cell in Star::new(complex, a, 2)? {
+        let cell = cell?;
+        let corners = complex.corners(cell)?;
+        if a != b && b != c && c != a && corners.contains(&b) && corners.contains(&c) {
+            return Ok(Some(cell));
+        }
+    }
+    Ok(None)
+}

@@ -42,7 +42,7 @@ mod zone;
 
 pub use check::Flaw;
 pub use complex::Complex;
-pub(crate) use complex::{Star, edges_around, vertices, vertices_around};
+pub(crate) use complex::{Star, edge, edges_around, face, vertices, vertices_around};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 #[cfg(feature = "serde")]
 pub(crate) use rebuild::Parts;

@@ -100,10 +100,8 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
     /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the
     /// vertex opposite), if there is such an edge and dimension 2. Time proportional to the degree of `a`.
     pub fn edge(&self, a: VertexId, b: VertexId) -> Option<(CellId, usize)> {
-        self.around(a).find_map(|cell| {
-            let i = self.index_of(cell, a)?;
-            (self.vertex(cell, ccw(i)) == b).then_some((cell, cw(i)))
-        })
+        let Ok(edge) = complex::edge(self, a, b);
+        edge
     }
 
     /// Whether two vertices, one of which may be the infinite one, are the ends of an edge. Time proportional to the
@@ -114,10 +112,9 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
 
     /// The face with these three vertices, in any order, one of which may be the infinite one. Time proportional to the
     /// degree of the first.
-    pub fn face(&self, [a, b, c]: [VertexId; 3]) -> Option<CellId> {
-        let has =
-            |cell: &CellId| a != b && b != c && c != a && [b, c].iter().all(|&v| self.index_of(*cell, v).is_some());
-        self.around(a).find(has)
+    pub fn face(&self, corners: [VertexId; 3]) -> Option<CellId> {
+        let Ok(face) = complex::face(self, corners);
+        face
     }
 
     /// Whether three vertices, in any order, are those of a [`face`](Self::face).

@@ -70,6 +70,22 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         tds::vertices_around(self, vertex)
     }
 
+    /// The cell to the left of an edge: see [`Tds::edge`](crate::tds::Tds::edge).
+    ///
+    /// # Errors
+    /// If what is around the first vertex is damaged.
+    pub fn edge(&self, a: VertexId, b: VertexId) -> Result<Option<(CellId, usize)>, Damaged> {
+        tds::edge(self, a, b)
+    }
+
+    /// The face with these vertices: see [`Tds::face`](crate::tds::Tds::face).
+    ///
+    /// # Errors
+    /// If what is around the first vertex is damaged.
+    pub fn face(&self, corners: [VertexId; 3]) -> Result<Option<CellId>, Damaged> {
+        tds::face(self, corners)
+    }
+
     /// What a new point would destroy: see [`Delaunay::conflict_zone`](crate::triangulation::Delaunay::conflict_zone)
     /// and [`ConstrainedDelaunay::conflict_zone`](crate::triangulation::ConstrainedDelaunay::conflict_zone).
     ///

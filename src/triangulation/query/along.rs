@@ -65,6 +65,8 @@ pub(in crate::triangulation) struct Along<'t, T: Embedded<3>> {
     next: Result<Option<Passage>, T::Error>,
     /// Each face is met once: if there are more, links lead astray.
     faces: usize,
+    /// The last one met: the next one is further on the way.
+    vertex: Option<VertexId>,
 }
 
 impl<'t, T: Embedded<3>> Along<'t, T> {
@@ -72,14 +74,22 @@ impl<'t, T: Embedded<3>> Along<'t, T> {
     pub(in crate::triangulation) fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
         let way = Way { t, a: *a, b: *b };
         let next = way.first(location);
-        Along { way, next, faces: 0 }
+        Along { way, next, faces: 0, vertex: None }
     }
 
     fn after(&mut self, passage: Passage) -> Result<Option<Passage>, T::Error> {
-        if let Passage::Face(cell) = passage {
-            self.faces += 1;
-            let complex = self.way.t.complex();
-            complex.ensure(cell, || self.faces <= complex.cell_slots())?;
+        let complex = self.way.t.complex();
+        match passage {
+            Passage::Face(cell) => {
+                self.faces += 1;
+                complex.ensure(cell, || self.faces <= complex.cell_slots())?;
+            }
+            Passage::Vertex(vertex) => {
+                if let (Some(last), Some(cell)) = (self.vertex.replace(vertex), complex.cell_of(vertex)?) {
+                    complex.ensure(cell, || self.way.order_of(last, vertex).is_ok_and(Ordering::is_gt))?;
+                }
+            }
+            Passage::Edge(..) | Passage::Along(_) => {}
         }
         self.way.after(passage)
     }
