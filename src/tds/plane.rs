@@ -14,7 +14,7 @@
 use std::iter::FusedIterator;
 
 use super::complex::{self, Star};
-use super::{CellId, Tds, VertexId, ccw, cw};
+use super::{CellId, Tds, VertexId};
 
 /// An iterator that knows how many items are left.
 struct Counted<I> {

@@ -103,6 +103,13 @@ impl std::error::Error for Damaged {}
 /// error that names the cell or vertex, or to an answer that is wrong, never to a panic or an endless loop.
 /// [`check`](Self::check) looks at all of them.
 ///
+/// To map a file is left to the caller, who knows whether the file stays as it is meanwhile; with the crate `memmap2`:
+///
+/// ```text
+/// let map = unsafe { memmap2::Mmap::map(&File::open("valley.tin")?)? }; // nobody writes to it
+/// let compact = Compact::open(Plane::default(), map)?;
+/// ```
+///
 /// A point takes 8 bytes a coordinate, 4 bytes for a cell of its vertex, and 48 bytes for its two triangles; two
 /// bytes more with constraints. The format is described in `docs/formats.md`.
 ///

@@ -181,6 +181,8 @@ pub(super) fn walk<const N: usize, T: Embedded<N>>(
                 }
             }
         }
+        // On all facets lies nothing but what is flat.
+        complex.ensure(cell, || (touching.count_ones() as usize) < width)?;
         if touching.count_ones() as usize == width - 1 {
             // On all facets but one: on the vertex opposite that one.
             return Ok(Location::Vertex(complex.vertex(cell, (!touching).trailing_zeros() as usize)?));
