@@ -62,13 +62,15 @@ pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
 }
 
 impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
-    /// What would be destroyed if a point was inserted: the cells whose circumscribed circle it is in, ties decided as the
-    /// insertion does, in the plane or on a line. `None` if it is on a vertex, or if it would raise the dimension.
+    /// What would be destroyed if a point was inserted: the cells whose circumscribed circle it is in, ties decided
+    /// as the insertion does, in the plane or on a line. `None` if it is on a vertex, or if it would raise the
+    /// dimension.
     ///
     /// The point must be one that the geometry [admits](Geometry::admits).
     ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of the zone.
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of
+    /// the zone.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::Delaunay};
@@ -86,9 +88,9 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// The same as [`Delaunay::conflict_zone`], where constraints bound what the point sees; with one that it lies on, the
-    /// zone has both sides of it. Of a point on a segment that was bent at crossings, insertion replaces more: it leads the
-    /// segment through the point.
+    /// The same as [`Delaunay::conflict_zone`], where constraints bound what the point sees; with one that it lies
+    /// on, the zone has both sides of it. Of a point on a segment that was bent at crossings, insertion replaces
+    /// more: it leads the segment through the point.
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
         let passes = |cell: CellId, i| Ok(!self.tds().cell_data(cell).has(i));
         let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), passes);
