@@ -171,3 +171,15 @@ fn magnitudes_without_room_do_no_harm() {
     }
     assert_eq!(t.tds().edges().filter_map(|(cell, i)| t.voronoi_edge(cell, i)).count(), t.tds().finite_edges().count());
 }
+
+/// Numbers that stand for no vertex have no cell.
+#[test]
+fn no_vertex_no_cell() {
+    let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    let (mut t, v): (Free, _) = Delaunay::from_points(Plane::default(), &[square[0], square[2], [0.0, 3.0]]).unwrap();
+    t.remove(v[2]);
+    for gone in [v[2], VertexId::INFINITE, VertexId::new(99)] {
+        assert!(t.voronoi_cell(gone, &square).corners.is_empty());
+    }
+    assert_eq!(t.voronoi_cell(v[0], &square).area, 8.0);
+}

@@ -194,3 +194,33 @@ fn a_grid_of_twenty() {
     }
     assert_eq!((basic.check(Level::Law), delaunay.check(Level::Law), regular.check(Level::Law)), Default::default());
 }
+
+/// Constraints know no law: of weighted points, too, what is crossed is filled by whatever fits.
+#[test]
+fn constraints_among_weighted_points() {
+    let mut random = Random(36);
+    for _ in 0..300 {
+        let mut t: Constrained<Weighted> = Constrained::new(Weighted::default());
+        for _ in 0..9 {
+            let [x, y]: Point = tiny(&mut random, 6);
+            t.insert([x, y, random.below(40) as f64]).unwrap();
+        }
+        let vertices: Vec<VertexId> = t.tds().vertices().collect();
+        for _ in 0..4 {
+            let _ = t.constrain(random.pick(&vertices), random.pick(&vertices));
+            assert_eq!(t.check(Level::Law), [], "{:?}", t.points());
+        }
+    }
+}
+
+#[test]
+fn what_is_not_there_is_answered() {
+    let mut t: Constrained<Plane> = Constrained::new(Plane::default());
+    for p in [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]] {
+        t.insert(p).unwrap();
+    }
+    let (there, absent) = (VertexId::new(0), VertexId::new(9));
+    assert!(!t.release(absent, there) && !t.release(there, absent) && t.remove(absent).is_none());
+    assert_eq!(t.constrain(there, absent), Err(Blocked::Nowhere));
+    assert_eq!(Blocked::Nowhere.to_string(), "there are no triangles, or not both vertices");
+}

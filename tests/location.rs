@@ -5,6 +5,7 @@ mod common;
 use std::collections::BTreeSet;
 
 use breakline::geometry::{Geometry, Plane};
+use breakline::kernel::Wide;
 use breakline::num::Sign;
 use breakline::tds::{Tds, VertexId};
 use breakline::triangulation::{
@@ -147,5 +148,19 @@ fn numbers_used_again() {
             assert_eq!(t.remove_by(&mut hierarchy, vertex), Some(p));
         }
         assert_eq!(hierarchy.sample_sizes().sum::<usize>(), 0);
+    }
+}
+
+/// A grid over next to nothing has no more squares than any other.
+#[test]
+fn buckets_of_any_size() {
+    for size in [0.0, 1e-300, 1e-170, 1.0, 1e200] {
+        let points = [[0.0, 0.0], [size, 0.0], [size, size], [0.0, size]];
+        let mut buckets = Buckets::over([points[0], points[2]], 1 << 10);
+        let mut t: Delaunay<Plane<Wide>, 3> = Delaunay::new(Plane::default());
+        for p in points {
+            t.insert_by(&mut buckets, p, ()).unwrap();
+        }
+        assert!(points.iter().all(|p| matches!(buckets.locate(&t, p), Location::Vertex(_))));
     }
 }

@@ -5,6 +5,7 @@ mod common;
 use std::collections::BTreeMap;
 
 use breakline::geometry::Plane;
+use breakline::kernel::Wide;
 use breakline::tds::VertexId;
 use breakline::triangulation::{Delaunay, Location};
 use common::random::Random;
@@ -162,6 +163,19 @@ fn weights_are_continuous_at_vertices_and_the_hull() {
                     }
                 }
             }
+        }
+    }
+}
+
+/// Where squares of distances are no numbers, there are no weights.
+#[test]
+fn beyond_squares_there_are_none() {
+    for scale in [1e160, 1e-170] {
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(|p| p.map(|x| x * scale));
+        let (t, _) = Delaunay::from_points(Plane::<Wide>::default(), &square).unwrap();
+        let q = [scale, 2.0 * scale];
+        for weights in [t.sibson(&q, None), t.laplace(&q, None)].into_iter().flatten() {
+            assert!(weights.iter().all(|(_, weight)| (0.0..=1.0).contains(weight)), "{weights:?}");
         }
     }
 }

@@ -5,7 +5,7 @@ mod common;
 use std::collections::BTreeSet;
 
 use breakline::geometry::{Crossing, Plane, Terrain, distance_to_segment};
-use breakline::kernel::{DotProduct, Exact, InCircle, Kernel, Wide};
+use breakline::kernel::{Adaptive, DotProduct, Exact, Fixed, InCircle, Kernel, Lattice, Wide};
 use breakline::num::Sign;
 use breakline::tds::CellId;
 use breakline::triangulation::refine::{Conformity, Domain, Quality, Refined, Region, Shortfall};
@@ -367,5 +367,44 @@ fn added_vertices_are_on_the_surface() {
     for &v in mesh.added() {
         let p = mesh.point(v);
         assert!((p[2] - height(mesh.geometry().plan(p))).abs() < 1e-12, "{p:?}");
+    }
+}
+
+fn refined_ring<K: Kernel>(ring: &[Point], quality: &Quality<'_>) -> Refined<Plane<K>> {
+    let line: Vec<u32> = (0..ring.len() as u32).chain([0]).collect();
+    let built = ConstrainedDelaunay::<_, ()>::from_lines(Plane::<K>::default(), ring, &[line], OnCrossing::Split);
+    built.unwrap().0.refined(quality)
+}
+
+/// A center that comes to lie in the middle of a constraint, but for a rounding, splits it.
+#[test]
+fn bounds_on_areas_alone_make_no_slivers() {
+    let rings = [[[0.1, 0.3], [1.1, 1.3], [0.1, 1.3]], [[0.1, 0.3], [0.30000000000000004, 0.7], [0.1, 0.7]]];
+    for (ring, max_area) in rings.into_iter().zip([0.5 / 3.0, 0.001]) {
+        let mesh = refined_ring::<Adaptive>(&ring, &Quality { min_angle: 0.0, max_area, ..Quality::default() });
+        assert_eq!(mesh.shortfall(), []);
+        assert!(mesh.inside().all(|cell| area(corners(&mesh, cell)) > 1e-9));
+    }
+}
+
+/// Added vertices are on the grid of whole numbers, too.
+#[test]
+fn arithmetics_for_whole_numbers_refine() {
+    let ring = [[0.0, 0.0], [9000.0, 0.0], [9000.0, 1000.0], [0.0, 1000.0]];
+    let quality = Quality { max_area: 10_000.0, ..Quality::default() };
+    let mesh = refined_ring::<Fixed<24>>(&ring, &quality);
+    assert_eq!((mesh.shortfall(), mesh.check(Level::Law)), (&[][..], vec![]));
+    assert!(mesh.inside().count() >= 900);
+    assert!(mesh.added().iter().all(|&v| mesh.point(v).iter().all(|x| x.fract() == 0.0)));
+    assert_eq!(refined_ring::<Lattice>(&ring, &quality).shortfall(), []);
+}
+
+/// What is thin is told to be so, however large or small.
+#[test]
+fn thin_triangles_are_known_at_any_magnitude() {
+    for scale in [1e-160, 1e-100, 1e-85, 1e80, 1e100] {
+        let ring = [[0.0, 0.0], [9.0, 0.0], [9.0, 1.0], [0.0, 1.0]].map(|p| p.map(|x| x * scale));
+        let mesh = refined_ring::<Wide>(&ring, &Quality { min_angle: 25.0, ..Quality::default() });
+        assert!(mesh.inside().count() > 2 || !mesh.shortfall().is_empty(), "{scale:e}");
     }
 }

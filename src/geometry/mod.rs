@@ -273,12 +273,14 @@ pub trait Crossing: Coordinates<3> {
     /// that is so near to the other that rounding may hide on which side of it the end lies.
     fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point {
         let place = crossed::place(ab.map(|p| self.plan(p)), cd.map(|p| self.plan(p)));
-        // Nearer to zero than any coordinate that is admitted: zero lies between the ends, too.
-        let place = std::array::from_fn(|axis| {
-            let alone = std::array::from_fn(|k| if k == axis { place[axis] } else { 0.0 });
-            if self.admits(&self.meet(alone, &[ab, cd])) { place[axis] } else { 0.0 }
-        });
-        self.meet(place, &[ab, cd])
+        self.meet(self.on_step(place), &[ab, cd])
+    }
+
+    /// The place that is nearest to one on a line between points that are admitted, and whose coordinates are multiples of the
+    /// [step](Self::step).
+    fn on_step(&self, place: [f64; 2]) -> [f64; 2] {
+        let step = self.step();
+        if step == 0.0 { place } else { place.map(|x| (x / step).round() * step + 0.0) } // zero has one sign only
     }
 }
 

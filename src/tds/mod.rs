@@ -252,7 +252,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// A cell that has this vertex; `None` for the infinite vertex of an empty complex, and for a hole.
     #[inline]
     pub fn cell_of(&self, vertex: VertexId) -> Option<CellId> {
-        let cell = if vertex == VertexId::INFINITE { self.infinite_cell } else { self.vertex_cell[vertex.index()] };
+        let cell =
+            if vertex == VertexId::INFINITE { self.infinite_cell } else { *self.vertex_cell.get(vertex.index())? };
         (cell != CellId::NONE).then_some(cell)
     }
 

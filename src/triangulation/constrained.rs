@@ -158,6 +158,11 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         }
     }
 
+    /// The payload of a finite vertex, to change.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+
     /// Whether there is a constraint on the edge between two vertices.
     pub(super) fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
         self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))

@@ -138,7 +138,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             }
             match self.inner.trace(a, b, &mut self.scratch) {
                 Met::Vertex(v) => {
-                    self.inner.force_traced(a, v, &mut self.scratch);
+                    self.inner.force_traced(a, v, &mut self.scratch, Triangulation::is_in_circle);
                     if v != b {
                         self.lines.split(a, b, v);
                         pieces.push((v, b));
@@ -177,6 +177,12 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 }
 
 impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
+    /// Whether a vertex is in the circle of a counter-clockwise triangle.
+    #[inline(always)]
+    fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
+        in_sphere(&self.geometry, triangle.map(|v| self.point(v)), self.point(p))
+    }
+
     /// Makes an edge a constraint, if it is there.
     pub(super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
         let Some((cell, i)) = self.tds.edge(a, b) else { return false };
@@ -266,12 +272,19 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         }
     }
 
-    /// Makes the segment that was traced to a vertex a constrained edge.
-    pub(super) fn force_traced(&mut self, a: VertexId, v: VertexId, scratch: &mut Scratch) {
+    /// Makes the segment that was traced to a vertex a constrained edge. `is_closer` says whether a vertex goes before the
+    /// third one of a triangle as that of the same base.
+    pub(super) fn force_traced(
+        &mut self,
+        a: VertexId,
+        v: VertexId,
+        scratch: &mut Scratch,
+        is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+    ) {
         if scratch.corridor.is_empty() {
             self.wall_up(a, v); // the edge is there
         } else {
-            self.retriangulate(scratch);
+            self.retriangulate(scratch, is_closer);
         }
     }
 
@@ -281,7 +294,11 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
     ///
     /// In any other triangulation, too, the triangles fit the polygon: from each vertex of the border an edge went over
     /// the segment, so that no edge of the border can hide it from the base.
-    fn retriangulate(&mut self, Scratch { corridor, left, right, parts, .. }: &mut Scratch) {
+    fn retriangulate(
+        &mut self,
+        Scratch { corridor, left, right, parts, .. }: &mut Scratch,
+        is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+    ) {
         for &cell in corridor.iter() {
             *self.tds.cell_data_mut(cell) = Walls::TAKEN_OUT;
         }
@@ -292,7 +309,7 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         // has it on its left. On the right it is the other way around.
         right.chain.reverse();
         right.edges.reverse();
-        let sides = [self.fill(left, corridor, parts), self.fill(right, corridor, parts)];
+        let sides = [left, right].map(|side| self.fill(side, corridor, parts, &is_closer));
         if let [Some(left), Some(right)] = sides {
             self.tds.link(left, BASE, right, BASE);
             for cell in [left, right] {
@@ -305,11 +322,17 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
 
     /// Triangulates a side, over the base from its chain's first to its last vertex, with cells from `free`. Returns
     /// the triangle on the base.
-    fn fill(&mut self, side: &mut Side, free: &mut Vec<CellId>, parts: &mut Vec<Part>) -> Option<CellId> {
+    fn fill(
+        &mut self,
+        side: &mut Side,
+        free: &mut Vec<CellId>,
+        parts: &mut Vec<Part>,
+        is_closer: &impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+    ) -> Option<CellId> {
         let mut on_base = None;
         parts.push((0, side.chain.len() - 1, None));
         while let Some((first, last, above)) = parts.pop() {
-            let (Some(apex), Some(cell)) = (self.apex(&side.chain[first..=last]), free.pop()) else {
+            let (Some(apex), Some(cell)) = (self.apex(&side.chain[first..=last], is_closer), free.pop()) else {
                 debug_assert!(false, "a polygon without a triangle on its base");
                 continue;
             };
@@ -343,8 +366,8 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         on_base
     }
 
-    /// Which vertex of a chain makes an empty circle with its first and last.
-    fn apex(&self, chain: &[VertexId]) -> Option<usize> {
+    /// Which vertex of a chain makes a triangle with its first and last than which none is closer.
+    fn apex(&self, chain: &[VertexId], is_closer: &impl Fn(&Self, [VertexId; 3], VertexId) -> bool) -> Option<usize> {
         if chain.len() == 3 {
             return Some(1);
         }
@@ -355,9 +378,7 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
             if self.turn(a, b, p) != Sign::Positive {
                 continue; // behind the base, or an end of it met again at a spike
             }
-            let closer = |c: usize| {
-                chain[c] != p && in_sphere(&self.geometry, [a, b, chain[c]].map(|v| self.point(v)), self.point(p))
-            };
+            let closer = |c: usize| chain[c] != p && is_closer(self, [a, b, chain[c]], p);
             if best.is_none_or(closer) {
                 best = Some(k);
             }

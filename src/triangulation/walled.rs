@@ -1,6 +1,8 @@
+use std::fmt;
 use std::ops::Deref;
 
 use crate::geometry::Geometry;
+use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
 use super::segment::{Met, Scratch};
@@ -38,6 +40,19 @@ pub enum Blocked {
     /// All points are collinear, so that there are no triangles to hold it; or one of the vertices does not exist.
     Nowhere,
 }
+
+impl fmt::Display for Blocked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Blocked::Wall([a, b]) => {
+                write!(f, "the constraint between vertices {} and {} is crossed", a.index(), b.index())
+            }
+            Blocked::Nowhere => f.write_str("there are no triangles, or not both vertices"),
+        }
+    }
+}
+
+impl std::error::Error for Blocked {}
 
 impl<G: Geometry<3>, V> Deref for Constrained<G, V> {
     type Target = Triangulation<G, 3, V, Walls>;
@@ -103,7 +118,7 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
         let mut from = a;
         while from != b {
             let Met::Vertex(v) = self.inner.trace(from, b, &mut self.scratch) else { break };
-            self.inner.force_traced(from, v, &mut self.scratch);
+            self.inner.force_traced(from, v, &mut self.scratch, Triangulation::is_within);
             from = v;
         }
         Ok(())
@@ -193,6 +208,13 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
             let i = self.tds.index_of(cell, vertex);
             (0..3).any(|k| Some(k) != i && self.is_constrained(cell, k))
         })
+    }
+
+    /// Whether a point is in a counter-clockwise triangle or on its border.
+    fn is_within(&self, [a, b, c]: [VertexId; 3], p: VertexId) -> bool {
+        let [a, b, c, p] = [a, b, c, p].map(|v| self.point(v));
+        let sides = [[a, b, p], [b, c, p], [c, a, p]];
+        sides.into_iter().all(|side| self.geometry.orientation(side) != Sign::Negative)
     }
 
     /// Edges that are constrained on one side only.

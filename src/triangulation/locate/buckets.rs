@@ -22,7 +22,8 @@ impl Buckets {
     pub fn over([low, high]: [[f64; 2]; 2], count: usize) -> Self {
         let count = count.clamp(1, 1 << 28) as f64;
         let [width, height] = [0, 1].map(|k| (high[k] - low[k]).max(0.0));
-        let side = ((width * height / count).sqrt()).max(width / count).max(height / count);
+        let side = [width, height].map(|length| (length / count.sqrt()).sqrt());
+        let side = (side[0] * side[1]).max(width / count).max(height / count);
         let scale = if side > 0.0 && side.is_finite() { 1.0 / side } else { 0.0 };
         let [columns, rows] = [width, height].map(|length| (length * scale).ceil().max(1.0) as usize);
         Buckets { low, scale, columns, vertices: vec![None; columns * rows] }

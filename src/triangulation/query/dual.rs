@@ -107,7 +107,7 @@ pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>,
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// The center of the circle around a finite face; `None` for infinite ones and below dimension 2. Right to a few units
+    /// The center of the circle around a finite face, weights aside; `None` for infinite ones and below dimension 2. Right to a few units
     /// in the last place of the larger of its coordinates and its [distance](kernel::circumcenter) from the corners. O(1).
     pub fn circumcenter(&self, cell: CellId) -> Option<[f64; 2]> {
         if !self.is_full() || self.tds.is_infinite(cell) {
@@ -141,7 +141,8 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
     }
 
     /// What of a convex polygon, counter-clockwise, is nearest to a finite vertex. The cells of all vertices tile it, in
-    /// every dimension.
+    /// every dimension, as long as squares of distances are numbers: between `1e-150` and `1e150`, say. That of what is no
+    /// vertex has no corners.
     ///
     /// # Complexity
     /// The degree of the vertex times the corners of the polygon and the cell.
@@ -158,6 +159,9 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn voronoi_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
+        if vertex == VertexId::INFINITE || !self.tds().is_vertex(vertex) {
+            return VoronoiCell { corners: Vec::new(), area: 0.0 };
+        }
         let site = self.place(vertex);
         let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
         cell_of(site, neighbors.map(|v| HalfPlane::nearer_than(minus(self.place(v), site))), within)

@@ -33,7 +33,8 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
     /// 10 apart.
     ///
     /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends in
-    /// linear proportion, which is the limit from within. Outside of the hull there are none: `None`. The place must be
+    /// linear proportion, which is the limit from within. Outside of the hull there are none: `None`; nor where squares of
+    /// distances are no numbers (beyond `1e150`, below `1e-150`). The place must be
     /// one that the geometry admits; its coordinates, those that circles are circles of.
     ///
     /// After Sibson 1981, *A brief description of natural neighbour interpolation*; without insertion as Watson 1992,
@@ -134,6 +135,10 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
             }
         };
         let sum: f64 = weights.iter().map(|&(_, weight)| weight).sum();
+        // Of lengths whose squares are no numbers.
+        if !(sum > 0.0 && sum.is_finite()) {
+            return None;
+        }
         weights.iter_mut().for_each(|(_, weight)| *weight /= sum);
         Some(weights)
     }

@@ -146,6 +146,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     /// if the place cannot be seen.
     pub(super) fn add_in(&mut self, cell: CellId, place: [f64; 2]) -> Attempt {
         let [a, b, _] = self.t.tds().corners(cell).map(|v| self.t.point(v));
+        let place = self.t.geometry().on_step(place);
         let p = self.t.geometry().meet(place, &[[a, b]]);
         if self.t.inner.admit(&p).is_err() || !self.t.inner.in_conflict(cell, &p) {
             return Attempt::TooFine;

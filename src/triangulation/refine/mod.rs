@@ -143,6 +143,11 @@ impl Quality<'_> {
     fn angle(&self) -> f64 {
         if self.min_angle.is_nan() { 0.0 } else { self.min_angle.clamp(0.0, 60.0) }
     }
+
+    fn bounds_areas(&self) -> bool {
+        let mut bounds = self.regions.iter().map(|region| region.max_area).chain([self.max_area]);
+        self.area_at.is_some() || bounds.any(|bound| bound < f64::INFINITY)
+    }
 }
 
 /// Why a triangle is not what was asked for.
@@ -262,8 +267,10 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             return Refined::unchanged(self);
         }
         let regions = regions::regions_of(&mut self, &quality.domain, &quality.regions);
-        // Without an angle nothing is too thin, rounded or not.
-        let lens = if quality.angle() > 0.0 { (2.0 * quality.angle().to_radians()).cos() } else { f64::INFINITY };
+        // Where areas only are asked for, too, nothing may come within a rounding of a constraint: it could not be split
+        // then.
+        let angle = if quality.bounds_areas() { quality.angle().max(1.0) } else { quality.angle() };
+        let lens = if angle > 0.0 { (2.0 * angle.to_radians()).cos() } else { f64::INFINITY };
         let draft = Draft::new(self, regions, Law::Lens(lens), quality.max_added);
         let mut refiner = Refiner::new(draft, quality);
         refiner.run();

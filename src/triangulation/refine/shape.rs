@@ -39,12 +39,14 @@ impl Shape {
         let lesser = |j: usize, k: usize| if squares[k] < squares[j] { k } else { j };
         let first = lesser(lesser(0, 1), 2);
         let [next, last] = [(first + 1) % 3, (first + 2) % 3];
-        let along = dot(edges[next], edges[last]);
+        // Of edges of length 1: squares of extreme magnitudes are none.
+        let [u, v] = [edges[next], edges[last]].map(|edge| edge.map(|x| x / length(edge)));
+        let along = dot(u, v);
         Shape {
             corners: [first, next, last].map(|k| corners[k]),
             first,
             shortest: squares[first],
-            cosine: along * along / (squares[next] * squares[last]),
+            cosine: along * along,
         }
     }
 

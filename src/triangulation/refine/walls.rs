@@ -40,6 +40,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let [from, to] = [a, b].map(|v| self.t.plan_of(v));
         let fraction = self.shells.fraction([a, b], constraint, length(minus(to, from)));
         let place = [0, 1].map(|axis| from[axis] * (1.0 - fraction) + to[axis] * fraction + 0.0); // one zero
+        let place = self.t.geometry().on_step(place);
         let p = self.t.geometry().meet(place, &[[self.t.point(a), self.t.point(b)]]);
         let Some((cell, i)) = self.t.tds().edge(a, b) else { return false };
         if self.t.inner.admit(&p).is_err() {
