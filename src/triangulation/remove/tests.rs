@@ -1,4 +1,4 @@
-//! Free vertices taken out between walls, and walls cleared: against a fresh build. `tests/removal.rs` has the same
+//! Free vertices taken out between walls, and walls cleared: against a fresh build. `tests/plane/removal.rs` has the same
 //! without walls.
 
 #[allow(dead_code)]

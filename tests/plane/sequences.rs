@@ -4,18 +4,16 @@
 //! Takes the number of sequences of each kind and arithmetic from the environment:
 //!
 //! ```text
-//! BREAKLINE_SEQUENCES=50000 cargo test --release --test sequences
+//! BREAKLINE_SEQUENCES=50000 cargo test --release --test plane sequences
 //! ```
-
-mod common;
 
 use std::collections::BTreeSet;
 
+use crate::common::random::Random;
 use breakline::geometry::{Coordinates, Plane, Weighted};
 use breakline::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Kernel, Lattice, Wide};
 use breakline::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Kept, Level, LineId, Regular, Triangulation};
-use common::random::Random;
 
 fn sequences() -> u64 {
     std::env::var("BREAKLINE_SEQUENCES").ok().and_then(|n| n.parse().ok()).unwrap_or(150)
@@ -40,7 +38,7 @@ where
     // Of crossings, too.
     let whole = |c: G::Coordinates| [0, 1].map(|k| (c.as_ref()[k] * 1e6) as i64);
     let seen = t.tds().vertices().map(|v| whole(t.geometry().coordinates(t.point(v)))).collect();
-    (t.dimension(), common::cells::cells(t, whole), seen)
+    (t.dimension(), crate::common::cells::cells(t, whole), seen)
 }
 
 fn tiny<const D: usize>(random: &mut Random, side: u64) -> [f64; D] {

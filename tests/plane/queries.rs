@@ -1,16 +1,14 @@
 //! Questions to triangulations of the plane against naive answers, on tiny grids where ties are the rule.
 
-mod common;
-
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
+use crate::common::picture::OnFailure;
+use crate::common::random::Random;
 use breakline::geometry::{Geometry, Metric, Plane, Steps, Terrain};
 use breakline::num::Sign;
 use breakline::tds::{CellId, VertexId};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, Passage, Triangulation};
-use common::picture::OnFailure;
-use common::random::Random;
 
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;

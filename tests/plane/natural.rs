@@ -1,14 +1,12 @@
 //! Natural neighbor coordinates: their laws, and Sibson's against insertion.
 
-mod common;
-
 use std::collections::BTreeMap;
 
+use crate::common::random::Random;
 use breakline::geometry::Plane;
 use breakline::kernel::Wide;
 use breakline::tds::VertexId;
 use breakline::triangulation::{Delaunay, Location};
-use common::random::Random;
 
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;

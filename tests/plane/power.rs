@@ -1,12 +1,10 @@
 //! Power diagrams: against all bisectors, and the law that cells tile; nearest points by power against all points.
 
-mod common;
-
+use crate::common::random::Random;
 use breakline::geometry::{Geometry, Weighted};
 use breakline::kernel::Adaptive;
 use breakline::tds::VertexId;
 use breakline::triangulation::Regular;
-use common::random::Random;
 
 type Point = [f64; 3];
 type Weights = Regular<Weighted>;

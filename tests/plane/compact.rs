@@ -1,14 +1,12 @@
 //! The compact triangulation: the answers of the one that was written, and errors for whatever is damaged.
 
-mod common;
-
+use crate::common::random::Random;
 use breakline::geometry::{Plane, Terrain};
 use breakline::tds::{CellId, Complex, VertexId};
 use breakline::triangulation::{
     Compact, ConflictZone, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Law, Level, Location, OnCrossing,
     Passage, Regular, Triangulation,
 };
-use common::random::Random;
 
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;

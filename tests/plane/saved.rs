@@ -1,5 +1,4 @@
 //! Triangulations through serde: what is read is what was saved, and damage is an error.
-#![cfg(feature = "serde")]
 
 use std::collections::BTreeSet;
 

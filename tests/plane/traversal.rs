@@ -1,12 +1,10 @@
 //! Faces told without a mark on those that have been: each comes exactly once, from whichever vertex.
 
-mod common;
-
+use crate::common::random::Random;
 use breakline::geometry::{Coordinates, Mapped, Plane, Steps, Terrain};
 use breakline::kernel::{AngleAt, Exact, Kernel, Wide};
 use breakline::tds::{CellId, VertexId};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, OnCrossing, Triangulation};
-use common::random::Random;
 
 type Point = [f64; 2];
 

@@ -1,13 +1,11 @@
 //! Every kind of triangulation with every kernel: the triangles of exact arithmetic, by changing one type.
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::random::Random;
 use breakline::geometry::{Plane, Space, Terrain, Weighted};
 use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
-use common::random::Random;
 
 type Cells = BTreeSet<Vec<Vec<i64>>>;
 
@@ -16,7 +14,7 @@ where
     G: breakline::geometry::Coordinates<N>,
     C: Copy + Default,
 {
-    common::cells::cells(t, |p| p.as_ref().iter().map(|x| *x as i64).collect())
+    crate::common::cells::cells(t, |p| p.as_ref().iter().map(|x| *x as i64).collect())
 }
 
 /// Points in space, and lines between them that may cross in plan, and then at points of the grid.

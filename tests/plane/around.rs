@@ -1,14 +1,12 @@
 //! What is around what in the plane, in every dimension, against sets made from the faces alone.
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::random::Random;
 use breakline::geometry::{Geometry, Plane};
 use breakline::num::Sign;
 use breakline::tds::{Tds, VertexId};
 use breakline::triangulation::Delaunay;
-use common::random::Random;
 
 type Free = Delaunay<Plane, 3>;
 

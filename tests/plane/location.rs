@@ -1,9 +1,8 @@
 //! Strategies of point location: the same answer by each, on grids where points lie on vertices, edges and lines.
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::random::Random;
 use breakline::geometry::{Geometry, Plane};
 use breakline::kernel::Wide;
 use breakline::num::Sign;
@@ -11,7 +10,6 @@ use breakline::tds::{Tds, VertexId};
 use breakline::triangulation::{
     Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine,
 };
-use common::random::Random;
 
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;

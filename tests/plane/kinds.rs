@@ -1,14 +1,12 @@
 //! The kinds without an empty circle: basic and constrained triangulations, on tiny grids.
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::random::Random;
 use breakline::geometry::{Plane, Space, Weighted};
 use breakline::kernel::Adaptive;
 use breakline::tds::{Tds, VertexId};
 use breakline::triangulation::{Blocked, Constrained, Delaunay, Level, Regular, Triangulation, Walls};
-use common::random::Random;
 
 type Point = [f64; 2];
 

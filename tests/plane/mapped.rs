@@ -1,13 +1,11 @@
 //! Points by their places: the triangles are those of the places in the plane, whatever a point is.
 
-mod common;
-
 use std::fmt::Debug;
 
+use crate::common::random::Random;
 use breakline::geometry::{Coordinates, Mapped, Metric, Plane, seen_along};
 use breakline::kernel::{Exact, Fixed};
 use breakline::triangulation::{Delaunay, Level, Triangulation};
-use common::random::Random;
 
 /// The triangles by the positions of their points, from the smallest on: orientation counts.
 fn triangles<G: Coordinates<3>, V, C: Copy + Default>(

@@ -1,12 +1,10 @@
 //! Voronoi diagrams: against exact centers, clipping by all bisectors, and the law that cells tile.
 
-mod common;
-
+use crate::common::random::{Random, ulps};
 use breakline::geometry::Plane;
 use breakline::kernel::{Exact, circumcenter};
 use breakline::tds::VertexId;
 use breakline::triangulation::{Delaunay, VoronoiEdge};
-use common::random::{Random, ulps};
 use dashu_ratio::RBig;
 
 type Point = [f64; 2];

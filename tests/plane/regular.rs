@@ -1,16 +1,14 @@
 //! Regular triangulations of tiny grids, where weights, sites and powers tie all the time, against the lower hull.
 
-mod common;
-
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
+use crate::common::random::Random;
 use breakline::geometry::{Geometry, Weighted};
 use breakline::kernel::Adaptive;
 use breakline::num::Sign;
 use breakline::tds::VertexId;
 use breakline::triangulation::{Level, Regular};
-use common::random::Random;
 use dashu_int::IBig;
 
 /// x, y and weight.

@@ -1,0 +1,23 @@
+//! The package of the plane: kinds, location, edits, queries, meshes, files. One program, so that the triangulations
+//! that all of these tests make are compiled once.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod around;
+mod compact;
+mod dual;
+mod kernels;
+mod kinds;
+mod location;
+mod mapped;
+mod natural;
+mod power;
+mod queries;
+mod refine;
+mod regular;
+mod removal;
+#[cfg(feature = "serde")]
+mod saved;
+mod sequences;
+mod traversal;
