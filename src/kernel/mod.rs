@@ -255,6 +255,7 @@ pub struct Exact;
 impl Kernel for Exact {
     const RANGE: Range = Range::FINITE;
 
+    #[inline(never)] // long, and no faster where it is called
     fn sign<P: Predicate>(predicate: &P) -> Sign {
         predicate.value(Dyadic::difference).sign()
     }
@@ -267,6 +268,7 @@ pub struct Expansions;
 impl Kernel for Expansions {
     const RANGE: Range = RANGE;
 
+    #[inline(never)] // long, and no faster where it is called
     fn sign<P: Predicate>(predicate: &P) -> Sign {
         predicate.value(Expansion::difference).sign()
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::common::random::Random;
-use breakline::geometry::{Plane, Space, Terrain, Weighted};
+use breakline::geometry::{Plane, Space, Weighted};
 use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
 
@@ -39,7 +39,7 @@ fn case(random: &mut Random) -> Case {
 }
 
 /// What each kind makes of the case.
-fn build<K: Kernel>(Case { points, lines }: &Case) -> [Cells; 5] {
+fn build<K: Kernel>(Case { points, lines }: &Case) -> [Cells; 4] {
     let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
     let (in_bulk, _) = Delaunay::from_points(Plane::<K>::default(), &plan).unwrap();
     let mut one_by_one = Delaunay::<_, 3>::new(Plane::<K>::default());
@@ -49,9 +49,8 @@ fn build<K: Kernel>(Case { points, lines }: &Case) -> [Cells; 5] {
     let rule = OnCrossing::Reject;
     let (constrained, _) = ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &plan, lines, rule).unwrap();
     assert_eq!(constrained.check(Level::Law), [], "{:?} {plan:?} {lines:?}", K::default());
-    let (terrain, _) = ConstrainedDelaunay::<_>::from_lines(Terrain::<K>::default(), points, lines, rule).unwrap();
     let (space, _) = Delaunay::from_points(Space::<K>::default(), points).unwrap();
-    [cells(&in_bulk), cells(&one_by_one), cells(&constrained), cells(&terrain), cells(&space)]
+    [cells(&in_bulk), cells(&one_by_one), cells(&constrained), cells(&space)]
 }
 
 #[test]
@@ -116,11 +115,12 @@ fn one_regular_triangulation() {
 #[test]
 fn crossings() {
     fn check<K: Kernel>(Case { points, .. }: &Case) -> usize {
+        let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
         let lines: Vec<[u32; 2]> = (0..points.len() as u32 / 2).map(|i| [2 * i, 2 * i + 1]).collect();
         let rule = OnCrossing::Split;
-        let (t, _) = ConstrainedDelaunay::<_>::from_lines(Terrain::<K>::default(), points, &lines, rule).unwrap();
+        let (t, _) = ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &plan, &lines, rule).unwrap();
         assert_eq!(t.check(Level::Law), [], "{:?} {points:?}", K::default());
-        assert!(t.points().iter().all(|[x, y, _]| K::RANGE.admits(*x) && K::RANGE.admits(*y)));
+        assert!(t.points().iter().all(|[x, y]| K::RANGE.admits(*x) && K::RANGE.admits(*y)));
         t.crossings().len()
     }
     let mut random = Random(2);

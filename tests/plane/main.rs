@@ -5,6 +5,7 @@
 mod common;
 
 mod around;
+mod chosen;
 mod compact;
 mod dual;
 mod kernels;

@@ -9,9 +9,10 @@
 
 use std::collections::BTreeSet;
 
+use crate::chosen::{Chosen, plane, weighted};
 use crate::common::random::Random;
-use breakline::geometry::{Coordinates, Plane, Weighted};
-use breakline::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Kernel, Lattice, Wide};
+use breakline::geometry::Coordinates;
+use breakline::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide};
 use breakline::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Kept, Level, LineId, Regular, Triangulation};
 
@@ -20,10 +21,10 @@ fn sequences() -> u64 {
 }
 
 /// Once with each arithmetic.
-fn with_each_kernel(seed: u64, sequence: &[fn(&mut Random)]) {
-    for (k, run) in sequence.iter().enumerate() {
-        let mut random = Random(seed + k as u64);
-        (0..sequences()).for_each(|_| run(&mut random));
+fn with_each<G: Copy>(seed: u64, geometries: &[G], sequence: fn(&mut Random, G)) {
+    for (k, &geometry) in (0..).zip(geometries) {
+        let mut random = Random(seed + 100 * k);
+        (0..sequences()).for_each(|_| sequence(&mut random, geometry));
     }
 }
 
@@ -45,9 +46,9 @@ fn tiny<const D: usize>(random: &mut Random, side: u64) -> [f64; D] {
     std::array::from_fn(|_| random.below(side) as f64)
 }
 
-fn delaunay<K: Kernel>(random: &mut Random) {
+fn delaunay(random: &mut Random, geometry: Chosen<2>) {
     let side = 1 + random.below(5);
-    let mut t: Delaunay<Plane<K>, 3> = Delaunay::new(Plane::default());
+    let mut t: Delaunay<Chosen<2>, 3> = Delaunay::new(geometry);
     let mut points: Vec<[f64; 2]> = Vec::new();
     for _ in 0..4 + random.index(16) {
         let p = tiny(random, side);
@@ -63,13 +64,13 @@ fn delaunay<K: Kernel>(random: &mut Random) {
         }
     }
     assert_eq!(t.check(Level::Law), []);
-    let (fresh, _) = Delaunay::from_points(Plane::<K>::default(), &points).unwrap();
+    let (fresh, _) = Delaunay::from_points(geometry, &points).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{points:?}");
 }
 
-fn regular<K: Kernel>(random: &mut Random) {
+fn regular(random: &mut Random, geometry: Chosen<3>) {
     let (side, weights) = (1 + random.below(5), 1 + random.below(12));
-    let mut t: Regular<Weighted<K>> = Regular::new(Weighted::default());
+    let mut t: Regular<Chosen<3>> = Regular::new(geometry);
     let mut points: Vec<([f64; 3], VertexId)> = Vec::new();
     for _ in 0..4 + random.index(16) {
         if points.is_empty() || random.below(5) > 1 {
@@ -88,15 +89,15 @@ fn regular<K: Kernel>(random: &mut Random) {
     }
     assert_eq!(t.check(Level::Law), []);
     let points: Vec<[f64; 3]> = points.into_iter().map(|(p, _)| p).collect();
-    let (fresh, _) = Regular::<_, ()>::from_points(Weighted::<K>::default(), &points).unwrap();
+    let (fresh, _) = Regular::<_, ()>::from_points(geometry, &points).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{points:?}");
-    let hidden = |t: &Regular<Weighted<K>>| t.hidden().map(|v| t.point(v).map(|x| x as i64)).collect::<BTreeSet<_>>();
+    let hidden = |t: &Regular<Chosen<3>>| t.hidden().map(|v| t.point(v).map(|x| x as i64)).collect::<BTreeSet<_>>();
     assert_eq!(hidden(&t), hidden(&fresh), "{points:?}");
 }
 
-fn constrained<K: Kernel>(random: &mut Random) {
+fn constrained(random: &mut Random, geometry: Chosen<2>) {
     let side = 2 + random.below(4);
-    let mut t: ConstrainedDelaunay<Plane<K>> = ConstrainedDelaunay::new(Plane::default());
+    let mut t: ConstrainedDelaunay<Chosen<2>> = ConstrainedDelaunay::new(geometry);
     let mut lines: Vec<(Vec<[f64; 2]>, LineId)> = Vec::new();
     // Those that were given as points.
     let mut points: BTreeSet<[u64; 2]> = BTreeSet::new();
@@ -148,12 +149,12 @@ fn constrained<K: Kernel>(random: &mut Random) {
         }
     }
     assert_eq!(t.check(Level::Law), [], "{history:#?}");
-    let mut fresh: ConstrainedDelaunay<Plane<K>> = ConstrainedDelaunay::new(Plane::default());
+    let mut fresh: ConstrainedDelaunay<Chosen<2>> = ConstrainedDelaunay::new(geometry);
     points.iter().for_each(|p| _ = fresh.insert(p.map(f64::from_bits)).unwrap());
     let rest: Vec<&Vec<[f64; 2]>> = lines.iter().map(|(line, _)| line).collect();
     fresh.insert_lines(&rest).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{history:#?}");
-    let walls = |t: &ConstrainedDelaunay<Plane<K>>| {
+    let walls = |t: &ConstrainedDelaunay<Chosen<2>>| {
         let ends = |[a, b]: [VertexId; 2]| {
             let mut ends = [a, b].map(|v| t.point(v).map(f64::to_bits));
             ends.sort_unstable();
@@ -164,23 +165,32 @@ fn constrained<K: Kernel>(random: &mut Random) {
     assert_eq!(walls(&t), walls(&fresh), "{history:#?}");
 }
 
-/// An arithmetic for the whole numbers of the grids; crossings of lines are others, which the ones for whole numbers
-/// refuse.
+/// Every exact arithmetic.
 macro_rules! each {
-    ($sequence:ident, $($kernel:ty),*) => { &[$($sequence::<$kernel>),*] };
+    ($geometry:ident) => {
+        &[
+            $geometry::<Adaptive>(),
+            $geometry::<Exact>(),
+            $geometry::<Expansions>(),
+            $geometry::<Interval>(),
+            $geometry::<Fixed>(),
+            $geometry::<Lattice>(),
+            $geometry::<Wide>(),
+        ]
+    };
 }
 
 #[test]
 fn of_delaunay() {
-    with_each_kernel(41, each!(delaunay, Adaptive, Exact, Expansions, Interval, Fixed, Lattice, Wide));
+    with_each(41, each!(plane), delaunay);
 }
 
 #[test]
 fn of_regular() {
-    with_each_kernel(42, each!(regular, Adaptive, Exact, Expansions, Interval, Fixed, Lattice, Wide));
+    with_each(42, each!(weighted), regular);
 }
 
 #[test]
 fn of_constrained_delaunay() {
-    with_each_kernel(43, each!(constrained, Adaptive, Exact, Expansions, Interval, Lattice, Wide));
+    with_each(43, each!(plane), constrained);
 }
