@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use crate::chosen::{Chosen, plane, weighted};
 use crate::common::random::Random;
-use breakline::geometry::{Plane, Space, Weighted};
+use breakline::geometry::Space;
 use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
 
@@ -30,7 +31,7 @@ fn case(random: &mut Random) -> Case {
     for _ in 0..random.index(6) {
         lines.push([(); 2].map(|()| random.index(count) as u32));
         let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
-        let plane = Plane::<Exact>::default();
+        let plane = plane::<Exact>();
         if ConstrainedDelaunay::<_>::from_lines(plane, &plan, &lines, OnCrossing::Reject).is_err() {
             lines.pop();
         }
@@ -41,13 +42,13 @@ fn case(random: &mut Random) -> Case {
 /// What each kind makes of the case.
 fn build<K: Kernel>(Case { points, lines }: &Case) -> [Cells; 4] {
     let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
-    let (in_bulk, _) = Delaunay::from_points(Plane::<K>::default(), &plan).unwrap();
-    let mut one_by_one = Delaunay::<_, 3>::new(Plane::<K>::default());
+    let (in_bulk, _) = Delaunay::from_points(plane::<K>(), &plan).unwrap();
+    let mut one_by_one = Delaunay::<_, 3>::new(plane::<K>());
     for &p in &plan {
         one_by_one.insert(p).unwrap();
     }
     let rule = OnCrossing::Reject;
-    let (constrained, _) = ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &plan, lines, rule).unwrap();
+    let (constrained, _) = ConstrainedDelaunay::<_>::from_lines(plane::<K>(), &plan, lines, rule).unwrap();
     assert_eq!(constrained.check(Level::Law), [], "{:?} {plan:?} {lines:?}", K::default());
     let (space, _) = Delaunay::from_points(Space::<K>::default(), points).unwrap();
     [cells(&in_bulk), cells(&one_by_one), cells(&constrained), cells(&space)]
@@ -80,7 +81,7 @@ fn one_answer() {
 #[test]
 fn one_regular_triangulation() {
     fn build<K: Kernel>(points: &[[f64; 3]]) -> (Cells, Vec<usize>) {
-        let mut t: Regular<Weighted<K>> = Regular::new(Weighted::default());
+        let mut t: Regular<Chosen<3>> = Regular::new(weighted::<K>());
         for &p in points {
             t.insert(p).unwrap();
         }
@@ -118,7 +119,7 @@ fn crossings() {
         let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
         let lines: Vec<[u32; 2]> = (0..points.len() as u32 / 2).map(|i| [2 * i, 2 * i + 1]).collect();
         let rule = OnCrossing::Split;
-        let (t, _) = ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &plan, &lines, rule).unwrap();
+        let (t, _) = ConstrainedDelaunay::<_>::from_lines(plane::<K>(), &plan, &lines, rule).unwrap();
         assert_eq!(t.check(Level::Law), [], "{:?} {points:?}", K::default());
         assert!(t.points().iter().all(|[x, y]| K::RANGE.admits(*x) && K::RANGE.admits(*y)));
         t.crossings().len()
