@@ -22,7 +22,6 @@
 //! orientation, or two points that span the circle, flips it.
 
 mod adaptive;
-mod angle;
 mod center;
 mod formula;
 mod power;
@@ -30,7 +29,6 @@ mod rounding;
 mod scaled;
 
 pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, WholeNumbers};
-pub use angle::AngleAt;
 pub use center::circumcenter;
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,

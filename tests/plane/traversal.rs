@@ -2,7 +2,7 @@
 
 use crate::common::random::Random;
 use breakline::geometry::{Coordinates, Mapped, Plane, Steps, Terrain};
-use breakline::kernel::{AngleAt, Exact, Kernel, Wide};
+use breakline::kernel::{DotProduct, Exact, Kernel, Wide};
 use breakline::tds::{CellId, VertexId};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, OnCrossing, Triangulation};
 
@@ -120,11 +120,11 @@ fn angles() {
     let mut dice = Random(5);
     for _ in 0..10_000 {
         let corners: [[i64; 2]; 3] = [0; 3].map(|_| [dice.around(3), dice.around(3)]);
-        let [v, p, q] = corners;
+        let [p, v, q] = corners;
         let expected = ((p[0] - v[0]) * (q[0] - v[0]) + (p[1] - v[1]) * (q[1] - v[1])).signum();
-        let angle = AngleAt(corners.map(|p| p.map(|x| x as f64)));
+        let angle = DotProduct(corners.map(|p| p.map(|x| x as f64)));
         assert_eq!(Wide::sign(&angle) as i64, expected);
-        let nearly = AngleAt(angle.0.map(|p| p.map(|x| x * 0.1 + 1e-17 * dice.unit())));
+        let nearly = DotProduct(angle.0.map(|p| p.map(|x| x * 0.1 + 1e-17 * dice.unit())));
         assert_eq!(Wide::sign(&nearly), Exact::sign(&nearly));
     }
 }

@@ -12,7 +12,7 @@
 //! any triangulation, not those of a law only; all comparisons are exact.
 
 use crate::geometry::Coordinates;
-use crate::kernel::{AngleAt, Kernel, Orientation2, Wide};
+use crate::kernel::{DotProduct, Kernel, Orientation2, Wide};
 use crate::num::Sign;
 use crate::tds::{CellId, Complex, Star, VertexId, ccw, cw};
 
@@ -85,7 +85,8 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
         };
         // The edge opposite `i` runs from the common corner to corner `j`.
         let common = 3 - i - j;
-        let falls_on = |to: usize| Wide::sign(&AngleAt([corners[common], self.place, corners[to]])) == Sign::Positive;
+        let falls_on =
+            |to: usize| Wide::sign(&DotProduct([self.place, corners[common], corners[to]])) == Sign::Positive;
         Ok(Some(if falls_on(j) {
             i
         } else if falls_on(i) {
