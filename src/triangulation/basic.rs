@@ -2,7 +2,7 @@
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
-use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::tds::{CellId, Tds, VertexId, Zone, ccw, cw};
 
 use super::{Flaw, Level, Locate, Location, Refused, Triangulation};
 
@@ -29,7 +29,7 @@ use super::{Flaw, Level, Locate, Location, Refused, Triangulation};
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Without points.
     pub fn new(geometry: G) -> Self {
-        Self::over(geometry)
+        Triangulation { geometry, tds: Tds::new(), points: Vec::new(), zone: Zone::default(), last: None }
     }
 
     /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the site is taken.

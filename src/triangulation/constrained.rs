@@ -101,7 +101,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// Without points.
     pub fn new(geometry: G) -> Self {
         ConstrainedDelaunay {
-            inner: Triangulation::over(geometry),
+            inner: Triangulation::new(geometry),
             waiting: Vec::new(),
             crossings: Vec::new(),
             left_out: Vec::new(),

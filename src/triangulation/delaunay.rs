@@ -26,7 +26,7 @@ impl<G: Geometry<N>, const N: usize, V> Deref for Delaunay<G, N, V> {
 impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
     /// Without points.
     pub fn new(geometry: G) -> Self {
-        Delaunay { inner: Triangulation::over(geometry) }
+        Delaunay { inner: Triangulation::new(geometry) }
     }
 
     /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the

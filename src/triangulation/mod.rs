@@ -194,10 +194,6 @@ pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    fn over(geometry: G) -> Self {
-        Triangulation { geometry, tds: Tds::new(), points: Vec::new(), zone: Zone::default(), last: None }
-    }
-
     /// The geometry.
     pub fn geometry(&self) -> &G {
         &self.geometry

@@ -102,7 +102,7 @@ impl<G: Geometry<3>, V> Deref for Regular<G, V> {
 impl<G: Geometry<3>, V> Regular<G, V> {
     /// Without points.
     pub fn new(geometry: G) -> Self {
-        Regular { inner: Triangulation::over(geometry), hidden: Hidden::default() }
+        Regular { inner: Triangulation::new(geometry), hidden: Hidden::default() }
     }
 
     /// Finds what hides the vertices that are in no cell. Those that nothing hides are put in.

@@ -65,7 +65,7 @@ impl<G: Geometry<3>, V> Deref for Constrained<G, V> {
 impl<G: Geometry<3>, V> Constrained<G, V> {
     /// Without points.
     pub fn new(geometry: G) -> Self {
-        Constrained { inner: Triangulation::over(geometry), scratch: Scratch::default() }
+        Constrained { inner: Triangulation::new(geometry), scratch: Scratch::default() }
     }
 
     /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the site is taken.
