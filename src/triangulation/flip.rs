@@ -5,6 +5,9 @@ use super::{Triangulation, Walls};
 
 /// What a triangle knows of its edges, which is handed on when triangles are exchanged.
 pub(super) trait EdgeData: Copy + Default {
+    /// Whether there are edges that must stay.
+    const MAY_BE_WALL: bool;
+
     /// Whether the edge opposite vertex `i` must stay.
     fn is_wall(self, i: usize) -> bool;
 
@@ -14,6 +17,8 @@ pub(super) trait EdgeData: Copy + Default {
 
 /// Of a triangulation without constraints.
 impl EdgeData for () {
+    const MAY_BE_WALL: bool = false;
+
     #[inline(always)]
     fn is_wall(self, _: usize) -> bool {
         false
@@ -24,6 +29,8 @@ impl EdgeData for () {
 }
 
 impl EdgeData for Walls {
+    const MAY_BE_WALL: bool = true;
+
     #[inline(always)]
     fn is_wall(self, i: usize) -> bool {
         self.has(i)

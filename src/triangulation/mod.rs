@@ -91,6 +91,7 @@ mod flip;
 mod insert;
 mod lines;
 mod locate;
+mod low_degree;
 mod nesting;
 mod network;
 mod query;

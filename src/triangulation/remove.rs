@@ -1,4 +1,5 @@
-//! Taking a vertex out of a triangulation of the plane.
+//! Taking a vertex out of a triangulation of the plane: any vertex, of any degree, among walls. Most are taken out by a
+//! shorter way, see [`low_degree`](super::low_degree).
 //!
 //! 1. The triangles around the vertex, the infinite ones included, leave a hole. Its rim is a ring of vertices
 //!    that the removed one saw; at the hull the infinite vertex is one of them.
@@ -61,8 +62,12 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
     /// # Complexity
     /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.
     pub(super) fn remove_vertex(&mut self, vertex: VertexId) {
-        let mut unsettled = self.remove_lawless(vertex);
-        self.settle(&mut unsettled);
+        if self.fill_low_degree(vertex) {
+            self.tds.remove_vertex(vertex);
+        } else {
+            let mut unsettled = self.remove_lawless(vertex);
+            self.settle(&mut unsettled);
+        }
     }
 
     /// The same without restoring the law; returns the cells that are new.
