@@ -10,7 +10,7 @@ use breakline::geometry::{Crossing, Geometry, Plane, Weighted};
 use breakline::kernel::{
     Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, Fixed, FixedBound, FlooredErrorBound, InCircle,
     InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnLattice, Orientation2, Orientation3,
-    PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
+    PairBound, PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
 use breakline::num::Sign;
 use common::random::{Random, ulps};
@@ -160,6 +160,8 @@ struct Tally {
     on_lattice: usize,
     by_floored: usize,
     by_interval: usize,
+    by_pairs: usize,
+    not_by_pairs: usize,
     fixed: usize,
     by_fixed: usize,
     scaled: usize,
@@ -204,6 +206,10 @@ impl Tally {
         self.by_error_bound += certain::<ErrorBound, P>(&predicate, expected, &points);
         self.by_floored += certain::<FlooredErrorBound, P>(&predicate, expected, &points);
         self.by_interval += certain::<IntervalBound, P>(&predicate, expected, &points);
+        let by_pairs = certain::<PairBound, P>(&predicate, expected, &points);
+        self.by_pairs += by_pairs;
+        let is_tie = expected == Sign::Zero;
+        self.not_by_pairs += usize::from(!is_tie && by_pairs == 0 && coordinates(&predicate).all(|x| RANGE.admits(x)));
         self.by_fixed += certain::<FixedBound<24>, P>(&predicate, expected, &points);
         self.scaled += certain::<Scaled<Adaptive>, P>(&predicate, expected, &points);
         self.on_lattice += certain::<OnLattice, P>(&predicate, expected, &points);
@@ -349,6 +355,9 @@ fn a_rounding_off_degenerate() {
     }
     // Else they were not near enough to be a trial.
     assert!(tallies.iter().all(|tally| 4 * tally.by_error_bound < 3 * tally.asked), "{tallies:?}");
+    // What is no tie, but three roundings from one, twice the digits can tell.
+    assert!(tallies.iter().all(|tally| 50 * tally.not_by_pairs <= tally.asked), "{tallies:?}");
+    assert!(tallies.iter().all(|tally| 2 * tally.by_pairs > tally.asked), "{tallies:?}");
 }
 
 /// From one end of the range to the other, within one question.
@@ -497,6 +506,7 @@ fn circles_in_planes_in_space() {
             right::<Fixed, _>(&predicate, expected, &predicate);
             certain::<IntervalBound, _>(&predicate, expected, &predicate);
             certain::<ErrorBound, _>(&predicate, expected, &predicate);
+            certain::<PairBound, _>(&predicate, expected, &predicate);
             certain::<OnLattice, _>(&predicate, expected, &predicate);
         }
     }

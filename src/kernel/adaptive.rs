@@ -28,6 +28,20 @@ impl Filter for FlooredErrorBound {
     }
 }
 
+/// The same with twice the digits: certain where three points are nearly collinear, or four nearly cocircular, but not
+/// where they are.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PairBound;
+
+impl Filter for PairBound {
+    const RANGE: Range = RANGE;
+
+    #[inline(never)] // long, and no faster where it is called
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        predicate.value(Bounded::exact_difference).sign()
+    }
+}
+
 /// Intervals that are rounded outward: the dynamic filter of CGAL's kernels (Brönnimann, Burnikel and Pion 2001).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct IntervalBound;

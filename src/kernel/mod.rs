@@ -9,7 +9,7 @@
 //! | [`Fast`] | `f64` | no guarantee; for comparison and experiments |
 //! | [`Exact`] | arbitrary precision | the judge in tests; any finite coordinates |
 //! | [`Expansions`] | sums of `f64` | exact within [`RANGE`], never filtered |
-//! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then expansions | the default |
+//! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then pairs of `f64`, then expansions | the default |
 //! | [`Interval`] | intervals of `f64`, then as `Adaptive` | for comparison: the dynamic filter of other libraries |
 //! | [`Fixed`] | `f64` with a constant error bound, then as `Lattice` | whole numbers of 24 bits, or of up to 52 |
 //! | [`Lattice`] | error-bounded `f64`, then integers, wide ones if need be | whole numbers up to 2^53, like those of LAS files |
@@ -28,7 +28,7 @@ mod power;
 mod rounding;
 mod scaled;
 
-pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, WholeNumbers};
+pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, PairBound, WholeNumbers};
 pub use center::circumcenter;
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
@@ -200,8 +200,8 @@ pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
 /// Within [`RANGE`](Self::RANGE), a sign that it does tell is that of the real number.
 ///
 /// # Models
-/// [`ErrorBound`], [`FlooredErrorBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`], [`WholeNumbers`];
-/// [`Scaled`].
+/// [`ErrorBound`], [`FlooredErrorBound`], [`PairBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`],
+/// [`WholeNumbers`]; [`Scaled`].
 pub trait Filter: Copy + Default + Debug + Send + Sync + 'static {
     /// The coordinates it is proven for.
     const RANGE: Range;
@@ -273,10 +273,13 @@ impl Kernel for Expansions {
 }
 
 /// The default: as fast as floating point where that is certain, exact everywhere within [`RANGE`].
-pub type Adaptive = Filtered<ErrorBound, Filtered<OnLattice, Expansions>>;
+pub type Adaptive = Filtered<ErrorBound, Nearly>;
+
+/// What is left to it, where points are nearly collinear or cocircular.
+type Nearly = Filtered<OnLattice, Filtered<PairBound, Expansions>>;
 
 /// As [`Adaptive`], with intervals in place of the error bound: certain a little more often, and slower.
-pub type Interval = Filtered<IntervalBound, Filtered<OnLattice, Expansions>>;
+pub type Interval = Filtered<IntervalBound, Nearly>;
 
 /// For coordinates that are whole numbers of magnitude `2^BITS` at the most (CGAL's `Fixed_precision_nt` has the same
 /// 24 bits; [`Steps`](crate::geometry::Steps) have 31): the error bound is known before anything is computed, and an

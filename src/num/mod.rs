@@ -11,7 +11,7 @@
 //! | [`Fixed`] | knows before how wrong it may be | 1 | filter for whole numbers of few bits |
 //! | [`Interval`] | knows between which two doubles it is | 10 | filter; exact on small whole numbers |
 //! | `i128` | within its range, see [`lattice`] | 5 | coordinates on a common grid: ties are the rule there |
-//! | [`Pair`] | to twice the digits | 15 | places that are then rounded |
+//! | [`Pair`] | to twice the digits | 15 | places that are then rounded; filter near zero, in [`Bounded`] |
 //! | [`Expansion`] | within the exponents of f64 | 100 | what the filters leave open |
 //! | [`Dyadic`] | always | 500 | the judge, and magnitudes outside of everything else |
 
