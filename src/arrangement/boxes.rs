@@ -5,6 +5,8 @@
 
 use rayon::prelude::*;
 
+use super::FEW;
+
 /// Children of a node: a power of two.
 const FAN: usize = 1 << FAN_BITS;
 const FAN_BITS: usize = 3;
@@ -89,7 +91,10 @@ impl BoxTree {
         };
         order.par_sort_unstable_by(by_center(0));
         let slab = FAN * ((boxes.len() as f64 / FAN as f64).sqrt().ceil() as usize).max(1);
-        order.par_chunks_mut(slab).for_each(|slab| slab.sort_unstable_by(by_center(1)));
+        order
+            .par_chunks_mut(slab)
+            .with_min_len(FEW.div_ceil(slab))
+            .for_each(|slab| slab.sort_unstable_by(by_center(1)));
         let order: Vec<u32> = order.into_iter().map(|(_, i)| i).collect();
         let mut levels = vec![order.iter().map(|&i| boxes[i as usize]).collect::<Vec<Box2>>()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {

@@ -8,7 +8,7 @@ use crate::num::Sign;
 
 use super::boxes::{Box2, BoxTree};
 use super::pixel::Grid;
-use super::{Arrangement, Crossing, Place, Segment, lexicographic, starts};
+use super::{Arrangement, Crossing, FEW, Place, Segment, lexicographic, starts};
 
 /// A segment that is led through a site.
 #[derive(Debug, Clone, Copy)]
@@ -90,7 +90,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             found
         };
         let mut pairs: Vec<u64> =
-            tree.order().par_iter().enumerate().with_min_len(256).flat_map_iter(of_leaf).collect();
+            tree.order().par_iter().enumerate().with_min_len(FEW).flat_map_iter(of_leaf).collect();
         pairs.par_sort_unstable(); // as one number: half the time of two
         pairs.into_iter().map(|pair| [(pair >> 32) as u32, pair as u32]).collect()
     }
@@ -98,7 +98,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     /// Phase 2: the site of each crossing, the center of its pixel; which may be a place that was given.
     fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>) -> Vec<Crossing> {
         let round = |&[i, j]: &[u32; 2]| self.grid.crossing::<K>(self.segments[i as usize], self.segments[j as usize]);
-        let rounded: Vec<Place> = pairs.par_iter().with_min_len(256).map(round).collect();
+        let rounded: Vec<Place> = pairs.par_iter().with_min_len(FEW).map(round).collect();
         let mut given_at: FxHashMap<[u64; 2], Option<u32>> =
             rounded.iter().map(|&center| (key(center), None)).collect();
         if !given_at.is_empty() {
@@ -189,7 +189,8 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
 
     /// A tree over the pixels of some sites.
     fn pixels(&self, sites: Vec<u32>) -> (BoxTree, Vec<u32>) {
-        let boxes: Vec<Box2> = sites.par_iter().map(|&site| self.grid.around(self.site(site))).collect();
+        let boxes: Vec<Box2> =
+            sites.par_iter().with_min_len(FEW).map(|&site| self.grid.around(self.site(site))).collect();
         (BoxTree::new(&boxes), sites)
     }
 
@@ -229,7 +230,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             }
             found
         };
-        passes.par_extend(segments.par_chunks(64).flat_map_iter(of_segments));
+        passes.par_extend(segments.par_chunks(64).with_min_len(FEW / 64).flat_map_iter(of_segments));
     }
 
     /// The segments whose crossings were rounded to an added site: they are led through it, no question.
@@ -287,7 +288,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             chains.insert(segment, from..end);
             from = end;
         }
-        rows.into_par_iter().with_min_len(64).for_each(|(segment, row): (u32, &mut [(Place, u32)])| {
+        rows.into_par_iter().with_min_len(FEW).for_each(|(segment, row): (u32, &mut [(Place, u32)])| {
             row.sort_unstable_by(|(p, _), (q, _)| lexicographic(*p, *q));
             let [a, b] = self.segments[segment as usize];
             if lexicographic(a, b).is_gt() {

@@ -38,6 +38,9 @@ use crate::kernel::{Adaptive, Wide};
 use builder::Builder;
 use pixel::Grid;
 
+/// Less work than of so many segments or places is done by one thread: to wake another takes longer.
+const FEW: usize = 256;
+
 type Place = [f64; 2];
 type Segment = [Place; 2];
 

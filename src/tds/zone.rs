@@ -111,11 +111,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// that the orientation is kept.
     ///
     /// The zone must be a ball; it is empty afterwards. Returns the last cell of the star.
-    ///
-    /// To link the new cells with each other, one turns around each ridge of the border within the zone,
-    /// from one facet of the border to the next.
     pub(crate) fn star(&mut self, zone: &mut Zone, apex: VertexId, data: impl Fn(&C, usize) -> C) -> CellId {
-        let width = (self.dimension() + 1) as usize;
         zone.star.clear();
         for &(old, i) in &zone.border {
             let i = i as usize;
@@ -133,6 +129,48 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         if zone.marked.len() < self.links.len() {
             zone.marked.resize(self.links.len().max(zone.marked.capacity()), false);
         }
+        if self.dimension() == 2 {
+            self.link_around(zone, apex);
+        } else {
+            self.link_by_turning(zone);
+        }
+        for &cell in &zone.cells {
+            self.remove_cell(cell);
+        }
+        zone.finish();
+        zone.star.last().copied().unwrap_or(CellId::NONE)
+    }
+
+    /// Links the triangles of a star, and makes them those of their vertices: a triangle is next to the one whose edge
+    /// of the border begins where its own ends.
+    ///
+    /// `PERF:` without turning through the zone, insertion one by one takes 8 % fewer instructions (10 000 uniform
+    /// points, callgrind of `bench_editing`).
+    fn link_around(&mut self, zone: &Zone, apex: VertexId) {
+        let ends = |tds: &Self, cell: CellId, i: u8| {
+            let vertices = &tds.links[cell.index()].vertices;
+            [(i + 1) % 3, (i + 2) % 3].map(|k| vertices[k as usize])
+        };
+        for (&(_, i), &new) in zone.border.iter().zip(&zone.star) {
+            let [start, _] = ends(self, new, i);
+            self.set_cell_of(start, new);
+        }
+        for (&(_, i), &new) in zone.border.iter().zip(&zone.star) {
+            let [_, end] = ends(self, new, i);
+            if let Some(next) = self.cell_of(end) {
+                let j = self.links[next.index()].vertices.iter().position(|&v| v == apex).unwrap_or(0);
+                self.link(new, (i as usize + 1) % 3, next, (j + 2) % 3);
+            }
+        }
+        if let Some(&last) = zone.star.last() {
+            self.set_cell_of(apex, last);
+        }
+    }
+
+    /// The same in any dimension: one turns around each ridge of the border within the zone, from one facet of the
+    /// border to the next.
+    fn link_by_turning(&mut self, zone: &Zone) {
+        let width = (self.dimension() + 1) as usize;
         for (&(old, i), &new) in zone.border.iter().zip(&zone.star) {
             let i = i as usize;
             for ridge in 0..width {
@@ -160,10 +198,5 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             let vertices = self.links[new.index()].vertices;
             vertices[..width].iter().for_each(|&vertex| self.set_cell_of(vertex, new));
         }
-        for &cell in &zone.cells {
-            self.remove_cell(cell);
-        }
-        zone.finish();
-        zone.star.last().copied().unwrap_or(CellId::NONE)
     }
 }
