@@ -99,8 +99,7 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
     /// # Complexity
     /// Quadratic in the number of triangles between two vertices on the way at worst, in practice linear.
     pub fn constrain(&mut self, a: VertexId, b: VertexId) -> Result<(), Blocked> {
-        let exists = |v: VertexId| v != VertexId::INFINITE && self.tds().is_vertex(v);
-        if self.dimension() < 2 || !exists(a) || !exists(b) {
+        if self.dimension() < 2 || ![a, b].into_iter().all(|v| self.tds().is_vertex(v)) {
             return Err(Blocked::Nowhere);
         }
         // First without touching anything.

@@ -159,7 +159,7 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn voronoi_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
-        if vertex == VertexId::INFINITE || !self.tds().is_vertex(vertex) {
+        if !self.tds().is_vertex(vertex) {
             return VoronoiCell { corners: Vec::new(), area: 0.0 };
         }
         let site = self.place(vertex);

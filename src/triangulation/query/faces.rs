@@ -37,8 +37,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn faces_from(&self, start: VertexId) -> impl Iterator<Item = CellId> + '_ {
-        let is_vertex = start != VertexId::INFINITE && self.tds.is_vertex(start);
-        let faces = is_vertex.then(|| {
+        let faces = self.tds.is_vertex(start).then(|| {
             let Ok(faces) = Faces::new(self, start);
             faces
         });
