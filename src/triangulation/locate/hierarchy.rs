@@ -55,18 +55,21 @@ struct Level<L: Geometry<3>> {
 }
 
 impl<L: Geometry<3>> Level<L> {
-    /// A vertex near a point, given one to start from.
+    /// A cell at a point and a vertex near it, given one to start from.
     fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
         let tds = self.sample.tds();
         let location = self.sample.locate(q, start.and_then(|vertex| tds.cell_of(vertex)));
-        let cell = match location {
-            Location::Vertex(vertex) => return (tds.cell_of(vertex), Some(vertex)),
-            Location::Cell { cell, .. } | Location::OutsideHull { cell } => cell,
-            Location::OutsideAffineHull => return (None, tds.vertices().next()),
+        let cell = location.cell(&self.sample);
+        let nearest = match (location, cell) {
+            (Location::Vertex(vertex), _) => Some(vertex),
+            (_, Some(cell)) => {
+                let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
+                let far = |v: &VertexId| self.sample.geometry().rough_distance(self.sample.point(*v), q);
+                finite.min_by(|p, q| far(p).total_cmp(&far(q)))
+            }
+            (_, None) => tds.vertices().next(),
         };
-        let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
-        let far = |v: &VertexId| self.sample.geometry().rough_distance(self.sample.point(*v), q);
-        (Some(cell), finite.min_by(|p, q| far(p).total_cmp(&far(q))))
+        (cell, nearest)
     }
 
     fn below(&self, vertex: VertexId) -> VertexId {

@@ -66,10 +66,16 @@ impl Location {
         self,
         triangulation: &Triangulation<G, N, V, C>,
     ) -> Option<CellId> {
+        let Ok(cell) = self.cell_in(&triangulation.tds);
+        cell
+    }
+
+    /// The same wherever the cells are kept.
+    pub(super) fn cell_in<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Option<CellId>, T::Error> {
         match self {
-            Location::Vertex(vertex) => triangulation.tds.cell_of(vertex),
-            Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
-            Location::OutsideAffineHull => None,
+            Location::Vertex(vertex) => complex.cell_of(vertex),
+            Location::Cell { cell, .. } | Location::OutsideHull { cell } => Ok(Some(cell)),
+            Location::OutsideAffineHull => Ok(None),
         }
     }
 }

@@ -74,20 +74,16 @@ pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordi
     let [p, q] = corners.map(|corner| place_of(t.geometry(), corner));
     let rectangle = Rectangle::new(p, q);
     let mut vertices = Vec::new();
-    let start = match location {
-        _ if complex.width() < 3 => {
-            for vertex in tds::vertices(complex) {
-                let vertex = vertex?;
-                if rectangle.holds(place(t, vertex)?) {
-                    vertices.push(vertex);
-                }
+    if complex.width() < 3 {
+        for vertex in tds::vertices(complex) {
+            let vertex = vertex?;
+            if rectangle.holds(place(t, vertex)?) {
+                vertices.push(vertex);
             }
-            return Ok(vertices);
         }
-        Location::Vertex(vertex) => complex.cell_of(vertex)?,
-        Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
-        Location::OutsideAffineHull => None,
-    };
+        return Ok(vertices);
+    }
+    let start = location.cell_in(complex)?;
     let mut seen: FxHashSet<CellId> = start.into_iter().collect();
     let mut met: Vec<CellId> = start.into_iter().collect();
     while let Some(cell) = met.pop() {
