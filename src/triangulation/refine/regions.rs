@@ -19,7 +19,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
             for cell in hull {
                 if let Some(i) = t.tds().index_of(cell, VertexId::INFINITE) {
                     let [a, b] = t.tds().edge_ends(cell, i);
-                    t.set_wall(a, b, true);
+                    t.inner.wall_up(a, b);
                 }
             }
             enclosed(t, holes)
