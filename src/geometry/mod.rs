@@ -284,6 +284,12 @@ pub trait Crossing: Coordinates<3> {
     }
 }
 
+/// A point seen from above.
+#[inline(always)]
+fn plan(p: &[f64; 3]) -> [f64; 2] {
+    [p[0], p[1]]
+}
+
 /// Along the axes.
 #[inline(always)]
 fn manhattan<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
