@@ -259,8 +259,8 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         }
     }
 
-    /// Makes the segment that was traced to a vertex a constrained edge. `is_closer` says whether a vertex goes before the
-    /// third one of a triangle as that of the same base.
+    /// Makes the segment that was traced to a vertex a constrained edge. `is_closer` says whether a vertex goes before
+    /// the third one of a triangle as that of the same base.
     pub(super) fn force_traced(
         &mut self,
         a: VertexId,

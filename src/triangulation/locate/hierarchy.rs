@@ -17,12 +17,12 @@ const RATIO: usize = 30;
 ///   all         o o o o o oo o o oo o
 /// ```
 ///
-/// A place is located from the top down; each time the walk begins at the vertex that was found nearest above. So it takes
-/// expected `O(log n)` steps on any Delaunay triangulation whose points came in random order, however they are spread
-/// (O(n) when a line goes through all triangles from there), and memory grows by a thirtieth.
+/// A place is located from the top down; each time the walk begins at the vertex that was found nearest above. So it
+/// takes expected `O(log n)` steps on any Delaunay triangulation whose points came in random order, however they are
+/// spread (O(n) when a line goes through all triangles from there), and memory grows by a thirtieth.
 ///
-/// The geometry of the samples is one over the same kind of points, in which the place of a point is the same. It is that of
-/// the triangulation itself but for weighted points: there it is one that leaves weights aside.
+/// The geometry of the samples is one over the same kind of points, in which the place of a point is the same. It is
+/// that of the triangulation itself but for weighted points: there it is one that leaves weights aside.
 ///
 /// Which vertices are in the samples looks random and is the same in every run.
 ///
@@ -128,7 +128,8 @@ impl<L: Geometry<3>> Hierarchy<L> {
         self.levels.iter().map(|level| level.sample.vertex_count())
     }
 
-    /// A vertex of the triangulation near a point. Shown on the way, from the top down, is a cell near it on each level.
+    /// A vertex of the triangulation near a point. Shown on the way, from the top down, is a cell near it on each
+    /// level.
     fn descend(&self, q: &L::Point, mut show: impl FnMut(Option<CellId>)) -> Option<VertexId> {
         self.levels.iter().rev().fold(None, |start, level| {
             let (cell, nearest) = level.nearest(q, start);

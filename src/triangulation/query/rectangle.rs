@@ -45,8 +45,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// border included; in order of their numbers. Exact. The corners must be points that the geometry admits.
     ///
     /// # Complexity
-    /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes meet the rectangle and,
-    /// where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at.
+    /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes meet the rectangle
+    /// and, where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::Delaunay};
@@ -104,8 +104,8 @@ pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordi
     Ok(vertices)
 }
 
-/// Whether a cell meets the rectangle, or may. Such cells hang together by edges, the infinite ones with what lies beyond
-/// the hull.
+/// Whether a cell meets the rectangle, or may. Such cells hang together by edges, the infinite ones with what lies
+/// beyond the hull.
 fn meets<T: Embedded<3, Geometry: Coordinates<3>>>(
     t: &T,
     rectangle: Rectangle,
