@@ -1,4 +1,4 @@
-use crate::geometry::{Geometry, in_sphere};
+use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{self, CellId, VertexId};
 
@@ -79,16 +79,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         flaws
     }
 
+    /// Below full dimension, too: on a line, a point that ought to be hidden lies in the sphere of an edge beside.
     fn check_empty_spheres(&self, passes: &dyn Fn(CellId, usize) -> bool) -> Vec<Flaw> {
         let mut flaws = Vec::new();
-        if !self.is_full() {
-            return flaws;
-        }
         for cell in self.finite_cells() {
-            for i in (0..N).filter(|&i| passes(cell, i)) {
+            for i in (0..self.tds.cell_vertices(cell).len()).filter(|&i| passes(cell, i)) {
                 let beside = self.tds.neighbor(cell, i);
                 let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
-                if far != VertexId::INFINITE && in_sphere(&self.geometry, self.simplex(cell), self.point(far)) {
+                if far != VertexId::INFINITE && self.in_conflict(cell, self.point(far)) {
                     flaws.push(Flaw::NotDelaunay(cell, i));
                 }
             }

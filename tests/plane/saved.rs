@@ -203,7 +203,6 @@ fn damage_to_regular_and_constrained_kinds_is_an_error() {
         }
         let _ = constrained.constrain(VertexId::new(0), VertexId::new(places.len().saturating_sub(1)));
         read_damaged(&regular, |mut t| {
-            // On a line a check looks for no law: the judge is a fresh build.
             let (fresh, _) = Regular::<Weighted>::from_points(Weighted::default(), t.points()).unwrap();
             let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
             t.insert([0.25, 1.0, 0.5]).unwrap();
