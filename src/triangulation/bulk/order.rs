@@ -114,7 +114,7 @@ pub fn spatial_order<A: AsRef<[f64]>>(
     count: usize,
     coordinates: impl Fn(usize) -> A + Sync,
 ) -> Result<Vec<u32>, Refused> {
-    if count >= MAX_VERTICES {
+    if count > MAX_VERTICES {
         return Err(Refused::TooMany);
     }
     let grain = Grain::default();
@@ -188,7 +188,7 @@ fn survey<G: Coordinates<N>, const N: usize>(
     if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
         return Err(Refused::Coordinate(bad));
     }
-    if points.len() >= MAX_VERTICES {
+    if points.len() > MAX_VERTICES {
         return Err(Refused::TooMany);
     }
     Ok((Curve::along(span), have_plans))
