@@ -155,7 +155,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
         Ok((Sites { points: sites, keys: sorted.keys, have_plans }, vertices))
     }
 
-    /// Points that are all different and in [`spatial_order`] already.
+    /// Points that are all different and in [`spatial_order`] already: nothing would ever tell equal ones apart.
     ///
     /// # Errors
     /// As for [`of`](Self::of).
@@ -165,6 +165,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
     ) -> Result<Self, Refused> {
         let grain = Grain::default();
         let (curve, have_plans) = survey(geometry, &points, grain)?;
+        debug_assert!(points.windows(2).all(|pair| geometry.compare(&pair[0], &pair[1]).is_ne()), "two on one site");
         let keys = Keys::of(points.len(), |i| geometry.coordinates(&points[i]), &curve, grain);
         Ok(Sites { points, keys, have_plans })
     }
