@@ -8,20 +8,8 @@
 #   name data points threads seconds peak_MB growth_MB triangles processor_seconds
 # What fails on some data is left out there. Runs are interleaved, so that a busy minute hits all alike.
 set -euo pipefail
-runs=5 threads="1 2" folder=. peers=()
-while getopts r:t:d:p: option; do
-    case $option in
-        r) runs=$OPTARG ;;
-        t) threads=$OPTARG ;;
-        d) folder=$OPTARG ;;
-        p) peers+=("$OPTARG") ;;
-        *) exit 2 ;;
-    esac
-done
-shift $((OPTIND - 1))
-cd_to=$(cd "$(dirname "$0")/.." && pwd)
-cargo build --release --quiet --manifest-path "$cd_to/Cargo.toml" --example bench_triangulation
-ours=${CARGO_TARGET_DIR:-$cd_to/target}/release/examples/bench_triangulation
+runs=5 takes=d:
+. "$(dirname "$0")/common.sh"
 
 printf '%-14s %-22s %7s %9s %8s %9s %8s\n' data program threads seconds ns/point B/point ratio
 for data in "$@"; do

@@ -7,19 +7,8 @@
 # The points of the file have to be in random order, so that the first of them are spread like all. Each line that is
 # printed is the run of median time, in the form of examples/bench_triangulation.rs. PROGRAM: see against_peers.sh.
 set -euo pipefail
-runs=3 threads="1 2" peers=()
-while getopts r:t:p: option; do
-    case $option in
-        r) runs=$OPTARG ;;
-        t) threads=$OPTARG ;;
-        p) peers+=("$OPTARG") ;;
-        *) exit 2 ;;
-    esac
-done
-shift $((OPTIND - 1))
-root=$(cd "$(dirname "$0")/.." && pwd)
-cargo build --release --quiet --manifest-path "$root/Cargo.toml" --example bench_triangulation
-ours=${CARGO_TARGET_DIR:-$root/target}/release/examples/bench_triangulation
+runs=3
+. "$(dirname "$0")/common.sh"
 part=$(mktemp --suffix .xy)
 trap 'rm -f "$part"' EXIT
 

@@ -74,7 +74,7 @@ impl<K: Kernel> Metric for Terrain<K> {
     /// In plan.
     #[inline]
     fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
-        compare::<K>([q, a, b].map(super::terrain::plan))
+        compare::<K>([q, a, b].map(super::plan))
     }
 }
 

@@ -276,12 +276,18 @@ pub trait Crossing: Coordinates<3> {
         self.meet(self.on_step(place), &[ab, cd])
     }
 
-    /// The place that is nearest to one on a line between points that are admitted, and whose coordinates are multiples of the
-    /// [step](Self::step).
+    /// The place that is nearest to one on a line between points that are admitted, and whose coordinates are multiples
+    /// of the [step](Self::step).
     fn on_step(&self, place: [f64; 2]) -> [f64; 2] {
         let step = self.step();
         if step == 0.0 { place } else { place.map(|x| (x / step).round() * step + 0.0) } // zero has one sign only
     }
+}
+
+/// A point seen from above.
+#[inline(always)]
+fn plan(p: &[f64; 3]) -> [f64; 2] {
+    [p[0], p[1]]
 }
 
 /// Along the axes.

@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan};
+use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, plan};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
@@ -11,11 +11,6 @@ use crate::num::Sign;
 /// the vertex there takes the lower one, like [the rule for points](crate::terrain::DuplicateRule).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Terrain<K = Adaptive>(PhantomData<K>);
-
-#[inline(always)]
-pub(super) fn plan(p: &[f64; 3]) -> [f64; 2] {
-    [p[0], p[1]]
-}
 
 impl<K: Kernel> Geometry<3> for Terrain<K> {
     type Point = [f64; 3];

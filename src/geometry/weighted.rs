@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, lexicographic, manhattan};
+use super::{Coordinates, Geometry, lexicographic, manhattan, plan};
 use crate::kernel::{Adaptive, Kernel, Orientation2, PowerOnLine, PowerTest2};
 use crate::num::Sign;
 
@@ -16,11 +16,6 @@ use crate::num::Sign;
 /// triangulations know no hidden points: with unequal weights their law is broken.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Weighted<K = Adaptive>(PhantomData<K>);
-
-#[inline(always)]
-fn plan(p: &[f64; 3]) -> [f64; 2] {
-    [p[0], p[1]]
-}
 
 impl<K> Weighted<K> {
     /// The order of two points' weights: of those at one site, the greater is in the regular triangulation.

@@ -182,7 +182,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         plane::counted(vertices, self.vertex_count())
     }
 
-    /// Whether the number stands for a finite vertex.
+    /// Whether the number stands for a finite vertex. Any number may be asked for.
     #[inline]
     pub fn is_vertex(&self, vertex: VertexId) -> bool {
         self.vertex_cell.get(vertex.index()).is_some_and(|&cell| cell != CellId::NONE)

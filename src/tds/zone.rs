@@ -1,4 +1,4 @@
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 use super::{CellId, Tds, VertexId};
 
@@ -37,7 +37,7 @@ impl Zone {
             let vertices = tds.cell_vertices(cell).iter().enumerate();
             vertices.filter(move |&(k, _)| k != i as usize).map(|(_, &vertex)| vertex)
         };
-        let outer: HashSet<VertexId> = self.border.iter().flat_map(on_facet).collect();
+        let outer: FxHashSet<VertexId> = self.border.iter().flat_map(on_facet).collect();
         let mut inner: Vec<VertexId> = self.cells.iter().flat_map(|&cell| tds.cell_vertices(cell)).copied().collect();
         inner.retain(|vertex| *vertex != VertexId::INFINITE && !outer.contains(vertex));
         inner.sort_unstable();

@@ -1,7 +1,11 @@
-use crate::geometry::{Geometry, in_sphere};
-use crate::num::Sign;
-use crate::tds::{self, CellId, VertexId};
+use std::borrow::Borrow;
 
+use crate::geometry::Geometry;
+use crate::num::Sign;
+use crate::tds::{self, CellId, Complex, VertexId};
+
+use super::embedded::Embedded;
+use super::sides::{in_conflict, side_of_facet, simplex};
 use super::{LineId, Triangulation};
 
 /// How far a check goes. Each level assumes the ones before it.
@@ -40,6 +44,34 @@ pub enum Flaw {
     Missing(VertexId, VertexId),
 }
 
+/// Whether a cell, full and finite, is positively oriented.
+pub(super) fn is_positive<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<bool, T::Error> {
+    let simplex = simplex(t, cell)?;
+    Ok(t.geometry().orientation(simplex.each_ref().map(Borrow::borrow)) == Sign::Positive)
+}
+
+/// Whether the hull is convex where a cell, infinite by the vertex at `infinite`, and that beyond its facet `i` meet.
+pub(super) fn is_convex<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    infinite: usize,
+    i: usize,
+) -> Result<bool, T::Error> {
+    let far = vertex_beyond(t, cell, i)?;
+    Ok(far == VertexId::INFINITE || side_of_facet(t, cell, infinite, t.point(far)?.borrow())? != Sign::Positive)
+}
+
+/// Whether the sphere of a finite cell is empty of the vertex beyond its facet `i`, ties decided.
+pub(super) fn is_empty<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) -> Result<bool, T::Error> {
+    let far = vertex_beyond(t, cell, i)?;
+    Ok(far == VertexId::INFINITE || !in_conflict(t, cell, t.point(far)?.borrow())?)
+}
+
+fn vertex_beyond<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) -> Result<VertexId, T::Error> {
+    let beside = t.complex().neighbor(cell, i)?;
+    t.complex().vertex(beside, t.complex().index_of_neighbor(beside, cell)?)
+}
+
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Checks up to the level, with exact predicates, and returns all flaws of the first level that has
     /// any. The law is that of a Delaunay triangulation wherever `passes` lets it act.
@@ -62,35 +94,26 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         }
         for cell in self.tds.cells() {
             let Some(infinite) = self.tds.index_of(cell, VertexId::INFINITE) else {
-                if self.geometry.orientation(self.simplex(cell)) != Sign::Positive {
-                    flaws.push(Flaw::Orientation(cell));
-                }
+                let Ok(is_positive) = is_positive(self, cell);
+                flaws.extend((!is_positive).then_some(Flaw::Orientation(cell)));
                 continue;
             };
             // The far vertex of every hull facet beside this one must not be in sight.
             for i in (0..N).filter(|&i| i != infinite) {
-                let beside = self.tds.neighbor(cell, i);
-                let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
-                if far != VertexId::INFINITE && self.side_of_facet(cell, infinite, self.point(far)) == Sign::Positive {
-                    flaws.push(Flaw::NotConvex(cell, i));
-                }
+                let Ok(is_convex) = is_convex(self, cell, infinite, i);
+                flaws.extend((!is_convex).then_some(Flaw::NotConvex(cell, i)));
             }
         }
         flaws
     }
 
+    /// Below full dimension, too: on a line, a point that ought to be hidden lies in the sphere of an edge beside.
     fn check_empty_spheres(&self, passes: &dyn Fn(CellId, usize) -> bool) -> Vec<Flaw> {
         let mut flaws = Vec::new();
-        if !self.is_full() {
-            return flaws;
-        }
         for cell in self.finite_cells() {
-            for i in (0..N).filter(|&i| passes(cell, i)) {
-                let beside = self.tds.neighbor(cell, i);
-                let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
-                if far != VertexId::INFINITE && in_sphere(&self.geometry, self.simplex(cell), self.point(far)) {
-                    flaws.push(Flaw::NotDelaunay(cell, i));
-                }
+            for i in (0..self.tds.cell_vertices(cell).len()).filter(|&i| passes(cell, i)) {
+                let Ok(is_empty) = is_empty(self, cell, i);
+                flaws.extend((!is_empty).then_some(Flaw::NotDelaunay(cell, i)));
             }
         }
         flaws

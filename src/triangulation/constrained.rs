@@ -121,7 +121,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         };
         let vertex = self.inner.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i));
         for end in split.into_iter().flatten() {
-            self.set_wall(vertex, end, true);
+            self.inner.wall_up(vertex, end);
         }
         if let Some([a, b]) = split {
             self.lines.split(a, b, vertex);
@@ -171,16 +171,6 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// The vertices that were added where constraints cross.
     pub fn crossings(&self) -> &[VertexId] {
         &self.crossings
-    }
-
-    /// Sets or clears the flag of an existing edge, on both sides.
-    pub(super) fn set_wall(&mut self, a: VertexId, b: VertexId, wall: bool) {
-        for [a, b] in [[a, b], [b, a]] {
-            if let Some((cell, i)) = self.inner.tds.edge(a, b) {
-                let data = self.inner.tds.cell_data_mut(cell);
-                *data = data.with(i, wall);
-            }
-        }
     }
 
     /// Replaces the point of a vertex by one of the same site: another height, say.

@@ -88,7 +88,7 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
     /// That of a removal, and of an insertion that looks for its place from there.
     pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<Option<VertexId>, Refused> {
         self.inner.admit(&p)?;
-        if vertex == VertexId::INFINITE || !self.tds().is_vertex(vertex) {
+        if !self.tds().is_vertex(vertex) {
             return Ok(None);
         }
         if self.inner.geometry.compare(self.point(vertex), &p).is_eq() {

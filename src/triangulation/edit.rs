@@ -89,7 +89,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// A look at all lines; then as [`Delaunay::remove`](super::Delaunay::remove), or, on a constraint, as
     /// [`remove_line`](Self::remove_line).
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, Kept> {
-        if vertex == VertexId::INFINITE || !self.tds().is_vertex(vertex) {
+        if !self.tds().is_vertex(vertex) {
             return Err(Kept::Absent);
         }
         if self.is_added(vertex) {

@@ -1,5 +1,5 @@
-//! Insertion, written once: the zone that a point is in conflict with is replaced by the point's star. The kinds say how
-//! far the zone goes.
+//! Insertion, written once: the zone that a point is in conflict with is replaced by the point's star. The kinds say
+//! how far the zone goes.
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
@@ -72,8 +72,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.zone = zone;
     }
 
-    /// The zone of a point, given where it is; `None` if it is outside of the flat that all others span. To be given back
-    /// for the next time.
+    /// The zone of a point, given where it is; `None` if it is outside of the flat that all others span. To be given
+    /// back for the next time.
     pub(super) fn collect(
         &mut self,
         location: Location,

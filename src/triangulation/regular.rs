@@ -228,7 +228,7 @@ impl<G: Geometry<3>, V> Regular<G, V> {
         if self.hidden.take(vertex) {
             self.inner.tds.attach();
             self.inner.tds.remove_vertex(vertex);
-        } else if vertex.index() < self.tds().vertex_slots() && self.tds().is_vertex(vertex) {
+        } else if self.tds().is_vertex(vertex) {
             let hidden = if self.inner.is_flat_without(vertex) {
                 self.hidden.take_all()
             } else {

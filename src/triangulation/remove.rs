@@ -241,14 +241,12 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// # Complexity
     /// Linear in the degree of `a` and in the number of flips.
     pub(super) fn clear_wall(&mut self, a: VertexId, b: VertexId) -> bool {
-        let Some((cell, i)) = self.tds().edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i)) else {
+        let Some(sides) = self.inner.wall_down(a, b) else {
             let waiting = self.waiting.len();
             self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);
             return self.waiting.len() < waiting;
         };
-        let beside = self.tds().neighbor(cell, i);
-        self.set_wall(a, b, false);
-        self.scratch.unsettled.extend([cell, beside]);
+        self.scratch.unsettled.extend(sides);
         self.settle();
         true
     }

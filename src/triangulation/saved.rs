@@ -132,16 +132,6 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
     }
 
-    /// Of dimension 1: whether no vertex is in conflict with the edges next to its own.
-    fn is_regular_on_line(&self) -> bool {
-        let neighbors = |cell| self.tds.cell_neighbors(cell).iter().map(move |&beside| (cell, beside));
-        let mut sides = self.finite_cells().filter(|_| self.dimension() == 1).flat_map(neighbors);
-        sides.all(|(cell, beside)| {
-            let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
-            far == VertexId::INFINITE || !self.in_conflict(cell, self.point(far))
-        })
-    }
-
     fn has_no_hidden_points(&self) -> Result<(), Damage> {
         match self.tds.detached_vertices()[..] {
             [] => Ok(()),
@@ -211,9 +201,6 @@ impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
             first(inner.flaws(Level::Law, |_, _| true))?;
-            if !inner.is_regular_on_line() {
-                return Err(Damage::Shape("a vertex on a line ought to be hidden"));
-            }
             let seen = inner.vertex_count();
             let t = Regular::over(inner);
             if t.vertex_count() != seen {

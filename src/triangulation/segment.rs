@@ -153,8 +153,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     fn cross(&mut self, [a, b]: [VertexId; 2], cell: CellId, i: usize) -> Vec<(VertexId, VertexId)> {
         let [c, d] = self.tds().edge_ends(cell, i);
         let x = self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
-        self.set_wall(c, d, false);
-        self.scratch.unsettled.extend([cell, self.tds().neighbor(cell, i)]);
+        self.scratch.unsettled.extend(self.inner.wall_down(c, d).into_iter().flatten());
         self.settle();
         let before = self.vertex_count();
         let near = self.tds().cell_of(c);
@@ -181,18 +180,6 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
     #[inline(always)]
     fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
         in_sphere(&self.geometry, triangle.map(|v| self.point(v)), self.point(p))
-    }
-
-    /// Makes an edge a constraint, if it is there.
-    pub(super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
-        let Some((cell, i)) = self.tds.edge(a, b) else { return false };
-        let beside = self.tds.neighbor(cell, i);
-        let j = self.tds.index_of_neighbor(beside, cell);
-        for (cell, i) in [(cell, i), (beside, j)] {
-            let data = self.tds.cell_data_mut(cell);
-            *data = data.with(i, true);
-        }
-        true
     }
 
     #[inline]
@@ -272,8 +259,8 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         }
     }
 
-    /// Makes the segment that was traced to a vertex a constrained edge. `is_closer` says whether a vertex goes before the
-    /// third one of a triangle as that of the same base.
+    /// Makes the segment that was traced to a vertex a constrained edge. `is_closer` says whether a vertex goes before
+    /// the third one of a triangle as that of the same base.
     pub(super) fn force_traced(
         &mut self,
         a: VertexId,

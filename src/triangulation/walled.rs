@@ -99,8 +99,7 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
     /// # Complexity
     /// Quadratic in the number of triangles between two vertices on the way at worst, in practice linear.
     pub fn constrain(&mut self, a: VertexId, b: VertexId) -> Result<(), Blocked> {
-        let exists = |v: VertexId| v != VertexId::INFINITE && self.tds().is_vertex(v);
-        if self.dimension() < 2 || !exists(a) || !exists(b) {
+        if self.dimension() < 2 || ![a, b].into_iter().all(|v| self.tds().is_vertex(v)) {
             return Err(Blocked::Nowhere);
         }
         // First without touching anything.
@@ -126,16 +125,7 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
 
     /// Takes the constraint off the edge between two vertices, which stays an edge; says whether there was one.
     pub fn release(&mut self, a: VertexId, b: VertexId) -> bool {
-        let Some((cell, i)) = self.tds().edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i)) else {
-            return false;
-        };
-        let beside = self.tds().neighbor(cell, i);
-        let j = self.tds().index_of_neighbor(beside, cell);
-        for (cell, i) in [(cell, i), (beside, j)] {
-            let data = self.inner.tds.cell_data_mut(cell);
-            *data = data.with(i, false);
-        }
-        true
+        self.inner.wall_down(a, b).is_some()
     }
 
     /// Takes a vertex out and returns its point; `None` if there is no such vertex, or a constraint ends in it or runs
@@ -173,7 +163,7 @@ impl<G: Geometry<3>> Constrained<G> {
     }
 }
 
-/// What triangulations with constraints have in common, for reading.
+/// What triangulations with constraints have in common.
 impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
     /// Whether the edge of a cell opposite its vertex `i` is a constraint.
     #[inline]
@@ -189,6 +179,29 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
                 (a < b).then_some([a, b]) // the cell on the other side has it as `b a`
             })
         })
+    }
+
+    /// Makes an edge a constraint; says whether it is there.
+    pub(super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
+        let edge = self.tds.edge(a, b);
+        edge.map(|edge| self.set_wall(edge, true)).is_some()
+    }
+
+    /// Makes a constraint a mere edge, and returns the cells on both sides; `None` if there is none between the two.
+    pub(super) fn wall_down(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {
+        let constraint = self.tds.edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i))?;
+        Some(self.set_wall(constraint, false))
+    }
+
+    /// Tells the cells on both sides of an edge whether it is a constraint; returns them.
+    fn set_wall(&mut self, (cell, i): (CellId, usize), is_wall: bool) -> [CellId; 2] {
+        let beside = self.tds.neighbor(cell, i);
+        let j = self.tds.index_of_neighbor(beside, cell);
+        for (cell, i) in [(cell, i), (beside, j)] {
+            let data = self.tds.cell_data_mut(cell);
+            *data = data.with(i, is_wall);
+        }
+        [cell, beside]
     }
 
     /// The ends of the constraint that a place lies on in its inside.

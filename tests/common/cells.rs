@@ -1,9 +1,9 @@
-//! Triangulations by their cells, whatever numbers these and the vertices have.
+//! Triangulations by their cells, whatever numbers these, or the vertices, too, have.
 
 use std::collections::BTreeSet;
 
-use breakline::geometry::Coordinates;
-use breakline::tds::VertexId;
+use breakline::geometry::{Coordinates, Geometry};
+use breakline::tds::{CellId, VertexId};
 use breakline::triangulation::Triangulation;
 
 /// The finite cells of any dimension, each as the sorted keys of its corners' coordinates.
@@ -24,4 +24,22 @@ where
             corners
         })
         .collect()
+}
+
+/// All cells of the plane, the infinite ones included, by the numbers of their vertices.
+pub(crate) fn by_vertices<G: Geometry<3>, V, C: Copy + Default>(
+    t: &Triangulation<G, 3, V, C>,
+) -> BTreeSet<Vec<VertexId>> {
+    t.tds().cells().map(|cell| vertices(t, cell)).collect()
+}
+
+/// The vertices of a cell from the smallest on, so that the turn shows.
+pub(crate) fn vertices<G: Geometry<3>, V, C: Copy + Default>(
+    t: &Triangulation<G, 3, V, C>,
+    cell: CellId,
+) -> Vec<VertexId> {
+    let mut vertices = t.tds().cell_vertices(cell).to_vec();
+    let smallest = (0..vertices.len()).min_by_key(|&i| vertices[i]).unwrap_or(0);
+    vertices.rotate_left(smallest);
+    vertices
 }

@@ -3,16 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::common::random::Random;
-use breakline::geometry::{Geometry, Plane};
+use crate::grid::{Free, build};
+use breakline::geometry::Geometry;
 use breakline::num::Sign;
 use breakline::tds::{Tds, VertexId};
-use breakline::triangulation::Delaunay;
-
-type Free = Delaunay<Plane, 3>;
-
-fn build(points: &[[f64; 2]]) -> Free {
-    Delaunay::from_points(Plane::default(), points).unwrap().0
-}
 
 /// Points of a tiny grid; every third time on one line, and with some taken out again, so that there are holes in the
 /// numbers.

@@ -1,4 +1,5 @@
-//! Geometries whose arithmetic is chosen when the program runs, so that triangulations are compiled once for all kernels.
+//! Geometries whose arithmetic is chosen when the program runs, so that triangulations are compiled once for all
+//! kernels.
 
 use std::cmp::Ordering;
 

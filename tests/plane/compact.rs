@@ -1,6 +1,7 @@
 //! The compact triangulation: the answers of the one that was written, and errors for whatever is damaged.
 
 use crate::common::random::Random;
+use crate::grid::{Free, Point, build, place, points};
 use breakline::geometry::{Plane, Terrain};
 use breakline::tds::{CellId, Complex, VertexId};
 use breakline::triangulation::{
@@ -8,16 +9,10 @@ use breakline::triangulation::{
     Passage, Regular, Triangulation,
 };
 
-type Point = [f64; 2];
-type Free = Delaunay<Plane, 3>;
 type Forced = ConstrainedDelaunay<Plane>;
 type Opened<'a> = Compact<Plane, &'a [u8]>;
 
 const HEADER: usize = 48;
-
-fn build(points: &[Point]) -> Free {
-    Delaunay::from_points(Plane::default(), points).unwrap().0
-}
 
 fn bytes(t: &Free) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -27,26 +22,6 @@ fn bytes(t: &Free) -> Vec<u8> {
 
 fn open(bytes: &[u8]) -> Result<Opened<'_>, Damaged> {
     Compact::open(Plane::default(), bytes)
-}
-
-fn grid_point(dice: &mut Random, side: u64) -> Point {
-    [0, 1].map(|_| dice.below(side) as f64)
-}
-
-/// Even places of a grid, so that odd ones lie between; every fourth time on one line.
-fn points(dice: &mut Random, round: usize) -> Vec<Point> {
-    let side = 1 + dice.below(5);
-    let count = dice.below(20);
-    let mut points: Vec<Point> = (0..count).map(|_| grid_point(dice, side).map(|x| 2.0 * x)).collect();
-    if round.is_multiple_of(4) {
-        points.iter_mut().for_each(|p| p[1] = if round.is_multiple_of(8) { p[0] } else { 4.0 });
-    }
-    points
-}
-
-/// A place on that grid or between, or a bit outside.
-fn place(dice: &mut Random) -> Point {
-    grid_point(dice, 13).map(|x| x - 2.0)
 }
 
 fn all<T>(answers: Result<impl Iterator<Item = Result<T, Damaged>>, Damaged>) -> Result<Vec<T>, Damaged> {

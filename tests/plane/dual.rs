@@ -1,18 +1,13 @@
 //! Voronoi diagrams: against exact centers, clipping by all bisectors, and the law that cells tile.
 
 use crate::common::random::{Random, ulps};
+use crate::grid::{Free, Point, build};
+use crate::polygon::{area, part};
 use breakline::geometry::Plane;
 use breakline::kernel::{Exact, circumcenter};
 use breakline::tds::VertexId;
 use breakline::triangulation::{Delaunay, VoronoiEdge};
 use dashu_ratio::RBig;
-
-type Point = [f64; 2];
-type Free = Delaunay<Plane, 3>;
-
-fn build(points: &[Point]) -> Free {
-    Delaunay::from_points(Plane::default(), points).unwrap().0
-}
 
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 1 + dice.below(6);
@@ -75,28 +70,8 @@ fn window(dice: &mut Random) -> Vec<Point> {
     }
 }
 
-fn area(polygon: &[Point]) -> f64 {
-    (0..polygon.len())
-        .map(|k| (polygon[k], polygon[(k + 1) % polygon.len()]))
-        .map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0)
-        .sum()
-}
-
-/// The part of a convex polygon that is nearer to `p` than to `q`.
-fn nearer(polygon: &[Point], p: Point, q: Point) -> Vec<Point> {
-    let far = |x: Point| (x[0] - p[0]).hypot(x[1] - p[1]).powi(2) - (x[0] - q[0]).hypot(x[1] - q[1]).powi(2);
-    let mut left = Vec::new();
-    for k in 0..polygon.len() {
-        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
-        if far(a) <= 0.0 {
-            left.push(a);
-        }
-        if far(a) * far(b) < 0.0 {
-            let t = far(a) / (far(a) - far(b));
-            left.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
-        }
-    }
-    left
+fn squared(p: Point, q: Point) -> f64 {
+    (p[0] - q[0]).hypot(p[1] - q[1]).powi(2)
 }
 
 #[test]
@@ -113,7 +88,8 @@ fn cells_tile_and_are_cut_by_all_bisectors() {
             assert!((cell.area - area(&cell.corners)).abs() < 1e-9 * whole);
             assert!(cell.area >= 0.0);
             let others = t.tds().vertices().filter(|&u| u != v);
-            let naive = others.fold(window.clone(), |left, u| nearer(&left, *t.point(v), *t.point(u)));
+            let naive = others
+                .fold(window.clone(), |left, u| part(&left, |x| squared(x, *t.point(v)) - squared(x, *t.point(u))));
             assert!((cell.area - area(&naive)).abs() < 1e-9 * whole, "{:?} {window:?}", t.points());
         }
         assert!((sum - whole).abs() < 1e-9 * whole, "{:?} {window:?}", t.points());

@@ -3,18 +3,13 @@
 use std::collections::BTreeMap;
 
 use crate::common::random::Random;
+use crate::grid::{Free, Point, build};
 use breakline::geometry::Plane;
 use breakline::kernel::Wide;
 use breakline::tds::VertexId;
 use breakline::triangulation::{Delaunay, Location};
 
-type Point = [f64; 2];
-type Free = Delaunay<Plane, 3>;
 type Weights = Vec<(VertexId, f64)>;
-
-fn build(points: &[Point]) -> Free {
-    Delaunay::from_points(Plane::default(), points).unwrap().0
-}
 
 /// On a tiny grid, or anywhere.
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {

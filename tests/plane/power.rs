@@ -1,6 +1,7 @@
 //! Power diagrams: against all bisectors, and the law that cells tile; nearest points by power against all points.
 
 use crate::common::random::Random;
+use crate::polygon::{area, part};
 use breakline::geometry::{Geometry, Weighted};
 use breakline::kernel::Adaptive;
 use breakline::tds::VertexId;
@@ -20,30 +21,8 @@ fn build(dice: &mut Random, round: usize) -> Weights {
     Regular::from_points(Weighted::<Adaptive>::default(), &points).unwrap().0
 }
 
-fn area(polygon: &[[f64; 2]]) -> f64 {
-    let pairs = (0..polygon.len()).map(|k| (polygon[k], polygon[(k + 1) % polygon.len()]));
-    pairs.map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0).sum()
-}
-
 fn power(p: &Point, x: [f64; 2]) -> f64 {
     (x[0] - p[0]).powi(2) + (x[1] - p[1]).powi(2) - p[2]
-}
-
-/// The part of a convex polygon with less power of `p` than of `q`.
-fn part(polygon: &[[f64; 2]], p: &Point, q: &Point) -> Vec<[f64; 2]> {
-    let far = |x: [f64; 2]| power(p, x) - power(q, x);
-    let mut left = Vec::new();
-    for k in 0..polygon.len() {
-        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
-        if far(a) <= 0.0 {
-            left.push(a);
-        }
-        if far(a) * far(b) < 0.0 {
-            let t = far(a) / (far(a) - far(b));
-            left.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
-        }
-    }
-    left
 }
 
 #[test]
@@ -57,7 +36,8 @@ fn cells_tile_and_are_cut_by_all_bisectors() {
         for v in t.tds().vertices() {
             let cell = t.power_cell(v, &window);
             let others = t.tds().vertices().filter(|&u| u != v);
-            let naive = others.fold(window.to_vec(), |left, u| part(&left, t.point(v), t.point(u)));
+            let naive =
+                others.fold(window.to_vec(), |left, u| part(&left, |x| power(t.point(v), x) - power(t.point(u), x)));
             assert!((cell.area - area(&naive)).abs() < 1e-9 * whole, "{:?}", t.points());
             sum += cell.area;
         }

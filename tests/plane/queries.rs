@@ -3,43 +3,19 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
+use crate::common::cells::{by_vertices, vertices};
 use crate::common::picture::OnFailure;
 use crate::common::random::Random;
+use crate::grid::{Point, build, grid_point, place, points};
 use breakline::geometry::{Geometry, Metric, Plane, Steps, Terrain};
 use breakline::num::Sign;
 use breakline::tds::{CellId, VertexId};
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, Passage, Triangulation};
+use breakline::triangulation::{ConstrainedDelaunay, Mark, OnCrossing, Passage, Triangulation};
 
-type Point = [f64; 2];
-type Free = Delaunay<Plane, 3>;
 type Forced = ConstrainedDelaunay<Plane>;
 
 fn plane() -> Plane {
     Plane::default()
-}
-
-fn build(points: &[Point]) -> Free {
-    Delaunay::from_points(Plane::default(), points).unwrap().0
-}
-
-fn grid_point(dice: &mut Random, side: u64) -> Point {
-    [0, 1].map(|_| dice.below(side) as f64)
-}
-
-/// Even places of a grid, so that odd ones lie between; every fourth time on one line.
-fn points(dice: &mut Random, round: usize) -> Vec<Point> {
-    let side = 1 + dice.below(5);
-    let count = dice.below(20);
-    let mut points: Vec<Point> = (0..count).map(|_| grid_point(dice, side).map(|x| 2.0 * x)).collect();
-    if round.is_multiple_of(4) {
-        points.iter_mut().for_each(|p| p[1] = if round.is_multiple_of(8) { p[0] } else { 4.0 });
-    }
-    points
-}
-
-/// A place on that grid or between, or a bit outside.
-fn place(dice: &mut Random) -> Point {
-    grid_point(dice, 13).map(|x| x - 2.0)
 }
 
 /// All pairs of some points as lines, so that they overlap and touch; some cross.
@@ -53,24 +29,13 @@ fn constrained(dice: &mut Random, points: &[Point]) -> Forced {
     Forced::from_lines(Plane::default(), points, &lines, OnCrossing::Split).unwrap().0
 }
 
-/// The cells as their vertices, sorted.
-fn cells<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) -> BTreeSet<Vec<VertexId>> {
-    t.tds().cells().map(|cell| vertices(t, cell)).collect()
-}
-
-fn vertices<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, cell: CellId) -> Vec<VertexId> {
-    let mut vertices = t.tds().cell_vertices(cell).to_vec();
-    vertices.sort();
-    vertices
-}
-
 /// What a conflict zone must be, given the triangulation with the point in.
 fn judge_zone<V, C: Copy + Default>(
     before: &Triangulation<Plane, 3, V, C>,
     after: &Triangulation<Plane, 3, V, C>,
     zone: &breakline::triangulation::ConflictZone,
 ) {
-    let destroyed: BTreeSet<_> = cells(before).difference(&cells(after)).cloned().collect();
+    let destroyed: BTreeSet<_> = by_vertices(before).difference(&by_vertices(after)).cloned().collect();
     assert_eq!(zone.cells.len(), destroyed.len());
     assert_eq!(zone.cells.iter().map(|&cell| vertices(before, cell)).collect::<BTreeSet<_>>(), destroyed);
     let tds = before.tds();

@@ -397,6 +397,16 @@ fn arithmetics_for_whole_numbers_refine() {
     assert_eq!(refined_ring::<Lattice>(&ring, &quality).shortfall(), []);
 }
 
+/// Places between whole numbers are rounded to these.
+#[test]
+fn arithmetics_for_whole_numbers_take_any_place_in_a_hole() {
+    let ring = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
+    let inside = |domain| refined_ring::<Fixed<24>>(&ring, &Quality { domain, ..Quality::default() }).inside().count();
+    let places = vec![[4.5, 6.25]];
+    assert!(inside(Domain::Seeded { seeds: places.clone() }) > 0);
+    assert_eq!(inside(Domain::Enclosed { holes: places }), 0);
+}
+
 /// What is thin is told to be so, however large or small.
 #[test]
 fn thin_triangles_are_known_at_any_magnitude() {

@@ -8,7 +8,7 @@ use breakline::geometry::{Geometry, Weighted};
 use breakline::kernel::Adaptive;
 use breakline::num::Sign;
 use breakline::tds::VertexId;
-use breakline::triangulation::{Level, Regular};
+use breakline::triangulation::{Delaunay, Flaw, Level, Regular};
 use dashu_int::IBig;
 
 /// x, y and weight.
@@ -232,4 +232,18 @@ fn one_site_on_another() {
         assert_eq!(t.check(Level::Law), []);
         assert_eq!(t.vertex_count(), others.len());
     }
+}
+
+/// Of points on a line, of which one kind hides the lightest and the other none.
+#[test]
+fn a_check_finds_points_that_ought_to_be_hidden() {
+    let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
+    let mut delaunay: Delaunay<Weighted, 3> = Delaunay::new(Weighted::default());
+    for p in [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [2.0, 0.0, -9.0]] {
+        assert_eq!(delaunay.check(Level::Law), []);
+        regular.insert(p).unwrap();
+        delaunay.insert(p).unwrap();
+    }
+    assert_eq!((regular.check(Level::Law), delaunay.check(Level::Orientation)), (vec![], vec![]));
+    assert!(matches!(delaunay.check(Level::Law)[..], [Flaw::NotDelaunay(..), Flaw::NotDelaunay(..)]));
 }

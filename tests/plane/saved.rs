@@ -2,22 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use breakline::geometry::{Geometry, Plane, Weighted};
+use crate::common::cells::by_vertices;
+use breakline::geometry::{Plane, Weighted};
 use breakline::tds::VertexId;
 use breakline::triangulation::{Constrained, Delaunay, Level, Regular, Triangulation};
 use proptest::prelude::*;
 use serde_json::Value;
-
-/// The cells by their vertices, each from its smallest on.
-fn cells<G: Geometry<3>, V, C: Copy + Default>(t: &Triangulation<G, 3, V, C>) -> BTreeSet<Vec<VertexId>> {
-    let turned = |cell| {
-        let mut vertices = t.tds().cell_vertices(cell).to_vec();
-        let smallest = (0..vertices.len()).min_by_key(|&i| vertices[i]).unwrap_or(0);
-        vertices.rotate_left(smallest);
-        vertices
-    };
-    t.tds().cells().map(turned).collect()
-}
 
 fn through<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T) -> T {
     serde_json::from_str(&serde_json::to_string(t).unwrap()).unwrap()
@@ -57,7 +47,7 @@ proptest! {
         for edits in [&[], &after[..]] {
             edit(&mut t, edits);
             edit(&mut read, edits);
-            prop_assert_eq!(cells(&t), cells(&read));
+            prop_assert_eq!(by_vertices(&t), by_vertices(&read));
             prop_assert_eq!(t.points(), read.points());
             for v in t.tds().vertices() {
                 prop_assert_eq!(t.tds().vertex_data(v), read.tds().vertex_data(v));
@@ -82,7 +72,7 @@ proptest! {
         for edits in [&[], &after[..]] {
             edit(&mut t, edits);
             edit(&mut read, edits);
-            prop_assert_eq!(cells(&t), cells(&read));
+            prop_assert_eq!(by_vertices(&t), by_vertices(&read));
             prop_assert!(t.hidden().eq(read.hidden()));
             prop_assert_eq!(read.check(Level::Law), []);
         }
@@ -101,7 +91,7 @@ proptest! {
             }
         }
         let read = through(&t);
-        prop_assert_eq!(cells(&t), cells(&read));
+        prop_assert_eq!(by_vertices(&t), by_vertices(&read));
         prop_assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), read.constrained_edges().collect());
         prop_assert_eq!(read.check(Level::Law), []);
     }
@@ -213,7 +203,6 @@ fn damage_to_regular_and_constrained_kinds_is_an_error() {
         }
         let _ = constrained.constrain(VertexId::new(0), VertexId::new(places.len().saturating_sub(1)));
         read_damaged(&regular, |mut t| {
-            // On a line a check looks for no law: the judge is a fresh build.
             let (fresh, _) = Regular::<Weighted>::from_points(Weighted::default(), t.points()).unwrap();
             let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
             t.insert([0.25, 1.0, 0.5]).unwrap();

@@ -114,7 +114,7 @@ pub fn spatial_order<A: AsRef<[f64]>>(
     count: usize,
     coordinates: impl Fn(usize) -> A + Sync,
 ) -> Result<Vec<u32>, Refused> {
-    if count >= MAX_VERTICES {
+    if count > MAX_VERTICES {
         return Err(Refused::TooMany);
     }
     let grain = Grain::default();
@@ -155,7 +155,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
         Ok((Sites { points: sites, keys: sorted.keys, have_plans }, vertices))
     }
 
-    /// Points that are all different and in [`spatial_order`] already.
+    /// Points that are all different and in [`spatial_order`] already: nothing would ever tell equal ones apart.
     ///
     /// # Errors
     /// As for [`of`](Self::of).
@@ -165,6 +165,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
     ) -> Result<Self, Refused> {
         let grain = Grain::default();
         let (curve, have_plans) = survey(geometry, &points, grain)?;
+        debug_assert!(points.windows(2).all(|pair| geometry.compare(&pair[0], &pair[1]).is_ne()), "two on one site");
         let keys = Keys::of(points.len(), |i| geometry.coordinates(&points[i]), &curve, grain);
         Ok(Sites { points, keys, have_plans })
     }
@@ -188,7 +189,7 @@ fn survey<G: Coordinates<N>, const N: usize>(
     if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
         return Err(Refused::Coordinate(bad));
     }
-    if points.len() >= MAX_VERTICES {
+    if points.len() > MAX_VERTICES {
         return Err(Refused::TooMany);
     }
     Ok((Curve::along(span), have_plans))

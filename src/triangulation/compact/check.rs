@@ -1,9 +1,9 @@
-use crate::geometry::{Geometry, in_sphere};
+use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, Star, VertexId};
 
 use super::super::Level;
-use super::super::sides::{side_of_facet, simplex};
+use super::super::check::{is_convex, is_empty, is_positive};
 use super::{Compact, Damaged, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
@@ -82,21 +82,18 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         for cell in self.cells().filter(|_| self.dimension() > 0) {
             let corners = self.corners(cell)?;
             let Some(infinite) = corners.iter().position(|&v| v == VertexId::INFINITE) else {
-                let sign = if self.dimension() == 2 {
-                    self.geometry.orientation(simplex(self, cell)?.each_ref())
+                let is_positive = if self.dimension() == 2 {
+                    is_positive(self, cell)?
                 } else {
-                    self.geometry.orientation_in_flat(&[&self.point(corners[0])?, &self.point(corners[1])?])
+                    let ends = [&self.point(corners[0])?, &self.point(corners[1])?];
+                    self.geometry.orientation_in_flat(&ends) == Sign::Positive
                 };
-                self.ensure(cell, || sign == Sign::Positive)?;
+                self.ensure(cell, || is_positive)?;
                 continue;
             };
             for i in (0..self.width()).filter(|&i| i != infinite && self.dimension() == 2) {
-                let beside = self.neighbor(cell, i)?;
-                let far = self.vertex(beside, self.index_of_neighbor(beside, cell)?)?;
-                if far != VertexId::INFINITE {
-                    let side = side_of_facet(self, cell, infinite, &self.point(far)?)?;
-                    self.ensure(cell, || side != Sign::Positive)?;
-                }
+                let is_convex = is_convex(self, cell, infinite, i)?;
+                self.ensure(cell, || is_convex)?;
             }
         }
         if self.dimension() == 1 {
@@ -119,15 +116,11 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
             let is_finite = !self.is_infinite(cell)?;
             for i in 0..3 {
                 let beside = self.neighbor(cell, i)?;
-                let j = self.index_of_neighbor(beside, cell)?;
                 let is_wall = self.is_constrained(cell, i)?;
-                let is_other = self.is_constrained(beside, j)?;
+                let is_other = self.is_constrained(beside, self.index_of_neighbor(beside, cell)?)?;
                 self.ensure(cell, || is_wall == is_other)?;
-                let far = self.vertex(beside, j)?;
-                if is_delaunay && is_finite && !is_wall && far != VertexId::INFINITE {
-                    let is_in = in_sphere(&self.geometry, simplex(self, cell)?.each_ref(), &self.point(far)?);
-                    self.ensure(cell, || !is_in)?;
-                }
+                let is_lawful = !is_delaunay || !is_finite || is_wall || is_empty(self, cell, i)?;
+                self.ensure(cell, || is_lawful)?;
             }
         }
         Ok(())

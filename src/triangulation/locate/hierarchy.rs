@@ -17,12 +17,12 @@ const RATIO: usize = 30;
 ///   all         o o o o o oo o o oo o
 /// ```
 ///
-/// A place is located from the top down; each time the walk begins at the vertex that was found nearest above. So it takes
-/// expected `O(log n)` steps on any Delaunay triangulation whose points came in random order, however they are spread
-/// (O(n) when a line goes through all triangles from there), and memory grows by a thirtieth.
+/// A place is located from the top down; each time the walk begins at the vertex that was found nearest above. So it
+/// takes expected `O(log n)` steps on any Delaunay triangulation whose points came in random order, however they are
+/// spread (O(n) when a line goes through all triangles from there), and memory grows by a thirtieth.
 ///
-/// The geometry of the samples is one over the same kind of points, in which the place of a point is the same. It is that of
-/// the triangulation itself but for weighted points: there it is one that leaves weights aside.
+/// The geometry of the samples is one over the same kind of points, in which the place of a point is the same. It is
+/// that of the triangulation itself but for weighted points: there it is one that leaves weights aside.
 ///
 /// Which vertices are in the samples looks random and is the same in every run.
 ///
@@ -55,18 +55,21 @@ struct Level<L: Geometry<3>> {
 }
 
 impl<L: Geometry<3>> Level<L> {
-    /// A vertex near a point, given one to start from.
+    /// A cell at a point and a vertex near it, given one to start from.
     fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
         let tds = self.sample.tds();
         let location = self.sample.locate(q, start.and_then(|vertex| tds.cell_of(vertex)));
-        let cell = match location {
-            Location::Vertex(vertex) => return (tds.cell_of(vertex), Some(vertex)),
-            Location::Cell { cell, .. } | Location::OutsideHull { cell } => cell,
-            Location::OutsideAffineHull => return (None, tds.vertices().next()),
+        let cell = location.cell(&self.sample);
+        let nearest = match (location, cell) {
+            (Location::Vertex(vertex), _) => Some(vertex),
+            (_, Some(cell)) => {
+                let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
+                let far = |v: &VertexId| self.sample.geometry().rough_distance(self.sample.point(*v), q);
+                finite.min_by(|p, q| far(p).total_cmp(&far(q)))
+            }
+            (_, None) => tds.vertices().next(),
         };
-        let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
-        let far = |v: &VertexId| self.sample.geometry().rough_distance(self.sample.point(*v), q);
-        (Some(cell), finite.min_by(|p, q| far(p).total_cmp(&far(q))))
+        (cell, nearest)
     }
 
     fn below(&self, vertex: VertexId) -> VertexId {
@@ -125,7 +128,8 @@ impl<L: Geometry<3>> Hierarchy<L> {
         self.levels.iter().map(|level| level.sample.vertex_count())
     }
 
-    /// A vertex of the triangulation near a point. Shown on the way, from the top down, is a cell near it on each level.
+    /// A vertex of the triangulation near a point. Shown on the way, from the top down, is a cell near it on each
+    /// level.
     fn descend(&self, q: &L::Point, mut show: impl FnMut(Option<CellId>)) -> Option<VertexId> {
         self.levels.iter().rev().fold(None, |start, level| {
             let (cell, nearest) = level.nearest(q, start);

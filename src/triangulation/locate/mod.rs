@@ -7,14 +7,14 @@
 //! | [`Buckets`] from a vertex in the same square of a grid | a few; none the better where all points are in one square |
 //! | [`Hierarchy`] of samples (Devillers 2002) | `log n`, however the points are spread |
 //!
-//! These walk from one triangle to the next across an edge that parts it from the place, with such edges tried in an order
-//! that looks random (the remembering stochastic, or zigzag, walk); [`StraightLine`] goes through the triangles that a
-//! line to the place meets (both: Devillers, Pion and Teillaud 2002).
+//! These walk from one triangle to the next across an edge that parts it from the place, with such edges tried in an
+//! order that looks random (the remembering stochastic, or zigzag, walk); [`StraightLine`] goes through the triangles
+//! that a line to the place meets (both: Devillers, Pion and Teillaud 2002).
 //!
 //! A strategy is a value of the caller's. Some of them learn from insertions and removals: pass these to
 //! [`Locate::inserted`] and [`Locate::removed`], or insert and remove by way of the strategy:
-//! [`Delaunay::insert_by`](super::Delaunay::insert_by), [`Delaunay::remove_by`](super::Delaunay::remove_by). One that has
-//! not been told is slower, and as right.
+//! [`Delaunay::insert_by`](super::Delaunay::insert_by), [`Delaunay::remove_by`](super::Delaunay::remove_by). One that
+//! has not been told is slower, and as right.
 
 mod buckets;
 mod hierarchy;
@@ -66,10 +66,16 @@ impl Location {
         self,
         triangulation: &Triangulation<G, N, V, C>,
     ) -> Option<CellId> {
+        let Ok(cell) = self.cell_in(&triangulation.tds);
+        cell
+    }
+
+    /// The same wherever the cells are kept.
+    pub(super) fn cell_in<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Option<CellId>, T::Error> {
         match self {
-            Location::Vertex(vertex) => triangulation.tds.cell_of(vertex),
-            Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
-            Location::OutsideAffineHull => None,
+            Location::Vertex(vertex) => complex.cell_of(vertex),
+            Location::Cell { cell, .. } | Location::OutsideHull { cell } => Ok(Some(cell)),
+            Location::OutsideAffineHull => Ok(None),
         }
     }
 }
@@ -103,9 +109,9 @@ const PATIENCE: usize = 64;
 const WANDERING: usize = 8;
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    /// Finds where `q` lies, by a remembering stochastic walk (Devillers, Pion, Teillaud 2002) from a
-    /// cell nearby, or from the last insertion. Ends on any triangulation, with probability one. If it takes long, it goes on
-    /// from the nearest of `n^(1/3)` of the `n` vertices (Mücke, Saias and Zhu 1996): then about as many steps are left where
+    /// Finds where `q` lies, by a remembering stochastic walk (Devillers, Pion, Teillaud 2002) from a cell nearby, or
+    /// from the last insertion. Ends on any triangulation, with probability one. If it takes long, it goes on from the
+    /// nearest of `n^(1/3)` of the `n` vertices (Mücke, Saias and Zhu 1996): then about as many steps are left where
     /// points are spread evenly.
     ///
     /// The point must be one that the geometry [admits](Geometry::admits): for others the predicates have no

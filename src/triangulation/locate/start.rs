@@ -10,8 +10,8 @@ use super::Location;
 /// to be asked itself.
 ///
 /// # Laws
-/// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same place relative to the complex; of the
-///   cells that an edge or the outside of the hull is told by, any.
+/// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same place relative to the complex; of
+///   the cells that an edge or the outside of the hull is told by, any.
 /// - What [`inserted`](Self::inserted) and [`removed`](Self::removed) have not been told changes the time only.
 ///
 /// # Models
@@ -66,8 +66,8 @@ impl<G: Geometry<N>, const N: usize> Locate<G, N> for Near {
     }
 }
 
-/// From the nearest of `n^(1/3)` of the `n` vertices, chosen as if at random; the same ones for the same number of vertices.
-/// Takes a geometry that knows [distances](Geometry::rough_distance).
+/// From the nearest of `n^(1/3)` of the `n` vertices, chosen as if at random; the same ones for the same number of
+/// vertices. Takes a geometry that knows [distances](Geometry::rough_distance).
 ///
 /// Of uniformly distributed points the walk takes `O(n^(1/3))` steps then (Mücke, Saias and Zhu 1996).
 #[derive(Debug, Clone, Copy, Default)]

@@ -19,7 +19,7 @@ impl<G: Geometry<3>> Locate<G, 3> for StraightLine {
             let finite = triangulation.last.filter(|&cell| triangulation.tds.is_used(cell))?;
             triangulation.tds.cell_vertices(finite).iter().copied().find(|&v| v != VertexId::INFINITE)
         };
-        let start = self.0.filter(|&v| v != VertexId::INFINITE && triangulation.tds.is_vertex(v));
+        let start = self.0.filter(|&v| triangulation.tds.is_vertex(v));
         let start = start.or_else(last).or_else(|| triangulation.tds.vertices().next());
         let cell = start.and_then(|from| triangulation.walk_straight(from, q));
         triangulation.locate(q, cell)

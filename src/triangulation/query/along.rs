@@ -34,8 +34,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// dimension 2. Exact.
     ///
     /// # Complexity
-    /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for a face or an edge, and the degree of each
-    /// vertex. If `a` lies outside of the hull, its vertices are all looked at.
+    /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for a face or an edge, and the degree of
+    /// each vertex. If `a` lies outside of the hull, its vertices are all looked at.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::{Delaunay, Passage}};

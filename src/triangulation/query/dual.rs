@@ -1,8 +1,8 @@
 //! Voronoi diagrams: what is nearest to which vertex, as the dual of a Delaunay triangulation.
 //!
 //! Coordinates of the [geometry](crate::geometry::Coordinates) must be those that its circles are circles of, as in
-//! [`Plane`](crate::geometry::Plane), [`Terrain`](crate::geometry::Terrain) and [`Steps`](crate::geometry::Steps). What is
-//! computed is rounded; lengths are in the unit of the coordinates.
+//! [`Plane`](crate::geometry::Plane), [`Terrain`](crate::geometry::Terrain) and [`Steps`](crate::geometry::Steps). What
+//! is computed is rounded; lengths are in the unit of the coordinates.
 
 use crate::geometry::Coordinates;
 use crate::kernel;
@@ -107,8 +107,9 @@ pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>,
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// The center of the circle around a finite face, weights aside; `None` for infinite ones and below dimension 2. Right to a few units
-    /// in the last place of the larger of its coordinates and its [distance](kernel::circumcenter) from the corners. O(1).
+    /// The center of the circle around a finite face, weights aside; `None` for infinite ones and below dimension 2.
+    /// Right to a few units in the last place of the larger of its coordinates and its [distance](kernel::circumcenter)
+    /// from the corners. O(1).
     pub fn circumcenter(&self, cell: CellId) -> Option<[f64; 2]> {
         if !self.is_full() || self.tds.is_infinite(cell) {
             return None;
@@ -120,7 +121,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 
 impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
     /// The places that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
-    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex. O(1).
+    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex.
+    /// O(1).
     pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
         let ends = self.tds().edge_ends(cell, i);
         if ends.contains(&VertexId::INFINITE) {
@@ -140,9 +142,9 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
         })
     }
 
-    /// What of a convex polygon, counter-clockwise, is nearest to a finite vertex. The cells of all vertices tile it, in
-    /// every dimension, as long as squares of distances are numbers: between `1e-150` and `1e150`, say. That of what is no
-    /// vertex has no corners.
+    /// What of a convex polygon, counter-clockwise, is nearest to a finite vertex. The cells of all vertices tile it,
+    /// in every dimension, as long as squares of distances are numbers: between `1e-150` and `1e150`, say. That of what
+    /// is no vertex has no corners.
     ///
     /// # Complexity
     /// The degree of the vertex times the corners of the polygon and the cell.
@@ -159,7 +161,7 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn voronoi_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
-        if vertex == VertexId::INFINITE || !self.tds().is_vertex(vertex) {
+        if !self.tds().is_vertex(vertex) {
             return VoronoiCell { corners: Vec::new(), area: 0.0 };
         }
         let site = self.place(vertex);

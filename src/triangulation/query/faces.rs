@@ -4,8 +4,8 @@
 //! `p`, which is one of the edges that have `p` on their outer side. Where that point is a corner of two such edges,
 //! either one will do, but always the same. Going back over the entries leads to one of the faces around `p`:
 //! - beyond the entry the nearest point is nearer, unless it is the same corner `v`;
-//! - in this case the way turns around `v` in one direction, from behind `v` as `p` sees it towards `p`, where faces are
-//!   nearer.
+//! - in this case the way turns around `v` in one direction, from behind `v` as `p` sees it towards `p`, where faces
+//!   are nearer.
 //!
 //! Nor does it leave the hull, which is convex and has `p` within. So the faces are a forest over those around `p`,
 //! and its order and the way back up are found from the geometry (de Berg, van Oostrum and Overmars 1996). It takes
@@ -37,8 +37,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// # Ok::<(), breakline::triangulation::Refused>(())
     /// ```
     pub fn faces_from(&self, start: VertexId) -> impl Iterator<Item = CellId> + '_ {
-        let is_vertex = start != VertexId::INFINITE && self.tds.is_vertex(start);
-        let faces = is_vertex.then(|| {
+        let faces = self.tds.is_vertex(start).then(|| {
             let Ok(faces) = Faces::new(self, start);
             faces
         });

@@ -1,16 +1,17 @@
 //! Natural neighbor coordinates.
 //!
 //! If a place was a vertex, its Voronoi cell would take something from the cells of some vertices: its *natural
-//! neighbors*, those around its [conflict zone](ConflictZone). Nothing is inserted to see that: the new corners of cells
-//! are circumcenters over the border of the zone, the old ones those of the faces within.
+//! neighbors*, those around its [conflict zone](ConflictZone). Nothing is inserted to see that: the new corners of
+//! cells are circumcenters over the border of the zone, the old ones those of the faces within.
 //!
 //! | weight of a neighbor | is proportional to |
 //! |---|---|
 //! | [Sibson](Delaunay::sibson)'s | the area that its cell loses |
 //! | [Laplace](Delaunay::laplace)'s | the length of the border with the new cell, over its distance |
 //!
-//! Both are positive, sum up to 1, and give back the place as the weighted mean of its neighbors; so they interpolate, and
-//! linear functions exactly. They are continuous, Sibson's smooth but at the vertices, Laplace's less so and cheaper.
+//! Both are positive, sum up to 1, and give back the place as the weighted mean of its neighbors; so they interpolate,
+//! and linear functions exactly. They are continuous, Sibson's smooth but at the vertices, Laplace's less so and
+//! cheaper.
 
 use rustc_hash::FxHashMap;
 
@@ -29,20 +30,20 @@ type Weights = Vec<(VertexId, f64)>;
 
 impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
     /// Sibson's coordinates of a place: vertices with weights that are not negative, sum up to 1, and whose mean is the
-    /// place; counter-clockwise. Rounded: in all tests the mean misses the place by less than `1e-11`, of points that are some
-    /// 10 apart.
+    /// place; counter-clockwise. Rounded: in all tests the mean misses the place by less than `1e-11`, of points that
+    /// are some 10 apart.
     ///
-    /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends in
-    /// linear proportion, which is the limit from within. Outside of the hull there are none: `None`; nor where squares of
-    /// distances are no numbers (beyond `1e150`, below `1e-150`). The place must be
-    /// one that the geometry admits; its coordinates, those that circles are circles of.
+    /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends
+    /// in linear proportion, which is the limit from within. Outside of the hull there are none: `None`; nor where
+    /// squares of distances are no numbers (beyond `1e150`, below `1e-150`). The place must be one that the geometry
+    /// admits; its coordinates, those that circles are circles of.
     ///
     /// After Sibson 1981, *A brief description of natural neighbour interpolation*; without insertion as Watson 1992,
     /// *Contouring*.
     ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of the
-    /// conflict zone: some six neighbors.
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of
+    /// the conflict zone: some six neighbors.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::Delaunay};
@@ -103,8 +104,8 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
         ends.enumerate().map(|(k, vertex)| (vertex, weight(k, vertex).max(0.0))).collect()
     }
 
-    /// Weights that sum up to 1, from those that `inside` gives for a place within the hull: from the zone, the place, and
-    /// the corners of its Voronoi cell relative to it, one for each edge of the border.
+    /// Weights that sum up to 1, from those that `inside` gives for a place within the hull: from the zone, the place,
+    /// and the corners of its Voronoi cell relative to it, one for each edge of the border.
     fn coordinates(
         &self,
         q: &G::Point,

@@ -1,9 +1,10 @@
-//! The vertices of a Delaunay triangulation by their distance from a place.
+//! The vertices of a Delaunay or regular triangulation by their distance from a place.
 //!
-//! All follows from one fact: a vertex that is not nearest to a place has a neighbor that is nearer, because its Voronoi
-//! cell, bounded by bisectors with neighbors, does not hold the place. So a walk to nearer neighbors ends at a nearest
-//! vertex; and each vertex is a neighbor of one that comes before it in the order of distance, so that none is missed if
-//! the nearest of all neighbors of what has been found comes next.
+//! All follows from one fact: a vertex that is not nearest to a place has a neighbor that is nearer, because its
+//! Voronoi cell, bounded by bisectors with neighbors, does not hold the place. So a walk to nearer neighbors ends at a
+//! nearest vertex; and each vertex is a neighbor of one that comes before it in the order of distance, so that none is
+//! missed if the nearest of all neighbors of what has been found comes next. The same holds of a regular triangulation,
+//! power for distance, and of the cells of its power diagram.
 
 use std::borrow::Borrow;
 use std::cmp::Ordering;
@@ -127,13 +128,15 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
 ) -> Result<Vec<VertexId>, T::Error> {
     let complex = t.complex();
     let start = match location {
-        Location::Vertex(vertex) => return Ok(vec![vertex]),
+        Location::Vertex(vertex) => Some(vertex), // with weights, another may be nearer
         Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
             complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
         }
         Location::OutsideAffineHull => tds::vertices(complex).next().transpose()?,
     };
     let mut nearest: Vec<VertexId> = start.into_iter().collect();
+    // Of these, all but the first.
+    let mut found = FxHashSet::default();
     let mut next = 0;
     while next < nearest.len() {
         let vertex = nearest[next];
@@ -144,10 +147,11 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
             match t.geometry().compare_distance(q, t.point(v)?.borrow(), point.borrow()) {
                 Ordering::Less => {
                     nearest = vec![v];
+                    found.clear();
                     next = 0;
                     break;
                 }
-                Ordering::Equal if !nearest.contains(&v) => nearest.push(v),
+                Ordering::Equal if v != nearest[0] && found.insert(v) => nearest.push(v),
                 _ => {}
             }
         }
@@ -160,8 +164,8 @@ impl<G: Metric, V> Delaunay<G, 3, V> {
     /// geometry. `None` if there are no vertices. Exact. The place must be one that the geometry admits.
     ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and the degrees of a few vertices. From
-    /// beyond the hull, and on a line, the walk may lead along all vertices there.
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and the degrees of a few vertices.
+    /// From beyond the hull, and on a line, the walk may lead along all vertices there.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::Delaunay};
@@ -192,8 +196,8 @@ impl<G: Metric, V> Delaunay<G, 3, V> {
         nearest.map(|Ok(candidate)| candidate.vertex)
     }
 
-    /// The vertices no further from a place than `rim` is, nearest first. Exact: the circle is given by a point on it, as
-    /// the length of a radius is rounded.
+    /// The vertices no further from a place than `rim` is, nearest first. Exact: the circle is given by a point on it,
+    /// as the length of a radius is rounded.
     ///
     /// # Complexity
     /// As [`nearest_first`](Self::nearest_first).

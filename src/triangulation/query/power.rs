@@ -1,13 +1,12 @@
 //! Power diagrams: the dual of regular triangulations (Aurenhammer 1987).
 
-use rustc_hash::FxHashSet;
-
 use crate::geometry::{Metric, Weighted};
 use crate::kernel::Kernel;
 use crate::tds::VertexId;
 
-use super::super::{Location, Regular};
+use super::super::Regular;
 use super::dual::{HalfPlane, VoronoiCell, cell_of, minus};
+use super::nearest::nearest;
 
 impl<G: Metric, V> Regular<G, V> {
     /// The point of the least power at a place, its squared distance less its weight; of several, the first in the
@@ -15,39 +14,11 @@ impl<G: Metric, V> Regular<G, V> {
     /// one of the same power. `None` if there are no points. Exact. The place must be one that the geometry admits; its
     /// weight does not count.
     ///
-    /// *Neighbors suffice.* A point that is not the nearest has a neighbor that is nearer, as its cell of the power
-    /// diagram is bounded by those of its neighbors; and cells that meet in a place are connected there by neighbors.
-    ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate), and the degrees of a few vertices; below dimension 2 a
-    /// look at all vertices.
+    /// As [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
     pub fn nearest(&self, q: &G::Point) -> Option<VertexId> {
-        let far = |a: VertexId, b: VertexId| self.geometry().compare_distance(q, self.point(a), self.point(b));
-        let order = |a: VertexId, b: VertexId| self.geometry().compare(self.point(a), self.point(b));
-        if self.dimension() < 2 {
-            return self.tds().vertices().min_by(|&a, &b| far(a, b).then(order(a, b)));
-        }
-        let start = match self.locate(q, None) {
-            Location::Vertex(vertex) => vertex,
-            location => {
-                let cell = location.cell(self)?;
-                self.tds().corners(cell).iter().copied().find(|&v| v != VertexId::INFINITE)?
-            }
-        };
-        let neighbors = |v: VertexId| self.tds().vertices_around(v).filter(|&u| u != VertexId::INFINITE);
-        let mut nearest = start;
-        while let Some(nearer) = neighbors(nearest).find(|&v| far(v, nearest).is_lt()) {
-            nearest = nearer;
-        }
-        // All that are as near.
-        let mut found = FxHashSet::default();
-        let mut open = vec![nearest];
-        while let Some(vertex) = open.pop() {
-            if found.insert(vertex) {
-                open.extend(neighbors(vertex).filter(|&v| far(v, nearest).is_eq()));
-            }
-        }
-        found.into_iter().min_by(|&a, &b| order(a, b))
+        let Ok(nearest) = nearest(&**self, q, self.locate(q, None));
+        nearest
     }
 }
 

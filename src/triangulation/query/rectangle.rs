@@ -45,8 +45,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// border included; in order of their numbers. Exact. The corners must be points that the geometry admits.
     ///
     /// # Complexity
-    /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes meet the rectangle and,
-    /// where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at.
+    /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes meet the rectangle
+    /// and, where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::Delaunay};
@@ -74,20 +74,16 @@ pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordi
     let [p, q] = corners.map(|corner| place_of(t.geometry(), corner));
     let rectangle = Rectangle::new(p, q);
     let mut vertices = Vec::new();
-    let start = match location {
-        _ if complex.width() < 3 => {
-            for vertex in tds::vertices(complex) {
-                let vertex = vertex?;
-                if rectangle.holds(place(t, vertex)?) {
-                    vertices.push(vertex);
-                }
+    if complex.width() < 3 {
+        for vertex in tds::vertices(complex) {
+            let vertex = vertex?;
+            if rectangle.holds(place(t, vertex)?) {
+                vertices.push(vertex);
             }
-            return Ok(vertices);
         }
-        Location::Vertex(vertex) => complex.cell_of(vertex)?,
-        Location::Cell { cell, .. } | Location::OutsideHull { cell } => Some(cell),
-        Location::OutsideAffineHull => None,
-    };
+        return Ok(vertices);
+    }
+    let start = location.cell_in(complex)?;
     let mut seen: FxHashSet<CellId> = start.into_iter().collect();
     let mut met: Vec<CellId> = start.into_iter().collect();
     while let Some(cell) = met.pop() {
@@ -108,8 +104,8 @@ pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordi
     Ok(vertices)
 }
 
-/// Whether a cell meets the rectangle, or may. Such cells hang together by edges, the infinite ones with what lies beyond
-/// the hull.
+/// Whether a cell meets the rectangle, or may. Such cells hang together by edges, the infinite ones with what lies
+/// beyond the hull.
 fn meets<T: Embedded<3, Geometry: Coordinates<3>>>(
     t: &T,
     rectangle: Rectangle,

@@ -59,7 +59,7 @@ pub enum Conformity {
     Gabriel,
 }
 
-/// What is to be improved.
+/// What is to be improved. Places are rounded to the [step](Crossing::step) of the geometry, if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Domain {
     /// All triangles, but holes. The edges of the hull become constraints, which added vertices may bend by a rounding:
@@ -86,7 +86,7 @@ pub enum Domain {
 /// An area that constraints close off, with a bound of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
-    /// A place in it; one outside of the domain makes no difference.
+    /// A place in it, rounded as those of a [`Domain`]; one outside of the domain makes no difference.
     pub seed: [f64; 2],
     /// For triangles, in the square of the unit of the coordinates.
     pub max_area: f64,

@@ -19,7 +19,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
             for cell in hull {
                 if let Some(i) = t.tds().index_of(cell, VertexId::INFINITE) {
                     let [a, b] = t.tds().edge_ends(cell, i);
-                    t.set_wall(a, b, true);
+                    t.inner.wall_up(a, b);
                 }
             }
             enclosed(t, holes)
@@ -33,14 +33,14 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
             let mut marks = vec![OUTSIDE; t.tds().cell_slots()];
             let closed = enclosed(t, &[]);
             let is_closed = |cell: &CellId| closed[cell.index()] != OUTSIDE;
-            let cells: Vec<CellId> = seeds.iter().flat_map(|&seed| cells_at(t, seed)).filter(is_closed).collect();
+            let cells: Vec<CellId> = seeds.iter().flat_map(|&seed| cell_at(t, seed)).filter(is_closed).collect();
             spread(t, &mut marks, cells, 0);
             marks
         }
     };
     for (mark, region) in (1..).zip(regions) {
         let is_inside = |cell: &CellId| marks[cell.index()] != OUTSIDE;
-        let cells: Vec<CellId> = cells_at(t, region.seed).into_iter().filter(is_inside).collect();
+        let cells: Vec<CellId> = cell_at(t, region.seed).into_iter().filter(is_inside).collect();
         spread(t, &mut marks, cells, mark);
     }
     marks
@@ -50,7 +50,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
 fn enclosed<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, holes: &[[f64; 2]]) -> Vec<u32> {
     let mut marks = vec![0; t.tds().cell_slots()];
     let mut outer: Vec<CellId> = t.tds().around(VertexId::INFINITE).collect();
-    outer.extend(holes.iter().flat_map(|&hole| cells_at(t, hole)));
+    outer.extend(holes.iter().flat_map(|&hole| cell_at(t, hole)));
     spread(t, &mut marks, outer, OUTSIDE);
     marks
 }
@@ -70,11 +70,11 @@ fn spread<G: Crossing, V: Default>(
     }
 }
 
-/// The finite cell in which a place lies; none for one outside of the hull.
-fn cells_at<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, place: [f64; 2]) -> Option<CellId> {
+/// The finite cell in which a place lies, rounded to what the geometry admits; none for one outside of the hull.
+fn cell_at<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, place: [f64; 2]) -> Option<CellId> {
     let cell = t.finite_cells().next()?;
     let [a, b, _] = t.tds().corners(cell).map(|v| t.point(v));
-    let p = t.geometry().meet(place, &[[a, b]]);
+    let p = t.geometry().meet(t.geometry().on_step(place), &[[a, b]]);
     match t.geometry().admits(&p).then(|| t.locate(&p, None))? {
         Location::Cell { cell, .. } => Some(cell),
         Location::Vertex(vertex) => t.tds().around(vertex).find(|&cell| !t.tds().is_infinite(cell)),

@@ -52,7 +52,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // rounding.
         let beside = self.t.tds().neighbor(cell, i);
         let sides = [(a, b, self.regions[cell.index()]), (b, a, self.regions[beside.index()])];
-        self.t.set_wall(a, b, false);
+        self.t.inner.wall_down(a, b);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
         zone.start(self.t.tds().cell_slots());
         for side in [cell, beside] {
@@ -65,12 +65,12 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         if ![a, b].iter().all(|&end| self.is_rim(&zone, end)) || !self.sees_rim(&zone, &p) {
             zone.finish();
             self.t.inner.zone = zone;
-            self.t.set_wall(a, b, true);
+            self.t.inner.wall_up(a, b);
             return false;
         }
         let vertex = self.star(zone, p, Origin::Wall(constraint));
         for end in [a, b] {
-            self.t.set_wall(vertex, end, true);
+            self.t.inner.wall_up(vertex, end);
         }
         self.t.lines.split(a, b, vertex);
 
