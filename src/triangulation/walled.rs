@@ -194,7 +194,7 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
     }
 
     /// Tells the cells on both sides of an edge whether it is a constraint; returns them.
-    fn set_wall(&mut self, (cell, i): (CellId, usize), is_wall: bool) -> [CellId; 2] {
+    pub(super) fn set_wall(&mut self, (cell, i): (CellId, usize), is_wall: bool) -> [CellId; 2] {
         let beside = self.tds.neighbor(cell, i);
         let j = self.tds.index_of_neighbor(beside, cell);
         for (cell, i) in [(cell, i), (beside, j)] {

@@ -77,7 +77,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
             let shape = self.shape(cell);
             if self.is_too_large(cell, &shape) || self.is_too_thin(&shape) && self.why_thin(cell, &shape).is_none() {
                 let corners = *self.draft.t.tds().corners(cell);
-                self.queue.push(Bad { cell, corners, shortest: shape.shortest });
+                self.queue.push(Bad { cell, corners, shortest: shape.shortest() });
             }
         }
     }
@@ -92,19 +92,19 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     }
 
     fn is_too_thin(&self, shape: &Shape) -> bool {
-        shape.cosine > self.cosine
+        shape.cosine() > self.cosine
     }
 
     /// Why a triangle that is too thin is left as it is, if it is.
     fn why_thin(&self, cell: CellId, shape: &Shape) -> Option<Shortfall> {
         let corners = self.draft.t.tds().corners(cell);
-        let ends = [corners[shape.first], corners[ccw(shape.first)]];
+        let ends = [corners[shape.first()], corners[ccw(shape.first())]];
         if self.spans_small_angle(ends) {
             return Some(Shortfall::SmallAngle);
         }
         let largest =
             ends.map(|v| self.draft.t.plan_of(v).map(f64::abs)).as_flattened().iter().copied().fold(0.0, f64::max);
-        (shape.shortest.sqrt() < LAST_PLACES * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
+        (shape.shortest().sqrt() < LAST_PLACES * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
     }
 
     /// Whether an edge leads across a small angle between two constraints, from the one to the other, on a circle

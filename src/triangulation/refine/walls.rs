@@ -15,15 +15,17 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         while self.budget > 0
             && let Some(ends) = self.encroached.pop_front()
         {
-            if self.t.is_wall(ends[0], ends[1]) && self.split(ends) {
+            let edge = self.t.tds().edge(ends[0], ends[1]).filter(|&(cell, i)| self.t.is_constrained(cell, i));
+            if edge.is_some_and(|edge| self.split(edge, ends)) {
                 self.budget -= 1;
             }
         }
         self.budget < before
     }
 
-    /// Splits a constrained edge. Says whether the coordinates are fine enough.
-    fn split(&mut self, [a, b]: [VertexId; 2]) -> bool {
+    /// Splits a constrained edge, given by the cell on its left, and its ends. Says whether the coordinates are fine
+    /// enough.
+    fn split(&mut self, mut edge: (CellId, usize), [a, b]: [VertexId; 2]) -> bool {
         let ends_of = |v: VertexId| match self.origin(v) {
             Origin::Wall(ends) => Some(ends),
             _ => None,
@@ -32,8 +34,9 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         if let Law::Lens(_) = self.law
             && !self.shells.is_in_cluster(constraint)
         {
-            self.clear_circle(a, b);
-            self.clear_circle(b, a);
+            edge = self.clear_circle(edge);
+            let beyond = self.clear_circle(self.beyond(edge));
+            edge = self.beyond(beyond);
         }
 
         // Phase 1: where.
@@ -42,7 +45,6 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let place = [0, 1].map(|axis| from[axis] * (1.0 - fraction) + to[axis] * fraction + 0.0); // one zero
         let place = self.t.geometry().on_step(place);
         let p = self.t.geometry().meet(place, &[[self.t.point(a), self.t.point(b)]]);
-        let Some((cell, i)) = self.t.tds().edge(a, b) else { return false };
         if self.t.inner.admit(&p).is_err() {
             return false;
         }
@@ -50,9 +52,9 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // Phase 2: the triangles on both sides that see the new vertex, which may lie beside the edge by a rounding,
         // and have it in their circles, are replaced by its star; unless something is nearer to the edge than the
         // rounding.
-        let beside = self.t.tds().neighbor(cell, i);
+        let (cell, beside) = (edge.0, self.beyond(edge).0);
         let sides = [(a, b, self.regions[cell.index()]), (b, a, self.regions[beside.index()])];
-        self.t.inner.wall_down(a, b);
+        self.t.inner.set_wall(edge, false);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
         zone.start(self.t.tds().cell_slots());
         for side in [cell, beside] {
@@ -65,7 +67,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         if ![a, b].iter().all(|&end| self.is_rim(&zone, end)) || !self.sees_rim(&zone, &p) {
             zone.finish();
             self.t.inner.zone = zone;
-            self.t.inner.wall_up(a, b);
+            self.t.inner.set_wall(edge, true);
             return false;
         }
         let vertex = self.star(zone, p, Origin::Wall(constraint));
@@ -95,7 +97,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
     /// Puts down the region of the cells to the left of the way from one neighbor of a vertex to another.
     fn mark_side(&mut self, from: VertexId, vertex: VertexId, to: VertexId, region: u32) {
-        let Some((mut cell, _)) = self.t.tds().edge(from, vertex) else { return };
+        let Some(edge) = self.t.tds().edge(vertex, from) else { return };
+        let (mut cell, _) = self.beyond(edge);
         while let Some(i) = self.t.tds().index_of(cell, vertex) {
             self.regions[cell.index()] = region;
             self.fresh.push(cell);
@@ -117,23 +120,32 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         self.encroached = queue;
     }
 
-    /// Takes out vertices that were added between constraints and now are in the circle with the edge from `a` to `b`
-    /// as its diameter, on the left, in sight (Chew 1993).
-    fn clear_circle(&mut self, a: VertexId, b: VertexId) {
-        while let Some((cell, i)) = self.t.tds().edge(a, b) {
-            let apex = self.t.tds().vertex(cell, i);
+    /// The same edge as the cell on its other side has it.
+    fn beyond(&self, (cell, i): (CellId, usize)) -> (CellId, usize) {
+        let beside = self.t.tds().neighbor(cell, i);
+        (beside, self.t.tds().index_of_neighbor(beside, cell))
+    }
+
+    /// Takes out vertices that were added between constraints and now are in the circle with a constrained edge as its
+    /// diameter, on the side of the cell, in sight (Chew 1993). Returns the edge, which may have another cell now.
+    fn clear_circle(&mut self, mut edge: (CellId, usize)) -> (CellId, usize) {
+        let [a, b] = self.t.tds().edge_ends(edge.0, edge.1);
+        loop {
+            let apex = self.t.tds().vertex(edge.0, edge.1);
             if apex == VertexId::INFINITE || self.origin(apex) != Origin::Free {
-                return;
+                return edge;
             }
             let angle = DotProduct([a, apex, b].map(|v| self.t.plan_of(v)));
             if Wide::sign(&angle) != Sign::Negative {
-                return;
+                return edge;
             }
             let around: Vec<CellId> = self.t.tds().around(apex).collect();
+            let outside = self.beyond(edge);
             if self.t.remove_free(apex).is_none() {
-                return;
+                return edge;
             }
             self.fresh.extend(around.into_iter().filter(|&cell| self.t.tds().is_used(cell)));
+            edge = self.beyond(outside);
         }
     }
 }
