@@ -2,13 +2,17 @@
 //! *Triangulations in CGAL* (Boissonnat, Devillers, Pion, Teillaud and Yvinec 2002).
 //!
 //! ```text
-//! cargo run --release --example table1 -- [--points N] [FILE.xy ...]
+//! cargo run --release --example table1 -- [--points N] [FILE.laz | FILE.xy ...]
 //! ```
 //!
-//! A row is a kernel, a column a strategy that finds where a point lies; what is printed are seconds. A file holds
-//! pairs of coordinates, one after the other, as little-endian 64-bit floating point; they are inserted in an order
-//! that looks random, the same in every run. Without files the points are made: whole numbers in a square of 2^24, and
-//! a parabola of fractions. A kernel that does not take the coordinates has no times. `--points` takes some of the
+//! A row is a kernel, a column a strategy that finds where a point lies; what is printed are seconds. The points of the
+//! table are made: 100 000 whole numbers in a square of 2^24; 120 658 as airborne lidar leaves them on the ground, in
+//! scan lines and steps of a centimeter; 100 000 fractions on a parabola. They are inserted in an order that looks
+//! random, the same in every run; a kernel that does not take the coordinates has no times. The times that the paper
+//! prints are not beside them: no copy of it was at hand.
+//!
+//! Files, if there are any, take the place of these: LAS or LAZ, of which the ground is thinned evenly to the number of
+//! the table's terrain, or pairs of coordinates, as little-endian 64-bit floating point. `--points` takes some of the
 //! points only: exact arithmetic without a filter takes long. The walk is that of `Near`: from the last insertion, and
 //! on from a nearer vertex if it takes more than 64 steps.
 
@@ -22,6 +26,10 @@ use std::time::Instant;
 use breakline::geometry::Plane;
 use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel};
 use breakline::triangulation::{Delaunay, Hierarchy, JumpAndWalk, Locate, Near};
+use breakline::{io, terrain};
+
+/// Points of the table's terrain.
+const TERRAIN: usize = 120_658;
 
 /// splitmix64 (Steele, Lea and Flood 2014).
 struct Random(u64);
@@ -47,20 +55,50 @@ struct PointSet {
     points: Vec<[f64; 2]>,
 }
 
-fn square(count: usize) -> PointSet {
+fn square() -> PointSet {
     let mut random = Random(1);
-    let points = (0..count).map(|_| [(); 2].map(|()| (random.next() >> 40) as f64)).collect();
+    let points = (0..100_000).map(|_| [(); 2].map(|()| (random.next() >> 40) as f64)).collect();
     PointSet { name: "square".into(), points }
 }
 
-fn parabola(count: usize) -> PointSet {
+fn parabola() -> PointSet {
     let mut random = Random(2);
     let mut unit = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
-    let points = (0..count).map(|_| 2.0 * unit() - 1.0).map(|x| [x, x * x]).collect();
+    let points = (0..100_000).map(|_| 2.0 * unit() - 1.0).map(|x| [x, x * x]).collect();
     PointSet { name: "parabola".into(), points }
 }
 
+/// Ground under a swinging mirror: 300 points to a line, half a meter apart, in centimeters.
+fn terrain() -> PointSet {
+    const LINE: usize = 300;
+    let mut random = Random(4);
+    let mut jitter = || (random.next() % 21) as f64 - 10.0;
+    let mut points: Vec<[f64; 2]> = (0..TERRAIN)
+        .map(|k| {
+            let (line, along) = (k / LINE, k % LINE);
+            let along = if line % 2 == 0 { along } else { LINE - 1 - along };
+            [50 * along, 50 * line + 25 * along / LINE].map(|x| x as f64 + jitter())
+        })
+        .collect();
+    random.shuffle(&mut points);
+    PointSet { name: "terrain".into(), points }
+}
+
+/// The ground of a lidar tile, thinned.
+fn lidar(path: &str) -> breakline::Result<PointSet> {
+    let mut ground = terrain::Selection::default();
+    ground.add_source(&mut *io::points::open(path)?)?;
+    let (all, _) = ground.finish();
+    let count = all.len().min(TERRAIN);
+    let mut points: Vec<[f64; 2]> = (0..count).map(|k| all[k * all.len() / count]).map(|[x, y, _]| [x, y]).collect();
+    Random(3).shuffle(&mut points);
+    Ok(PointSet { name: path.into(), points })
+}
+
 fn read(path: &str) -> Result<PointSet, String> {
+    if path.ends_with(".las") || path.ends_with(".laz") {
+        return lidar(path).map_err(|error| error.to_string());
+    }
     let bytes = std::fs::read(path).map_err(|error| format!("{path}: {error}"))?;
     let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number)).collect();
     let mut points = numbers.as_chunks::<2>().0.to_vec();
@@ -119,7 +157,7 @@ fn table(PointSet { name, points }: &PointSet) -> Result<(), String> {
 }
 
 fn run() -> Result<(), String> {
-    let mut count = 100_000;
+    let mut count = usize::MAX;
     let mut sets = Vec::new();
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
@@ -131,7 +169,7 @@ fn run() -> Result<(), String> {
         }
     }
     if sets.is_empty() {
-        sets = vec![square(count), parabola(count)];
+        sets = vec![square(), terrain(), parabola()];
     }
     sets.iter_mut().for_each(|set| set.points.truncate(count));
     sets.iter().try_for_each(table)

@@ -77,14 +77,14 @@ impl Shape {
             let along = 0.5 * (middle + long - short);
             along * along / (middle * long)
         } else {
-            let [p, q, r] = self.from_shortest();
+            let [p, q, r] = self.shortest_first();
             let [u, v] = [minus(r, q), minus(p, r)].map(|edge| edge.map(|x| x / length(edge)));
             dot(u, v).powi(2)
         }
     }
 
     /// The corners, the two ends of the shortest edge first.
-    fn from_shortest(&self) -> [[f64; 2]; 3] {
+    fn shortest_first(&self) -> [[f64; 2]; 3] {
         let first = self.first();
         [0, 1, 2].map(|k| self.corners[(first + k) % 3])
     }
@@ -101,7 +101,7 @@ impl Shape {
     /// above its middle, `reach` times its length away, from which it is seen under the smallest angle that is wanted
     /// (Üngör 2004). Fewer vertices do than with circumscribed circles only.
     pub(super) fn off_center(&self, reach: f64) -> [f64; 2] {
-        let [p, q, r] = self.from_shortest();
+        let [p, q, r] = self.shortest_first();
         let [u, v] = [minus(q, p), minus(r, p)];
         let (uv, vu) = (u[0] * v[1], u[1] * v[0]);
         // In slivers nothing is left of the difference.
