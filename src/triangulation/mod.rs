@@ -60,7 +60,7 @@
 //! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`], [`Regular::power_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | see it | [`Triangulation::svg`] |
-//! | save it | serde, with the feature `serde`: all kinds but [`ConstrainedDelaunay`], in the plane |
+//! | save it | serde, with the feature `serde`: all kinds, in the plane |
 //! | keep it in a file, and ask without loading it | [`Delaunay::write_compact`], [`Compact`] |
 //! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], [`Triangulation::tds`]; outwards: [`Triangulation::faces_from`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
