@@ -57,7 +57,8 @@
 //! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
 //! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
-//! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`], [`Regular::power_cell`] |
+//! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`] |
+//! | draw power diagrams | [`Regular::power_center`], [`Regular::power_edge`], [`Regular::power_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | see it | [`Triangulation::svg`] |
 //! | save it | serde, with the feature `serde`: all kinds, in the plane |

@@ -2,10 +2,12 @@
 //! lines, and which vertices came with lines or were added where they cross.
 //!
 //! *What is checked.* Constraints stand on both sides of an edge, and the law holds between them. Every line's way from
-//! one of its vertices to the next ends there, meets no vertex twice, and consists of constrained edges; where it
-//! bends, it runs in order on both axes. The tables hold nothing that is on no way. Added vertices lie on constraints,
-//! and were not given with a line. Not checked is what would take the arrangement of all lines: whether a way is the one
-//! that the rounding of the crossings asks for. The next edit that arranges the lines makes it so.
+//! one of its vertices to the next ends there, meets no vertex twice, and consists of constrained edges; where it bends,
+//! it runs in order on both axes. The tables hold nothing that is on no way. Added vertices lie on constraints, and
+//! were not given with a line.
+//!
+//! Not checked is what would take the arrangement of all lines: whether a way is the one that the rounding of the
+//! crossings asks for. The next edit that arranges the lines makes it so.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::de::Error;
