@@ -48,6 +48,7 @@
 //! | triangulate many points at once | [`Delaunay::from_points`], [`Regular::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
 //! | take points out again, or move them | `remove`, `move_to`; in the plane |
+//! | keep something at each vertex, at each cell | [`Delaunay::insert_with`], [`Delaunay::with_cell_data`] |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
 //! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |

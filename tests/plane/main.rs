@@ -13,6 +13,7 @@ mod kinds;
 mod location;
 mod mapped;
 mod natural;
+mod payloads;
 mod power;
 mod queries;
 mod refine;

@@ -149,7 +149,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
-impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
+impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// The places that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
     /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex. O(1).
     pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {

@@ -9,7 +9,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::{Location, Regular};
 use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus};
 
-impl<G: Metric, V> Regular<G, V> {
+impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
     /// The point of the least power at a place, its squared distance less its weight; of several, the first in the
     /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be
     /// one of the same power. `None` if there are no points. Exact. The place must be one that the geometry admits; its
@@ -51,7 +51,7 @@ impl<G: Metric, V> Regular<G, V> {
     }
 }
 
-impl<K: Kernel, V> Regular<Weighted<K>, V> {
+impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
     /// The place that has the same power with the corners of a finite face, and less with no other point: the corner of
     /// the power diagram, and the center of the circle that is orthogonal to those of the three. `None` for infinite
     /// faces and below dimension 2. As right as a [circumcenter](crate::triangulation::Triangulation::circumcenter),

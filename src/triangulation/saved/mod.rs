@@ -198,14 +198,17 @@ where
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Delaunay<G, 3, V> {
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Delaunay<G, 3, V, C> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.inner.save().serialize(serializer)
     }
 }
 
-impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de>
-    for Delaunay<G, 3, V>
+impl<'de, G, V, C> Deserialize<'de> for Delaunay<G, 3, V, C>
+where
+    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
@@ -216,13 +219,18 @@ impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Regular<G, V> {
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Regular<G, V, C> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
 }
 
-impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de> for Regular<G, V> {
+impl<'de, G, V, C> Deserialize<'de> for Regular<G, V, C>
+where
+    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
+{
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
             first(inner.flaws(Level::Law, |_, _| true))?;
