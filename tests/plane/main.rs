@@ -21,5 +21,7 @@ mod regular;
 mod removal;
 #[cfg(feature = "serde")]
 mod saved;
+#[cfg(feature = "serde")]
+mod saved_lines;
 mod sequences;
 mod traversal;
