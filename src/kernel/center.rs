@@ -1,13 +1,17 @@
 //! The center of a circle: a construction, rounded once where it would otherwise be wrong.
 
-use super::formula::{cross, in_range, minus, square};
+use super::RANGE;
+use super::formula::{cross, minus, square};
 use crate::num::{Bounded, Dyadic, Expansion, Number};
 
-/// From the first of three points to the center of their circle: twice the area of the triangle is the last number, and
-/// the first two are the way times twice that.
-fn way<T: Number>([a, b, c]: [[f64; 2]; 3], difference: impl Fn(f64, f64) -> T + Copy) -> [T; 3] {
-    let [u, v] = [minus(b, a, difference), minus(c, a, difference)];
-    let [u_length, v_length] = [&u, &v].map(|w| square(&w[0]) + square(&w[1]));
+/// From the first of three weighted points to the place of which they have the same power: twice the area of the
+/// triangle is the last number, and the first two are the way times twice that.
+fn way<T: Number>([a, b, c]: [[f64; 3]; 3], difference: impl Fn(f64, f64) -> T + Copy) -> [T; 3] {
+    let [(u, u_length), (v, v_length)] = [b, c].map(|p| {
+        let way = minus([p[0], p[1]], [a[0], a[1]], difference);
+        let length = square(&way[0]) + square(&way[1]) - difference(p[2], a[2]);
+        (way, length)
+    });
     [
         cross(&u_length, &v[1], &v_length, &u[1]),
         cross(&v_length, &u[0], &u_length, &v[0]),
@@ -15,16 +19,23 @@ fn way<T: Number>([a, b, c]: [[f64; 2]; 3], difference: impl Fn(f64, f64) -> T +
     ]
 }
 
-/// The circumcenter of a triangle that has an area, relative to its first corner. Right to within `2^-40` of its
-/// distance from that corner, however flat the triangle is; not finite where the numbers have no room for it.
+/// The circumcenter of a triangle that has an area, relative to its first corner: the [power center](power_center) of
+/// points of one weight.
+pub fn circumcenter(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    power_center(corners.map(|[x, y]| [x, y, 0.0]))
+}
+
+/// The place with the same power to three points `[x, y, weight]` that are not collinear, its squared distance less the
+/// weight; relative to the first of them. Right to within `2^-40` of its distance from that corner, however flat the
+/// triangle is; not finite where the numbers have no room for it.
 ///
 /// # Complexity
 /// Some twenty operations if the triangle is not very flat, exact arithmetic else.
-pub fn circumcenter(corners: [[f64; 2]; 3]) -> [f64; 2] {
+pub fn power_center(corners: [[f64; 3]; 3]) -> [f64; 2] {
     /// Of numerator and denominator, each.
     const TOLERANCE: f64 = 1.0 / (1u64 << 42) as f64;
     let divided = |[x, y, area]: [f64; 3]| [x / area / 2.0, y / area / 2.0];
-    if !in_range(&super::Orientation2(corners)) {
+    if !corners.iter().flatten().all(|&x| RANGE.admits(x)) {
         let [x, y, area] = way(corners, Dyadic::difference);
         return [x, y].map(|x| x.quotient(&area) / 2.0);
     }

@@ -29,7 +29,7 @@ mod rounding;
 mod scaled;
 
 pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, PairBound, WholeNumbers};
-pub use center::circumcenter;
+pub use center::{circumcenter, power_center};
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };

@@ -137,6 +137,25 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
+    /// The same complex with these payloads, of all cells in order of their numbers.
+    pub(crate) fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Tds<N, V, D> {
+        let mut cell_data = vec![D::default(); self.links.len()];
+        for cell in self.cells() {
+            cell_data[cell.index()] = data(cell);
+        }
+        Tds {
+            dimension: self.dimension,
+            links: self.links,
+            cell_data,
+            unused: self.unused,
+            vertex_cell: self.vertex_cell,
+            vertex_data: self.vertex_data,
+            unused_vertices: self.unused_vertices,
+            detached: self.detached,
+            infinite_cell: self.infinite_cell,
+        }
+    }
+
     /// Makes room for that many more vertices and the cells that come with them.
     pub fn reserve(&mut self, vertices: usize) {
         // In the plane there are two triangles to a vertex; in space about 6.7 tetrahedra.

@@ -56,6 +56,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         };
         let (to, beyond) = (self.vertex(after, 1), self.neighbor(after, 0));
         self.links[before.index()].vertices[1] = to;
+        self.cell_data[before.index()] = C::default();
         self.link(before, 0, beyond, 1);
         self.set_cell_of(to, before);
         self.remove_cell(after);

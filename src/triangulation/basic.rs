@@ -4,13 +4,15 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Tds, VertexId, Zone, ccw, cw};
 
+use super::flip::Free;
 use super::{Flaw, Level, Locate, Location, Refused, Triangulation};
 
 /// A point splits the cell, facet or edge that it lies on, or is joined to the part of the hull that it sees. Nothing
 /// is done for the shape of cells; what is there stays but for that. ("Lazy" insertion in Boissonnat, Devillers, Pion,
 /// Teillaud and Yvinec 2002.)
 ///
-/// Cells that are new inherit the payload of the cell that they take the place of; those that come with a dimension
+/// *Payloads.* Cells around a new vertex inherit the payload of the cell that had the facet opposite the vertex: where
+/// one is split, its parts have what it had. Cells that a removal or a flip makes, or that come with another dimension,
 /// have the default one.
 ///
 /// ```
@@ -73,6 +75,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         }
     }
 
+    /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
+    /// numbers.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Triangulation<G, N, V, D> {
+        let Triangulation { geometry, tds, points, zone, last } = self;
+        Triangulation { geometry, tds: tds.with_cell_data(data), points, zone, last }
+    }
+
     /// The payload of a cell, to change.
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         self.tds.cell_data_mut(cell)
@@ -100,7 +109,7 @@ impl<G: Geometry<N>, const N: usize, C: Copy + Default> Triangulation<G, N, (), 
     }
 }
 
-impl<G: Geometry<3>, V> Triangulation<G, 3, V> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Takes a vertex out and returns its point; `None` if there is no such vertex. The others keep their numbers; the
     /// next point that is added gets the number that is now free. Cells without the vertex stay.
     ///
@@ -110,7 +119,7 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V> {
         if !self.tds.is_vertex(vertex) {
             return None;
         }
-        self.remove_lawless(vertex);
+        self.remove_lawless(Free, vertex);
         Some(*self.point(vertex))
     }
 
@@ -133,7 +142,7 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V> {
     pub fn flip(&mut self, cell: CellId, i: usize) -> bool {
         let is_flippable = self.is_flippable(cell, i);
         if is_flippable {
-            self.exchange_diagonal(cell, i);
+            self.exchange_diagonal(Free, cell, i);
         }
         is_flippable
     }

@@ -120,7 +120,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 }
 
-impl<G: Geometry<N>, const N: usize, V> super::Delaunay<G, N, V> {
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> super::Delaunay<G, N, V, C> {
     /// Checks up to the level, with exact predicates; no flaw means that the triangulation is what it
     /// claims to be.
     #[must_use]

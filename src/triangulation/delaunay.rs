@@ -10,13 +10,34 @@ use super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk, spatia
 ///
 /// Ties between cospherical points are broken by a rule on the points alone, so that equal sets of
 /// points have equal triangulations.
+///
+/// Vertices have payloads `V`, and cells, the infinite ones included, payloads `C`. Cells around a new vertex inherit
+/// the payload of the destroyed cell that had the facet opposite the vertex; those that a removal makes, or that come
+/// with another dimension, have the default one.
+///
+/// ```
+/// use breakline::{geometry::Plane, triangulation::{Delaunay, Location}};
+///
+/// let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
+/// let (square, _) = Delaunay::from_points(Plane::<breakline::kernel::Adaptive>::default(), &corners)?;
+/// let is_finite: Vec<bool> = square.tds().cells().map(|cell| !square.tds().is_infinite(cell)).collect();
+/// let mut land = square.with_cell_data(|cell| if is_finite[cell.index()] { "land" } else { "sea" });
+/// let middle = land.insert([5.0, 4.0])?;
+/// assert!(land.tds().around(middle).all(|cell| *land.tds().cell_data(cell) == "land"));
+///
+/// let Location::Cell { cell, .. } = land.locate(&[1.0, 4.0], None) else { panic!() };
+/// *land.cell_data_mut(cell) = "lake";
+/// land.insert([1.0, 4.0])?;
+/// assert_eq!(land.finite_cells().filter(|&cell| *land.tds().cell_data(cell) == "lake").count(), 3);
+/// # Ok::<(), breakline::triangulation::Refused>(())
+/// ```
 #[derive(Debug, Clone)]
-pub struct Delaunay<G: Geometry<N>, const N: usize, V = ()> {
-    pub(super) inner: Triangulation<G, N, V>,
+pub struct Delaunay<G: Geometry<N>, const N: usize, V = (), C = ()> {
+    pub(super) inner: Triangulation<G, N, V, C>,
 }
 
-impl<G: Geometry<N>, const N: usize, V> Deref for Delaunay<G, N, V> {
-    type Target = Triangulation<G, N, V>;
+impl<G: Geometry<N>, const N: usize, V, C> Deref for Delaunay<G, N, V, C> {
+    type Target = Triangulation<G, N, V, C>;
 
     fn deref(&self) -> &Self::Target {
         &self.inner
@@ -24,9 +45,17 @@ impl<G: Geometry<N>, const N: usize, V> Deref for Delaunay<G, N, V> {
 }
 
 impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
-    /// Without points.
+    /// Without points, and without payloads of cells: these come with [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
         Delaunay { inner: Triangulation::new(geometry) }
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> {
+    /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
+    /// numbers.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Delaunay<G, N, V, D> {
+        Delaunay { inner: self.inner.with_cell_data(data) }
     }
 
     /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the
@@ -68,16 +97,21 @@ impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> VertexId {
-        self.inner.insert_at(p, location, data, |t, _, _, beyond| t.in_conflict(beyond, &p), |_, _| ())
+        self.inner.insert_at(p, location, data, |t, _, _, beyond| t.in_conflict(beyond, &p), |data, _| *data)
     }
 
     /// The payload of a finite vertex, to change.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
     }
+
+    /// The payload of a cell, to change.
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell)
+    }
 }
 
-impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
+impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// Moves a vertex, which keeps its number and payload, and returns it; `None` if there is no such vertex. If
     /// another one is at the place already, that one is returned, and the one that was moved is gone.
     ///
@@ -106,13 +140,13 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
         }
         let vertex = self.inner.restore_vertex(p);
         if let Some(vertex) = vertex {
-            self.inner.connect(vertex, location, |t, _, _, beyond| t.in_conflict(beyond, &p), |_, _| ());
+            self.inner.connect(vertex, location, |t, _, _, beyond| t.in_conflict(beyond, &p), |data, _| *data);
         }
         Ok(vertex)
     }
 }
 
-impl<G: Geometry<N>, const N: usize> Delaunay<G, N> {
+impl<G: Geometry<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
     /// Adds a point; the vertex that is there already, if the site is taken.
     ///
     /// # Errors
@@ -122,7 +156,7 @@ impl<G: Geometry<N>, const N: usize> Delaunay<G, N> {
     }
 }
 
-impl<G: Coordinates<N>, const N: usize, V: Default> Delaunay<G, N, V> {
+impl<G: Coordinates<N>, const N: usize, V: Default, C: Copy + Default> Delaunay<G, N, V, C> {
     /// Adds many points, in [spatial order](super::spatial_order). Returns the vertex of each point.
     ///
     /// # Errors

@@ -3,57 +3,65 @@ use crate::tds::{CellId, Tds, ccw, cw};
 
 use super::{Triangulation, Walls};
 
-/// What a triangle knows of its edges, which is handed on when triangles are exchanged.
-pub(super) trait EdgeData: Copy + Default {
+/// What payloads of triangles tell of their edges, and what is left of them when triangles are exchanged.
+pub(super) trait Edges<C>: Copy {
     /// Whether there are edges that must stay.
     const MAY_BE_WALL: bool;
 
     /// Whether the edge opposite vertex `i` must stay.
-    fn is_wall(self, i: usize) -> bool;
+    fn is_wall(self, data: &C, i: usize) -> bool;
 
-    /// The same with the edge opposite vertex `i` set as told.
-    fn with_wall(self, i: usize, wall: bool) -> Self;
+    /// The same payload with the edge opposite vertex `i` set as told.
+    fn with_wall(self, data: C, i: usize, wall: bool) -> C;
 }
 
-/// Of a triangulation without constraints.
-impl EdgeData for () {
+/// Of triangulations without constraints, whatever the payload is.
+#[derive(Clone, Copy)]
+pub(super) struct Free;
+
+impl<C> Edges<C> for Free {
     const MAY_BE_WALL: bool = false;
 
     #[inline(always)]
-    fn is_wall(self, _: usize) -> bool {
+    fn is_wall(self, _: &C, _: usize) -> bool {
         false
     }
 
     #[inline(always)]
-    fn with_wall(self, _: usize, _: bool) {}
+    fn with_wall(self, data: C, _: usize, _: bool) -> C {
+        data
+    }
 }
 
-impl EdgeData for Walls {
+/// Where the payload is what is known of edges.
+#[derive(Clone, Copy)]
+pub(super) struct Forced;
+
+impl Edges<Walls> for Forced {
     const MAY_BE_WALL: bool = true;
 
     #[inline(always)]
-    fn is_wall(self, i: usize) -> bool {
-        self.has(i)
+    fn is_wall(self, data: &Walls, i: usize) -> bool {
+        data.has(i)
     }
 
     #[inline(always)]
-    fn with_wall(self, i: usize, wall: bool) -> Self {
-        self.with(i, wall)
+    fn with_wall(self, data: Walls, i: usize, wall: bool) -> Walls {
+        data.with(i, wall)
     }
 }
 
-#[expect(private_bounds, reason = "the methods are private, too")]
-impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Flips edges that are no walls until no vertex sees another in its circle (Lawson 1977), starting from
     /// these cells; none is left in the list.
-    pub(super) fn settle(&mut self, unsettled: &mut Vec<CellId>) {
+    pub(super) fn settle(&mut self, edges: impl Edges<C>, unsettled: &mut Vec<CellId>) {
         while let Some(cell) = unsettled.pop() {
             if self.tds.is_infinite(cell) {
                 continue;
             }
             let flippable = (0..3).find(|&i| {
                 let beside = self.tds.neighbor(cell, i);
-                if self.tds.cell_data(cell).is_wall(i) || self.tds.is_infinite(beside) {
+                if edges.is_wall(self.tds.cell_data(cell), i) || self.tds.is_infinite(beside) {
                     return false;
                 }
                 let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
@@ -61,14 +69,14 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
             });
             if let Some(i) = flippable {
                 let beside = self.tds.neighbor(cell, i);
-                self.exchange_diagonal(cell, i);
+                self.exchange_diagonal(edges, cell, i);
                 unsettled.extend([cell, beside]);
             }
         }
     }
 
     /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.
-    pub(super) fn exchange_diagonal(&mut self, cell: CellId, i: usize) {
+    pub(super) fn exchange_diagonal(&mut self, edges: impl Edges<C>, cell: CellId, i: usize) {
         let tds = &mut self.tds;
         let beside = tds.neighbor(cell, i);
         let j = tds.index_of_neighbor(beside, cell);
@@ -86,17 +94,22 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
         tds.set_corners(cell, [p, q, s]);
         tds.set_corners(beside, [p, s, r]);
         tds.link(cell, 1, beside, 2);
-        self.renew_edges(cell, [(2, pq), (0, qs)]);
-        self.renew_edges(beside, [(0, sr), (1, rp)]);
+        self.renew_edges(edges, cell, [(2, pq), (0, qs)]);
+        self.renew_edges(edges, beside, [(0, sr), (1, rp)]);
     }
 
-    /// Forgets what a cell knew of its edges, and makes it the neighbor of others across some of them (given
-    /// with the index of the edge there), with what those know.
-    pub(super) fn renew_edges<const K: usize>(&mut self, cell: CellId, edges: [(usize, (CellId, usize)); K]) {
+    /// Gives a cell the default payload, and makes it the neighbor of others across some of its edges (given with the
+    /// index of the edge there), with what those know of them.
+    pub(super) fn renew_edges<const K: usize>(
+        &mut self,
+        edges: impl Edges<C>,
+        cell: CellId,
+        sides: [(usize, (CellId, usize)); K],
+    ) {
         let mut data = C::default();
-        for (i, (beside, j)) in edges {
+        for (i, (beside, j)) in sides {
             self.tds.link(cell, i, beside, j);
-            data = data.with_wall(i, self.tds.cell_data(beside).is_wall(j));
+            data = edges.with_wall(data, i, edges.is_wall(self.tds.cell_data(beside), j));
         }
         *self.tds.cell_data_mut(cell) = data;
     }

@@ -15,7 +15,6 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw};
 
 use super::Triangulation;
-use super::flip::EdgeData;
 
 /// The most neighbors. Of uniform points, which have 6 in the mean, fewer than one in 10 000 have more.
 const MOST: usize = 12;
@@ -33,12 +32,11 @@ struct Ring<P> {
     degree: usize,
 }
 
-#[expect(private_bounds, reason = "the methods are private, too")]
-impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
-    /// Fills the hole that the triangles around a vertex leave. Does nothing and says so if it has too many neighbors,
-    /// or infinity is one of them, or there may be walls.
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+    /// Fills the hole that the triangles around a vertex leave, where there are no walls. Does nothing and says so if it
+    /// has too many neighbors, or infinity is one of them.
     pub(super) fn fill_low_degree(&mut self, vertex: VertexId) -> bool {
-        if C::MAY_BE_WALL || self.dimension() < 2 {
+        if self.dimension() < 2 {
             return false;
         }
         let Some(ring) = self.low_ring(vertex) else { return false };
@@ -56,6 +54,7 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
             let (first, last, beyond) = chains[open];
             let apex = self.third_corner(&ring.points, first, last);
             self.tds.set_corners(face, [first, apex, last].map(|k| ring.corners[k]));
+            *self.tds.cell_data_mut(face) = C::default();
             self.tds.link(face, 1, beyond.0, beyond.1);
             for (first, last, side) in [(first, apex, (face, 2)), (apex, last, (face, 0))] {
                 if first + 1 < last {

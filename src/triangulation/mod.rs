@@ -48,6 +48,7 @@
 //! | triangulate many points at once | [`Delaunay::from_points`], [`Regular::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
 //! | take points out again, or move them | `remove`, `move_to`; in the plane |
+//! | keep something at each vertex, at each cell | [`Delaunay::insert_with`], [`Delaunay::with_cell_data`] |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
 //! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |
@@ -57,10 +58,11 @@
 //! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
 //! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
-//! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`], [`Regular::power_cell`] |
+//! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`] |
+//! | draw power diagrams | [`Regular::power_center`], [`Regular::power_edge`], [`Regular::power_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | see it | [`Triangulation::svg`] |
-//! | save it | serde, with the feature `serde`: all kinds but [`ConstrainedDelaunay`], in the plane |
+//! | save it | serde, with the feature `serde`: all kinds, in the plane |
 //! | keep it in a file, and ask without loading it | [`Delaunay::write_compact`], [`Compact`] |
 //! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], [`Triangulation::tds`]; outwards: [`Triangulation::faces_from`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |

@@ -28,6 +28,7 @@ pub enum OnCrossing {
 
 /// How the crossings of lines were rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rounding {
     /// The unit of the grid, on each axis: the last place of the largest coordinate of a line's vertex.
     pub unit: [f64; 2],

@@ -6,6 +6,7 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
+use super::flip::Free;
 use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order};
 
 /// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2
@@ -40,9 +41,11 @@ use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order
 /// assert!(t.hidden().eq([light]) && t.check(Level::Law).is_empty());
 /// # Ok::<(), breakline::triangulation::Refused>(())
 /// ```
+///
+/// Payloads of cells are kept as in [`Delaunay`](super::Delaunay).
 #[derive(Debug, Clone)]
-pub struct Regular<G: Geometry<3>, V = ()> {
-    inner: Triangulation<G, 3, V>,
+pub struct Regular<G: Geometry<3>, V = (), C = ()> {
+    inner: Triangulation<G, 3, V, C>,
     hidden: Hidden,
 }
 
@@ -91,8 +94,8 @@ impl Hidden {
     }
 }
 
-impl<G: Geometry<3>, V> Deref for Regular<G, V> {
-    type Target = Triangulation<G, 3, V>;
+impl<G: Geometry<3>, V, C> Deref for Regular<G, V, C> {
+    type Target = Triangulation<G, 3, V, C>;
 
     fn deref(&self) -> &Self::Target {
         &self.inner
@@ -100,14 +103,22 @@ impl<G: Geometry<3>, V> Deref for Regular<G, V> {
 }
 
 impl<G: Geometry<3>, V> Regular<G, V> {
-    /// Without points.
+    /// Without points, and without payloads of cells: these come with [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
         Regular { inner: Triangulation::new(geometry), hidden: Hidden::default() }
+    }
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
+    /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
+    /// numbers.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, V, D> {
+        Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
     }
 
     /// Finds what hides the vertices that are in no cell. Those that nothing hides are put in.
     #[cfg(feature = "serde")]
-    pub(super) fn over(inner: Triangulation<G, 3, V>) -> Self {
+    pub(super) fn over(inner: Triangulation<G, 3, V, C>) -> Self {
         let hidden = inner.tds.detached_vertices();
         let mut regular = Regular { inner, hidden: Hidden::default() };
         regular.connect_again(hidden);
@@ -204,7 +215,7 @@ impl<G: Geometry<3>, V> Regular<G, V> {
             self.inner.tds.detach(vertex);
             hidden.push(vertex);
         }
-        self.inner.last = Some(self.inner.tds.star(&mut zone, vertex, |_, _| ()));
+        self.inner.last = Some(self.inner.tds.star(&mut zone, vertex, |data, _| *data));
         self.inner.zone = zone;
         self.connect_again(hidden);
     }
@@ -234,7 +245,7 @@ impl<G: Geometry<3>, V> Regular<G, V> {
             } else {
                 self.hidden.take_under(self.inner.tds.around(vertex))
             };
-            self.inner.remove_vertex(vertex);
+            self.inner.remove_vertex(Free, vertex);
             self.connect_again(hidden);
         } else {
             return None;
@@ -274,6 +285,11 @@ impl<G: Geometry<3>, V> Regular<G, V> {
     /// The payload of a point, seen or hidden, to change.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
+    }
+
+    /// The payload of a cell, to change.
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell)
     }
 
     /// Whether there is a point with this number that is in no cell.
@@ -343,7 +359,7 @@ impl<G: Coordinates<3>, V: Default> Regular<G, V> {
     }
 }
 
-impl<G: Geometry<3>> Regular<G> {
+impl<G: Geometry<3>, C: Copy + Default> Regular<G, (), C> {
     /// Adds a point, seen or [hidden](Self::is_hidden).
     ///
     /// # Errors

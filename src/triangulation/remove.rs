@@ -20,7 +20,7 @@ use crate::geometry::{Crossing, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::flip::EdgeData;
+use super::flip::{Edges, Forced, Free};
 use super::{ConstrainedDelaunay, Delaunay, Locate, Triangulation};
 
 /// The ring around what is not yet triangulated, counter-clockwise as seen from within.
@@ -54,29 +54,28 @@ impl Ring {
     }
 }
 
-#[expect(private_bounds, reason = "the methods are private, too")]
-impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Takes out a vertex on no wall and restores the law. Cells are replaced only where they had it as a corner; all
     /// of them where the rest are collinear.
     ///
     /// # Complexity
     /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.
-    pub(super) fn remove_vertex(&mut self, vertex: VertexId) {
-        if self.fill_low_degree(vertex) {
+    pub(super) fn remove_vertex<E: Edges<C>>(&mut self, edges: E, vertex: VertexId) {
+        if !E::MAY_BE_WALL && self.fill_low_degree(vertex) {
             self.tds.remove_vertex(vertex);
         } else {
-            let mut unsettled = self.remove_lawless(vertex);
-            self.settle(&mut unsettled);
+            let mut unsettled = self.remove_lawless(edges, vertex);
+            self.settle(edges, &mut unsettled);
         }
     }
 
     /// The same without restoring the law; returns the cells that are new.
-    pub(super) fn remove_lawless(&mut self, vertex: VertexId) -> Vec<CellId> {
+    pub(super) fn remove_lawless(&mut self, edges: impl Edges<C>, vertex: VertexId) -> Vec<CellId> {
         let mut cells = Vec::new();
         if self.dimension() == 2 {
             match self.line_without(vertex) {
                 Some(line) => self.tds.set_line(&line),
-                None => cells = self.fill_star(vertex),
+                None => cells = self.fill_star(edges, vertex),
             }
         } else if self.vertex_count() > 2 {
             self.tds.skip(vertex);
@@ -113,7 +112,7 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
         (is_on_hull && line.windows(3).all(|w| turn(w) == Sign::Zero)).then_some(line)
     }
 
-    fn fill_star(&mut self, vertex: VertexId) -> Vec<CellId> {
+    fn fill_star(&mut self, edges: impl Edges<C>, vertex: VertexId) -> Vec<CellId> {
         let mut cells: Vec<CellId> = self.tds.around(vertex).collect();
         let mut ring = self.ring_around(vertex, &cells);
         // A ring takes two triangles less than it has corners.
@@ -129,7 +128,7 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
             if !ring.is_cut(k) && self.can_be_cut(vertex, ring.triple(k).map(|k| ring.corners[k])) {
                 let [p, _, n] = ring.triple(k);
                 open.extend([p, n]);
-                self.cut(&mut ring, k, &cells);
+                self.cut(edges, &mut ring, k, &cells);
             }
         }
         // What is left is a triangle, or a chain of hull edges, each of which gets a triangle with infinity.
@@ -137,14 +136,14 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
         let apex = apex.or((0..ring.corners.len()).find(|&k| !ring.is_cut(k))).unwrap_or(0);
         while ring.length > 2 {
             let k = ring.next[apex];
-            self.cut(&mut ring, k, &cells);
+            self.cut(edges, &mut ring, k, &cells);
         }
         // Of the two sides of the last edge, one is the last triangle.
         let ((last, i), (beside, j)) = (ring.beyond[apex], ring.beyond[ring.next[apex]]);
         self.tds.link(last, i, beside, j);
-        let wall = self.tds.cell_data(beside).is_wall(j);
+        let wall = edges.is_wall(self.tds.cell_data(beside), j);
         let data = self.tds.cell_data_mut(last);
-        *data = data.with_wall(i, wall);
+        *data = edges.with_wall(*data, i, wall);
         cells
     }
 
@@ -178,16 +177,16 @@ impl<G: Geometry<3>, V, C: EdgeData> Triangulation<G, 3, V, C> {
     }
 
     /// Makes a corner of the ring and its neighbors a triangle, with the next of the cells.
-    fn cut(&mut self, ring: &mut Ring, k: usize, cells: &[CellId]) {
+    fn cut(&mut self, edges: impl Edges<C>, ring: &mut Ring, k: usize, cells: &[CellId]) {
         let cell = cells[ring.corners.len() - ring.length];
         let [p, _, n] = ring.triple(k);
         self.tds.set_corners(cell, [p, k, n].map(|k| ring.corners[k]));
-        self.renew_edges(cell, [(0, ring.beyond[k]), (2, ring.beyond[p])]);
+        self.renew_edges(edges, cell, [(0, ring.beyond[k]), (2, ring.beyond[p])]);
         ring.cut(k, cell, 1);
     }
 }
 
-impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
+impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// Takes a vertex out and returns its point; `None` if there is no such vertex. The result is the
     /// triangulation of the other points, which keep their numbers; the next point that is added gets the
     /// number that is now free.
@@ -198,7 +197,7 @@ impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
         if !self.tds().is_vertex(vertex) {
             return None;
         }
-        self.inner.remove_vertex(vertex);
+        self.inner.remove_vertex(Free, vertex);
         Some(*self.point(vertex))
     }
 
@@ -227,7 +226,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             let walls: Vec<_> = line.windows(2).filter(is_wall).map(|pair| [pair[0], pair[1]]).collect();
             self.waiting.extend(walls);
         }
-        self.inner.remove_vertex(vertex);
+        self.inner.remove_vertex(Forced, vertex);
         Some(*self.point(vertex))
     }
 

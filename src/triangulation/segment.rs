@@ -14,6 +14,7 @@ use crate::geometry::{Crossing, Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
+use super::flip::Forced;
 use super::lines::undirected;
 use super::{ConstrainedDelaunay, Triangulation, Walls};
 
@@ -171,7 +172,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 
     /// Restores the law, starting from the cells in `unsettled`.
     pub(super) fn settle(&mut self) {
-        self.inner.settle(&mut self.scratch.unsettled);
+        self.inner.settle(Forced, &mut self.scratch.unsettled);
     }
 }
 

@@ -5,6 +5,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
+use super::flip::Forced;
 use super::segment::{Met, Scratch};
 use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 
@@ -138,7 +139,7 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
         if self.constrained_edges().next().is_some() && self.inner.is_flat_without(vertex) {
             return None;
         }
-        self.inner.remove_lawless(vertex);
+        self.inner.remove_lawless(Forced, vertex);
         Some(*self.point(vertex))
     }
 

@@ -14,6 +14,7 @@ mod kinds;
 mod location;
 mod mapped;
 mod natural;
+mod payloads;
 mod polygon;
 mod power;
 mod queries;
@@ -22,5 +23,7 @@ mod regular;
 mod removal;
 #[cfg(feature = "serde")]
 mod saved;
+#[cfg(feature = "serde")]
+mod saved_lines;
 mod sequences;
 mod traversal;

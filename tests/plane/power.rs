@@ -1,11 +1,12 @@
 //! Power diagrams: against all bisectors, and the law that cells tile; nearest points by power against all points.
 
-use crate::common::random::Random;
+use crate::common::random::{Random, ulps};
 use crate::polygon::{area, part};
-use breakline::geometry::{Geometry, Weighted};
-use breakline::kernel::Adaptive;
+use breakline::geometry::{Geometry, Weighted, distance_to_segment};
+use breakline::kernel::{Adaptive, power_center};
 use breakline::tds::VertexId;
-use breakline::triangulation::Regular;
+use breakline::triangulation::{Regular, VoronoiEdge};
+use dashu_ratio::RBig;
 
 type Point = [f64; 3];
 type Weights = Regular<Weighted>;
@@ -62,4 +63,122 @@ fn the_nearest_by_power() {
             assert!(t.hidden().all(|v| far(&v) >= least), "{q:?} {:?}", t.points());
         }
     }
+}
+
+fn exact(x: f64) -> RBig {
+    RBig::try_from(x).unwrap()
+}
+
+/// Asserts that the center is where it must be, to within 2^-40 of its distance.
+fn judge_center(corners: [Point; 3]) {
+    let [a, b, c] = corners.map(|p| p.map(exact));
+    let lift = |[x, y, _]: &[RBig; 3], p: &Point| x * x + y * y - exact(p[2]) + exact(corners[0][2]);
+    let [u, v] = [b, c].map(|p| [&p[0] - &a[0], &p[1] - &a[1], RBig::ZERO]);
+    let area = (&u[0] * &v[1] - &u[1] * &v[0]) * RBig::from(2);
+    if area == RBig::ZERO {
+        return;
+    }
+    let [lu, lv] = [lift(&u, &corners[1]), lift(&v, &corners[2])];
+    let expected = [(&lu * &v[1] - &lv * &u[1]) / &area, (&lv * &u[0] - &lu * &v[0]) / &area];
+    let told = power_center(corners).map(exact);
+    let squared = |p: [RBig; 2]| &p[0] * &p[0] + &p[1] * &p[1];
+    let error = squared([&told[0] - &expected[0], &told[1] - &expected[1]]);
+    assert!(error * exact(2f64.powi(80)) <= squared(expected), "{corners:?}");
+}
+
+#[test]
+fn centers_are_right_however_flat_the_triangle() {
+    let mut dice = Random(3);
+    for round in 0..3000 {
+        let weight = |dice: &mut Random| dice.around(9) as f64 * [1.0, 1e-9, 1e9][round % 3];
+        let mut corners = [0; 3].map(|_| [dice.unit() * 100.0 + 5e5, dice.unit() * 100.0 + 4e6, weight(&mut dice)]);
+        if round % 2 == 0 {
+            // On a line but for some last bits.
+            let along = dice.unit() * 3.0 - 1.0;
+            let at = |k: usize| corners[0][k] + along * (corners[1][k] - corners[0][k]);
+            corners[2] = [ulps(at(0), dice.around(3)), ulps(at(1), dice.around(3)), corners[2][2]];
+        }
+        if round % 5 == 0 {
+            corners = corners.map(|p| p.map(|x| x * 2f64.powi(150)));
+        }
+        judge_center(corners);
+    }
+    // The place is the first corner.
+    assert_eq!(power_center([[1.0, 1.0, 0.0], [3.0, 1.0, 4.0], [1.0, 4.0, 9.0]]), [0.0, 0.0]);
+}
+
+#[test]
+fn centers_have_the_least_power_with_their_corners() {
+    let mut dice = Random(4);
+    let mut weighted = 0;
+    for round in 0..1500 {
+        let t = build(&mut dice, round);
+        for cell in t.tds().cells() {
+            let corners = t.tds().cell_vertices(cell);
+            let Some(center) = t.power_center(cell) else {
+                assert!(t.dimension() < 2 || t.tds().is_infinite(cell));
+                continue;
+            };
+            let size = 1e-9 * (1.0 + center[0].powi(2) + center[1].powi(2));
+            let least = power(t.point(corners[0]), center);
+            assert!(corners.iter().all(|&v| (power(t.point(v), center) - least).abs() < size), "{:?}", t.points());
+            assert!(t.points().iter().all(|p| power(p, center) > least - size), "{:?}", t.points());
+            weighted += usize::from(t.circumcenter(cell) != Some(center));
+        }
+    }
+    assert!(weighted > 1000, "{weighted}");
+}
+
+/// The ends of an edge of the diagram; where it has none, a place far along it.
+fn ends(edge: VoronoiEdge) -> [[f64; 2]; 2] {
+    let along = |[x, y]: [f64; 2], [dx, dy]: [f64; 2], s: f64| [x + s * dx, y + s * dy];
+    match edge {
+        VoronoiEdge::Segment(ends) => ends,
+        VoronoiEdge::Ray { from, direction } => [from, along(from, direction, 1e3)],
+        VoronoiEdge::Line { through, direction } => [-1e3, 1e3].map(|s| along(through, direction, s)),
+    }
+}
+
+#[test]
+fn edges_bound_the_cells() {
+    let mut dice = Random(5);
+    let window = [[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]];
+    let is_within = |p: [f64; 2]| p.iter().all(|x| x.abs() < 49.9);
+    let mut kinds = [0; 3];
+    for round in 0..1500 {
+        let t = build(&mut dice, 1 + round % 2);
+        let mut edges = vec![Vec::new(); t.points().len()];
+        for (cell, i) in t.tds().edges() {
+            let beside = t.tds().edge_ends(cell, i);
+            let Some(edge) = t.power_edge(cell, i) else {
+                assert!(beside.contains(&VertexId::INFINITE));
+                continue;
+            };
+            kinds[match edge {
+                VoronoiEdge::Segment(_) => 0,
+                VoronoiEdge::Ray { .. } => 1,
+                VoronoiEdge::Line { .. } => 2,
+            }] += 1;
+            for v in beside {
+                edges[v.index()].push(ends(edge));
+            }
+        }
+        for v in t.tds().vertices() {
+            let cell = t.power_cell(v, &window).corners;
+            let edges = &edges[v.index()];
+            let sides = (0..cell.len()).map(|k| [cell[k], cell[(k + 1) % cell.len()]]);
+            // Every side that is none of the window's lies on an edge, ...
+            for [p, q] in sides.clone() {
+                let middle = [0, 1].map(|k| (p[k] + q[k]) / 2.0);
+                let is_on = |edge: &[[f64; 2]; 2]| distance_to_segment(middle, *edge) < 1e-7;
+                assert!(!is_within(middle) || edges.iter().any(is_on), "{:?}", t.points());
+            }
+            // ... and every end of an edge lies on a side.
+            for &end in edges.iter().flatten().filter(|&&end| is_within(end) && cell.len() > 2) {
+                let is_on = |side: [[f64; 2]; 2]| distance_to_segment(end, side) < 1e-7;
+                assert!(sides.clone().any(is_on), "{end:?} {:?}", t.points());
+            }
+        }
+    }
+    assert!(kinds.iter().all(|&count| count > 1000), "{kinds:?}");
 }

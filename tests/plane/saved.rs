@@ -9,7 +9,7 @@ use breakline::triangulation::{Constrained, Delaunay, Level, Regular, Triangulat
 use proptest::prelude::*;
 use serde_json::Value;
 
-fn through<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T) -> T {
+pub(crate) fn through<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T) -> T {
     serde_json::from_str(&serde_json::to_string(t).unwrap()).unwrap()
 }
 
@@ -132,6 +132,7 @@ fn damaged(value: &Value) -> Vec<Value> {
         Value::Number(number) if number.is_f64() => {
             all.extend([0.0, -1.0, -9.0, 0.5, 2.0, 3.5, 1e300, f64::MIN_POSITIVE].map(Value::from));
         }
+        Value::Bool(is_so) => all.push(Value::Bool(!is_so)),
         _ => {
             all.extend((0..12).chain([255, i64::from(u32::MAX), -1]).map(Value::from));
             all.push(Value::Null);
@@ -141,7 +142,7 @@ fn damaged(value: &Value) -> Vec<Value> {
 }
 
 /// Reads everything that is damaged in one place; what is taken for sound must be, and stand edits.
-fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sound: impl Fn(T) -> bool) {
+pub(crate) fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sound: impl Fn(T) -> bool) {
     let saved = serde_json::to_value(t).unwrap();
     let mut errors = 0;
     for value in damaged(&saved) {
@@ -153,7 +154,7 @@ fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sou
     assert!(errors > 0);
 }
 
-const PLACES: [&[[f64; 2]]; 7] = [
+pub(crate) const PLACES: [&[[f64; 2]]; 7] = [
     &[],
     &[[1.0, 2.0]],
     &[[0.0, 0.0], [1.0, 1.0]],
@@ -216,4 +217,24 @@ fn damage_to_regular_and_constrained_kinds_is_an_error() {
             is_sound && t.check(Level::Law).is_empty()
         });
     }
+}
+
+/// The bits of payloads are told for each cell: here those of the edge from a vertex to infinity, on both sides.
+#[test]
+fn a_constraint_to_infinity_is_an_error() {
+    let mut t: Constrained<Plane> = Constrained::new(Plane::default());
+    for p in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]] {
+        t.insert(p).unwrap();
+    }
+    let mut saved = serde_json::to_value(&t).unwrap();
+    let vertices = saved["cells"].as_array().unwrap().clone();
+    for (k, cell) in vertices.chunks(3).enumerate() {
+        let is_end = |vertex: &Value| vertex.is_null() || *vertex == 0;
+        if cell.iter().filter(|&vertex| is_end(vertex)).count() == 2 && cell.contains(&Value::Null) {
+            let opposite = cell.iter().position(|vertex| !is_end(vertex)).unwrap();
+            saved["cell_data"][k] = Value::from(1 << opposite);
+        }
+    }
+    let error = serde_json::from_value::<Constrained<Plane>>(saved).unwrap_err().to_string();
+    assert_eq!(error, "damaged triangulation: an edge that is not there is constrained");
 }

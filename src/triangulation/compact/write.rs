@@ -114,13 +114,13 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Tri
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, V, const D: usize> Delaunay<G, 3, V> {
+impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Delaunay<G, 3, V, C> {
     /// See [`Triangulation::write_compact`]; with its law, which makes questions for what is nearest possible.
     ///
     /// # Errors
     /// Those of `out`.
     pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
-        write(&self.inner, Law::Delaunay, |()| 0, out)
+        write(&self.inner, Law::Delaunay, |_| 0, out)
     }
 }
 

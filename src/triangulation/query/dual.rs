@@ -1,4 +1,5 @@
-//! Voronoi diagrams: what is nearest to which vertex, as the dual of a Delaunay triangulation.
+//! Voronoi diagrams: what is nearest to which vertex, as the dual of a Delaunay triangulation; and what they have in
+//! common with [power diagrams](super::power).
 //!
 //! Coordinates of the [geometry](crate::geometry::Coordinates) must be those that its circles are circles of, as in
 //! [`Plane`](crate::geometry::Plane), [`Terrain`](crate::geometry::Terrain) and [`Steps`](crate::geometry::Steps). What
@@ -12,12 +13,13 @@ use super::super::{Delaunay, Triangulation};
 
 type Place = [f64; 2];
 
-/// The places that two vertices are both nearest to: the dual of an edge.
+/// The places that two vertices are both nearest to: the dual of an edge. Of a Voronoi diagram, or of a power diagram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VoronoiEdge {
-    /// Between the circumcenters of the faces beside an edge; of no length if their corners lie on one circle.
+    /// Between the centers of the faces beside an edge; of no length if these are one, as where their corners lie on
+    /// one circle.
     Segment([[f64; 2]; 2]),
-    /// From the circumcenter of the only face beside an edge of the hull, outwards.
+    /// From the center of the only face beside an edge of the hull, outwards.
     Ray {
         /// The end.
         from: [f64; 2],
@@ -26,7 +28,7 @@ pub enum VoronoiEdge {
     },
     /// Between two of collinear vertices.
     Line {
-        /// In the middle between them.
+        /// On the line through both; in the middle between them if they weigh the same.
         through: [f64; 2],
         /// As long as the edge.
         direction: [f64; 2],
@@ -78,7 +80,7 @@ impl HalfPlane {
     }
 }
 
-fn dot(p: Place, q: Place) -> f64 {
+pub(super) fn dot(p: Place, q: Place) -> f64 {
     p[0] * q[0] + p[1] * q[1]
 }
 
@@ -108,22 +110,27 @@ pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>,
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// The center of the circle around a finite face, weights aside; `None` for infinite ones and below dimension 2.
-    /// Right to a few units in the last place of the larger of its coordinates and its [distance](kernel::circumcenter)
-    /// from the corners. O(1).
+    /// Right to a few units in the last place of the larger of its coordinates and its
+    /// [distance](kernel::power_center) from the corners. O(1).
     pub fn circumcenter(&self, cell: CellId) -> Option<[f64; 2]> {
-        if !self.is_full() || self.tds.is_infinite(cell) {
-            return None;
-        }
-        let corners = self.tds.corners(cell).map(|v| self.place(v));
+        let corners = self.finite_face(cell)?.map(|v| self.place(v));
         Some(plus(corners[0], kernel::circumcenter(corners)))
     }
-}
 
-impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
-    /// The places that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
-    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex.
-    /// O(1).
-    pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
+    /// The corners of a finite face; `None` below dimension 2.
+    pub(super) fn finite_face(&self, cell: CellId) -> Option<[VertexId; 3]> {
+        (self.is_full() && !self.tds().is_infinite(cell)).then(|| *self.tds().corners(cell))
+    }
+
+    /// The dual of an edge between finite vertices, given the centers of finite faces, and which place between two
+    /// collinear vertices belongs to both.
+    pub(super) fn dual_edge(
+        &self,
+        cell: CellId,
+        i: usize,
+        center: impl Fn(CellId) -> Option<Place>,
+        between: impl Fn([VertexId; 2]) -> Place,
+    ) -> Option<VoronoiEdge> {
         let ends = self.tds().edge_ends(cell, i);
         if ends.contains(&VertexId::INFINITE) {
             return None;
@@ -131,15 +138,27 @@ impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
         let [a, b] = ends.map(|v| self.place(v));
         let [dx, dy] = minus(b, a);
         if self.dimension() == 1 {
-            let through = [0, 1].map(|k| a[k] / 2.0 + b[k] / 2.0);
-            return Some(VoronoiEdge::Line { through, direction: [-dy, dx] });
+            return Some(VoronoiEdge::Line { through: between(ends), direction: [-dy, dx] });
         }
-        Some(match [cell, self.tds().neighbor(cell, i)].map(|cell| self.circumcenter(cell)) {
+        Some(match [cell, self.tds().neighbor(cell, i)].map(center) {
             [Some(from), Some(to)] => VoronoiEdge::Segment([from, to]),
             // The face lies to the left of `a b`, or to its right.
             [Some(from), None] => VoronoiEdge::Ray { from, direction: [dy, -dx] },
             [None, from] => VoronoiEdge::Ray { from: from?, direction: [-dy, dx] },
         })
+    }
+}
+
+impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+    /// The places that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
+    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex.
+    /// O(1).
+    pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
+        let middle = |ends: [VertexId; 2]| {
+            let [a, b] = ends.map(|v| self.place(v));
+            [0, 1].map(|k| a[k] / 2.0 + b[k] / 2.0)
+        };
+        self.dual_edge(cell, i, |cell| self.circumcenter(cell), middle)
     }
 
     /// What of a convex polygon, counter-clockwise, is nearest to a finite vertex. The cells of all vertices tile it,

@@ -28,7 +28,7 @@ type Place = [f64; 2];
 /// Vertices with weights.
 type Weights = Vec<(VertexId, f64)>;
 
-impl<G: Coordinates<3>, V> Delaunay<G, 3, V> {
+impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// Sibson's coordinates of a place: vertices with weights that are not negative, sum up to 1, and whose mean is the
     /// place; counter-clockwise. Rounded: in all tests the mean misses the place by less than `1e-11`, of points that
     /// are some 10 apart.

@@ -159,7 +159,7 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
     Ok(nearest)
 }
 
-impl<G: Metric, V> Delaunay<G, 3, V> {
+impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// The vertex nearest to a place; of several, the first in the [order](crate::geometry::Geometry::compare) of the
     /// geometry. `None` if there are no vertices. Exact. The place must be one that the geometry admits.
     ///
@@ -191,7 +191,7 @@ impl<G: Metric, V> Delaunay<G, 3, V> {
         &'a self,
         q: &G::Point,
         near: Option<CellId>,
-    ) -> impl Iterator<Item = VertexId> + use<'a, G, V> {
+    ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
         let Ok(nearest) = NearestFirst::new(&self.inner, q, self.locate(q, near));
         nearest.map(|Ok(candidate)| candidate.vertex)
     }
@@ -201,7 +201,11 @@ impl<G: Metric, V> Delaunay<G, 3, V> {
     ///
     /// # Complexity
     /// As [`nearest_first`](Self::nearest_first).
-    pub fn within<'a>(&'a self, center: &G::Point, rim: &G::Point) -> impl Iterator<Item = VertexId> + use<'a, G, V> {
+    pub fn within<'a>(
+        &'a self,
+        center: &G::Point,
+        rim: &G::Point,
+    ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
         let Ok(nearest) = NearestFirst::new(&self.inner, center, self.locate(center, None));
         let rim = *rim;
         nearest.map(|Ok(candidate)| candidate).take_while(move |c| c.is_within(&rim)).map(|candidate| candidate.vertex)

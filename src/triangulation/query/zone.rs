@@ -61,7 +61,7 @@ pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
     Ok(Some(zone))
 }
 
-impl<G: Geometry<3>, V> Delaunay<G, 3, V> {
+impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// What would be destroyed if a point was inserted: the cells whose circumscribed circle it is in, ties decided
     /// as the insertion does, in the plane or on a line. `None` if it is on a vertex, or if it would raise the
     /// dimension.

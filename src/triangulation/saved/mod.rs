@@ -5,7 +5,10 @@
 //! been removed; cells are numbered anew. Neighbors follow from common edges.
 //!
 //! What is read is checked like what a stranger says: [links and manifold](Level::Manifold), orientation and convexity,
-//! the law of the kind, with exact predicates, in linear time. Damage is an error, and never a panic.
+//! the law of the kind, with exact predicates, in linear time. Damage is an error, and never a panic. What there is to
+//! [lines](self::lines) is told and checked there.
+
+mod lines;
 
 use std::fmt;
 
@@ -17,7 +20,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
 use super::segment::Scratch;
-use super::{Constrained, Delaunay, Flaw, Level, MAX_VERTICES, Refused, Regular, Triangulation};
+use super::{Constrained, Delaunay, Flaw, Level, MAX_VERTICES, Refused, Regular, Triangulation, Walls};
 
 /// What is saved. Written from slices, read into vectors.
 #[derive(Serialize, Deserialize)]
@@ -140,6 +143,18 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
+impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
+    fn has_walls_on_edges_only(&self) -> Result<(), Damage> {
+        let is_edge = |cell, i: usize| {
+            i < 3 && self.dimension() == 2 && !self.tds.edge_ends(cell, i).contains(&VertexId::INFINITE)
+        };
+        match self.tds.cells().any(|cell| (0..8).any(|i| self.is_constrained(cell, i) && !is_edge(cell, i))) {
+            true => Err(Damage::Shape("an edge that is not there is constrained")),
+            false => Ok(()),
+        }
+    }
+}
+
 /// Reads a triangulation of some kind, and does the rest that its kind asks for.
 fn read<'de, D: Deserializer<'de>, G, V, C, T>(
     deserializer: D,
@@ -173,14 +188,17 @@ where
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Delaunay<G, 3, V> {
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Delaunay<G, 3, V, C> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.inner.save().serialize(serializer)
     }
 }
 
-impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de>
-    for Delaunay<G, 3, V>
+impl<'de, G, V, C> Deserialize<'de> for Delaunay<G, 3, V, C>
+where
+    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
@@ -191,13 +209,18 @@ impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Regular<G, V> {
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Regular<G, V, C> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
 }
 
-impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de> for Regular<G, V> {
+impl<'de, G, V, C> Deserialize<'de> for Regular<G, V, C>
+where
+    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
+{
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
             first(inner.flaws(Level::Law, |_, _| true))?;
@@ -223,10 +246,7 @@ impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
             inner.has_no_hidden_points()?;
-            let edges = if inner.dimension() == 2 { 3 } else { 0 };
-            if inner.tds.cells().any(|cell| (edges..8).any(|i| inner.is_constrained(cell, i))) {
-                return Err(Damage::Shape("an edge that is not there is constrained"));
-            }
+            inner.has_walls_on_edges_only()?;
             let t = Constrained { inner, scratch: Scratch::default() };
             first(t.check(Level::Law)).map(|()| t)
         })
