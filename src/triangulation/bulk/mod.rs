@@ -38,6 +38,11 @@
 //!
 //! [`filter`] holds the arithmetic. It is used if the geometry has [exact
 //! plans](Coordinates::exact_plan) of all points; else the same algorithm asks the geometry everything.
+//!
+//! `PERF:` what was tried and left. *Huge pages* (glibc's `malloc.hugetlb=1`, 1 million uniform points): 2 600 page faults
+//! instead of 30 600, and no less time; what the program saved, the system of the virtual machine took. *Random insertion
+//! of points in convex position* (Chew 1990), which parts of a parabola are, where merges flip half of the triangles at
+//! each level: 17 % more instructions than the merges.
 
 mod curve;
 mod faces;

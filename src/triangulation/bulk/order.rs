@@ -196,6 +196,9 @@ fn survey<G: Coordinates<N>, const N: usize>(
 }
 
 /// Sorts; `is_same` says of two points in one place whether they are on one site.
+///
+/// `PERF:` with 7 bits less in the records, groups take two passes instead of three: 2 % of the time of 1 million uniform
+/// points; but clusters take 10 % more, for the many that are then equal.
 fn sort<A: AsRef<[f64]>>(
     count: usize,
     coordinates: &(impl Fn(usize) -> A + Sync),
