@@ -19,7 +19,7 @@ pub(super) struct Box2 {
 }
 
 impl Box2 {
-    const NOTHING: Self = Box2 { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+    pub(super) const NOTHING: Self = Box2 { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
 
     pub(super) fn around([p, q]: [[f64; 2]; 2]) -> Self {
         Box2 { min: [p[0].min(q[0]), p[1].min(q[1])], max: [p[0].max(q[0]), p[1].max(q[1])] }
@@ -32,7 +32,7 @@ impl Box2 {
         Box2 { min: [x0, y0], max: [x1, y1] }
     }
 
-    fn with(self, other: &Self) -> Self {
+    pub(super) fn with(self, other: &Self) -> Self {
         Box2 {
             min: [self.min[0].min(other.min[0]), self.min[1].min(other.min[1])],
             max: [self.max[0].max(other.max[0]), self.max[1].max(other.max[1])],
@@ -64,6 +64,10 @@ impl Box2 {
         };
         let (rightmost, leftmost) = (area(right_x, right_y), area(left_x, left_y));
         (rightmost.0 > rightmost.1) | (leftmost.0 < -leftmost.1)
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        (self.max[0] - self.min[0]) * (self.max[1] - self.min[1])
     }
 
     /// On one axis, halved so that it does not overflow.

@@ -25,6 +25,8 @@ pub(super) struct Builder<'a, F> {
     place: &'a F,
     ends: &'a [[u32; 2]],
     segments: Vec<Segment>,
+    /// The area of a box over which many of the segments come to lie, if they are spread evenly.
+    large: f64,
     added: Vec<Place>,
     /// The segments whose crossing was rounded to an added site, each once, site after site; and where those of each
     /// end.
@@ -34,13 +36,17 @@ pub(super) struct Builder<'a, F> {
 
 impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     pub(super) fn new(grid: Grid, places: usize, place: &'a F, ends: &'a [[u32; 2]]) -> Self {
-        let segments = ends.iter().map(|&[a, b]| [place(a), place(b)]).collect();
+        const MANY: f64 = 8.0;
+        let segments: Vec<Segment> = ends.iter().map(|&[a, b]| [place(a), place(b)]).collect();
+        let whole = segments.iter().fold(Box2::NOTHING, |sum, &segment| sum.with(&Box2::around(segment)));
+        let large = MANY * whole.area() / segments.len() as f64;
         Builder {
             grid,
             places,
             place,
             ends,
             segments,
+            large,
             added: Vec::new(),
             crossed: Vec::new(),
             crossed_ends: Vec::new(),
@@ -194,11 +200,15 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
         (BoxTree::new(&boxes), sites)
     }
 
-    /// What a segment may meet, by boxes.
+    /// What a segment may meet, by boxes; of a long one, by the side on which they lie, too.
+    ///
+    /// `PERF:` beside a short segment that finds little, and costs more than all of the rest: 50 000 segments between a
+    /// million points take 18 ms instead of 30, and 100 000 that cross 13 % less in all.
     fn along(&self, segment: u32) -> impl Fn(&Box2) -> bool + use<'a, F> {
         let s = self.segments[segment as usize];
-        let (around, is_ordinary) = (Box2::around(s), self.grid.is_ordinary);
-        move |boxed| around.overlaps(boxed) & !(is_ordinary & boxed.is_beside(s))
+        let around = Box2::around(s);
+        let has_sides = self.grid.is_ordinary && around.area() >= self.large;
+        move |boxed| around.overlaps(boxed) & !(has_sides && boxed.is_beside(s))
     }
 
     /// Calls with each site in some trees whose pixel a segment meets, and that is no end of it, nor added for a
