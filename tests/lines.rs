@@ -298,4 +298,14 @@ fn lines_between_dimensions() {
     assert_eq!((t.dimension(), t.vertex_count(), t.chain(long).len()), (1, 2, 2));
     t.insert([2.0, 1.0]).unwrap();
     assert_eq!((t.chain(long).len(), t.check(Level::Law)), (2, vec![]));
+
+    // The vertex on its way is one that was given, and goes after the triangles.
+    let mut t = Constrained::new(Plane::default());
+    let above = t.insert_lines(&[[[4.0, 4.0], [4.0, 3.0], [2.0, 2.0]]]).unwrap()[0];
+    let between = t.insert([2.0, 2.0]).unwrap();
+    let long = t.insert_lines(&[[[3.0, 2.0], [1.0, 2.0]]]).unwrap()[0];
+    assert!(t.remove_line(above));
+    assert_eq!((t.dimension(), t.remove(between)), (1, Ok([2.0, 2.0])));
+    t.insert([2.0, 1.0]).unwrap();
+    assert_eq!((t.chain(long).len(), t.check(Level::Law)), (2, vec![]));
 }

@@ -120,6 +120,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         if self.dimension() < 2 {
             self.waiting = pieces;
+            // What lay between their ends, when there were triangles, may go.
+            self.lines.splits.clear();
             return Vec::new();
         }
         pieces.retain(|&[a, b]| !self.join(a, b));
