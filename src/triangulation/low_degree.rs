@@ -7,8 +7,8 @@
 //! is quadratic in the degree, but for few neighbors it is the least number of tests, on points in registers and without
 //! memory of its own. What has more neighbors, infinity among them, or walls is left to [`remove`](super::remove).
 //!
-//! `PERF:` every second one of 100 000 uniform points removed (`bench_editing`): 0.6 us each instead of 1.4 (2.3 beside
-//! other work) by ears that are cut off and flipped.
+//! `PERF:` every second one of 100 000 uniform points removed (`bench_editing`): 0.6 us each instead of 1.4 by ears that
+//! are cut off and flipped.
 
 use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
