@@ -122,12 +122,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             let outside = self.links[old.index()].neighbors[i];
             let j = self.index_of_neighbor(outside, old);
             self.link(new, i, outside, j);
-            // Found again from within the zone while turning.
-            self.links[old.index()].neighbors[i] = new;
             zone.star.push(new);
-        }
-        if zone.marked.len() < self.links.len() {
-            zone.marked.resize(self.links.len().max(zone.marked.capacity()), false);
         }
         if self.dimension() == 2 {
             self.link_around(zone, apex);
@@ -169,8 +164,15 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// The same in any dimension: one turns around each ridge of the border within the zone, from one facet of the
     /// border to the next.
-    fn link_by_turning(&mut self, zone: &Zone) {
+    fn link_by_turning(&mut self, zone: &mut Zone) {
         let width = (self.dimension() + 1) as usize;
+        // The new cells are found again from within the zone, and are none of its.
+        for (&(old, i), &new) in zone.border.iter().zip(&zone.star) {
+            self.links[old.index()].neighbors[i as usize] = new;
+        }
+        if zone.marked.len() < self.links.len() {
+            zone.marked.resize(self.links.len().max(zone.marked.capacity()), false);
+        }
         for (&(old, i), &new) in zone.border.iter().zip(&zone.star) {
             let i = i as usize;
             for ridge in 0..width {
