@@ -33,7 +33,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
             let mut marks = vec![OUTSIDE; t.tds().cell_slots()];
             let closed = enclosed(t, &[]);
             let is_closed = |cell: &CellId| closed[cell.index()] != OUTSIDE;
-            let cells: Vec<CellId> = seeds.iter().flat_map(|&seed| cell_at(t, seed)).filter(is_closed).collect();
+            let cells: Vec<CellId> = seeds.iter().filter_map(|&seed| cell_at(t, seed)).filter(is_closed).collect();
             spread(t, &mut marks, cells, 0);
             marks
         }
@@ -50,7 +50,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
 fn enclosed<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, holes: &[[f64; 2]]) -> Vec<u32> {
     let mut marks = vec![0; t.tds().cell_slots()];
     let mut outer: Vec<CellId> = t.tds().around(VertexId::INFINITE).collect();
-    outer.extend(holes.iter().flat_map(|&hole| cell_at(t, hole)));
+    outer.extend(holes.iter().filter_map(|&hole| cell_at(t, hole)));
     spread(t, &mut marks, outer, OUTSIDE);
     marks
 }
