@@ -28,8 +28,8 @@ impl Filter for FlooredErrorBound {
     }
 }
 
-/// The same with twice the digits: certain where three points are nearly collinear, or four nearly cocircular, but not
-/// where they are.
+/// [`ErrorBound`] with twice the digits ([`num::Pair`], double-word arithmetic after Joldes, Muller and Popescu 2017):
+/// certain where three points are nearly collinear, or four nearly cocircular, but not where they are.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PairBound;
 

@@ -76,13 +76,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
-    /// numbers.
+    /// numbers. Linear in the number of cells; nothing but payloads is copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Triangulation<G, N, V, D> {
         let Triangulation { geometry, tds, points, zone, last } = self;
         Triangulation { geometry, tds: tds.with_cell_data(data), points, zone, last }
     }
 
-    /// The payload of a cell, to change.
+    /// The payload of a cell, to change. O(1).
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         self.tds.cell_data_mut(cell)
     }
