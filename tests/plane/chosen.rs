@@ -18,28 +18,30 @@ pub(crate) struct Chosen<const D: usize> {
     step: f64,
 }
 
+/// A geometry that sees points as this one does, and tells nothing of places.
+fn of<G: Geometry<3, Point = [f64; D]> + Default, const D: usize>() -> Chosen<D> {
+    Chosen {
+        admits: |p| G::default().admits(p),
+        orientation: |simplex| G::default().orientation(simplex),
+        side_of_sphere: |simplex, q| G::default().side_of_sphere(simplex, q),
+        in_flat: |simplex, q| G::default().side_of_sphere_in_flat(simplex, q),
+        exact_plan: |_| None,
+        step: 0.0,
+    }
+}
+
 /// The plane with this kernel.
 pub(crate) fn plane<K: Kernel>() -> Chosen<2> {
     Chosen {
-        admits: |p| Plane::<K>::default().admits(p),
-        orientation: |simplex| Plane::<K>::default().orientation(simplex),
-        side_of_sphere: |simplex, q| Plane::<K>::default().side_of_sphere(simplex, q),
-        in_flat: |simplex, q| Plane::<K>::default().side_of_sphere_in_flat(simplex, q),
         exact_plan: |p| Plane::<K>::default().exact_plan(p),
         step: Plane::<K>::default().step(),
+        ..of::<Plane<K>, 2>()
     }
 }
 
 /// The weighted plane with this kernel.
 pub(crate) fn weighted<K: Kernel>() -> Chosen<3> {
-    Chosen {
-        admits: |p| Weighted::<K>::default().admits(p),
-        orientation: |simplex| Weighted::<K>::default().orientation(simplex),
-        side_of_sphere: |simplex, q| Weighted::<K>::default().side_of_sphere(simplex, q),
-        in_flat: |simplex, q| Weighted::<K>::default().side_of_sphere_in_flat(simplex, q),
-        exact_plan: |_| None,
-        step: 0.0,
-    }
+    of::<Weighted<K>, 3>()
 }
 
 fn plan<const D: usize>(p: &[f64; D]) -> [f64; 2] {
