@@ -43,8 +43,8 @@ fn judge_removal((dimension, before): &Seen, (now, after): &Seen) {
 }
 
 /// Another payload for each cell, none of them the default one.
-fn number<G: Geometry<N>, const N: usize>(t: &Triangulation<G, N, (), u32>, mut set: impl FnMut(CellId, u32)) {
-    t.tds().cells().zip(1..).for_each(|(cell, k)| set(cell, k));
+fn another(cell: CellId) -> u32 {
+    cell.index() as u32 + 1
 }
 
 /// Removes one time in three.
@@ -59,8 +59,7 @@ fn delaunay_cells_inherit_what_they_replace() {
         let side = 1 + dice.below(5);
         let mut t = Delaunay::<Plane, 3>::new(Plane::default()).with_cell_data(|_| 0u32);
         for _ in 0..25 {
-            let numbered = t.clone();
-            number(&numbered, |cell, k| *t.cell_data_mut(cell) = k);
+            t = t.with_cell_data(another);
             let before = seen(&t);
             if let Some(vertex) = vertex_to_remove(&mut dice) {
                 t.remove(vertex);
@@ -81,7 +80,7 @@ fn delaunay_cells_around_a_hub() {
     let rim = (0..40).map(|k| f64::from(k) * 0.157).map(|turn| [turn.cos(), turn.sin()]);
     let points: Vec<[f64; 2]> = rim.chain([[0.0, 0.0]]).collect();
     let (t, vertices) = Delaunay::from_points(Plane::<breakline::kernel::Adaptive>::default(), &points).unwrap();
-    let mut t = t.with_cell_data(|cell| cell.index() as u32 + 1);
+    let mut t = t.with_cell_data(another);
     let before = seen(&t);
     assert!(t.tds().around(vertices[40]).count() > 20);
     t.remove(vertices[40]);
@@ -95,8 +94,7 @@ fn cells_in_space_inherit_what_they_replace() {
     for _ in 0..60 {
         let mut t = Delaunay::<Space, 4>::new(Space::default()).with_cell_data(|_| 0u32);
         for _ in 0..20 {
-            let numbered = t.clone();
-            number(&numbered, |cell, k| *t.cell_data_mut(cell) = k);
+            t = t.with_cell_data(another);
             let before = seen(&t);
             let vertex = t.insert([0; 3].map(|_| dice.below(3) as f64)).unwrap();
             judge_insertion(&before, &seen(&t), vertex);
@@ -110,8 +108,7 @@ fn regular_cells_inherit_what_they_replace() {
     for _ in 0..400 {
         let mut t = Regular::<Weighted>::new(Weighted::default()).with_cell_data(|_| 0u32);
         for _ in 0..25 {
-            let numbered = t.clone();
-            number(&numbered, |cell, k| *t.cell_data_mut(cell) = k);
+            t = t.with_cell_data(another);
             let (before, hidden) = (seen(&t), t.hidden().len());
             match vertex_to_remove(&mut dice) {
                 None => {
@@ -138,8 +135,7 @@ fn cells_without_a_law_inherit_what_they_replace() {
     for _ in 0..400 {
         let mut t: Triangulation<Plane, 3, (), u32> = Triangulation::new(Plane::default());
         for _ in 0..25 {
-            let numbered = t.clone();
-            number(&numbered, |cell, k| *t.cell_data_mut(cell) = k);
+            t = t.with_cell_data(another);
             let before = seen(&t);
             if let Some(vertex) = vertex_to_remove(&mut dice) {
                 t.remove(vertex);
