@@ -1,5 +1,6 @@
 //! Voronoi diagrams: against exact centers, clipping by all bisectors, and the law that cells tile.
 
+use crate::center;
 use crate::common::random::{Random, ulps};
 use crate::grid::{Free, Point, build};
 use crate::polygon::{area, part};
@@ -7,7 +8,6 @@ use breakline::geometry::Plane;
 use breakline::kernel::{Exact, circumcenter};
 use breakline::tds::VertexId;
 use breakline::triangulation::{Delaunay, VoronoiEdge};
-use dashu_ratio::RBig;
 
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 1 + dice.below(6);
@@ -20,24 +20,9 @@ fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     (0..count).map(|_| place(dice)).collect()
 }
 
-fn exact(x: f64) -> RBig {
-    RBig::try_from(x).unwrap()
-}
-
-/// Asserts that the center is where it must be, to within 2^-40 of its distance.
+/// Asserts that the center is where it must be.
 fn judge_center(corners: [Point; 3]) {
-    let [a, b, c] = corners.map(|p| p.map(exact));
-    let [ux, uy, vx, vy] = [&b[0] - &a[0], &b[1] - &a[1], &c[0] - &a[0], &c[1] - &a[1]];
-    let area = (&ux * &vy - &uy * &vx) * RBig::from(2);
-    if area == RBig::ZERO {
-        return;
-    }
-    let [lu, lv] = [&ux * &ux + &uy * &uy, &vx * &vx + &vy * &vy];
-    let expected = [(&lu * &vy - &lv * &uy) / &area, (&lv * &ux - &lu * &vx) / &area];
-    let told = circumcenter(corners).map(exact);
-    let squared = |p: [RBig; 2]| &p[0] * &p[0] + &p[1] * &p[1];
-    let error = squared([&told[0] - &expected[0], &told[1] - &expected[1]]);
-    assert!(error * exact(2f64.powi(80)) <= squared(expected), "{corners:?}");
+    center::judge(corners.map(|[x, y]| [x, y, 0.0]), circumcenter(corners));
 }
 
 #[test]

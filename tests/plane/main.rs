@@ -5,6 +5,7 @@
 mod common;
 
 mod around;
+mod center;
 mod chosen;
 mod compact;
 mod dual;
