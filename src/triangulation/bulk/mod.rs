@@ -29,7 +29,8 @@
 //!      --- a------b ---      ---a-----\ b ---
 //!         left  right          d in the circle of a b c: a b d is next
 //!    ```
-//! 4. [`finish`]: twins of edges become neighbors of faces.
+//! 4. [`arc`]: ranges that are part of a curve are made from one end, as merges of these destroy what they join.
+//! 5. [`finish`]: twins of edges become neighbors of faces.
 //!
 //! A range of `m` points has exactly `2 m - 2` faces, and a merge adds exactly two: range `[lo, hi)` owns the
 //! faces `2 lo .. 2 hi - 2`, a merge at `mid` adds `2 mid - 2` and `2 mid - 1`. So nothing is allocated, and
@@ -40,10 +41,9 @@
 //! plans](Coordinates::exact_plan) of all points; else the same algorithm asks the geometry everything.
 //!
 //! `PERF:` what was tried and left. *Huge pages* (glibc's `malloc.hugetlb=1`, 1 million uniform points): 2 600 page faults
-//! instead of 30 600, and no less time; what the program saved, the system of the virtual machine took. *Random insertion
-//! of points in convex position* (Chew 1990), which parts of a parabola are, where merges flip half of the triangles at
-//! each level: 17 % more instructions than the merges.
+//! instead of 30 600, and no less time; what the program saved, the system of the virtual machine took.
 
+mod arc;
 mod curve;
 mod faces;
 mod filter;
@@ -59,7 +59,7 @@ use std::any::Any;
 use rayon::prelude::*;
 
 use crate::geometry::Coordinates;
-use crate::tds::{Links, Tds};
+use crate::tds::{Links, Tds, VertexId};
 
 use curve::Curve;
 use faces::Range;
@@ -163,7 +163,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     fn build(&mut self, lo: usize, hi: usize) -> Part {
         match hi - lo {
             1 => return Part { bottom: NONE, top: NONE, first: lo as u32 },
-            2 => return self.pair(lo),
+            2 => {
+                let [bottom, top] = self.pair([lo, lo + 1].map(VertexId::new), 2 * lo as u32);
+                return Part { bottom, top, first: lo as u32 };
+            }
             3 => return self.triple(lo),
             4 => {
                 if let Some(part) = self.quadruple(lo) {
@@ -171,6 +174,12 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 }
             }
             _ => {}
+        }
+        if FILTERED
+            && hi - lo >= arc::LEAST
+            && let Some(part) = self.arc(lo, hi)
+        {
+            return part;
         }
         let Some((mid, axis)) = self.halve(lo, hi) else { return self.build_dense(lo, hi) };
         let (left, right) = if hi - lo > self.grain.range {
@@ -221,7 +230,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     #[cold]
     fn build_dense(&mut self, lo: usize, hi: usize) -> Part {
         let count = hi - lo;
-        let coordinates = |i: usize| self.seen.coordinates(crate::tds::VertexId::new(lo + i));
+        let coordinates = |i: usize| self.seen.coordinates(VertexId::new(lo + i));
         let mut keys = Keys::default();
         if !self.keys.are_whole() {
             keys = Keys::of(count, coordinates, self.seen.curve(self.grain), self.grain);

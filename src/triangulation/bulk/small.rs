@@ -10,12 +10,13 @@ use super::faces::Range;
 const INFINITE: VertexId = VertexId::INFINITE;
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
-    /// Two points: a hull of two edges.
-    pub(super) fn pair(&mut self, lo: usize) -> Part {
-        let (a, b) = (VertexId::new(lo), VertexId::new(lo + 1));
-        self.close([2 * lo as u32, 2 * lo as u32 + 1], [[a, b], [b, a]]);
-        self.link((2 * lo as u32, 0), (2 * lo as u32 + 1, 0));
-        Part { bottom: 2 * lo as u32, top: 2 * lo as u32 + 1, first: lo as u32 }
+    /// Two points: a hull of two edges, there and back. Returns their ghosts.
+    #[inline(always)]
+    pub(super) fn pair(&mut self, [a, b]: [VertexId; 2], first_face: u32) -> [u32; 2] {
+        let ghosts = [first_face, first_face + 1];
+        self.close(ghosts, [[a, b], [b, a]]);
+        self.link((ghosts[0], 0), (ghosts[1], 0));
+        ghosts
     }
 
     /// Three points: a triangle, or a chain seen from both sides.

@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 use crate::geometry::{Coordinates, Geometry, Plane};
 use crate::kernel::{Adaptive, Exact, Fast, InCircle, Kernel, Orientation2, Wide};
 use crate::num::Sign;
-use crate::tds::VertexId;
+use crate::tds::{Links, VertexId};
 use crate::triangulation::{Delaunay, Level};
 
-use super::filter::{Arrow, Circle};
+use super::faces::Range;
+use super::filter::{Arrow, Circle, Seen};
 use super::{Grain, Sites, build};
 
 const TINY: Grain = Grain { points: 3, group: 2, range: 3 };
@@ -185,6 +186,57 @@ fn bulk_is_one_by_one() {
 fn in_bulk_fast(points: &[[f64; 2]]) {
     let (sites, _) = Sites::of(&Plane::<Fast>::default(), points, TINY).unwrap();
     build::<_, 3, (), ()>(&Plane::<Fast>::default(), sites, TINY);
+}
+
+/// Whether points are triangulated along an arc, as a whole.
+fn is_arc(points: &[[f64; 2]]) -> bool {
+    let geometry = Plane::<Adaptive>::default();
+    let Sites { points, keys, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
+    let seen = Seen::<_, 3, true>::new(&geometry, &points);
+    let mut faces = vec![Links::UNUSED; 2 * points.len()];
+    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY };
+    range.arc(0, points.len()).is_some()
+}
+
+#[test]
+fn arcs_from_their_sharp_ends() {
+    let mut random = Random(11);
+    let mut left = 0;
+    for round in 0..160 {
+        let count = 200 + random.below(200);
+        // The curvature falls, or rises and falls, or is the same for all of the lattice's points on a circle.
+        let mut arc: Vec<[f64; 2]> = match round / 8 % 4 {
+            0 => (0..count).map(|_| random.unit()).map(|x| [x, x * x]).collect(),
+            1 => (0..count).map(|_| 1.57 * random.unit()).map(|t| [20.0 * t.sin(), 3.0 - 3.0 * t.cos()]).collect(),
+            2 => (0..count).map(|_| 9.0 * random.unit() + 0.1).map(|x| [x, 9.1 - 1.0 / x]).collect(),
+            _ => {
+                const RADIUS: i64 = 5 * 13 * 17 * 29 * 37;
+                let height = |x: i64| (x, ((RADIUS * RADIUS - x * x) as f64).sqrt().round() as i64);
+                let quarter = (0..=RADIUS).map(height).filter(|(x, y)| x * x + y * y == RADIUS * RADIUS);
+                quarter.map(|(x, y)| [x as f64, y as f64]).collect()
+            }
+        };
+        // On every side, in every direction.
+        for p in &mut arc {
+            *p = [p[0] * [1.0, -1.0][round & 1], p[1] * [1.0, -1.0][round >> 1 & 1]];
+            if round & 4 == 4 {
+                p.swap(0, 1);
+            }
+        }
+        random.shuffle(&mut arc);
+        // A hyperbola is sharp in its middle: flips take too long, or not.
+        let taken = is_arc(&arc);
+        assert!(taken || round / 8 % 4 == 2, "{arc:?}");
+        left += usize::from(!taken);
+        for elsewhere in [0, 1, 20] {
+            arc.extend((0..elsewhere).map(|_| [0, 1].map(|_| 2.0 * random.unit() - 1.0)));
+            let expected = one_by_one(Plane::<Adaptive>::default(), &arc);
+            assert_eq!(in_bulk(Plane::<Adaptive>::default(), &arc, TINY), expected, "{arc:?}");
+            assert_eq!(in_bulk(Plane::<Adaptive>::default(), &arc, Grain::default()), expected, "{arc:?}");
+            in_bulk_fast(&arc);
+        }
+    }
+    assert!(left > 0);
 }
 
 #[test]
