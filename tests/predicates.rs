@@ -9,8 +9,8 @@ mod common;
 use breakline::geometry::{Crossing, Geometry, Plane, Weighted};
 use breakline::kernel::{
     Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, Fixed, FixedBound, FlooredErrorBound, InCircle,
-    InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnLattice, Orientation2, Orientation3,
-    PairBound, PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
+    InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnFineLattice, OnLattice, Orientation2,
+    Orientation3, PairBound, PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
 use breakline::num::Sign;
 use common::random::{Random, ulps};
@@ -158,6 +158,7 @@ struct Tally {
     ties: usize,
     by_error_bound: usize,
     on_lattice: usize,
+    on_fine_lattice: usize,
     by_floored: usize,
     by_interval: usize,
     by_pairs: usize,
@@ -213,6 +214,7 @@ impl Tally {
         self.by_fixed += certain::<FixedBound<24>, P>(&predicate, expected, &points);
         self.scaled += certain::<Scaled<Adaptive>, P>(&predicate, expected, &points);
         self.on_lattice += certain::<OnLattice, P>(&predicate, expected, &points);
+        self.on_fine_lattice += certain::<OnFineLattice, P>(&predicate, expected, &points);
     }
 }
 
@@ -264,6 +266,7 @@ fn small_whole_numbers_are_decided_on_the_lattice() {
         let mut random = Random(seed);
         for tally in ask_all(1000, || unit * random.around(side) as f64) {
             assert_eq!(tally.on_lattice, tally.asked, "{tally:?}");
+            assert_eq!(tally.on_fine_lattice, tally.asked, "{tally:?}");
             assert_eq!(tally.by_interval, tally.asked, "{tally:?}");
             assert!(side > 5 || tally.ties > 5, "{tally:?}");
         }
@@ -508,6 +511,7 @@ fn circles_in_planes_in_space() {
             certain::<ErrorBound, _>(&predicate, expected, &predicate);
             certain::<PairBound, _>(&predicate, expected, &predicate);
             certain::<OnLattice, _>(&predicate, expected, &predicate);
+            certain::<OnFineLattice, _>(&predicate, expected, &predicate);
         }
     }
     assert!(ties > 100, "only {ties} ties");

@@ -92,6 +92,25 @@ impl Filter for OnLattice {
     }
 }
 
+/// Integers of 256 bits, where the coordinates of this one question, counted in a common unit, have up to 62 bits (in an
+/// in-sphere test 49): any of about one size.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OnFineLattice;
+
+impl Filter for OnFineLattice {
+    const RANGE: Range = Range::FINITE;
+
+    #[inline(never)] // long, and no faster where it is called
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        // As for 128 bits.
+        let bits = (248 / P::DEGREE).min(62);
+        // With zero among them, the coordinates themselves are that short.
+        let axes = (0..P::AXES).map(|axis| predicate.axis(axis).chain([0.0]));
+        let inverse_unit = lattice::inverse_unit(axes, bits)?;
+        Some(predicate.value(|a, b| lattice::long_difference(a, b, inverse_unit)).sign())
+    }
+}
+
 /// Integers, for coordinates that are whole numbers: [`OnLattice`] whose unit is 1. The differences in an in-circle or
 /// in-sphere test may be up to `2^30` and `2^24`.
 #[derive(Debug, Clone, Copy, Default)]

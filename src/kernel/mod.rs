@@ -28,7 +28,9 @@ mod power;
 mod rounding;
 mod scaled;
 
-pub use adaptive::{ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnLattice, PairBound, WholeNumbers};
+pub use adaptive::{
+    ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnFineLattice, OnLattice, PairBound, WholeNumbers,
+};
 pub use center::{circumcenter, power_center};
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
@@ -200,7 +202,7 @@ pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
 /// Within [`RANGE`](Self::RANGE), a sign that it does tell is that of the real number.
 ///
 /// # Models
-/// [`ErrorBound`], [`FlooredErrorBound`], [`PairBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`],
+/// [`ErrorBound`], [`FlooredErrorBound`], [`PairBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`], [`OnFineLattice`],
 /// [`WholeNumbers`]; [`Scaled`].
 pub trait Filter: Copy + Default + Debug + Send + Sync + 'static {
     /// The coordinates it is proven for.
@@ -276,7 +278,7 @@ impl Kernel for Expansions {
 pub type Adaptive = Filtered<ErrorBound, Nearly>;
 
 /// What is left to it, where points are nearly collinear or cocircular.
-type Nearly = Filtered<OnLattice, Filtered<PairBound, Expansions>>;
+type Nearly = Filtered<OnLattice, Filtered<OnFineLattice, Filtered<PairBound, Expansions>>>;
 
 /// As [`Adaptive`], with intervals in place of the error bound: certain a little more often, and slower.
 pub type Interval = Filtered<IntervalBound, Nearly>;

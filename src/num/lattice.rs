@@ -2,7 +2,9 @@
 //!
 //! Ties (cocircular points, above all) happen where coordinates are coarse: integer grids, rounded
 //! samples. There all differences are small multiples of one unit, and 128-bit integers hold the
-//! whole polynomial.
+//! whole polynomial. Of any coordinates of about one size, 256-bit integers do.
+
+use super::Integer;
 
 /// The exponent of the lowest set bit of a finite number; `None` for zero.
 #[inline]
@@ -18,7 +20,7 @@ pub fn lowest_bit(x: f64) -> Option<i32> {
 }
 
 /// A power of two of which every coordinate is a multiple, if differences within an axis counted in
-/// it stay below `2^bits`; returned as its inverse, to multiply with. `bits` is 53 at the most.
+/// it stay below `2^bits`; returned as its inverse, to multiply with.
 ///
 /// `None` if the range is wider, or the inverse is not a normal number.
 pub fn inverse_unit<A>(axes: impl Iterator<Item = A> + Clone, bits: i32) -> Option<f64>
@@ -33,7 +35,7 @@ where
     fit(axes, inverse, bits).then_some(inverse)
 }
 
-/// Whether differences within each axis, of multiples of a unit and counted in it, stay below `2^bits`; 53 at the most.
+/// Whether differences within each axis, of multiples of a unit and counted in it, stay below `2^bits`.
 #[inline]
 pub fn fit<A>(mut axes: impl Iterator<Item = A>, inverse_unit: f64, bits: i32) -> bool
 where
@@ -50,11 +52,18 @@ where
 
 /// `a - b` counted in units.
 ///
-/// Exact: both are multiples of the unit and their difference has at most 53 bits, as
-/// [`inverse_unit`] was asked for no more.
+/// Exact if both are multiples of the unit and their difference has at most 53 bits, as asked of
+/// [`inverse_unit`].
 #[inline]
 pub fn difference(a: f64, b: f64, inverse_unit: f64) -> i128 {
     i128::from(((a - b) * inverse_unit) as i64)
+}
+
+/// `a - b` counted in units, if each has at most 62 bits.
+#[inline]
+pub fn long_difference(a: f64, b: f64, inverse_unit: f64) -> Integer {
+    let [a, b] = [a, b].map(|x| (x * inverse_unit) as i64);
+    Integer::from(a - b)
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@
 //! | [`Interval`] | knows between which two doubles it is | 10 | filter; exact on small whole numbers |
 //! | `i128` | within its range, see [`lattice`] | 5 | coordinates on a common grid: ties are the rule there |
 //! | [`Pair`] | to twice the digits | 15 | places that are then rounded; filter near zero, in [`Bounded`] |
+//! | [`Integer`] | within its 256 bits | 20 | coordinates on a fine common grid |
 //! | [`Expansion`] | within the exponents of f64 | 100 | what the filters leave open |
 //! | [`Dyadic`] | always | 500 | the judge, and magnitudes outside of everything else |
 
@@ -19,6 +20,7 @@ mod bounded;
 mod dyadic;
 mod expansion;
 mod fixed;
+mod integer;
 mod interval;
 pub mod lattice;
 mod pair;
@@ -27,6 +29,7 @@ pub use bounded::Bounded;
 pub use dyadic::Dyadic;
 pub use expansion::Expansion;
 pub use fixed::Fixed;
+pub use integer::Integer;
 pub use interval::Interval;
 pub use pair::Pair;
 

@@ -1,0 +1,121 @@
+use std::ops::{Add, Mul, Sub};
+
+use super::Sign;
+
+/// A whole number of 256 bits, wrapping around beyond `-2^255 .. 2^255`.
+///
+/// For polynomials of which it is known beforehand that they fit, see [`lattice`](super::lattice): no branch, no
+/// memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Integer {
+    /// The lowest first, the highest with the sign.
+    limbs: [u64; 4],
+}
+
+impl Integer {
+    /// Which side of zero it is on.
+    #[inline]
+    pub fn sign(self) -> Sign {
+        if self.limbs[3] >> 63 == 1 {
+            Sign::Negative
+        } else if self.limbs == [0; 4] {
+            Sign::Zero
+        } else {
+            Sign::Positive
+        }
+    }
+}
+
+impl From<i64> for Integer {
+    #[inline]
+    fn from(x: i64) -> Self {
+        let sign = (x >> 63) as u64;
+        Integer { limbs: [x as u64, sign, sign, sign] }
+    }
+}
+
+impl Add for Integer {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let mut carry = false;
+        let limbs = std::array::from_fn(|i| {
+            let (sum, over) = self.limbs[i].overflowing_add(other.limbs[i]);
+            let (sum, over_again) = sum.overflowing_add(u64::from(carry));
+            carry = over | over_again;
+            sum
+        });
+        Integer { limbs }
+    }
+}
+
+impl Sub for Integer {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        let mut borrow = false;
+        let limbs = std::array::from_fn(|i| {
+            let (difference, under) = self.limbs[i].overflowing_sub(other.limbs[i]);
+            let (difference, under_again) = difference.overflowing_sub(u64::from(borrow));
+            borrow = under | under_again;
+            difference
+        });
+        Integer { limbs }
+    }
+}
+
+impl Mul for Integer {
+    type Output = Self;
+
+    /// Modulo `2^256` the sign makes no difference.
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let mut limbs = [0; 4];
+        for i in 0..4 {
+            let mut carry = 0;
+            for j in 0..4 - i {
+                let product = u128::from(self.limbs[i]) * u128::from(other.limbs[j]);
+                // Below 2^128: (2^64 - 1)^2 + 2 (2^64 - 1).
+                let sum = product + u128::from(limbs[i + j]) + u128::from(carry);
+                limbs[i + j] = sum as u64;
+                carry = (sum >> 64) as u64;
+            }
+        }
+        Integer { limbs }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where 128 bits hold all, they are the judge; beyond, the laws of powers are.
+    #[test]
+    fn arithmetic_is_that_of_whole_numbers() {
+        let numbers = [0, 1, -1, 3, -7, 1 << 31, -(1 << 40), i64::MAX, i64::MIN, 0x1234_5678_9ABC_DEF0];
+        for a in numbers {
+            for b in numbers {
+                let [x, y] = [a, b].map(Integer::from);
+                let [wide_a, wide_b] = [a, b].map(i128::from);
+                assert_eq!((x + y).sign(), Sign::of(&(wide_a + wide_b)), "{a} + {b}");
+                assert_eq!((x - y).sign(), Sign::of(&(wide_a - wide_b)), "{a} - {b}");
+                assert_eq!((x * y).sign(), Sign::of(&(wide_a * wide_b)), "{a} {b}");
+                assert_eq!((x + y) * (x - y), x * x - y * y, "{a} {b}");
+                assert_eq!(((x * y) * y - (x * y) * y + Integer::from(1)).sign(), Sign::Positive, "{a} {b}");
+                for c in numbers {
+                    let z = Integer::from(c);
+                    // Products of three have up to 189 bits.
+                    let expected = (a.signum() * b.signum() * c.signum()).cmp(&0);
+                    assert_eq!((x * y * z).sign() as i8, expected as i8, "{a} {b} {c}");
+                    assert_eq!((x + y) * z, z * x + y * z, "{a} {b} {c}");
+                }
+            }
+        }
+        let big = Integer::from(1 << 62);
+        let bigger = big * big * big * big;
+        assert_eq!(bigger.limbs, [0, 0, 0, 1 << 56]);
+        assert_eq!((bigger - bigger * big).sign(), Sign::Positive, "it wraps around");
+    }
+}
