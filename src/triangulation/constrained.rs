@@ -9,31 +9,55 @@ use super::lines::Lines;
 use super::segment::Scratch;
 use super::{Flaw, Level, Refused, Rounding, Triangulation};
 
-/// Which edges of a triangle are constraints: bit `i` is set for the one opposite vertex `i`.
+/// Which edges of a triangle are constraints, and its payload: bit `i` is set for the edge opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Walls(u8);
+pub struct Walls<C = ()>(u8, C);
 
-impl Walls {
-    /// Marks a triangle that is being replaced.
-    pub(super) const TAKEN_OUT: Self = Walls(u8::MAX);
-
+impl<C> Walls<C> {
     /// Whether the edge opposite vertex `i` is one.
     #[inline(always)]
-    pub fn has(self, i: usize) -> bool {
+    pub fn has(&self, i: usize) -> bool {
         self.0 >> i & 1 == 1
+    }
+
+    /// The payload.
+    pub(super) fn data(&self) -> &C {
+        &self.1
+    }
+
+    /// The payload, to change.
+    pub(super) fn data_mut(&mut self) -> &mut C {
+        &mut self.1
     }
 
     /// The same with the edge opposite vertex `i` set as told.
     #[inline]
     pub(super) fn with(self, i: usize, wall: bool) -> Self {
-        Walls(self.0 & !(1 << i) | u8::from(wall) << i)
+        Walls(self.0 & !(1 << i) | u8::from(wall) << i, self.1)
     }
 
-    /// Only the edge opposite vertex `i`, if it was one.
+    /// The same with only the edge opposite vertex `i` a constraint, if it was one.
     #[inline(always)]
     pub(super) fn only(self, i: usize) -> Self {
-        Walls(self.0 & 1 << i)
+        Walls(self.0 & 1 << i, self.1)
+    }
+
+    /// The same with another payload.
+    pub(super) fn with_data<D>(&self, data: D) -> Walls<D> {
+        Walls(self.0, data)
+    }
+
+    /// Whether it marks a triangle that is being replaced.
+    pub(super) fn is_taken_out(&self) -> bool {
+        self.0 == u8::MAX
+    }
+}
+
+impl<C: Default> Walls<C> {
+    /// Marks a triangle that is being replaced.
+    pub(super) fn taken_out() -> Self {
+        Walls(u8::MAX, C::default())
     }
 }
 
@@ -46,6 +70,11 @@ impl Walls {
 /// split there; where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines
 /// bend no further than the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is
 /// proven.
+///
+/// Vertices have payloads `V`, and triangles, the infinite ones included, payloads `C`, read with
+/// [`cell_data`](Triangulation::cell_data). Triangles around a new vertex inherit the payload of the destroyed one that
+/// had the edge opposite the vertex; those that a removal or a constraint makes, or that come with another dimension,
+/// have the default one.
 ///
 /// The triangulation is a function of the set of points and the set of lines' segments, whether they came at once
 /// ([`from_lines`](Self::from_lines)), one by one or with others that have been removed since.
@@ -71,8 +100,8 @@ impl Walls {
 /// # Ok::<(), breakline::triangulation::Refused>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
-    pub(super) inner: Triangulation<G, 3, V, Walls>,
+pub struct ConstrainedDelaunay<G: Crossing, V = (), C = ()> {
+    pub(super) inner: Triangulation<G, 3, V, Walls<C>>,
     /// Segments among collinear points, which no triangle can hold yet.
     pub(super) waiting: Vec<[VertexId; 2]>,
     /// Vertices added where segments cross.
@@ -89,8 +118,8 @@ pub struct ConstrainedDelaunay<G: Crossing, V = ()> {
     pub(super) scratch: Scratch,
 }
 
-impl<G: Crossing, V> Deref for ConstrainedDelaunay<G, V> {
-    type Target = Triangulation<G, 3, V, Walls>;
+impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
+    type Target = Triangulation<G, 3, V, Walls<C>>;
 
     fn deref(&self) -> &Self::Target {
         &self.inner
@@ -98,7 +127,7 @@ impl<G: Crossing, V> Deref for ConstrainedDelaunay<G, V> {
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Without points.
+    /// Without points, and without payloads of triangles: these come with [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
         ConstrainedDelaunay {
             inner: Triangulation::new(geometry),
@@ -112,11 +141,27 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             scratch: Scratch::default(),
         }
     }
+}
+
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
+    /// The same triangulation with these payloads of triangles, the infinite ones included; asked for in order of their
+    /// numbers. Linear in the number of triangles; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> ConstrainedDelaunay<G, V, D> {
+        let ConstrainedDelaunay { inner, waiting, crossings, left_out, lines, rounding, lent, was_tangled, scratch } =
+            self;
+        let inner = inner.with_data_of_cells(data);
+        ConstrainedDelaunay { inner, waiting, crossings, left_out, lines, rounding, lent, was_tangled, scratch }
+    }
+
+    /// The payload of a triangle, to change. O(1).
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell).data_mut()
+    }
 
     pub(super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
         let location = self.inner.locate(&p, near);
         let split = self.inner.wall_at(location);
-        let takes = |t: &Triangulation<G, 3, V, Walls>, from, i, beyond| {
+        let takes = |t: &Triangulation<G, 3, V, Walls<C>>, from, i, beyond| {
             !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p)
         };
         let vertex = self.inner.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i));

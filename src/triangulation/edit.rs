@@ -54,7 +54,7 @@ struct Demand {
 /// A piece of a line between two sites.
 type Piece = [VertexId; 2];
 
-impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Adds a point; the vertex that is there already, if the site is taken. On a constraint, the
     /// constraint is split.
     ///

@@ -37,16 +37,16 @@ impl<C> Edges<C> for Free {
 #[derive(Clone, Copy)]
 pub(super) struct Forced;
 
-impl Edges<Walls> for Forced {
+impl<C: Copy> Edges<Walls<C>> for Forced {
     const MAY_BE_WALL: bool = true;
 
     #[inline(always)]
-    fn is_wall(self, data: &Walls, i: usize) -> bool {
+    fn is_wall(self, data: &Walls<C>, i: usize) -> bool {
         data.has(i)
     }
 
     #[inline(always)]
-    fn with_wall(self, data: Walls, i: usize, wall: bool) -> Walls {
+    fn with_wall(self, data: Walls<C>, i: usize, wall: bool) -> Walls<C> {
         data.with(i, wall)
     }
 }

@@ -145,7 +145,7 @@ impl Lines {
 }
 
 /// Lines by their ids.
-impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Adds the way of a segment to `chain`, without its start.
     fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         if self.dimension() == 2 {

@@ -8,7 +8,7 @@ use crate::tds::{CellId, VertexId};
 use super::lines::undirected;
 use super::{ConstrainedDelaunay, LineId, Refused};
 
-impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// How deep each cell is nested: the number of constraints that one has to cross, at least, to come there
     /// from outside of the hull. In polygons with holes and islands, odd is inside. By cell number; 0 for
     /// infinite cells and numbers without a cell.

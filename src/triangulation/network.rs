@@ -112,7 +112,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
         Ok((triangulation, renumbered))
     }
+}
 
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Puts in the pieces of an arrangement. Returns those that cross others, which are there up to the first crossing
     /// only.
     pub(super) fn join_all(&mut self, mut pieces: Vec<[VertexId; 2]>, arrangement: &Arrangement) -> Vec<[VertexId; 2]> {

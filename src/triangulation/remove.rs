@@ -209,7 +209,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 }
 
-impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Takes out a vertex that no constraint ends in or runs through, and returns its point; `None` if one does, or if
     /// there is no such vertex. The result is the triangulation of the other points with the same constraints. Numbers
     /// and time as in [`Delaunay::remove`]. The tables of [lines](super::lines::Lines) must not name it any more when

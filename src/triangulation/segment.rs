@@ -89,7 +89,7 @@ pub(super) enum Met {
     Wall(CellId, usize),
 }
 
-impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Says whether all of
     /// it is there: pieces that were arranged meet no constraint between their ends, but off the grid; behind one,
     /// nothing is put in.
@@ -176,7 +176,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     }
 }
 
-impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     /// Whether a vertex is in the circle of a counter-clockwise triangle.
     #[inline(always)]
     fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
@@ -288,10 +288,10 @@ impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
         is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
     ) {
         for &cell in corridor.iter() {
-            *self.tds.cell_data_mut(cell) = Walls::TAKEN_OUT;
+            *self.tds.cell_data_mut(cell) = Walls::taken_out();
         }
         for edge in left.edges.iter_mut().chain(&mut right.edges) {
-            edge.is_spike = *self.tds.cell_data(edge.cell) == Walls::TAKEN_OUT;
+            edge.is_spike = self.tds.cell_data(edge.cell).is_taken_out();
         }
         // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end,
         // has it on its left. On the right it is the other way around.

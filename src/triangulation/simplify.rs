@@ -8,7 +8,7 @@ use crate::tds::{CellId, VertexId, ccw};
 
 use super::{ConstrainedDelaunay, LineId};
 
-impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Takes vertices out of a line, in plan, as long as every one of them lies within `tolerance` of the piece that
     /// stands for it, and no line comes to lie on its other side: the triangle between the line and its shortcut is
     /// free of other vertices of lines. Ends stay, and vertices that are shared with other lines or used twice.

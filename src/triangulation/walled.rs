@@ -12,6 +12,8 @@ use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 /// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
 /// basic [`Triangulation`]; where one lies on a constraint, it splits it.
 ///
+/// Payloads are inherited as those of [`ConstrainedDelaunay`](super::ConstrainedDelaunay) are.
+///
 /// Constraints are edges here, between vertices. For lines that cross, are told apart, and are taken out again, and for
 /// triangles of good shape there is [`ConstrainedDelaunay`](super::ConstrainedDelaunay).
 ///
@@ -28,8 +30,8 @@ use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 /// assert!(t.constrained_edges().eq([[v[2], v[3]]]));
 /// ```
 #[derive(Debug, Clone)]
-pub struct Constrained<G: Geometry<3>, V = ()> {
-    pub(super) inner: Triangulation<G, 3, V, Walls>,
+pub struct Constrained<G: Geometry<3>, V = (), C = ()> {
+    pub(super) inner: Triangulation<G, 3, V, Walls<C>>,
     pub(super) scratch: Scratch,
 }
 
@@ -55,8 +57,8 @@ impl fmt::Display for Blocked {
 
 impl std::error::Error for Blocked {}
 
-impl<G: Geometry<3>, V> Deref for Constrained<G, V> {
-    type Target = Triangulation<G, 3, V, Walls>;
+impl<G: Geometry<3>, V, C> Deref for Constrained<G, V, C> {
+    type Target = Triangulation<G, 3, V, Walls<C>>;
 
     fn deref(&self) -> &Self::Target {
         &self.inner
@@ -64,9 +66,22 @@ impl<G: Geometry<3>, V> Deref for Constrained<G, V> {
 }
 
 impl<G: Geometry<3>, V> Constrained<G, V> {
-    /// Without points.
+    /// Without points, and without payloads of triangles: these come with [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
         Constrained { inner: Triangulation::new(geometry), scratch: Scratch::default() }
+    }
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
+    /// The same triangulation with these payloads of triangles, the infinite ones included; asked for in order of their
+    /// numbers. Linear in the number of triangles; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Constrained<G, V, D> {
+        Constrained { inner: self.inner.with_data_of_cells(data), scratch: self.scratch }
+    }
+
+    /// The payload of a triangle, to change. O(1).
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell).data_mut()
     }
 
     /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the site is taken.
@@ -77,7 +92,7 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
         self.inner.admit(&p)?;
         let location = self.inner.locate(&p, None);
         let split = self.inner.wall_at(location);
-        let takes = |t: &Triangulation<G, 3, V, Walls>, from: CellId, i, beyond| {
+        let takes = |t: &Triangulation<G, 3, V, Walls<C>>, from: CellId, i, beyond| {
             !t.tds.cell_data(from).has(i) && t.is_split_by(beyond, &p)
         };
         let vertex = self.inner.insert_at(p, location, data, takes, |walls, i| walls.only(i));
@@ -154,7 +169,7 @@ impl<G: Geometry<3>, V> Constrained<G, V> {
     }
 }
 
-impl<G: Geometry<3>> Constrained<G> {
+impl<G: Geometry<3>, C: Copy + Default> Constrained<G, (), C> {
     /// Adds a point; the vertex that is there already, if the site is taken.
     ///
     /// # Errors
@@ -165,7 +180,22 @@ impl<G: Geometry<3>> Constrained<G> {
 }
 
 /// What triangulations with constraints have in common.
-impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
+    /// The payload of a triangle.
+    pub fn cell_data(&self, cell: CellId) -> &C {
+        self.tds.cell_data(cell).data()
+    }
+
+    /// The same triangulation and constraints, with these payloads.
+    pub(super) fn with_data_of_cells<D: Copy + Default>(
+        self,
+        mut data: impl FnMut(CellId) -> D,
+    ) -> Triangulation<G, 3, V, Walls<D>> {
+        let mut walls = vec![Walls::default(); self.tds.cell_slots()];
+        self.tds.cells().for_each(|cell| walls[cell.index()] = self.tds.cell_data(cell).with_data(()));
+        self.with_cell_data(|cell| walls[cell.index()].with_data(data(cell)))
+    }
+
     /// Whether the edge of a cell opposite its vertex `i` is a constraint.
     #[inline]
     pub fn is_constrained(&self, cell: CellId, i: usize) -> bool {

@@ -5,16 +5,29 @@ use std::collections::BTreeMap;
 use crate::common::random::Random;
 use breakline::geometry::{Geometry, Plane, Space, Weighted};
 use breakline::tds::{CellId, VertexId};
-use breakline::triangulation::{Delaunay, Level, Regular, Triangulation};
+use breakline::triangulation::{
+    Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation, Walls,
+};
 
 /// Cells by their vertices, with their payloads; and the dimension.
 type Seen = (i32, BTreeMap<Vec<VertexId>, u32>);
 
 fn seen<G: Geometry<N>, const N: usize, V>(t: &Triangulation<G, N, V, u32>) -> Seen {
+    seen_as(t, |cell| *t.tds().cell_data(cell))
+}
+
+fn seen_between_walls<G: Geometry<3>, V>(t: &Triangulation<G, 3, V, Walls<u32>>) -> Seen {
+    seen_as(t, |cell| *t.cell_data(cell))
+}
+
+fn seen_as<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
+    t: &Triangulation<G, N, V, C>,
+    payload: impl Fn(CellId) -> u32,
+) -> Seen {
     let sorted = |cell: CellId| {
         let mut vertices = t.tds().cell_vertices(cell).to_vec();
         vertices.sort_unstable();
-        (vertices, *t.tds().cell_data(cell))
+        (vertices, payload(cell))
     };
     (t.dimension(), t.tds().cells().map(sorted).collect())
 }
@@ -155,6 +168,98 @@ fn cells_without_a_law_inherit_what_they_replace() {
     assert!(flips > 100, "{flips}");
 }
 
+#[test]
+fn constrained_cells_inherit_what_they_replace() {
+    let mut dice = Random(5);
+    let mut constraints = 0;
+    for _ in 0..400 {
+        let mut t = Constrained::<Plane>::new(Plane::default()).with_cell_data(|_| 0u32);
+        let mut vertices = Vec::new();
+        for _ in 0..30 {
+            t = t.with_cell_data(another);
+            let before = seen_between_walls(&t);
+            let walls: Vec<_> = t.constrained_edges().collect();
+            match dice.below(6) {
+                0 if !vertices.is_empty() => {
+                    t.remove(dice.pick(&vertices));
+                    judge_removal(&before, &seen_between_walls(&t));
+                }
+                1 | 2 if vertices.len() > 2 => {
+                    let is_new = t.constrain(dice.pick(&vertices), dice.pick(&vertices)).is_ok();
+                    judge_removal(&before, &seen_between_walls(&t));
+                    constraints += usize::from(is_new);
+                }
+                3 if !walls.is_empty() => {
+                    let [a, b] = dice.pick(&walls);
+                    assert!(t.release(a, b));
+                    assert_eq!(seen_between_walls(&t), before);
+                }
+                _ => {
+                    let vertex = t.insert([dice.below(5) as f64, dice.below(5) as f64]).unwrap();
+                    judge_insertion(&before, &seen_between_walls(&t), vertex);
+                    vertices.push(vertex);
+                }
+            }
+            let walls: Vec<_> = t.constrained_edges().collect();
+            t = t.with_cell_data(another);
+            assert!(t.constrained_edges().eq(walls));
+            assert_eq!(t.check(Level::Law), []);
+        }
+    }
+    assert!(constraints > 100, "{constraints}");
+}
+
+/// Lines are arranged anew with each edit: what stays keeps its payload, and what is new has one that was there, or the
+/// default one.
+#[test]
+fn cells_between_lines_keep_their_payloads() {
+    let mut dice = Random(6);
+    for _ in 0..300 {
+        let mut t = ConstrainedDelaunay::<Plane>::new(Plane::default()).with_cell_data(|_| 0u32);
+        for _ in 0..20 {
+            t = t.with_cell_data(another);
+            let before = seen_between_walls(&t);
+            let lines: Vec<_> = t.lines().collect();
+            let mut point = || [dice.below(5) as f64, dice.below(5) as f64];
+            match t.lines().count() {
+                0 | 1 => drop(t.insert_lines(&[[point(), point()]]).unwrap()),
+                count if count > 3 => assert!(t.remove_line(dice.pick(&lines))),
+                _ => {
+                    let vertex = t.insert(point()).unwrap();
+                    if dice.below(3) == 0 {
+                        let _ = t.remove(vertex);
+                    } else {
+                        t.insert_lines(&[[*t.point(vertex), [dice.below(5) as f64, 4.0]]]).unwrap();
+                    }
+                }
+            }
+            let after = seen_between_walls(&t);
+            for (cell, &data) in &after.1 {
+                assert!(data == 0 || before.1.values().any(|&old| old == data), "{cell:?} {data}");
+            }
+            assert_eq!(t.check(Level::Law), []);
+        }
+    }
+}
+
+/// A point put into an area between constraints.
+#[test]
+fn areas_between_constraints_are_marked() {
+    let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    let lines = [vec![0, 2], vec![0, 1, 2, 3, 0]];
+    let geometry: Plane = Plane::default();
+    let (t, vertices) = ConstrainedDelaunay::<_, ()>::from_lines(geometry, &square, &lines, OnCrossing::Split).unwrap();
+    let sides: Vec<bool> = t.tds().cells().map(|cell| t.tds().corners(cell).contains(&vertices[1])).collect();
+    let mut t = t.with_cell_data(|cell| if sides[cell.index()] { 'A' } else { 'B' });
+    assert!(t.cell_data(t.tds().cells().next().unwrap()) != &char::default());
+    let inside = t.insert([3.0, 1.0]).unwrap();
+    assert!(t.tds().around(inside).all(|cell| *t.cell_data(cell) == 'A'));
+    let cell = t.tds().around(inside).next().unwrap();
+    *t.cell_data_mut(cell) = 'C';
+    assert_eq!(t.tds().cells().filter(|&cell| *t.cell_data(cell) == 'C').count(), 1);
+    assert_eq!(t.constrained_edges().count(), 5);
+}
+
 #[cfg(feature = "serde")]
 #[test]
 fn payloads_are_saved() {
@@ -164,4 +269,12 @@ fn payloads_are_saved() {
     t.remove(vertices[0]);
     let read: Delaunay<Plane, 3, (), u32> = serde_json::from_str(&serde_json::to_string(&t).unwrap()).unwrap();
     assert_eq!(seen(&t), seen(&read));
+
+    let (t, _) =
+        ConstrainedDelaunay::<_, ()>::from_lines(Plane::default(), &points, &[[0, 3], [1, 4]], OnCrossing::Split)
+            .unwrap();
+    let t: ConstrainedDelaunay<Plane, (), u32> = t.with_cell_data(another);
+    let read: ConstrainedDelaunay<Plane, (), u32> = serde_json::from_str(&serde_json::to_string(&t).unwrap()).unwrap();
+    assert_eq!(seen_between_walls(&t), seen_between_walls(&read));
+    assert!(read.constrained_edges().eq(t.constrained_edges()));
 }

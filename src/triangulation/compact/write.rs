@@ -98,7 +98,7 @@ fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>
 }
 
 /// Bit `i` for the edge opposite vertex `i`.
-fn bits(walls: &Walls) -> u8 {
+fn bits<C>(walls: &Walls<C>) -> u8 {
     (0..3).map(|i| u8::from(walls.has(i)) << i).sum()
 }
 
@@ -124,7 +124,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Del
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, V, const D: usize> Constrained<G, V> {
+impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Constrained<G, V, C> {
     /// See [`Triangulation::write_compact`]; with the constraints.
     ///
     /// # Errors
@@ -134,7 +134,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, const D: usize> Constrained<G, V> {
     }
 }
 
-impl<G: Crossing<Point = [f64; D]>, V, const D: usize> ConstrainedDelaunay<G, V> {
+impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize> ConstrainedDelaunay<G, V, C> {
     /// See [`Triangulation::write_compact`]; with the constrained edges. What is known of their lines stays behind.
     ///
     /// # Errors

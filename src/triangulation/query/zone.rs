@@ -87,7 +87,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 }
 
-impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// The same as [`Delaunay::conflict_zone`], where constraints bound what the point sees; with one that it lies
     /// on, the zone has both sides of it. Of a point on a segment that was bent at crossings, insertion replaces
     /// more: it leads the segment through the point.

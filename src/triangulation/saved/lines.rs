@@ -45,7 +45,7 @@ fn number(v: &VertexId) -> u32 {
     v.index() as u32
 }
 
-impl<G: Crossing, V> ConstrainedDelaunay<G, V> {
+impl<G: Crossing, V, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// The segments of all lines, each once, from the smaller vertex to the larger.
     fn segments(&self) -> Vec<[VertexId; 2]> {
         let segments = segments_of(self.lines.given.iter().flatten().map(|line| &**line), |v| number(&v));
@@ -139,8 +139,8 @@ impl<G: Crossing, V> ConstrainedDelaunay<G, V> {
     }
 }
 
-impl<P, V> WithLines<Owned<P, V, Walls>> {
-    fn restore<G: Crossing<Point = P> + Default>(self) -> Result<ConstrainedDelaunay<G, V>, Damage> {
+impl<P, V, C: Copy + Default> WithLines<Owned<P, V, Walls<C>>> {
+    fn restore<G: Crossing<Point = P> + Default>(self) -> Result<ConstrainedDelaunay<G, V, C>, Damage> {
         let inner = self.triangulation.restore::<G>()?;
         inner.has_no_hidden_points()?;
         inner.has_walls_on_edges_only()?;
@@ -202,7 +202,9 @@ impl<P, V> WithLines<Owned<P, V, Walls>> {
     }
 }
 
-impl<G: Crossing<Point: Serialize>, V: Serialize> Serialize for ConstrainedDelaunay<G, V> {
+impl<G: Crossing<Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize
+    for ConstrainedDelaunay<G, V, C>
+{
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let numbers = |vertices: &[VertexId]| vertices.iter().map(number).collect::<Vec<u32>>();
         let segments = self.segments();
@@ -231,13 +233,14 @@ impl<G: Crossing<Point: Serialize>, V: Serialize> Serialize for ConstrainedDelau
     }
 }
 
-impl<'de, G, V> Deserialize<'de> for ConstrainedDelaunay<G, V>
+impl<'de, G, V, C> Deserialize<'de> for ConstrainedDelaunay<G, V, C>
 where
     G: Crossing<Point: Deserialize<'de>> + Default,
     V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let saved = WithLines::<Owned<G::Point, V, Walls>>::deserialize(deserializer)?;
+        let saved = WithLines::<Owned<G::Point, V, Walls<C>>>::deserialize(deserializer)?;
         saved.restore().map_err(D::Error::custom)
     }
 }

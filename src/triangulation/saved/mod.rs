@@ -143,7 +143,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
-impl<G: Geometry<3>, V> Triangulation<G, 3, V, Walls> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     fn has_walls_on_edges_only(&self) -> Result<(), Damage> {
         let is_edge = |cell, i: usize| {
             i < 3 && self.dimension() == 2 && !self.tds.edge_ends(cell, i).contains(&VertexId::INFINITE)
@@ -234,14 +234,17 @@ where
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize> Serialize for Constrained<G, V> {
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Constrained<G, V, C> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
 }
 
-impl<'de, G: Geometry<3, Point: Deserialize<'de>> + Default, V: Deserialize<'de>> Deserialize<'de>
-    for Constrained<G, V>
+impl<'de, G, V, C> Deserialize<'de> for Constrained<G, V, C>
+where
+    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    V: Deserialize<'de>,
+    C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
