@@ -92,8 +92,8 @@ impl Filter for OnLattice {
     }
 }
 
-/// Integers of 256 bits, where the coordinates of this one question, counted in a common unit, have up to 62 bits (in an
-/// in-sphere test 49): any of about one size.
+/// Integers of 256 bits, where the coordinates of this one question, and their differences, have up to 62 bits if they
+/// are counted in a common unit: in the plane, any of about one size. In an in-sphere test it is 49 bits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OnFineLattice;
 
@@ -104,7 +104,7 @@ impl Filter for OnFineLattice {
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         // As for 128 bits.
         let bits = (248 / P::DEGREE).min(62);
-        // With zero among them, the coordinates themselves are that short.
+        // With zero among them, not only the differences are that short.
         let axes = (0..P::AXES).map(|axis| predicate.axis(axis).chain([0.0]));
         let inverse_unit = lattice::inverse_unit(axes, bits)?;
         Some(predicate.value(|a, b| lattice::long_difference(a, b, inverse_unit)).sign())

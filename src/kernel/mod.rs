@@ -9,7 +9,7 @@
 //! | [`Fast`] | `f64` | no guarantee; for comparison and experiments |
 //! | [`Exact`] | arbitrary precision | the judge in tests; any finite coordinates |
 //! | [`Expansions`] | sums of `f64` | exact within [`RANGE`], never filtered |
-//! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, then pairs of `f64`, then expansions | the default |
+//! | [`Adaptive`] | error-bounded `f64`, then integers on a common grid, of 128 bits, of 256, then pairs of `f64`, then expansions | the default |
 //! | [`Interval`] | intervals of `f64`, then as `Adaptive` | for comparison: the dynamic filter of other libraries |
 //! | [`Fixed`] | `f64` with a constant error bound, then as `Lattice` | whole numbers of 24 bits, or of up to 52 |
 //! | [`Lattice`] | error-bounded `f64`, then integers, wide ones if need be | whole numbers up to 2^53, like those of LAS files |
@@ -202,8 +202,8 @@ pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
 /// Within [`RANGE`](Self::RANGE), a sign that it does tell is that of the real number.
 ///
 /// # Models
-/// [`ErrorBound`], [`FlooredErrorBound`], [`PairBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`], [`OnFineLattice`],
-/// [`WholeNumbers`]; [`Scaled`].
+/// [`ErrorBound`], [`FlooredErrorBound`], [`PairBound`], [`IntervalBound`], [`FixedBound`]; [`OnLattice`],
+/// [`OnFineLattice`], [`WholeNumbers`]; [`Scaled`].
 pub trait Filter: Copy + Default + Debug + Send + Sync + 'static {
     /// The coordinates it is proven for.
     const RANGE: Range;
@@ -286,11 +286,14 @@ pub type Interval = Filtered<IntervalBound, Nearly>;
 /// For coordinates that are whole numbers of magnitude `2^BITS` at the most (CGAL's `Fixed_precision_nt` has the same
 /// 24 bits; [`Steps`](crate::geometry::Steps) have 31): the error bound is known before anything is computed, and an
 /// orientation in the plane costs no more than with [`Fast`].
-pub type Fixed<const BITS: i32 = 24> = Filtered<FixedBound<BITS>, Filtered<WholeNumbers, Expansions>>;
+pub type Fixed<const BITS: i32 = 24> = Filtered<FixedBound<BITS>, NearlyWhole>;
 
-/// For coordinates that are whole numbers, up to `2^53`: 128-bit integers answer what floating point cannot, and
-/// expansions what these cannot hold.
-pub type Lattice = Filtered<ErrorBound, Filtered<WholeNumbers, Expansions>>;
+/// For coordinates that are whole numbers, up to `2^53`: integers of 128 bits, and of 256, answer what floating point
+/// cannot; in space, expansions what these cannot hold.
+pub type Lattice = Filtered<ErrorBound, NearlyWhole>;
+
+/// What is left to these two.
+type NearlyWhole = Filtered<WholeNumbers, Filtered<OnFineLattice, Expansions>>;
 
 /// For every finite coordinate, from `5e-324` to `1.8e308`: nearly as fast as [`Adaptive`] within its range, and where
 /// a power of two brings the coordinates of a question there.

@@ -2,7 +2,7 @@
 //!
 //! Ties (cocircular points, above all) happen where coordinates are coarse: integer grids, rounded
 //! samples. There all differences are small multiples of one unit, and 128-bit integers hold the
-//! whole polynomial. Of any coordinates of about one size, 256-bit integers do.
+//! whole polynomial. In the plane, of any coordinates of about one size, 256-bit integers do.
 
 use super::Integer;
 

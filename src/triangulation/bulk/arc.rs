@@ -1,8 +1,8 @@
 //! Points on an arc, from one end of it to the other.
 //!
-//! Halves of an arc along which the curvature falls are fans. A merge of two of them destroys one, so that each level of
-//! divide and conquer destroys half of all triangles. Beginning at the sharp end, one by one, a point is joined to the
-//! end points of the last edge, and nothing is destroyed:
+//! Halves of an arc along which the curvature falls are fans. A merge of two of them destroys one, so that each level
+//! of divide and conquer destroys half of all triangles. Beginning at the sharp end, one by one, a point is joined to
+//! the end points of the last edge, and nothing is destroyed:
 //!
 //! ```text
 //!            . e
@@ -13,10 +13,11 @@
 //! ```
 //!
 //! An arc here is convex and rises or falls all the way; so an end point beyond it sees one edge only. Where triangles
-//! are destroyed all the same, edges are flipped (Lawson 1977) as long as that is less work than merges would be.
+//! are destroyed all the same, edges are flipped (Lawson 1977) as long as that is less work than merges would be. Work
+//! in vain is a few steps a point at most: after an attempt, none is made with more than half as many points.
 //!
-//! `PERF:` 100 000 points on a parabola: 220 instead of 484 million instructions, with reading the file. Insertion in random
-//! order (Chew 1990), which suits any arc: 567.
+//! `PERF:` 100 000 points on a parabola: 220 instead of 484 million instructions, with reading the file. Insertion in
+//! random order (Chew 1990), which suits any arc: 567.
 
 use std::cmp::Ordering;
 
@@ -27,16 +28,28 @@ use crate::tds::VertexId;
 use super::faces::Range;
 use super::{Axis, Part};
 
-/// Fewer points are merged sooner than looked at.
-pub(super) const LEAST: usize = 200;
+/// Fewer points are merged: to look whether they are on an arc takes as long.
+const LEAST: usize = 200;
+
+/// More points are halved, so that threads can share them.
+pub(super) const MOST: usize = 1 << 17;
 
 /// So many are put in order by comparison.
 const FEW: usize = 8;
 
-/// Of flips, for each point: merges take about one for each level.
+/// Of flips, for each point that is there already: merges take about one for each level.
 const FLIPS: usize = 3;
 
+/// Of flips, on top: where an arc begins, its curvature is lost in roundings.
+const FIRST_FLIPS: usize = 64;
+
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
+    /// Whether to look for an arc in a range.
+    #[inline(always)]
+    pub(super) fn may_be_arc(&self, lo: usize, hi: usize) -> bool {
+        FILTERED && (LEAST..=self.arcs).contains(&(hi - lo))
+    }
+
     /// A range of points on an arc; `None`, and faces to be overwritten, if it is none, or takes too long.
     #[inline(never)]
     pub(super) fn arc(&mut self, lo: usize, hi: usize) -> Option<Part> {
@@ -104,7 +117,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let mut open = self.pair([a, b], first_face)[usize::from(turns_left)];
         let mut unsettled = Vec::new();
         let mut flips = 0;
-        for (&next, fresh) in rest.iter().zip((first_face + 2..).step_by(2)) {
+        for (count, (&next, fresh)) in rest.iter().zip((first_face + 2..).step_by(2)).enumerate() {
             let before_and_after = self.add(next, open, fresh);
             unsettled.push(open);
             open = before_and_after[usize::from(turns_left)];
@@ -114,7 +127,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                     flips += 1;
                 }
             }
-            if flips > FLIPS * chain.len() {
+            if flips > FLIPS * count + FIRST_FLIPS {
                 return None;
             }
         }

@@ -245,12 +245,18 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// it: it is further away.
     #[inline(always)]
     fn lower_tangent(&self, mut left: Foot, mut right: Foot) -> [Foot; 2] {
+        // Once around, at the most: wrong answers would lead around and around.
+        let (first_left, first_right) = (left.ghost, right.ghost);
         loop {
             let mut moved = false;
-            while let Some(lower) = self.lower::<LEFT>(&left, [&left, &right]) {
+            while let Some(lower) = self.lower::<LEFT>(&left, [&left, &right])
+                && lower.ghost != first_left
+            {
                 (left, moved) = (lower, true);
             }
-            while let Some(lower) = self.lower::<RIGHT>(&right, [&left, &right]) {
+            while let Some(lower) = self.lower::<RIGHT>(&right, [&left, &right])
+                && lower.ghost != first_right
+            {
                 (right, moved) = (lower, true);
             }
             if !moved || left.ghost == NONE {

@@ -40,8 +40,8 @@
 //! [`filter`] holds the arithmetic. It is used if the geometry has [exact
 //! plans](Coordinates::exact_plan) of all points; else the same algorithm asks the geometry everything.
 //!
-//! `PERF:` what was tried and left. *Huge pages* (glibc's `malloc.hugetlb=1`, 1 million uniform points): 2 600 page faults
-//! instead of 30 600, and no less time; what the program saved, the system of the virtual machine took.
+//! `PERF:` what was tried and left. *Huge pages* (glibc's `malloc.hugetlb=1`, 1 million uniform points): 2 600
+//! page faults instead of 30 600, and no less time; what the program saved, the system of the virtual machine took.
 
 mod arc;
 mod curve;
@@ -92,7 +92,8 @@ impl Default for Grain {
     }
 }
 
-/// Two ghosts of a finished part, at opposite ends of it, to start looking from; [`NONE`] for one point.
+/// Two ghosts of a finished part, at opposite ends of it (of an arc the one that has both), to start looking from;
+/// [`NONE`] for one point.
 #[derive(Clone, Copy)]
 struct Part {
     bottom: u32,
@@ -156,7 +157,7 @@ fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
     grain: Grain,
 ) {
     let seen = Seen::<G, N, FILTERED>::new(geometry, points);
-    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain }.build(0, points.len());
+    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain, arcs: arc::MOST }.build(0, points.len());
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
@@ -175,22 +176,24 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             }
             _ => {}
         }
-        if FILTERED
-            && hi - lo >= arc::LEAST
-            && let Some(part) = self.arc(lo, hi)
-        {
-            return part;
+        let arcs = self.arcs;
+        if self.may_be_arc(lo, hi) {
+            if let Some(part) = self.arc(lo, hi) {
+                return part;
+            }
+            self.arcs = (hi - lo) / 2;
         }
         let Some((mid, axis)) = self.halve(lo, hi) else { return self.build_dense(lo, hi) };
         let (left, right) = if hi - lo > self.grain.range {
-            let (seen, keys, first, offset, grain) = (self.seen, self.keys, self.first, self.offset, self.grain);
+            let Range { seen, keys, first, offset, grain, arcs, .. } = *self;
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
-            let mut left = Range { seen, keys, first, faces: left, offset, grain };
-            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain };
+            let mut left = Range { seen, keys, first, faces: left, offset, grain, arcs };
+            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain, arcs };
             rayon::join(|| left.build(lo, mid), || right.build(mid, hi))
         } else {
             (self.build(lo, mid), self.build(mid, hi))
         };
+        self.arcs = arcs;
         self.merge(left, right, mid, axis)
     }
 
@@ -239,7 +242,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             let curve = Curve::through(count, coordinates, self.grain.points);
             keys = Keys::of(count, coordinates, &curve, self.grain);
         }
-        let (seen, offset, grain) = (self.seen, self.offset, self.grain);
-        Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain }.build(lo, hi)
+        let Range { seen, offset, grain, arcs, .. } = *self;
+        Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain, arcs }.build(lo, hi)
     }
 }

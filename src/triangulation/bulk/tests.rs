@@ -182,6 +182,24 @@ fn bulk_is_one_by_one() {
     }
 }
 
+/// Of three points that are nearly collinear, plain floating point may say that each is below the others.
+#[test]
+fn ends_with_wrong_answers() {
+    let [p, q, r] = [
+        [0.1893980880966567, 0.2017665473458723],
+        [0.042157786093438454, 0.09911152443006584],
+        [0.8196851798815653, 0.6411987881823696],
+    ];
+    in_bulk_fast(&[q, p, r, [0.95, 0.9], [1.0, 0.2]]);
+    let mut random = Random(12);
+    for _ in 0..20_000 {
+        let slope = random.unit();
+        let mut points: Vec<_> = (0..6).map(|_| random.unit()).map(|x| [x, 0.07 + slope * x]).collect();
+        points.push([0, 1].map(|_| random.unit()));
+        in_bulk_fast(&points);
+    }
+}
+
 /// Plain floating point may be wrong, but ends.
 fn in_bulk_fast(points: &[[f64; 2]]) {
     let (sites, _) = Sites::of(&Plane::<Fast>::default(), points, TINY).unwrap();
@@ -194,7 +212,7 @@ fn is_arc(points: &[[f64; 2]]) -> bool {
     let Sites { points, keys, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
     let seen = Seen::<_, 3, true>::new(&geometry, &points);
     let mut faces = vec![Links::UNUSED; 2 * points.len()];
-    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY };
+    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY, arcs: 1000 };
     range.arc(0, points.len()).is_some()
 }
 
