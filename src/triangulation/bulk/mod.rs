@@ -181,7 +181,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             if let Some(part) = self.arc(lo, hi) {
                 return part;
             }
-            self.arcs = (hi - lo) / 2;
+            self.arcs = (hi - lo) / 4 * 3;
         }
         let Some((mid, axis)) = self.halve(lo, hi) else { return self.build_dense(lo, hi) };
         let (left, right) = if hi - lo > self.grain.range {
