@@ -23,14 +23,17 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
 use breakline::geometry::{Plane, Space};
-use breakline::kernel::{Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnLattice, Predicate, Range};
+use breakline::kernel::{
+    Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnFineLattice, OnLattice, Predicate, Range,
+};
 use breakline::num::Sign;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Refused};
 
-/// The stages of [`Adaptive`], each counting what it is asked.
-type Counting = Filtered<Counted<0, ErrorBound>, Filtered<Counted<1, OnLattice>, Counted<2, Expansions>>>;
+/// The stages of [`Adaptive`], but for the pairs of doubles, each counting what it is asked.
+type Counting = Filtered<Counted<0, ErrorBound>, Filtered<Counted<1, OnLattice>, OnFineGrid>>;
+type OnFineGrid = Filtered<Counted<2, OnFineLattice>, Counted<3, Expansions>>;
 
-static ASKED: [AtomicU64; 3] = [const { AtomicU64::new(0) }; 3];
+static ASKED: [AtomicU64; 4] = [const { AtomicU64::new(0) }; 4];
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Counted<const STAGE: usize, K>(K);
@@ -144,16 +147,17 @@ fn time<T>(
 }
 
 /// What the check of a triangulation says, and how many questions each stage was asked while it was built.
-fn tell(asked: [u64; 3], flaws: usize) -> Result<(), String> {
-    let [all, lattice, exact] = asked;
+fn tell(asked: [u64; 4], flaws: usize) -> Result<(), String> {
+    let [all, lattice, fine, exact] = asked;
     eprintln!(
-        "check: {flaws} flaws; asked of the kernel {all}, not certain by the error bound {lattice}, nor as integers {exact}"
+        "check: {flaws} flaws; asked of the kernel {all}, not certain by the error bound {lattice}, \
+         nor as integers of 128 bits {fine}, nor of 256 {exact}"
     );
     if flaws == 0 { Ok(()) } else { Err(format!("{flaws} flaws")) }
 }
 
-fn asked() -> [u64; 3] {
-    [0, 1, 2].map(|stage: usize| ASKED[stage].load(Relaxed))
+fn asked() -> [u64; 4] {
+    [0, 1, 2, 3].map(|stage: usize| ASKED[stage].load(Relaxed))
 }
 
 fn plane<K: Kernel>(points: &[[f64; 2]], one_by_one: bool) -> Result<(Delaunay<Plane<K>, 3>, usize), Refused> {

@@ -236,7 +236,7 @@ fn a_constraint_to_infinity_is_an_error() {
         let is_end = |vertex: &Value| vertex.is_null() || *vertex == 0;
         if cell.iter().filter(|&vertex| is_end(vertex)).count() == 2 && cell.contains(&Value::Null) {
             let opposite = cell.iter().position(|vertex| !is_end(vertex)).unwrap();
-            saved["cell_data"][k] = Value::from(1 << opposite);
+            saved["cell_data"][k][0] = Value::from(1 << opposite);
         }
     }
     let error = serde_json::from_value::<Constrained<Plane>>(saved).unwrap_err().to_string();
