@@ -26,7 +26,7 @@ use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::faces::Range;
-use super::filter::{NOWHERE, turn};
+use super::filter::NOWHERE;
 use super::{Axis, Part};
 
 /// Fewer points are merged: to look whether they are on an arc takes as long.
@@ -105,12 +105,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 last = [q, r];
                 chain.push(vertex);
                 if let &[.., a, b, c] = chain.as_slice() {
-                    let estimate = turn(p, q, r);
-                    let turn = match self.seen.is_open(estimate) {
-                        true => self.seen.turn_slowly([a, b, c]),
-                        false if estimate.is_positive() => Sign::Positive,
-                        false => Sign::Negative,
-                    };
+                    let turn = self.seen.turn_at([p, q, r], [a, b, c]);
                     let goes_on = p[0] <= q[0] && p[1] <= q[1] && q[0] <= r[0] && q[1] <= r[1];
                     if turn == Sign::Zero || *side.get_or_insert(turn) != turn || !goes_on {
                         return None;

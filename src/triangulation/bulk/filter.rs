@@ -174,7 +174,12 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> Seen<'a, G, N,
     /// The orientation of three finite vertices.
     #[inline(always)]
     pub(super) fn turn(&self, vertices: [VertexId; 3]) -> Sign {
-        let [a, b, c] = vertices.map(|v| self.place(v));
+        self.turn_at(vertices.map(|v| self.place(v)), vertices)
+    }
+
+    /// The same, of vertices whose places are known, or where these are after a quarter turn.
+    #[inline(always)]
+    pub(super) fn turn_at(&self, [a, b, c]: [Place; 3], vertices: [VertexId; 3]) -> Sign {
         let estimate = turn(a, b, c);
         if self.is_open(estimate) {
             self.turn_slowly(vertices)
