@@ -137,11 +137,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// The same complex with these payloads, of all cells in order of their numbers.
-    pub(crate) fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Tds<N, V, D> {
+    /// The same complex with other payloads, of all cells in order of their numbers, given those that they had.
+    pub(crate) fn map_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId, &C) -> D) -> Tds<N, V, D> {
         let mut cell_data = vec![D::default(); self.links.len()];
         for cell in self.cells() {
-            cell_data[cell.index()] = data(cell);
+            cell_data[cell.index()] = data(cell, self.cell_data(cell));
         }
         Tds {
             dimension: self.dimension,

@@ -77,9 +77,17 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
     /// numbers. Linear in the number of cells; nothing but payloads is copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Triangulation<G, N, V, D> {
+    pub fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Triangulation<G, N, V, D> {
+        self.map_cell_data(|cell, _| data(cell))
+    }
+
+    /// The same with payloads that follow from those that were there.
+    pub(super) fn map_cell_data<D: Copy + Default>(
+        self,
+        data: impl FnMut(CellId, &C) -> D,
+    ) -> Triangulation<G, N, V, D> {
         let Triangulation { geometry, tds, points, zone, last } = self;
-        Triangulation { geometry, tds: tds.with_cell_data(data), points, zone, last }
+        Triangulation { geometry, tds: tds.map_cell_data(data), points, zone, last }
     }
 
     /// The payload of a cell, to change. O(1).

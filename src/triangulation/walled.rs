@@ -181,7 +181,7 @@ impl<G: Geometry<3>, C: Copy + Default> Constrained<G, (), C> {
 
 /// What triangulations with constraints have in common.
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
-    /// The payload of a triangle.
+    /// The payload of a triangle. O(1).
     pub fn cell_data(&self, cell: CellId) -> &C {
         self.tds.cell_data(cell).data()
     }
@@ -191,9 +191,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         self,
         mut data: impl FnMut(CellId) -> D,
     ) -> Triangulation<G, 3, V, Walls<D>> {
-        let mut walls = vec![Walls::default(); self.tds.cell_slots()];
-        self.tds.cells().for_each(|cell| walls[cell.index()] = self.tds.cell_data(cell).with_data(()));
-        self.with_cell_data(|cell| walls[cell.index()].with_data(data(cell)))
+        self.map_cell_data(|cell, walls| walls.with_data(data(cell)))
     }
 
     /// Whether the edge of a cell opposite its vertex `i` is a constraint.
