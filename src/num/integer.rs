@@ -24,6 +24,18 @@ impl Integer {
             Sign::Positive
         }
     }
+
+    /// The sum with another number, given limb by limb, and a carry.
+    #[inline]
+    fn plus(self, limb: impl Fn(usize) -> u64, mut carry: bool) -> Self {
+        let limbs = std::array::from_fn(|i| {
+            let (sum, over) = self.limbs[i].overflowing_add(limb(i));
+            let (sum, over_again) = sum.overflowing_add(u64::from(carry));
+            carry = over | over_again;
+            sum
+        });
+        Integer { limbs }
+    }
 }
 
 impl From<i64> for Integer {
@@ -39,14 +51,7 @@ impl Add for Integer {
 
     #[inline]
     fn add(self, other: Self) -> Self {
-        let mut carry = false;
-        let limbs = std::array::from_fn(|i| {
-            let (sum, over) = self.limbs[i].overflowing_add(other.limbs[i]);
-            let (sum, over_again) = sum.overflowing_add(u64::from(carry));
-            carry = over | over_again;
-            sum
-        });
-        Integer { limbs }
+        self.plus(|i| other.limbs[i], false)
     }
 }
 
@@ -55,14 +60,8 @@ impl Sub for Integer {
 
     #[inline]
     fn sub(self, other: Self) -> Self {
-        let mut borrow = false;
-        let limbs = std::array::from_fn(|i| {
-            let (difference, under) = self.limbs[i].overflowing_sub(other.limbs[i]);
-            let (difference, under_again) = difference.overflowing_sub(u64::from(borrow));
-            borrow = under | under_again;
-            difference
-        });
-        Integer { limbs }
+        // The negative is one more than all bits inverted.
+        self.plus(|i| !other.limbs[i], true)
     }
 }
 
