@@ -70,12 +70,17 @@ impl<const BITS: i32> Filter for FixedBound<BITS> {
     }
 }
 
-/// The bits that differences may have so that 128 hold the polynomial: one of degree `d` in differences below `2^b` is
-/// below `2^(b d + 7)` for every formula of this crate (in-sphere has 4 * 3 * 6 terms), and a difference must fit a
-/// double.
-const fn bits(degree: i32) -> i32 {
-    let bits = 120 / degree;
-    if bits < 53 { bits } else { 53 }
+/// The bits that differences may have so that integers of so many hold the polynomial: one of degree `d` in differences
+/// below `2^b` is below `2^(b d + 7)` for every formula of this crate (in-sphere has 4 * 3 * 6 terms). `most` is what
+/// the way from coordinates to differences allows.
+const fn bits(of_integers: i32, degree: i32, most: i32) -> i32 {
+    let bits = (of_integers - 8) / degree;
+    if bits < most { bits } else { most }
+}
+
+/// The same for 128 bits, where a difference must fit a double.
+const fn coarse_bits(degree: i32) -> i32 {
+    bits(128, degree, 53)
 }
 
 /// Integers, where the coordinates of this one question lie on a coarse enough common grid.
@@ -87,7 +92,7 @@ impl Filter for OnLattice {
 
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         let axes = (0..P::AXES).map(|axis| predicate.axis(axis));
-        let inverse_unit = lattice::inverse_unit(axes, bits(P::DEGREE))?;
+        let inverse_unit = lattice::inverse_unit(axes, coarse_bits(P::DEGREE))?;
         Some(Sign::of(&predicate.value(|a, b| lattice::difference(a, b, inverse_unit))))
     }
 }
@@ -102,11 +107,9 @@ impl Filter for OnFineLattice {
 
     #[inline(never)] // long, and no faster where it is called
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
-        // As for 128 bits.
-        let bits = (248 / P::DEGREE).min(62);
         // With zero among them, not only the differences are that short.
         let axes = (0..P::AXES).map(|axis| predicate.axis(axis).chain([0.0]));
-        let inverse_unit = lattice::inverse_unit(axes, bits)?;
+        let inverse_unit = lattice::inverse_unit(axes, bits(256, P::DEGREE, 62))?;
         Some(predicate.value(|a, b| lattice::long_difference(a, b, inverse_unit)).sign())
     }
 }
@@ -123,7 +126,7 @@ impl Filter for WholeNumbers {
     #[inline]
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         let axes = (0..P::AXES).map(|axis| predicate.axis(axis));
-        let fit = lattice::fit(axes, 1.0, bits(P::DEGREE));
+        let fit = lattice::fit(axes, 1.0, coarse_bits(P::DEGREE));
         fit.then(|| Sign::of(&predicate.value(|a, b| lattice::difference(a, b, 1.0))))
     }
 }
