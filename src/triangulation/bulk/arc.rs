@@ -30,7 +30,7 @@ use super::filter::NOWHERE;
 use super::{Axis, Part};
 
 /// Fewer points are merged: to look whether they are on an arc takes as long.
-const LEAST: usize = 200;
+pub(super) const LEAST: usize = 200;
 
 /// More points are halved, so that threads can share them.
 pub(super) const MOST: usize = 1 << 17;
@@ -45,12 +45,6 @@ const FLIPS: usize = 3;
 const FIRST_FLIPS: usize = 64;
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
-    /// Whether to look for an arc in a range.
-    #[inline(always)]
-    pub(super) fn may_be_arc(&self, lo: usize, hi: usize) -> bool {
-        FILTERED && (LEAST..=self.arcs).contains(&(hi - lo))
-    }
-
     /// A range of points on an arc; `None`, and faces to be overwritten, if it is none, or takes too long.
     #[inline(never)]
     pub(super) fn arc(&mut self, lo: usize, hi: usize) -> Option<Part> {

@@ -71,8 +71,6 @@ pub(super) struct Range<'a, G: Coordinates<N>, const N: usize, const FILTERED: b
     pub(super) faces: &'a mut [Links<3>],
     pub(super) offset: usize,
     pub(super) grain: Grain,
-    /// Arcs of so many points are looked for.
-    pub(super) arcs: usize,
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {

@@ -157,11 +157,12 @@ fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
     grain: Grain,
 ) {
     let seen = Seen::<G, N, FILTERED>::new(geometry, points);
-    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain, arcs: arc::MOST }.build(0, points.len());
+    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain }.build(0, points.len(), arc::MOST);
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
-    fn build(&mut self, lo: usize, hi: usize) -> Part {
+    /// Triangulates a range, looking for arcs of up to so many points.
+    fn build(&mut self, lo: usize, hi: usize, mut arcs: usize) -> Part {
         match hi - lo {
             1 => return Part { bottom: NONE, top: NONE, first: lo as u32 },
             2 => {
@@ -176,24 +177,22 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             }
             _ => {}
         }
-        let arcs = self.arcs;
-        if self.may_be_arc(lo, hi) {
+        if FILTERED && (arc::LEAST..=arcs).contains(&(hi - lo)) {
             if let Some(part) = self.arc(lo, hi) {
                 return part;
             }
-            self.arcs = (hi - lo) / 4 * 3;
+            arcs = (hi - lo) / 4 * 3;
         }
-        let Some((mid, axis)) = self.halve(lo, hi) else { return self.build_dense(lo, hi) };
+        let Some((mid, axis)) = self.halve(lo, hi) else { return self.build_dense(lo, hi, arcs) };
         let (left, right) = if hi - lo > self.grain.range {
-            let Range { seen, keys, first, offset, grain, arcs, .. } = *self;
+            let Range { seen, keys, first, offset, grain, .. } = *self;
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
-            let mut left = Range { seen, keys, first, faces: left, offset, grain, arcs };
-            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain, arcs };
-            rayon::join(|| left.build(lo, mid), || right.build(mid, hi))
+            let mut left = Range { seen, keys, first, faces: left, offset, grain };
+            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain };
+            rayon::join(|| left.build(lo, mid, arcs), || right.build(mid, hi, arcs))
         } else {
-            (self.build(lo, mid), self.build(mid, hi))
+            (self.build(lo, mid, arcs), self.build(mid, hi, arcs))
         };
-        self.arcs = arcs;
         self.merge(left, right, mid, axis)
     }
 
@@ -231,7 +230,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// A range of points that the keys do not tell apart: more bits of them do, or keys along the curve through these
     /// points alone, see [`order`].
     #[cold]
-    fn build_dense(&mut self, lo: usize, hi: usize) -> Part {
+    fn build_dense(&mut self, lo: usize, hi: usize, arcs: usize) -> Part {
         let count = hi - lo;
         let coordinates = |i: usize| self.seen.coordinates(VertexId::new(lo + i));
         let mut keys = Keys::default();
@@ -242,7 +241,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             let curve = Curve::through(count, coordinates, self.grain.points);
             keys = Keys::of(count, coordinates, &curve, self.grain);
         }
-        let Range { seen, offset, grain, arcs, .. } = *self;
-        Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain, arcs }.build(lo, hi)
+        let Range { seen, offset, grain, .. } = *self;
+        Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain }.build(lo, hi, arcs)
     }
 }

@@ -212,7 +212,7 @@ fn is_arc(points: &[[f64; 2]]) -> bool {
     let Sites { points, keys, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
     let seen = Seen::<_, 3, true>::new(&geometry, &points);
     let mut faces = vec![Links::UNUSED; 2 * points.len()];
-    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY, arcs: 1000 };
+    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY };
     range.arc(0, points.len()).is_some()
 }
 
