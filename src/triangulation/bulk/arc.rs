@@ -119,16 +119,12 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let mut flips = 0;
         for (count, (&next, fresh)) in rest.iter().zip((first_face + 2..).step_by(2)).enumerate() {
             let before_and_after = self.add(next, open, fresh);
-            let mut unsettled_face = Some(std::mem::replace(&mut open, before_and_after[usize::from(turns_left)]));
-            while let Some(face) = unsettled_face {
-                unsettled_face = match self.flip_outward(face) {
-                    Some(beside) => {
-                        unsettled.push(beside);
-                        flips += 1;
-                        Some(face)
-                    }
-                    None => unsettled.pop(),
-                };
+            unsettled.push(std::mem::replace(&mut open, before_and_after[usize::from(turns_left)]));
+            while let Some(face) = unsettled.pop() {
+                if let Some(beside) = self.flip_outward(face) {
+                    unsettled.extend([face, beside]);
+                    flips += 1;
+                }
             }
             if flips > FLIPS * count + FIRST_FLIPS {
                 return None;
