@@ -31,7 +31,7 @@ where
     if !(-1000..=1000).contains(&lowest) {
         return None;
     }
-    let inverse = 2f64.powi(-lowest);
+    let inverse = power_of_two(-lowest);
     fit(axes, inverse, bits).then_some(inverse)
 }
 
@@ -43,11 +43,17 @@ where
 {
     // The rounding of max - min is harmless: it is monotone and 2^bits is representable, so that nothing
     // from there on gets below. (2^53 + 1 gets *to* 2^53.)
-    let limit = f64::from_bits(((1023 + bits) as u64) << 52);
+    let limit = power_of_two(bits);
     axes.all(|axis| {
         let (min, max) = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), x| (min.min(x), max.max(x)));
         (max - min) * inverse_unit < limit
     })
+}
+
+/// With an exponent from -1022 to 1023. (`powi` takes ten times as long.)
+#[inline]
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
 /// `a - b` counted in units.

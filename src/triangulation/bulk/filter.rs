@@ -252,18 +252,22 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> Seen<'a, G, N,
 
     fn unit(&self) -> f64 {
         *self.unit.get_or_init(|| {
-            let places = || self.points.iter().filter_map(|p| self.geometry.exact_plan(p));
-            let largest = places().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-            // With a unit below that, nearly all distances are more than 2^12 of it.
-            let least = largest * 2f64.powi(-14) / self.points.len() as f64;
-            let mut unit = f64::INFINITY;
-            for x in places().flatten().filter(|&x| x != 0.0) {
-                unit = unit.min(lattice::lowest_bit(x).map_or(unit, |bit| 2f64.powi(bit)));
-                if unit < least {
-                    return 0.0;
+            let places = self.points.iter().filter_map(|p| self.geometry.exact_plan(p));
+            // With a unit below this part of the largest coordinate nearly all distances are more than 2^12 of it.
+            let part = 2f64.powi(-14) / self.points.len() as f64;
+            let (mut lowest, mut largest) = (i32::MAX, 0.0);
+            for x in places.flatten() {
+                largest = if x.abs() > largest { x.abs() } else { largest };
+                let bit = lattice::lowest_bit(x).unwrap_or(lowest);
+                if bit < lowest {
+                    lowest = bit;
+                    if 2f64.powi(lowest) < part * largest {
+                        return 0.0;
+                    }
                 }
             }
-            unit
+            let unit = 2f64.powi(lowest);
+            if unit < part * largest { 0.0 } else { unit }
         })
     }
 }
