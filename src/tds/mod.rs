@@ -56,7 +56,12 @@ pub(crate) struct Links<const N: usize> {
 }
 
 impl<const N: usize> Links<N> {
-    pub(crate) const UNUSED: Self = Links { vertices: [VertexId::NONE; N], neighbors: [CellId::NONE; N] };
+    pub(crate) const UNUSED: Self = Links::alone([VertexId::NONE; N]);
+
+    /// Of a cell without neighbors.
+    const fn alone(vertices: [VertexId; N]) -> Self {
+        Links { vertices, neighbors: [CellId::NONE; N] }
+    }
 }
 
 /// A triangulated sphere of dimension up to `N - 1`, with payload `V` at each vertex and `C` at each
@@ -320,10 +325,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.detached -= 1;
     }
 
-    /// Adds a cell without neighbors.
-    #[inline]
-    fn add_cell(&mut self, vertices: [VertexId; N], data: C) -> CellId {
-        let links = Links { vertices, neighbors: [CellId::NONE; N] };
+    /// Adds a cell, which its neighbors do not know yet.
+    #[inline(always)]
+    fn add_cell(&mut self, links: Links<N>, data: C) -> CellId {
         match self.unused.pop() {
             Some(cell) => {
                 self.links[cell.index()] = links;
@@ -389,7 +393,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             let mut vertices = [VertexId::NONE; N];
             for vertex in [apex, VertexId::INFINITE] {
                 vertices[0] = vertex;
-                let cell = self.add_cell(vertices, C::default());
+                let cell = self.add_cell(Links::alone(vertices), C::default());
                 self.set_cell_of(vertex, cell);
             }
             self.link(CellId::new(0), 0, CellId::new(1), 0);
@@ -404,7 +408,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         for (index, links) in old.iter().enumerate() {
             let mut vertices = links.vertices;
             vertices[slot] = apex;
-            self.add_cell(vertices, C::default());
+            self.add_cell(Links::alone(vertices), C::default());
             if links.vertices[0] == VertexId::NONE {
                 self.links[index] = Links::UNUSED;
             }
@@ -414,7 +418,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             if is_finite(cell) {
                 let mut vertices = old[index].vertices;
                 vertices[slot] = VertexId::INFINITE;
-                to_infinity[index] = self.add_cell(vertices, C::default());
+                to_infinity[index] = self.add_cell(Links::alone(vertices), C::default());
             }
         }
         for (index, links) in old.iter().enumerate() {

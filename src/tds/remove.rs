@@ -1,6 +1,6 @@
 //! Taking vertices out, and complexes that shrink to a line, a point, nothing.
 
-use super::{CellId, Tds, VertexId};
+use super::{CellId, Links, Tds, VertexId};
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Gives back the number of a vertex that no cell has any more. Its payload stays until the number is used
@@ -34,7 +34,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             if self.dimension == 1 {
                 vertices[1] = ring[(k + 1) % ring.len()];
             }
-            let cell = self.add_cell(vertices, C::default());
+            let cell = self.add_cell(Links::alone(vertices), C::default());
             self.set_cell_of(from, cell);
         }
         let last = CellId::new(ring.len() - 1);

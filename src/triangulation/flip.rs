@@ -5,9 +5,6 @@ use super::{Triangulation, Walls};
 
 /// What payloads of triangles tell of their edges, and what is left of them when triangles are exchanged.
 pub(super) trait Edges<C>: Copy {
-    /// Whether there are edges that must stay.
-    const MAY_BE_WALL: bool;
-
     /// Whether the edge opposite vertex `i` must stay.
     fn is_wall(self, data: &C, i: usize) -> bool;
 
@@ -20,8 +17,6 @@ pub(super) trait Edges<C>: Copy {
 pub(super) struct Free;
 
 impl<C> Edges<C> for Free {
-    const MAY_BE_WALL: bool = false;
-
     #[inline(always)]
     fn is_wall(self, _: &C, _: usize) -> bool {
         false
@@ -38,8 +33,6 @@ impl<C> Edges<C> for Free {
 pub(super) struct Forced;
 
 impl<C: Copy> Edges<Walls<C>> for Forced {
-    const MAY_BE_WALL: bool = true;
-
     #[inline(always)]
     fn is_wall(self, data: &Walls<C>, i: usize) -> bool {
         data.has(i)
@@ -100,17 +93,30 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 
     /// Gives a cell the default payload, and makes it the neighbor of others across some of its edges (given with the
     /// index of the edge there), with what those know of them.
+    #[inline]
     pub(super) fn renew_edges<const K: usize>(
         &mut self,
         edges: impl Edges<C>,
         cell: CellId,
         sides: [(usize, (CellId, usize)); K],
     ) {
-        let mut data = C::default();
-        for (i, (beside, j)) in sides {
-            self.tds.link(cell, i, beside, j);
-            data = edges.with_wall(data, i, edges.is_wall(self.tds.cell_data(beside), j));
+        *self.tds.cell_data_mut(cell) = C::default();
+        for (i, beyond) in sides {
+            self.renew_edge(edges, (cell, i), beyond);
         }
-        *self.tds.cell_data_mut(cell) = data;
+    }
+
+    /// Makes a cell the neighbor of another one, with what that knows of their edge.
+    #[inline]
+    pub(super) fn renew_edge(
+        &mut self,
+        edges: impl Edges<C>,
+        (cell, i): (CellId, usize),
+        (beside, j): (CellId, usize),
+    ) {
+        self.tds.link(cell, i, beside, j);
+        let is_wall = edges.is_wall(self.tds.cell_data(beside), j);
+        let data = self.tds.cell_data_mut(cell);
+        *data = edges.with_wall(*data, i, is_wall);
     }
 }

@@ -68,7 +68,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         let Some(mut zone) = self.collect(location, takes) else {
             return self.raise_dimension(vertex);
         };
-        self.last = Some(self.tds.star(&mut zone, vertex, data));
+        self.last = self.tds.star(&mut zone, vertex, data).last().copied();
         self.zone = zone;
     }
 
@@ -86,13 +86,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             Location::OutsideHull { cell } => (cell, 0),
         };
         let mut zone = std::mem::take(&mut self.zone);
-        zone.start(self.tds.cell_slots());
-        zone.add(cell);
-        // A point on a facet destroys the cells on both sides, wall or not.
-        for i in (0..N).filter(|i| touching >> i & 1 == 1) {
-            zone.add(self.tds.neighbor(cell, i));
-        }
-        zone.grow(&self.tds, |from, i, beyond| takes(self, from, i, beyond));
+        zone.grow(&self.tds, cell, |from, i, beyond| {
+            // A point on a facet destroys the cells on both sides, wall or not.
+            from == cell && touching >> i & 1 == 1 || takes(self, from, i, beyond)
+        });
         Some(zone)
     }
 

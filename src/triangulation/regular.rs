@@ -215,7 +215,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
             self.inner.tds.detach(vertex);
             hidden.push(vertex);
         }
-        self.inner.last = Some(self.inner.tds.star(&mut zone, vertex, |data, _| *data));
+        self.inner.last = self.inner.tds.star(&mut zone, vertex, |data, _| *data).last().copied();
         self.inner.zone = zone;
         self.connect_again(hidden);
     }

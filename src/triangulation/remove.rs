@@ -60,8 +60,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     ///
     /// # Complexity
     /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.
-    pub(super) fn remove_vertex<E: Edges<C>>(&mut self, edges: E, vertex: VertexId) {
-        if !E::MAY_BE_WALL && self.fill_low_degree(vertex) {
+    pub(super) fn remove_vertex(&mut self, edges: impl Edges<C>, vertex: VertexId) {
+        if self.fill_low_degree(edges, vertex) {
             self.tds.remove_vertex(vertex);
         } else {
             let mut unsettled = self.remove_lawless(edges, vertex);
@@ -140,10 +140,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
         // Of the two sides of the last edge, one is the last triangle.
         let ((last, i), (beside, j)) = (ring.beyond[apex], ring.beyond[ring.next[apex]]);
-        self.tds.link(last, i, beside, j);
-        let wall = edges.is_wall(self.tds.cell_data(beside), j);
-        let data = self.tds.cell_data_mut(last);
-        *data = edges.with_wall(*data, i, wall);
+        self.renew_edge(edges, (last, i), (beside, j));
         cells
     }
 

@@ -93,9 +93,15 @@ fn beyond_hull<const N: usize, T: Embedded<N>>(
         Sign::Positive => true,
         Sign::Negative => false,
         Sign::Zero => {
-            let mut facet = points_with(t, cell, infinite, q)?;
-            facet.remove(infinite);
-            in_sphere_of_flat(t.geometry(), &facet.iter().collect::<Vec<_>>(), q)
+            let corners = t.complex().corners(cell)?;
+            let mut facet = [T::hold(q); N];
+            let finite = corners[..t.complex().width()].iter().filter(|&&v| v != VertexId::INFINITE);
+            let mut length = 0;
+            for &v in finite {
+                facet[length] = t.point(v)?;
+                length += 1;
+            }
+            in_sphere_of_flat(t.geometry(), &facet.each_ref().map(Borrow::borrow)[..length], q)
         }
     })
 }

@@ -9,7 +9,7 @@ use crate::tds::{CellId, VertexId, Zone, ccw, cw};
 
 use super::super::ConstrainedDelaunay;
 use super::OUTSIDE;
-use super::shape::{area, dot, length, minus};
+use super::shape::{area, is_in_lens, minus};
 use super::shells::Shells;
 
 /// Which vertices a constrained edge must not have near to it.
@@ -72,10 +72,15 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             law,
             t,
         };
-        let edges = draft.t.tds().cells().flat_map(|cell| (0..3).map(move |i| (cell, i)));
-        let is_first = |&(cell, i): &(CellId, usize)| cell < draft.t.tds().neighbor(cell, i);
-        let encroached = edges.filter(is_first).filter(|&(cell, i)| draft.is_encroached(cell, i));
-        let encroached = encroached.map(|(cell, i)| draft.t.tds().edge_ends(cell, i)).collect();
+        let mut encroached = VecDeque::new();
+        for cell in draft.t.tds().cells() {
+            for i in 0..3 {
+                let is_first = || cell < draft.t.tds().neighbor(cell, i);
+                if draft.t.is_constrained(cell, i) && is_first() && draft.is_encroached(cell, i) {
+                    encroached.push_back(draft.t.tds().edge_ends(cell, i));
+                }
+            }
+        }
         draft.encroached = encroached;
         draft
     }
@@ -90,24 +95,31 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
     /// Whether an edge is constrained and has a vertex near to it that the law forbids.
     pub(super) fn is_encroached(&self, cell: CellId, i: usize) -> bool {
-        if !self.t.is_constrained(cell, i) {
+        let beside = self.t.tds().neighbor(cell, i);
+        self.t.is_constrained(cell, i)
+            && (self.is_apex_near(cell, i) || self.is_apex_near(beside, self.t.tds().index_of_neighbor(beside, cell)))
+    }
+
+    /// The same, where only the vertex of this cell may be near to it.
+    pub(super) fn is_encroached_by_apex(&self, cell: CellId, i: usize) -> bool {
+        self.t.is_constrained(cell, i) && self.is_apex_near(cell, i)
+    }
+
+    /// Whether the vertex of a cell in the domain is too near to the edge opposite it.
+    fn is_apex_near(&self, cell: CellId, i: usize) -> bool {
+        let tds = self.t.tds();
+        let apex = tds.vertex(cell, i);
+        if apex == VertexId::INFINITE || !self.is_inside(cell) {
             return false;
         }
-        let tds = self.t.tds();
-        let beside = tds.neighbor(cell, i);
-        let far = tds.vertex(beside, tds.index_of_neighbor(beside, cell));
         if let Law::Delaunay = self.law {
-            let is_hull = far == VertexId::INFINITE || tds.is_infinite(cell);
-            return !is_hull && {
-                let corners = tds.corners(cell).map(|v| self.t.point(v));
-                self.t.geometry().side_of_sphere(corners, self.t.point(far)) == Sign::Positive
+            let beside = tds.neighbor(cell, i);
+            return !tds.is_infinite(cell) && !tds.is_infinite(beside) && {
+                let corners = tds.corners(beside).map(|v| self.t.point(v));
+                self.t.geometry().side_of_sphere(corners, self.t.point(apex)) == Sign::Positive
             };
         }
-        let ends = tds.edge_ends(cell, i);
-        let sides = [(cell, tds.vertex(cell, i)), (beside, far)];
-        sides.into_iter().any(|(cell, apex)| {
-            self.is_inside(cell) && apex != VertexId::INFINITE && self.encroaches(ends, self.t.plan_of(apex))
-        })
+        self.encroaches(tds.edge_ends(cell, i), self.t.plan_of(apex))
     }
 
     /// Whether a place is too near to an edge with these ends.
@@ -117,21 +129,28 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         match self.law {
             Law::Delaunay => false,
             Law::Gabriel => angle() != Sign::Positive,
-            Law::Lens(cosine) => {
-                angle() == Sign::Negative && {
-                    let [u, v] = [minus(a, place), minus(b, place)];
-                    -dot(u, v) >= cosine * length(u) * length(v)
-                }
-            }
+            Law::Lens(cosine) => is_in_lens(minus(a, place), minus(b, place), cosine),
         }
     }
 
-    /// Replaces a zone by the star of a new vertex.
-    pub(super) fn star(&mut self, mut zone: Zone, p: G::Point, origin: Origin) -> VertexId {
+    /// Replaces a zone by the star of a new vertex, the cells of which are then [fresh](Self::fresh). `region` says in
+    /// which region they are, by their position on the border.
+    pub(super) fn star(
+        &mut self,
+        mut zone: Zone,
+        p: G::Point,
+        origin: Origin,
+        region: impl Fn(usize) -> u32,
+    ) -> VertexId {
         let vertex = self.t.inner.add_vertex(p, V::default());
-        self.t.inner.last = Some(self.t.inner.tds.star(&mut zone, vertex, |walls, i| walls.only(i)));
+        let star = self.t.inner.tds.star(&mut zone, vertex, |walls, i| walls.only(i));
+        self.t.inner.last = star.last().copied();
+        self.regions.resize(self.t.inner.tds.cell_slots(), OUTSIDE);
+        for (k, &cell) in star.iter().enumerate() {
+            self.regions[cell.index()] = region(k);
+        }
+        self.fresh.extend(star);
         self.t.inner.zone = zone;
-        self.regions.resize(self.t.tds().cell_slots(), OUTSIDE);
         self.origins.resize(self.t.tds().vertex_slots(), origin);
         self.origins[vertex.index()] = origin;
         vertex
@@ -152,29 +171,27 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             return Attempt::TooFine;
         }
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        zone.start(self.t.tds().cell_slots());
-        zone.add(cell);
         let inner = &self.t.inner;
-        zone.grow(&inner.tds, |from, i, beyond| !inner.tds.cell_data(from).has(i) && inner.in_conflict(beyond, &p));
-        let walls = zone.border().filter(|&(cell, i)| self.t.is_constrained(cell, i));
-        let is_near = |&(cell, i): &(CellId, usize)| {
-            self.t.inner.side_of_facet(cell, i, &p) != Sign::Positive
-                || self.encroaches(self.t.tds().edge_ends(cell, i), place)
-        };
-        let near: Vec<_> = walls.filter(is_near).map(|(cell, i)| self.t.tds().edge_ends(cell, i)).collect();
-        if !near.is_empty() {
+        let takes = |from, i, beyond| !inner.is_constrained(from, i) && inner.in_conflict(beyond, &p);
+        zone.grow(&inner.tds, cell, takes);
+        let mut encroached = std::mem::take(&mut self.encroached);
+        let settled = encroached.len();
+        for (cell, i) in zone.border().filter(|&(cell, i)| self.t.is_constrained(cell, i)) {
+            let ends = self.t.tds().edge_ends(cell, i);
+            if self.encroaches(ends, place) || self.t.inner.side_of_facet(cell, i, &p) != Sign::Positive {
+                encroached.push_back(ends);
+            }
+        }
+        let is_near = encroached.len() > settled;
+        self.encroached = encroached;
+        if is_near {
             zone.finish();
             self.t.inner.zone = zone;
-            self.encroached.extend(near);
             return Attempt::Encroaches;
         }
         let region = self.regions[cell.index()];
         let p = self.interpolate(zone.cells(), place);
-        let vertex = self.star(zone, p, Origin::Free);
-        for cell in self.t.tds().around(vertex) {
-            self.regions[cell.index()] = region;
-            self.fresh.push(cell);
-        }
+        self.star(zone, p, Origin::Free, |_| region);
         self.budget -= 1;
         Attempt::Added
     }

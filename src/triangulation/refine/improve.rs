@@ -25,6 +25,7 @@ pub(super) struct Refiner<'a, G: Crossing, V> {
     /// The square of the cosine of the smallest angle that is wanted.
     cosine: f64,
     reach: f64,
+    bounds_areas: bool,
 }
 
 impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
@@ -33,7 +34,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         let reach = REACH / 2.0 / (angle / 2.0).tan();
         // The rounded cosine of a sliver may be larger than one.
         let cosine = if angle > 0.0 { angle.cos().powi(2) } else { f64::INFINITY };
-        Refiner { draft, quality, queue: Queue::default(), cosine, reach }
+        Refiner { draft, quality, queue: Queue::default(), cosine, reach, bounds_areas: quality.bounds_areas() }
     }
 
     pub(super) fn run(&mut self) {
@@ -83,6 +84,9 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     }
 
     fn is_too_large(&self, cell: CellId, shape: &Shape) -> bool {
+        if !self.bounds_areas {
+            return false;
+        }
         let quality = self.quality;
         let region = (self.draft.regions[cell.index()] as usize).checked_sub(1);
         let of_region = region.and_then(|k| quality.regions.get(k)).map_or(f64::INFINITY, |region| region.max_area);

@@ -21,6 +21,18 @@ pub(super) fn length(v: [f64; 2]) -> f64 {
     if ORDINARY.contains(&square) { square.sqrt() } else { v[0].hypot(v[1]) }
 }
 
+/// Whether the cosine of the angle between two vectors is at most the negative of another cosine, and the angle obtuse.
+pub(super) fn is_in_lens(u: [f64; 2], v: [f64; 2], cosine: f64) -> bool {
+    let along = -dot(u, v);
+    let (uu, vv) = (dot(u, u), dot(v, v));
+    if ORDINARY.contains(&uu) && ORDINARY.contains(&vv) {
+        // Without roots.
+        along > 0.0 && (cosine <= 0.0 || along * along >= cosine * cosine * (uu * vv))
+    } else {
+        along > 0.0 && along >= cosine * length(u) * length(v)
+    }
+}
+
 /// Of a triangle, positive if it is counter-clockwise.
 pub(super) fn area([p, q, r]: [[f64; 2]; 3]) -> f64 {
     let [u, v] = [minus(q, p), minus(r, p)];

@@ -3,7 +3,7 @@
 use crate::geometry::Crossing;
 use crate::kernel::{DotProduct, Kernel, Wide};
 use crate::num::Sign;
-use crate::tds::{CellId, VertexId, Zone, ccw, cw};
+use crate::tds::{CellId, VertexId, Zone, cw};
 
 use super::draft::{Draft, Law, Origin};
 use super::shape::{length, minus};
@@ -53,69 +53,66 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // and have it in their circles, are replaced by its star; unless something is nearer to the edge than the
         // rounding.
         let (cell, beside) = (edge.0, self.beyond(edge).0);
-        let sides = [(a, b, self.regions[cell.index()]), (b, a, self.regions[beside.index()])];
+        let sides = [cell, beside].map(|side| self.regions[side.index()]);
         self.t.inner.set_wall(edge, false);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        zone.start(self.t.tds().cell_slots());
-        for side in [cell, beside] {
-            if self.t.inner.in_conflict(side, &p) {
-                zone.add(side);
-            }
-        }
         let inner = &self.t.inner;
-        zone.grow(&inner.tds, |from, i, beyond| !inner.tds.cell_data(from).has(i) && inner.in_conflict(beyond, &p));
-        if ![a, b].iter().all(|&end| self.is_rim(&zone, end)) || !self.sees_rim(&zone, &p) {
+        if let Some(start) = [cell, beside].into_iter().find(|&side| inner.in_conflict(side, &p)) {
+            let takes = |from, i, beyond| !inner.is_constrained(from, i) && inner.in_conflict(beyond, &p);
+            zone.grow(&inner.tds, start, takes);
+        }
+        let Some([after_a, after_b]) = self.rim(&zone, &p, [a, b]) else {
             zone.finish();
             self.t.inner.zone = zone;
             self.t.inner.set_wall(edge, true);
             return false;
-        }
-        let vertex = self.star(zone, p, Origin::Wall(constraint));
-        for end in [a, b] {
-            self.t.inner.wall_up(vertex, end);
+        };
+        // The border goes around counter-clockwise: from `a` to `b` it is on the right.
+        let is_right =
+            |k| if after_a < after_b { (after_a..after_b).contains(&k) } else { !(after_b..after_a).contains(&k) };
+        let vertex = self.star(zone, p, Origin::Wall(constraint), |k| sides[usize::from(is_right(k))]);
+        for k in [after_a, after_b] {
+            let cell = self.t.inner.zone.star[k];
+            if let Some(i) = self.t.tds().index_of(cell, vertex) {
+                self.t.inner.set_wall((cell, cw(i)), true);
+            }
         }
         self.t.lines.split(a, b, vertex);
-
-        // Phase 3: what is new.
-        for (from, to, region) in sides {
-            self.mark_side(from, vertex, to, region);
-        }
         self.look_around(vertex);
         true
     }
 
-    /// Whether a vertex is on the border of a zone.
-    fn is_rim(&self, zone: &Zone, vertex: VertexId) -> bool {
-        zone.border().any(|(cell, i)| self.t.tds().edge_ends(cell, i).contains(&vertex))
-    }
-
-    /// Whether a point sees every edge around a zone from within.
-    fn sees_rim(&self, zone: &Zone, p: &G::Point) -> bool {
-        let is_finite = |&(cell, i): &(CellId, usize)| !self.t.tds().edge_ends(cell, i).contains(&VertexId::INFINITE);
-        zone.border().filter(is_finite).all(|(cell, i)| self.t.inner.side_of_facet(cell, i, p) == Sign::Positive)
-    }
-
-    /// Puts down the region of the cells to the left of the way from one neighbor of a vertex to another.
-    fn mark_side(&mut self, from: VertexId, vertex: VertexId, to: VertexId, region: u32) {
-        let Some(edge) = self.t.tds().edge(vertex, from) else { return };
-        let (mut cell, _) = self.beyond(edge);
-        while let Some(i) = self.t.tds().index_of(cell, vertex) {
-            self.regions[cell.index()] = region;
-            self.fresh.push(cell);
-            if self.t.tds().vertex(cell, ccw(i)) == to {
-                return;
+    /// Where on the border of a zone the edges are that begin at two vertices; `None` if one of them is not on it, or
+    /// if a point does not see all of it from within.
+    fn rim(&self, zone: &Zone, p: &G::Point, ends: [VertexId; 2]) -> Option<[usize; 2]> {
+        let mut at = [None; 2];
+        for (k, (cell, i)) in zone.border().enumerate() {
+            let [start, end] = self.t.tds().edge_ends(cell, i);
+            let is_finite = start != VertexId::INFINITE && end != VertexId::INFINITE;
+            if is_finite && self.t.inner.side_of_facet(cell, i, p) != Sign::Positive {
+                return None;
             }
-            cell = self.t.tds().neighbor(cell, cw(i));
+            for (at, v) in at.iter_mut().zip(ends) {
+                if start == v {
+                    *at = Some(k);
+                }
+            }
         }
+        let [Some(first), Some(second)] = at else { return None };
+        Some([first, second])
     }
 
-    /// Queues what is encroached upon of the constrained edges around a vertex, and at it.
+    /// Queues what is encroached upon of the constrained edges around the vertex of the last star, and at it.
     fn look_around(&mut self, vertex: VertexId) {
         let mut queue = std::mem::take(&mut self.encroached);
-        for cell in self.t.tds().around(vertex) {
+        for &cell in &self.t.inner.zone.star {
             let Some(i) = self.t.tds().index_of(cell, vertex) else { continue };
-            let encroached = [i, cw(i)].into_iter().filter(|&i| self.is_encroached(cell, i));
-            queue.extend(encroached.map(|i| self.t.tds().edge_ends(cell, i)));
+            if self.is_encroached_by_apex(cell, i) {
+                queue.push_back(self.t.tds().edge_ends(cell, i));
+            }
+            if self.is_encroached(cell, cw(i)) {
+                queue.push_back(self.t.tds().edge_ends(cell, cw(i)));
+            }
         }
         self.encroached = queue;
     }
