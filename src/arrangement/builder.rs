@@ -54,8 +54,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     }
 
     pub(super) fn run<K: Kernel>(mut self) -> Arrangement {
-        let tree = self.tree(0..self.segments.len() as u32);
-        let pairs = self.crossing_pairs::<K>(&tree);
+        let pairs = self.crossing_pairs::<K>();
         let crossings = self.round::<K>(pairs);
         let (is_led, passes) = self.lead::<K>(&crossings);
         self.collect(crossings, &is_led, passes)
@@ -84,7 +83,11 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     }
 
     /// Phase 1: the pairs of segments that cross in their interiors.
-    fn crossing_pairs<K: Kernel>(&self, tree: &BoxTree) -> Vec<[u32; 2]> {
+    fn crossing_pairs<K: Kernel>(&self) -> Vec<[u32; 2]> {
+        if self.segments.len() <= FEW {
+            return self.crossing_pairs_of_few::<K>();
+        }
+        let tree = self.tree(0..self.segments.len() as u32);
         let of_leaf = |(at, &i): (usize, &u32)| {
             let mut found = Vec::new();
             let s = self.segments[i as usize];
@@ -99,6 +102,25 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
             tree.order().par_iter().enumerate().with_min_len(FEW).flat_map_iter(of_leaf).collect();
         pairs.par_sort_unstable(); // as one number: half the time of two
         pairs.into_iter().map(|pair| [(pair >> 32) as u32, pair as u32]).collect()
+    }
+
+    /// The same: each with those that begin before it ends, from left to right.
+    ///
+    /// `PERF:` of 141 segments of a coast, 90 000 instructions instead of 250 000 with a tree, which is to be built first.
+    fn crossing_pairs_of_few<K: Kernel>(&self) -> Vec<[u32; 2]> {
+        let mut boxes: Vec<(Box2, u32)> = self.segments.iter().map(|&s| Box2::around(s)).zip(0..).collect();
+        boxes.sort_unstable_by(|(p, i), (q, j)| p.min[0].total_cmp(&q.min[0]).then(i.cmp(j)));
+        let mut pairs = Vec::new();
+        for (at, (boxed, i)) in boxes.iter().enumerate() {
+            let beside = boxes[at + 1..].iter().take_while(|(other, _)| other.min[0] <= boxed.max[0]);
+            for (_, j) in beside.filter(|(other, _)| other.overlaps(boxed)) {
+                if cross::<K>(self.segments[*i as usize], self.segments[*j as usize]) {
+                    pairs.push([*i.min(j), *i.max(j)]);
+                }
+            }
+        }
+        pairs.sort_unstable();
+        pairs
     }
 
     /// Phase 2: the site of each crossing, the center of its pixel; which may be a place that was given.
