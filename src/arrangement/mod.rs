@@ -38,7 +38,8 @@ use crate::kernel::{Adaptive, Wide};
 use builder::Builder;
 use pixel::Grid;
 
-/// Less work than of so many segments or places is done by one thread: to wake another takes longer.
+/// Less work than of so many segments or places is done by one thread, without trees: to wake another, or to build one,
+/// takes longer.
 const FEW: usize = 256;
 
 type Place = [f64; 2];

@@ -91,6 +91,7 @@ pub trait Complex<const N: usize> {
     /// See [`corners`](Self::corners).
     #[inline(always)]
     fn index_of(&self, cell: CellId, vertex: VertexId) -> Result<Option<usize>, Self::Error> {
+        // Asked mostly for infinity, which is nearly never there: branches are cheaper here.
         Ok(self.corners(cell)?.iter().position(|&v| v == vertex))
     }
 

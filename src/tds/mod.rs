@@ -262,7 +262,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 
     /// The index of the facet that `cell` shares with its neighbor `other`. In a triangulation two cells
-    /// share one facet at the most.
+    /// share one facet at the most. Of cells that share none, nothing is said.
     #[inline(always)]
     pub fn index_of_neighbor(&self, cell: CellId, other: CellId) -> usize {
         first_of(&self.links[cell.index()].neighbors, other).min(N - 1)

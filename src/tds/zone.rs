@@ -9,8 +9,8 @@ use super::{CellId, Tds, VertexId, ccw, cw};
 pub struct Zone {
     /// The cells.
     pub(crate) cells: Vec<CellId>,
-    /// The facets on its border: the cell within, and the index of the facet in it. In the plane they come
-    /// counter-clockwise, each where the one before ends.
+    /// The facets on its border: the cell within, and the index of the facet in it. In dimension 2 they come
+    /// counter-clockwise, each where the one before ends; infinity may be between.
     pub(crate) border: Vec<(CellId, u8)>,
     /// For each cell number, whether it is in `cells`; all false between uses.
     marked: Vec<bool>,
@@ -26,8 +26,8 @@ impl Zone {
         &self.cells
     }
 
-    /// The facets around the zone: a cell within, and the index of the facet in it. In the plane they come
-    /// counter-clockwise, each where the one before ends.
+    /// The facets around the zone: a cell within, and the index of the facet in it. In dimension 2 they come
+    /// counter-clockwise, each where the one before ends; infinity may be between.
     pub fn border(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
         self.border.iter().map(|&(cell, i)| (cell, i as usize))
     }
@@ -69,7 +69,8 @@ impl Zone {
     }
 
     /// Grows the zone from a cell over every facet that `takes` accepts (asked with a cell of the zone, the index of the
-    /// facet, and the cell beyond), and collects the border.
+    /// facet, and the cell beyond), and collects the border. A zone that is only asked for grows in the same way, in
+    /// `triangulation::query`, over any [`Complex`](super::Complex).
     pub(crate) fn grow<const N: usize, V, C: Copy + Default>(
         &mut self,
         tds: &Tds<N, V, C>,
@@ -194,7 +195,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                     }
                     let kept = self.links[cell.index()].vertices[gain];
                     let back = self.index_of_neighbor(beyond, cell);
-                    drop = self.links[beyond.index()].vertices.iter().position(|&v| v == kept).unwrap_or(0);
+                    drop = self.index_of(beyond, kept).unwrap_or(0);
                     gain = back;
                     cell = beyond;
                 }

@@ -42,7 +42,8 @@ pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
     let width = complex.width();
     let mut taken = FxHashSet::from_iter([start]);
     let mut zone = ConflictZone { cells: vec![start], border: Vec::new() };
-    // Depth first, over the sides of each cell counter-clockwise from where it was entered: the border comes in order.
+    // Depth first, over the sides of each cell counter-clockwise from where it was entered: the border comes in order, as
+    // in `tds::Zone`, which does it with memory of its own.
     let mut sides: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
     while let Some((cell, i)) = sides.pop() {
         let beyond = complex.neighbor(cell, i)?;

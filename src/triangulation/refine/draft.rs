@@ -72,16 +72,14 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             law,
             t,
         };
-        let mut encroached = VecDeque::new();
         for cell in draft.t.tds().cells() {
             for i in 0..3 {
                 let is_first = || cell < draft.t.tds().neighbor(cell, i);
                 if draft.t.is_constrained(cell, i) && is_first() && draft.is_encroached(cell, i) {
-                    encroached.push_back(draft.t.tds().edge_ends(cell, i));
+                    draft.encroached.push_back(draft.t.tds().edge_ends(cell, i));
                 }
             }
         }
-        draft.encroached = encroached;
         draft
     }
 
@@ -95,26 +93,25 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
     /// Whether an edge is constrained and has a vertex near to it that the law forbids.
     pub(super) fn is_encroached(&self, cell: CellId, i: usize) -> bool {
-        let beside = self.t.tds().neighbor(cell, i);
-        self.t.is_constrained(cell, i)
-            && (self.is_apex_near(cell, i) || self.is_apex_near(beside, self.t.tds().index_of_neighbor(beside, cell)))
+        if !self.is_encroached_by_apex(cell, i) {
+            let beside = self.t.tds().neighbor(cell, i);
+            let j = self.t.tds().index_of_neighbor(beside, cell);
+            // Of four points in circles one answer is enough.
+            return !matches!(self.law, Law::Delaunay) && self.is_encroached_by_apex(beside, j);
+        }
+        true
     }
 
-    /// The same, where only the vertex of this cell may be near to it.
+    /// The same, asked of the vertex of this cell only: where it is new, the one on the other side has been asked.
     pub(super) fn is_encroached_by_apex(&self, cell: CellId, i: usize) -> bool {
-        self.t.is_constrained(cell, i) && self.is_apex_near(cell, i)
-    }
-
-    /// Whether the vertex of a cell in the domain is too near to the edge opposite it.
-    fn is_apex_near(&self, cell: CellId, i: usize) -> bool {
         let tds = self.t.tds();
         let apex = tds.vertex(cell, i);
-        if apex == VertexId::INFINITE || !self.is_inside(cell) {
+        if !self.t.is_constrained(cell, i) || apex == VertexId::INFINITE || !self.is_inside(cell) {
             return false;
         }
         if let Law::Delaunay = self.law {
             let beside = tds.neighbor(cell, i);
-            return !tds.is_infinite(cell) && !tds.is_infinite(beside) && {
+            return !tds.is_infinite(beside) && {
                 let corners = tds.corners(beside).map(|v| self.t.point(v));
                 self.t.geometry().side_of_sphere(corners, self.t.point(apex)) == Sign::Positive
             };
@@ -174,16 +171,14 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let inner = &self.t.inner;
         let takes = |from, i, beyond| !inner.is_constrained(from, i) && inner.in_conflict(beyond, &p);
         zone.grow(&inner.tds, cell, takes);
-        let mut encroached = std::mem::take(&mut self.encroached);
-        let settled = encroached.len();
+        let queued = self.encroached.len();
         for (cell, i) in zone.border().filter(|&(cell, i)| self.t.is_constrained(cell, i)) {
             let ends = self.t.tds().edge_ends(cell, i);
             if self.encroaches(ends, place) || self.t.inner.side_of_facet(cell, i, &p) != Sign::Positive {
-                encroached.push_back(ends);
+                self.encroached.push_back(ends);
             }
         }
-        let is_near = encroached.len() > settled;
-        self.encroached = encroached;
+        let is_near = self.encroached.len() > queued;
         if is_near {
             zone.finish();
             self.t.inner.zone = zone;

@@ -29,7 +29,9 @@ pub(super) fn is_in_lens(u: [f64; 2], v: [f64; 2], cosine: f64) -> bool {
         // Without roots.
         along > 0.0 && (cosine <= 0.0 || along * along >= cosine * cosine * (uu * vv))
     } else {
-        along > 0.0 && along >= cosine * length(u) * length(v)
+        // Of vectors as long as one, so that nothing underflows.
+        let along = -dot(u.map(|x| x / length(u)), v.map(|x| x / length(v)));
+        along > 0.0 && along >= cosine
     }
 }
 
@@ -129,7 +131,19 @@ impl Shape {
 
 #[cfg(test)]
 mod tests {
-    use super::Shape;
+    use super::{Shape, is_in_lens};
+
+    #[test]
+    fn lenses_are_of_any_size() {
+        for scale in [1e-300, 1e-170, 1e-3, 1.0, 1e170, 1e300] {
+            let [u, v] = [[-1.0, -0.1], [1.0, -0.1]].map(|arrow: [f64; 2]| arrow.map(|x| x * scale));
+            // Seen under nearly 169 degrees.
+            assert!(is_in_lens(u, v, 0.98) && !is_in_lens(u, v, 0.99), "{scale}");
+            let [u, v] = [[-1.0, -1.1], [1.0, -1.1]].map(|arrow: [f64; 2]| arrow.map(|x| x * scale));
+            assert!(!is_in_lens(u, v, 0.0) && !is_in_lens(u, v, -0.5), "{scale}: the angle is acute");
+        }
+        assert!(!is_in_lens([0.0; 2], [1.0, 0.0], 0.5));
+    }
 
     #[test]
     fn a_triangle_begins_at_its_shortest_edge() {

@@ -104,17 +104,16 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
     /// Queues what is encroached upon of the constrained edges around the vertex of the last star, and at it.
     fn look_around(&mut self, vertex: VertexId) {
-        let mut queue = std::mem::take(&mut self.encroached);
-        for &cell in &self.t.inner.zone.star {
+        for k in 0..self.t.inner.zone.star.len() {
+            let cell = self.t.inner.zone.star[k];
             let Some(i) = self.t.tds().index_of(cell, vertex) else { continue };
             if self.is_encroached_by_apex(cell, i) {
-                queue.push_back(self.t.tds().edge_ends(cell, i));
+                self.encroached.push_back(self.t.tds().edge_ends(cell, i));
             }
-            if self.is_encroached(cell, cw(i)) {
-                queue.push_back(self.t.tds().edge_ends(cell, cw(i)));
+            if self.t.is_constrained(cell, cw(i)) && self.is_encroached(cell, cw(i)) {
+                self.encroached.push_back(self.t.tds().edge_ends(cell, cw(i)));
             }
         }
-        self.encroached = queue;
     }
 
     /// The same edge as the cell on its other side has it.
