@@ -123,7 +123,7 @@ where
     V: Default,
     C: Copy + Default,
 {
-    let Sites { points, keys, have_plans } = sites;
+    let Sites { points, keys, curve, have_plans } = sites;
     let count = points.len();
     if N != 3 || !(3..=MAX_POINTS).contains(&count) {
         return (points, None);
@@ -133,9 +133,9 @@ where
     let mut faces: Vec<Links<3>> =
         (0..2 * count - 2).into_par_iter().with_min_len(grain.points).map(|_| Links::UNUSED).collect();
     if have_plans {
-        fill::<G, N, true>(geometry, &points, &keys, &mut faces, grain);
+        fill::<G, N, true>(geometry, &points, &keys, &curve, &mut faces, grain);
     } else {
-        fill::<G, N, false>(geometry, &points, &keys, &mut faces, grain);
+        fill::<G, N, false>(geometry, &points, &keys, &curve, &mut faces, grain);
     }
     drop(keys);
     let finished = finish::finish(&mut faces, count, grain);
@@ -153,10 +153,11 @@ fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
     geometry: &G,
     points: &[G::Point],
     keys: &Keys,
+    curve: &Curve,
     faces: &mut [Links<3>],
     grain: Grain,
 ) {
-    let seen = Seen::<G, N, FILTERED>::new(geometry, points);
+    let seen = Seen::<G, N, FILTERED>::new(geometry, points, curve, grain);
     Range { seen: &seen, keys, first: 0, faces, offset: 0, grain }.build(0, points.len(), arc::MOST);
 }
 
@@ -235,7 +236,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let coordinates = |i: usize| self.seen.coordinates(VertexId::new(lo + i));
         let mut keys = Keys::default();
         if !self.keys.are_whole() {
-            keys = Keys::of(count, coordinates, self.seen.curve(self.grain), self.grain);
+            keys = Keys::of(count, coordinates, self.seen.curve, self.grain);
         }
         if keys.is_empty() || keys.difference(0, count - 1) == 0 {
             let curve = Curve::through(count, coordinates, self.grain.points);

@@ -81,6 +81,8 @@ impl Keys {
 pub(crate) struct Sites<P> {
     pub(crate) points: Vec<P>,
     pub(super) keys: Keys,
+    /// The curve along which they are in order.
+    pub(super) curve: Curve,
     /// Whether all have an exact plan.
     pub(super) have_plans: bool,
 }
@@ -152,7 +154,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
         }
         // In place.
         let vertices = ranks.into_iter().map(|rank| VertexId::new(rank.into_inner() as usize)).collect();
-        Ok((Sites { points: sites, keys: sorted.keys, have_plans }, vertices))
+        Ok((Sites { points: sites, keys: sorted.keys, curve, have_plans }, vertices))
     }
 
     /// Points that are all different and in [`spatial_order`] already: nothing would ever tell equal ones apart.
@@ -167,7 +169,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
         let (curve, have_plans) = survey(geometry, &points, grain)?;
         debug_assert!(points.windows(2).all(|pair| geometry.compare(&pair[0], &pair[1]).is_ne()), "two on one site");
         let keys = Keys::of(points.len(), |i| geometry.coordinates(&points[i]), &curve, grain);
-        Ok(Sites { points, keys, have_plans })
+        Ok(Sites { points, keys, curve, have_plans })
     }
 }
 

@@ -209,8 +209,8 @@ fn in_bulk_fast(points: &[[f64; 2]]) {
 /// Whether points are triangulated along an arc, as a whole.
 fn is_arc(points: &[[f64; 2]]) -> bool {
     let geometry = Plane::<Adaptive>::default();
-    let Sites { points, keys, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
-    let seen = Seen::<_, 3, true>::new(&geometry, &points);
+    let Sites { points, keys, curve, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
+    let seen = Seen::<_, 3, true>::new(&geometry, &points, &curve, Grain::default());
     let mut faces = vec![Links::UNUSED; 2 * points.len()];
     let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY };
     range.arc(0, points.len()).is_some()
