@@ -156,7 +156,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// points, callgrind of `bench_editing`).
     fn link_around(&mut self, zone: &Zone, apex: VertexId) {
         let around = zone.border.iter().zip(&zone.star).map(|(&(_, i), &new)| (new, i as usize));
-        let Some((mut before, mut i)) = around.clone().last() else { return };
+        let Some((mut before, mut i)) = around.clone().next_back() else { return };
         self.set_cell_of(apex, before);
         for (new, k) in around {
             let start = self.links[new.index()].vertices[ccw(k)];

@@ -1,10 +1,11 @@
 //! Strategies of point location: the same answer by each, on grids where points lie on vertices, edges and lines.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use crate::common::random::Random;
 use breakline::geometry::{Geometry, Plane};
-use breakline::kernel::Wide;
+use breakline::kernel::{Adaptive, Kernel, Predicate, Range, Wide};
 use breakline::num::Sign;
 use breakline::tds::{Tds, VertexId};
 use breakline::triangulation::{
@@ -160,5 +161,44 @@ fn buckets_of_any_size() {
             t.insert_by(&mut buckets, p, ()).unwrap();
         }
         assert!(points.iter().all(|p| matches!(buckets.locate(&t, p), Location::Vertex(_))));
+    }
+}
+
+thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
+
+/// Counts what it is asked.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counting;
+
+impl Kernel for Counting {
+    const RANGE: Range = Adaptive::RANGE;
+
+    fn sign<P: Predicate>(predicate: &P) -> Sign {
+        ASKED.set(ASKED.get() + 1);
+        Adaptive::sign(predicate)
+    }
+}
+
+/// Questions for each of some points that are inserted in random order, without a strategy.
+fn asked_one_by_one(place: impl Fn(f64) -> Point) -> usize {
+    const COUNT: usize = 20_000;
+    let mut random = Random(31);
+    let mut t = Delaunay::<Plane<Counting>, 3>::new(Plane::default());
+    ASKED.set(0);
+    for _ in 0..COUNT {
+        t.insert(place(random.unit())).unwrap();
+    }
+    ASKED.get() / COUNT
+}
+
+/// A walk along a curve has to come by all vertices in between.
+#[test]
+fn walks_along_curves_are_cut_short() {
+    let other = std::cell::RefCell::new(Random(32));
+    let spread = asked_one_by_one(|x| [x, other.borrow_mut().unit()]);
+    let parabola = asked_one_by_one(|x| [x - 0.5, (x - 0.5).powi(2)]);
+    let spiral = asked_one_by_one(|x| [x.sqrt() * (40.0 * x.sqrt()).cos(), x.sqrt() * (40.0 * x.sqrt()).sin()]);
+    for curved in [parabola, spiral] {
+        assert!(curved < 3 * spread, "{curved} questions a point on a curve, {spread} in a square");
     }
 }
