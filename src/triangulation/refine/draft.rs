@@ -74,8 +74,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         };
         for cell in draft.t.tds().cells() {
             for i in 0..3 {
-                let is_first = || cell < draft.t.tds().neighbor(cell, i);
-                if draft.t.is_constrained(cell, i) && is_first() && draft.is_encroached(cell, i) {
+                if cell < draft.t.tds().neighbor(cell, i) && draft.is_encroached(cell, i) {
                     draft.encroached.push_back(draft.t.tds().edge_ends(cell, i));
                 }
             }
@@ -93,20 +92,25 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
     /// Whether an edge is constrained and has a vertex near to it that the law forbids.
     pub(super) fn is_encroached(&self, cell: CellId, i: usize) -> bool {
-        if !self.is_encroached_by_apex(cell, i) {
+        let is_far_apex_near = || {
             let beside = self.t.tds().neighbor(cell, i);
-            let j = self.t.tds().index_of_neighbor(beside, cell);
-            // Of four points in circles one answer is enough.
-            return !matches!(self.law, Law::Delaunay) && self.is_encroached_by_apex(beside, j);
-        }
-        true
+            self.is_apex_near(beside, self.t.tds().index_of_neighbor(beside, cell))
+        };
+        // Of four points in circles one answer is enough.
+        let is_symmetric = matches!(self.law, Law::Delaunay);
+        self.t.is_constrained(cell, i) && (self.is_apex_near(cell, i) || !is_symmetric && is_far_apex_near())
     }
 
     /// The same, asked of the vertex of this cell only: where it is new, the one on the other side has been asked.
     pub(super) fn is_encroached_by_apex(&self, cell: CellId, i: usize) -> bool {
+        self.t.is_constrained(cell, i) && self.is_apex_near(cell, i)
+    }
+
+    /// Whether the vertex of a cell in the domain is too near to the edge opposite it.
+    fn is_apex_near(&self, cell: CellId, i: usize) -> bool {
         let tds = self.t.tds();
         let apex = tds.vertex(cell, i);
-        if !self.t.is_constrained(cell, i) || apex == VertexId::INFINITE || !self.is_inside(cell) {
+        if apex == VertexId::INFINITE || !self.is_inside(cell) {
             return false;
         }
         if let Law::Delaunay = self.law {

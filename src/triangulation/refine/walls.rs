@@ -110,7 +110,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             if self.is_encroached_by_apex(cell, i) {
                 self.encroached.push_back(self.t.tds().edge_ends(cell, i));
             }
-            if self.t.is_constrained(cell, cw(i)) && self.is_encroached(cell, cw(i)) {
+            if self.is_encroached(cell, cw(i)) {
                 self.encroached.push_back(self.t.tds().edge_ends(cell, cw(i)));
             }
         }
