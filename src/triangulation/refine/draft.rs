@@ -134,6 +134,12 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         }
     }
 
+    /// Grows the zone of a point that is in conflict with a cell, up to constraints.
+    pub(super) fn grow(&self, zone: &mut Zone, start: CellId, p: &G::Point) {
+        let inner = &self.t.inner;
+        zone.grow(&inner.tds, start, |from, i, beyond| !inner.is_constrained(from, i) && inner.in_conflict(beyond, p));
+    }
+
     /// Replaces a zone by the star of a new vertex, the cells of which are then [fresh](Self::fresh). `region` says in
     /// which region they are, by their position on the border.
     pub(super) fn star(
@@ -172,9 +178,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             return Attempt::TooFine;
         }
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        let inner = &self.t.inner;
-        let takes = |from, i, beyond| !inner.is_constrained(from, i) && inner.in_conflict(beyond, &p);
-        zone.grow(&inner.tds, cell, takes);
+        self.grow(&mut zone, cell, &p);
         let queued = self.encroached.len();
         for (cell, i) in zone.border().filter(|&(cell, i)| self.t.is_constrained(cell, i)) {
             let ends = self.t.tds().edge_ends(cell, i);

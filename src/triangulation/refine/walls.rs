@@ -56,10 +56,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let sides = [cell, beside].map(|side| self.regions[side.index()]);
         self.t.inner.set_wall(edge, false);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        let inner = &self.t.inner;
-        if let Some(start) = [cell, beside].into_iter().find(|&side| inner.in_conflict(side, &p)) {
-            let takes = |from, i, beyond| !inner.is_constrained(from, i) && inner.in_conflict(beyond, &p);
-            zone.grow(&inner.tds, start, takes);
+        if let Some(start) = [cell, beside].into_iter().find(|&side| self.t.inner.in_conflict(side, &p)) {
+            self.grow(&mut zone, start, &p);
         }
         let Some([after_a, after_b]) = self.rim(&zone, &p, [a, b]) else {
             zone.finish();
