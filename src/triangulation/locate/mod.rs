@@ -108,12 +108,12 @@ const PATIENCE: usize = 64;
 /// step for each is left in the mean.
 const PATIENCE_EACH: usize = 2;
 
-/// Along a curve a walk comes by all vertices in between. If it starts from the nearest of so many times `n^(1/2)`, looking
-/// and walking take equally long.
+/// How many of `n` vertices a walk looks at, the first time and the second. Along a curve it comes by all vertices in
+/// between: from the nearest of so many times `n^(1/2)`, looking and walking take equally long.
 ///
 /// `PERF:` 100 000 points on a parabola, one by one in random order (`bench_triangulation --one-by-one`): 12 instead of 53 us
-/// each; uniform points 4 to 5.
-const ALONG_CURVES: f64 = 3.0;
+/// each with the second look; uniform points 4 to 5.
+const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 
 /// A walk of that many times more steps than there are cells is lost: on a Delaunay triangulation none comes to a cell
 /// twice, and on others the chance is halved, at the least, with each round.
@@ -134,7 +134,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     fn nearest_of_some(&self, q: &G::Point) -> Option<VertexId> {
-        let samples = (self.tds.vertex_slots() as f64).cbrt() as usize;
+        let samples = LOOKS[0](self.tds.vertex_slots() as f64) as usize;
         let Ok(nearest) = nearest_of_some(self, q, f64::INFINITY, samples, &mut Dice::default());
         nearest
     }
@@ -172,15 +172,15 @@ pub(super) fn walk<const N: usize, T: Embedded<N>>(
     let mut dice = Dice::default();
     let mut from = None;
     let mut steps = 0;
-    let mut patience = PATIENCE;
+    let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
     'walk: loop {
         steps += 1;
         complex.ensure(cell, || steps < WANDERING * (complex.cell_slots() + PATIENCE))?;
-        if steps == patience {
-            let count = complex.vertex_slots() as f64;
-            let is_first = patience == PATIENCE;
-            let samples = if is_first { count.cbrt() } else { ALONG_CURVES * count.sqrt() } as usize;
-            patience = if is_first { steps + PATIENCE_EACH * samples } else { usize::MAX };
+        if steps == patience
+            && let Some(look) = looks.next()
+        {
+            let samples = look(complex.vertex_slots() as f64) as usize;
+            patience = steps + PATIENCE_EACH * samples;
             if let Some(nearer) = jump(t, cell, q, samples, &mut dice)? {
                 (cell, from) = (nearer, None);
             }
