@@ -246,11 +246,13 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> Seen<'a, G, N,
     }
 }
 
-/// The largest power of two of which all coordinates are multiples; 0 if most distances are more than 2^12 of it.
+/// The largest power of two of which all coordinates are multiples; 0 if it is so small a part of the largest one that most
+/// distances are more than 2^12 of it.
 ///
 /// `PERF:` of a grid one pass, on all threads; of other points next to nothing, as the first few tell.
 fn unit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], grain: Grain) -> f64 {
     let part = 2f64.powi(-14) / points.len() as f64;
+    let is_too_small = |lowest: i32, largest: f64| 2f64.powi(lowest) < part * largest;
     let of_chunk = |chunk: &[G::Point]| {
         let (mut lowest, mut largest) = (i32::MAX, 0.0);
         for x in chunk.iter().filter_map(|p| geometry.exact_plan(p)).flatten() {
@@ -258,7 +260,7 @@ fn unit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], gr
             let bit = lattice::lowest_bit(x).unwrap_or(lowest);
             if bit < lowest {
                 lowest = bit;
-                if 2f64.powi(lowest) < part * largest {
+                if is_too_small(lowest, largest) {
                     return None;
                 }
             }
@@ -267,6 +269,6 @@ fn unit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], gr
     };
     let least = |(i, x): (i32, f64), (j, y): (i32, f64)| Some((i.min(j), x.max(y)));
     let of_all = points.par_chunks(grain.points).map(of_chunk).try_reduce(|| (i32::MAX, 0.0), least);
-    let unit = of_all.map(|(lowest, largest)| (2f64.powi(lowest), part * largest));
-    unit.filter(|(unit, least)| unit >= least).map_or(0.0, |(unit, _)| unit)
+    let unit = of_all.filter(|&(lowest, largest)| !is_too_small(lowest, largest));
+    unit.map_or(0.0, |(lowest, _)| 2f64.powi(lowest))
 }
