@@ -265,6 +265,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// share one facet at the most. Of cells that share none, nothing is said.
     #[inline(always)]
     pub fn index_of_neighbor(&self, cell: CellId, other: CellId) -> usize {
+        // An index into a cell whatever is asked, so that none has to be checked later.
         first_of(&self.links[cell.index()].neighbors, other).min(N - 1)
     }
 

@@ -25,6 +25,7 @@ pub(super) struct Refiner<'a, G: Crossing, V> {
     /// The square of the cosine of the smallest angle that is wanted.
     cosine: f64,
     reach: f64,
+    /// Whether there is any bound on areas: every new triangle asks, and mostly there is none.
     bounds_areas: bool,
 }
 

@@ -19,7 +19,8 @@ const NONE: u32 = 0;
 /// repaired on a small scale is not disturbed again from a larger one (Shewchuk 2002).
 ///
 /// `PERF:` with the first that came instead, 370 000 vertices (`la` of Triangle's samples, area 0.001) took about 1.4
-/// times as long, beside Triangle in the same minute, and there were as many: the last is still in the cache.
+/// times as long, beside Triangle in the same minute, and there were as many: the last is still in the cache. In arrays, a
+/// push takes 56 instructions instead of 196 with a map of lists (`la`, callgrind), and nothing is allocated for a scale.
 #[derive(Debug)]
 pub(super) struct Queue {
     /// Triangles, each with the entry below it on the stack of its scale, or of those that are free.
