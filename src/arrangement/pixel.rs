@@ -1,6 +1,7 @@
 //! The grid of rounding, and its pixels.
 
 use crate::kernel::{CornerSide, CrossingSide, Kernel, Orientation2, Predicate, RANGE};
+use crate::num::lattice::lowest_bit;
 use crate::num::{Dyadic, Pair, Sign};
 
 use super::boxes::Box2;
@@ -85,10 +86,7 @@ impl Grid {
 
     /// Whether a place is a multiple of the unit on both axes.
     pub(super) fn holds(&self, place: Place) -> bool {
-        (0..2).all(|k| {
-            let steps = place[k] / self.unit[k]; // at most 2^53, and exact unless it vanishes
-            steps == steps.trunc() && steps * self.unit[k] == place[k]
-        })
+        (0..2).all(|k| place[k] == 0.0 || lowest_bit(place[k]) >= lowest_bit(self.unit[k]))
     }
 
     /// Whether a segment has a point in the pixel around a place.

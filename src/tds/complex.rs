@@ -195,7 +195,7 @@ impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {
     }
 }
 
-/// The cells that have a vertex, from one of them counter-clockwise.
+/// The cells that have a vertex, from one of them counter-clockwise, each with the place of the vertex in it.
 ///
 /// Each step over a link is taken only if the link leads back: so no two steps lead to one cell, and the way cannot run
 /// into a ring that it did not start from. It ends after each cell that has the vertex once, whatever the links say.
@@ -216,67 +216,59 @@ impl<'a, T: Complex<3>> Star<'a, T> {
         Ok(Star { complex, vertex, front: at, end: at, is_over: start.is_none() })
     }
 
+    /// Where the vertex stands in a cell.
+    #[inline(always)]
+    fn place(&self, cell: CellId) -> Result<usize, T::Error> {
+        let place = super::first_of(&self.complex.corners(cell)?, self.vertex);
+        self.complex.ensure(cell, || place < 3)?;
+        Ok(place.min(2)) // an index into a cell whatever the links say
+    }
+
     /// The next cell across the side that `turn` gives for the place of the vertex in a face. On a line both ways
     /// lead to the only other cell.
     #[inline(always)]
     fn beside(
         &self,
-        cell: CellId,
+        (cell, place): (CellId, usize),
         turn: impl Fn(usize) -> usize,
         back: impl Fn(usize) -> usize,
     ) -> Result<CellId, T::Error> {
         let (complex, is_line) = (self.complex, self.complex.dimension() == 1);
-        let at = complex.index_of(cell, self.vertex)?;
-        complex.ensure(cell, || at.is_some())?;
-        let i = at.unwrap_or(0);
-        let beside = complex.neighbor(cell, if is_line { 1 - i } else { turn(i) })?;
+        let beside = complex.neighbor(cell, if is_line { 1 - place.min(1) } else { turn(place) })?;
         complex.ensure(beside, || {
             let Ok(Some(j)) = complex.index_of(beside, self.vertex) else { return false };
             complex.neighbor(beside, if is_line { 1 - j } else { back(j) }).is_ok_and(|c| c == cell)
         })?;
         Ok(beside)
     }
+
+    #[inline(always)]
+    fn step(&mut self) -> Result<(CellId, usize), T::Error> {
+        let here = (self.front, self.place(self.front)?);
+        self.front = self.beside(here, ccw, cw)?;
+        self.is_over = self.front == self.end;
+        Ok(here)
+    }
+
+    fn step_back(&mut self) -> Result<(CellId, usize), T::Error> {
+        self.end = self.beside((self.end, self.place(self.end)?), cw, ccw)?;
+        self.is_over = self.front == self.end;
+        Ok((self.end, self.place(self.end)?))
+    }
 }
 
 impl<T: Complex<3>> Iterator for Star<'_, T> {
-    type Item = Result<CellId, T::Error>;
+    type Item = Result<(CellId, usize), T::Error>;
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        if self.is_over {
-            return None;
-        }
-        let cell = self.front;
-        match self.beside(cell, ccw, cw) {
-            Ok(beside) => {
-                self.front = beside;
-                self.is_over = beside == self.end;
-                Some(Ok(cell))
-            }
-            Err(error) => {
-                self.is_over = true;
-                Some(Err(error))
-            }
-        }
+        (!self.is_over).then(|| self.step().inspect_err(|_| self.is_over = true))
     }
 }
 
 impl<T: Complex<3>> DoubleEndedIterator for Star<'_, T> {
     fn next_back(&mut self) -> Option<Self::Item> {
-        if self.is_over {
-            return None;
-        }
-        match self.beside(self.end, cw, ccw) {
-            Ok(beside) => {
-                self.end = beside;
-                self.is_over = self.front == beside;
-                Some(Ok(beside))
-            }
-            Err(error) => {
-                self.is_over = true;
-                Some(Err(error))
-            }
-        }
+        (!self.is_over).then(|| self.step_back().inspect_err(|_| self.is_over = true))
     }
 }
 
@@ -287,10 +279,9 @@ pub(crate) fn vertices_around<T: Complex<3>>(
     complex: &T,
     vertex: VertexId,
 ) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, T::Error>> + '_, T::Error> {
-    Ok(Star::new(complex, vertex, 1)?.map(move |cell| {
-        let cell = cell?;
-        let i = complex.index_of(cell, vertex)?.unwrap_or(0);
-        complex.vertex(cell, if complex.dimension() == 1 { 1 - i } else { ccw(i) })
+    Ok(Star::new(complex, vertex, 1)?.map(|cell| {
+        let (cell, i) = cell?;
+        complex.vertex(cell, if complex.dimension() == 1 { 1 - i.min(1) } else { ccw(i) })
     }))
 }
 
@@ -302,9 +293,9 @@ pub(crate) fn edges_around<T: Complex<3>>(
     complex: &T,
     vertex: VertexId,
 ) -> Result<impl DoubleEndedIterator<Item = Result<Edge, T::Error>> + '_, T::Error> {
-    Ok(Star::new(complex, vertex, 1)?.map(move |cell| {
-        let cell = cell?;
-        Ok((cell, if complex.dimension() == 1 { 2 } else { cw(complex.index_of(cell, vertex)?.unwrap_or(0)) }))
+    Ok(Star::new(complex, vertex, 1)?.map(|cell| {
+        let (cell, i) = cell?;
+        Ok((cell, if complex.dimension() == 1 { 2 } else { cw(i) }))
     }))
 }
 
@@ -318,10 +309,8 @@ pub(crate) fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Resul
 /// there is such an edge and dimension 2.
 pub(crate) fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<Option<Edge>, T::Error> {
     for cell in Star::new(complex, a, 2)? {
-        let cell = cell?;
-        if let Some(i) = complex.index_of(cell, a)?
-            && complex.vertex(cell, ccw(i))? == b
-        {
+        let (cell, i) = cell?;
+        if complex.vertex(cell, ccw(i))? == b {
             return Ok(Some((cell, cw(i))));
         }
     }
@@ -331,7 +320,7 @@ pub(crate) fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Resu
 /// The face with these three vertices, in any order, one of which may be the infinite one.
 pub(crate) fn face<T: Complex<3>>(complex: &T, [a, b, c]: [VertexId; 3]) -> Result<Option<CellId>, T::Error> {
     for cell in Star::new(complex, a, 2)? {
-        let cell = cell?;
+        let (cell, _) = cell?;
         let corners = complex.corners(cell)?;
         if a != b && b != c && c != a && corners.contains(&b) && corners.contains(&c) {
             return Ok(Some(cell));

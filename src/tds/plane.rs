@@ -67,8 +67,16 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
 
     /// The finite and infinite faces around a vertex, counter-clockwise. Empty below dimension 2.
     pub fn around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = CellId> + FusedIterator + '_ {
+        self.corners_around(vertex).map(|(cell, _)| cell)
+    }
+
+    /// The same, each with the place of the vertex in it.
+    pub fn corners_around(
+        &self,
+        vertex: VertexId,
+    ) -> impl DoubleEndedIterator<Item = (CellId, usize)> + FusedIterator + '_ {
         let Ok(star) = Star::new(self, vertex, 2);
-        star.map(|Ok(cell)| cell)
+        star.map(|Ok(corner)| corner)
     }
 
     /// The edges that start at a vertex, counter-clockwise, each as the face on its left and the index of the vertex

@@ -96,8 +96,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     fn line_without(&self, vertex: VertexId) -> Option<Vec<VertexId>> {
         let mut line = Vec::new();
         let mut is_on_hull = false;
-        for cell in self.tds.around(vertex) {
-            let i = self.tds.index_of(cell, vertex)?;
+        for (cell, i) in self.tds.corners_around(vertex) {
             if self.tds.is_infinite(cell) {
                 is_on_hull = true;
             } else if self.tds.is_infinite(self.tds.neighbor(cell, i)) {

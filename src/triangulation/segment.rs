@@ -211,8 +211,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         };
         // The triangle at `a` through which the segment leaves, or a neighbor right on the way.
         let mut leaves = None;
-        for cell in tds.around(a) {
-            let Some(i) = tds.index_of(cell, a) else { continue };
+        for (cell, i) in tds.corners_around(a) {
             let (u, w) = (tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
             if u == VertexId::INFINITE {
                 continue;

@@ -3,7 +3,7 @@ use std::ops::Deref;
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
-use crate::tds::{CellId, VertexId};
+use crate::tds::{CellId, VertexId, cw};
 
 use super::flip::Forced;
 use super::segment::{Met, Scratch};
@@ -210,6 +210,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         })
     }
 
+    /// The other ends of the constrained edges at a vertex, counter-clockwise. Time proportional to its degree.
+    pub fn constrained_around(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
+        let constrained = self.tds.edges_around(vertex).filter(|&(cell, i)| self.is_constrained(cell, i));
+        constrained.map(|(cell, i)| self.tds.vertex(cell, cw(i)))
+    }
+
     /// Makes an edge a constraint; says whether it is there.
     pub(super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
         let edge = self.tds.edge(a, b);
@@ -246,10 +252,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
 
     /// Whether a constraint ends in a vertex or runs through it.
     pub(super) fn is_on_wall(&self, vertex: VertexId) -> bool {
-        self.tds.around(vertex).any(|cell| {
-            let i = self.tds.index_of(cell, vertex);
-            (0..3).any(|k| Some(k) != i && self.is_constrained(cell, k))
-        })
+        self.constrained_around(vertex).next().is_some()
     }
 
     /// Whether a point is in a counter-clockwise triangle or on its border.

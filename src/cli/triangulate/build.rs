@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::geometry::{Geometry, Plane};
 use crate::kernel::{Kernel, twice_area};
-use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::tds::{CellId, VertexId};
 use crate::triangulation::refine::{Quality, Shortfall};
 use crate::triangulation::{ConstrainedDelaunay, LineId, Location, OnCrossing, Refused};
 
@@ -119,7 +119,7 @@ fn place<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], 
     }
     let in_face = |cell: CellId| face_of[cell.index()].map_or(Place::Outside, Place::Face);
     match t.locate(&p, None) {
-        Location::Vertex(v) if walls(t, v).next().is_some() => Place::Wall,
+        Location::Vertex(v) if t.constrained_around(v).next().is_some() => Place::Wall,
         Location::Vertex(v) => {
             t.tds().around(v).find_map(|cell| face_of[cell.index()]).map_or(Place::Outside, Place::Face)
         }
@@ -131,12 +131,4 @@ fn place<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], 
         }
         Location::OutsideHull { .. } | Location::OutsideAffineHull => Place::Outside,
     }
-}
-
-/// The vertices at the other ends of the walls that start at one.
-fn walls<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, v: VertexId) -> impl Iterator<Item = VertexId> + '_ {
-    t.tds().around(v).filter_map(move |cell| {
-        let i = t.tds().index_of(cell, v)?;
-        t.is_constrained(cell, cw(i)).then(|| t.tds().vertex(cell, ccw(i)))
-    })
 }

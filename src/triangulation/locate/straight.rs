@@ -36,14 +36,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     fn walk_straight(&self, from: VertexId, q: &G::Point) -> Option<CellId> {
         let p = self.point(from);
         let side = |v: VertexId| self.geometry.orientation([p, q, self.point(v)]);
-        let starts = |cell: CellId| {
-            let i = self.tds.index_of(cell, from)?;
-            let is_met = !self.tds.is_infinite(cell)
+        let starts = |&(cell, i): &(CellId, usize)| {
+            !self.tds.is_infinite(cell)
                 && side(self.tds.vertex(cell, ccw(i))) == Sign::Negative
-                && side(self.tds.vertex(cell, cw(i))) != Sign::Negative;
-            is_met.then_some((cell, i))
+                && side(self.tds.vertex(cell, cw(i))) != Sign::Negative
         };
-        let (mut cell, mut i) = self.tds.around(from).find_map(starts)?;
+        let (mut cell, mut i) = self.tds.corners_around(from).find(starts)?;
         loop {
             // `r` and `l` are the ends of the edge opposite vertex `i`.
             let [r, l] = self.tds.edge_ends(cell, i);

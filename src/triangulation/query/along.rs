@@ -180,8 +180,7 @@ impl<T: Embedded<3>> Way<'_, T> {
         let complex = self.t.complex();
         let mut touched: Option<VertexId> = None;
         for cell in Star::new(complex, VertexId::INFINITE, 2)? {
-            let cell = cell?;
-            let Some(i) = complex.index_of(cell, VertexId::INFINITE)? else { continue };
+            let (cell, i) = cell?;
             // Of the infinite face: the hull runs from `to` to `from`.
             let ends @ [to, from] = complex.edge_ends(cell, i)?;
             let sides = [self.side(from)?, self.side(to)?];

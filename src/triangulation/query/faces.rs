@@ -144,8 +144,8 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
     }
 
     fn root(&mut self) -> Result<Option<CellId>, T::Error> {
-        for cell in self.roots.iter_mut().flatten() {
-            let cell = cell?;
+        for corner in self.roots.iter_mut().flatten() {
+            let (cell, _) = corner?;
             if !self.t.complex().is_infinite(cell)? {
                 return Ok(Some(cell));
             }

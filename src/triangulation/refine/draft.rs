@@ -39,7 +39,7 @@ pub(super) enum Origin {
 pub(super) enum Attempt {
     /// It is there.
     Added,
-    /// It would encroach upon constrained edges, which are queued.
+    /// It would encroach upon a constrained edge, which is queued.
     Encroaches,
     /// The coordinates are too coarse for it.
     TooFine,
@@ -68,7 +68,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             budget,
             encroached: VecDeque::new(),
             origins: vec![Origin::Given; t.tds().vertex_slots()],
-            shells: Shells::of(&t),
+            shells: Shells::new(t.tds().vertex_slots()),
             law,
             t,
         };
@@ -134,10 +134,26 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         }
     }
 
-    /// Grows the zone of a point that is in conflict with a cell, up to constraints.
-    pub(super) fn grow(&self, zone: &mut Zone, start: CellId, p: &G::Point) {
+    /// Grows the zone of a point that is in conflict with a cell, up to constraints; or to the first of these of which
+    /// `stops` says so, given from within. That one is returned.
+    pub(super) fn grow(
+        &self,
+        zone: &mut Zone,
+        start: CellId,
+        p: &G::Point,
+        stops: impl Fn(CellId, usize) -> bool,
+    ) -> Option<(CellId, usize)> {
         let inner = &self.t.inner;
-        zone.grow(&inner.tds, start, |from, i, beyond| !inner.is_constrained(from, i) && inner.in_conflict(beyond, p));
+        let mut stopped = None;
+        zone.grow(&inner.tds, start, |from, i, beyond| {
+            if stopped.is_none() && inner.is_constrained(from, i) {
+                stopped = stops(from, i).then_some((from, i));
+                false
+            } else {
+                stopped.is_none() && inner.in_conflict(beyond, p)
+            }
+        });
+        stopped
     }
 
     /// Replaces a zone by the star of a new vertex, the cells of which are then [fresh](Self::fresh). `region` says in
@@ -178,18 +194,15 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             return Attempt::TooFine;
         }
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        self.grow(&mut zone, cell, &p);
-        let queued = self.encroached.len();
-        for (cell, i) in zone.border().filter(|&(cell, i)| self.t.is_constrained(cell, i)) {
-            let ends = self.t.tds().edge_ends(cell, i);
-            if self.encroaches(ends, place) || self.t.inner.side_of_facet(cell, i, &p) != Sign::Positive {
-                self.encroached.push_back(ends);
-            }
-        }
-        let is_near = self.encroached.len() > queued;
-        if is_near {
+        // Of several the first is enough: once it is split, most of the others need not be.
+        let is_near = |from, i| {
+            self.encroaches(self.t.tds().edge_ends(from, i), place)
+                || self.t.inner.side_of_facet(from, i, &p) != Sign::Positive
+        };
+        if let Some((from, i)) = self.grow(&mut zone, cell, &p, is_near) {
             zone.finish();
             self.t.inner.zone = zone;
+            self.encroached.push_back(self.t.tds().edge_ends(from, i));
             return Attempt::Encroaches;
         }
         let region = self.regions[cell.index()];

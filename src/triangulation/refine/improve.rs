@@ -22,6 +22,8 @@ pub(super) struct Refiner<'a, G: Crossing, V> {
     pub(super) draft: Draft<G, V>,
     quality: &'a Quality<'a>,
     queue: Queue,
+    /// Triangles that are not what is asked for but were left as they are; some may have gone since.
+    left: Vec<Bad>,
     /// The square of the cosine of the smallest angle that is wanted.
     cosine: f64,
     reach: f64,
@@ -35,7 +37,8 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         let reach = REACH / 2.0 / (angle / 2.0).tan();
         // The rounded cosine of a sliver may be larger than one.
         let cosine = if angle > 0.0 { angle.cos().powi(2) } else { f64::INFINITY };
-        Refiner { draft, quality, queue: Queue::default(), cosine, reach, bounds_areas: quality.bounds_areas() }
+        let bounds_areas = quality.bounds_areas();
+        Refiner { draft, quality, queue: Queue::default(), left: Vec::new(), cosine, reach, bounds_areas }
     }
 
     pub(super) fn run(&mut self) {
@@ -46,8 +49,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         while self.draft.budget > 0
             && let Some(bad) = self.queue.pop()
         {
-            let tds = self.draft.t.tds();
-            if !tds.is_used(bad.cell) || *tds.corners(bad.cell) != bad.corners {
+            if !self.is_there(&bad) {
                 continue;
             }
             let place = self.shape(bad.cell).off_center(self.reach);
@@ -61,7 +63,9 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
                 }
                 attempt => attempt == Attempt::Added,
             };
-            if was_changed {
+            if !was_changed {
+                self.left.push(bad);
+            } else {
                 let mut fresh = std::mem::take(&mut self.draft.fresh);
                 fresh.drain(..).for_each(|cell| self.test(cell));
                 self.draft.fresh = fresh;
@@ -75,13 +79,26 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
 
     /// Queues a cell if it is to be destroyed.
     fn test(&mut self, cell: CellId) {
-        if self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell) {
-            let shape = self.shape(cell);
-            if self.is_too_large(cell, &shape) || self.is_too_thin(&shape) && self.why_thin(cell, &shape).is_none() {
-                let corners = *self.draft.t.tds().corners(cell);
-                self.queue.push(Bad { cell, corners, shortest: shape.shortest() });
-            }
+        if !self.draft.t.tds().is_used(cell) || !self.draft.is_inside(cell) {
+            return;
         }
+        let shape = self.shape(cell);
+        let is_large = self.is_too_large(cell, &shape);
+        if !is_large && !self.is_too_thin(&shape) {
+            return;
+        }
+        let bad = Bad { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
+        if is_large || self.why_thin(cell, &shape).is_none() {
+            self.queue.push(bad);
+        } else {
+            self.left.push(bad);
+        }
+    }
+
+    /// Whether a triangle still is what it was.
+    fn is_there(&self, bad: &Bad) -> bool {
+        let tds = self.draft.t.tds();
+        tds.is_used(bad.cell) && *tds.corners(bad.cell) == bad.corners
     }
 
     fn is_too_large(&self, cell: CellId, shape: &Shape) -> bool {
@@ -125,17 +142,20 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
             })
     }
 
-    /// The triangles that are not what was asked for, and why.
-    pub(super) fn shortfall(&self) -> Vec<(CellId, Shortfall)> {
-        let inside = self.draft.t.tds().cells().filter(|&cell| self.draft.is_inside(cell));
+    /// The triangles that are not what was asked for, in order of their numbers, and why. All others have been tested
+    /// since they came to be.
+    pub(super) fn shortfall(&mut self) -> Vec<(CellId, Shortfall)> {
+        let mut bad = std::mem::take(&mut self.left);
+        bad.extend(std::iter::from_fn(|| self.queue.pop()));
+        let mut cells: Vec<CellId> = bad.iter().filter(|bad| self.is_there(bad)).map(|bad| bad.cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        let rest = if self.draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
         let why = |cell: CellId| {
             let shape = self.shape(cell);
-            let is_thin = self.is_too_thin(&shape);
-            let is_bad = is_thin || self.is_too_large(cell, &shape);
-            let reason = if is_thin { self.why_thin(cell, &shape) } else { None };
-            let rest = if self.draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
-            is_bad.then(|| (cell, reason.unwrap_or(rest)))
+            let reason = if self.is_too_thin(&shape) { self.why_thin(cell, &shape) } else { None };
+            (cell, reason.unwrap_or(rest))
         };
-        inside.filter_map(why).collect()
+        cells.into_iter().map(why).collect()
     }
 }

@@ -9,10 +9,10 @@ pub(super) struct Bad {
     pub(super) shortest: f64,
 }
 
-/// How many scales there are: numbers have 11 bits of exponent, and the first bit behind the point counts.
-const SCALES: usize = 1 << 12;
+/// How many words of scales there are: numbers have 11 bits of exponent, and the first bit behind the point counts.
+const WORDS: usize = (1 << 12) / 64;
 
-/// Stands for no entry: entries are numbered from 1, so that empty stacks are zeroes, which cost nothing.
+/// Stands for no entry: entries are numbered from 1.
 const NONE: u32 = 0;
 
 /// Triangles by their shortest edges, the shortest first, up to a factor of 1.23; of those the last that came. What is
@@ -20,38 +20,47 @@ const NONE: u32 = 0;
 ///
 /// `PERF:` with the first that came instead, 370 000 vertices (`la` of Triangle's samples, area 0.001) took about 1.4
 /// times as long, beside Triangle in the same minute, and there were as many: the last is still in the cache. In arrays, a
-/// push takes 56 instructions instead of 196 with a map of lists (`la`, callgrind), and nothing is allocated for a scale.
+/// push takes 56 instructions instead of 196 with a map of lists (`la`, callgrind), and nothing is allocated for a
+/// scale. Stacks are made for the words that are met, mostly one: for all it would be a tenth of a small refinement.
 #[derive(Debug)]
 pub(super) struct Queue {
     /// Triangles, each with the entry below it on the stack of its scale, or of those that are free.
     entries: Vec<(Bad, u32)>,
     free: u32,
-    /// The topmost entry of each scale.
-    tops: Vec<u32>,
+    /// The topmost entries of the scales of a word.
+    tops: Vec<[u32; 64]>,
+    /// Where in `tops` those of each word are, counted from 1; 0 if it was not met.
+    places: [u8; WORDS],
     /// A bit for each scale that has entries, and one for each word of these that is not zero.
-    scales: [u64; SCALES / 64],
+    scales: [u64; WORDS],
     words: u64,
 }
 
 impl Default for Queue {
     fn default() -> Self {
-        Queue { entries: Vec::new(), free: NONE, tops: vec![NONE; SCALES], scales: [0; SCALES / 64], words: 0 }
+        Queue { entries: Vec::new(), free: NONE, tops: Vec::new(), places: [0; WORDS], scales: [0; WORDS], words: 0 }
     }
 }
 
 impl Queue {
     pub(super) fn push(&mut self, bad: Bad) {
-        let scale = (bad.shortest.to_bits() >> 51) as usize % SCALES; // there is no sign
-        let below = std::mem::replace(&mut self.tops[scale], self.free);
+        let scale = (bad.shortest.to_bits() >> 51) as usize; // there is no sign
+        let (word, bit) = (scale / 64 % WORDS, scale % 64);
+        if self.places[word] == 0 {
+            self.tops.push([NONE; 64]);
+            self.places[word] = self.tops.len() as u8;
+        }
+        let top = &mut self.tops[self.places[word] as usize - 1][bit];
+        let below = std::mem::replace(top, self.free);
         if self.free == NONE {
             self.entries.push((bad, below));
-            self.tops[scale] = self.entries.len() as u32;
+            *top = self.entries.len() as u32;
         } else {
             let entry = &mut self.entries[self.free as usize - 1];
             self.free = std::mem::replace(entry, (bad, below)).1;
         }
-        self.scales[scale / 64] |= 1 << (scale % 64);
-        self.words |= 1 << (scale / 64);
+        self.scales[word] |= 1 << bit;
+        self.words |= 1 << word;
     }
 
     pub(super) fn pop(&mut self) -> Option<Bad> {
@@ -60,7 +69,7 @@ impl Queue {
         }
         let word = self.words.trailing_zeros() as usize;
         let bit = self.scales[word].trailing_zeros() as usize;
-        let top = &mut self.tops[64 * word + bit];
+        let top = &mut self.tops[self.places[word] as usize - 1][bit];
         let entry = &mut self.entries[*top as usize - 1];
         let (bad, below) = *entry;
         entry.1 = self.free;

@@ -15,12 +15,9 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
 ) -> Vec<u32> {
     let mut marks = match domain {
         Domain::Hull { holes } => {
-            let hull: Vec<CellId> = t.tds().around(VertexId::INFINITE).collect();
-            for cell in hull {
-                if let Some(i) = t.tds().index_of(cell, VertexId::INFINITE) {
-                    let [a, b] = t.tds().edge_ends(cell, i);
-                    t.inner.wall_up(a, b);
-                }
+            let hull: Vec<(CellId, usize)> = t.tds().corners_around(VertexId::INFINITE).collect();
+            for edge in hull {
+                t.inner.set_wall(edge, true);
             }
             enclosed(t, holes)
         }

@@ -4,10 +4,12 @@ use std::ops::Range;
 
 use crate::kernel::twice_area;
 
+#[inline]
 pub(super) fn minus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [p[0] - q[0], p[1] - q[1]]
 }
 
+#[inline]
 pub(super) fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[0] + u[1] * v[1]
 }
@@ -16,14 +18,19 @@ pub(super) fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
 /// take a fifth of the time of a refinement.
 const ORDINARY: Range<f64> = 1e-140..1e140;
 
+#[inline]
 pub(super) fn length(v: [f64; 2]) -> f64 {
     let square = dot(v, v);
     if ORDINARY.contains(&square) { square.sqrt() } else { v[0].hypot(v[1]) }
 }
 
 /// Whether the cosine of the angle between two vectors is at most the negative of another cosine, and the angle obtuse.
+#[inline]
 pub(super) fn is_in_lens(u: [f64; 2], v: [f64; 2], cosine: f64) -> bool {
     let along = -dot(u, v);
+    if along < -ORDINARY.start {
+        return false; // nearly all that are asked for
+    }
     let (uu, vv) = (dot(u, u), dot(v, v));
     if ORDINARY.contains(&uu) && ORDINARY.contains(&vv) {
         // Without roots.
@@ -36,6 +43,7 @@ pub(super) fn is_in_lens(u: [f64; 2], v: [f64; 2], cosine: f64) -> bool {
 }
 
 /// Of a triangle, positive if it is counter-clockwise.
+#[inline]
 pub(super) fn area([p, q, r]: [[f64; 2]; 3]) -> f64 {
     let [u, v] = [minus(q, p), minus(r, p)];
     (u[0] * v[1] - u[1] * v[0]) / 2.0
@@ -50,15 +58,18 @@ pub(super) struct Shape {
 }
 
 /// One instruction, no branch; `f64::min` takes five, for NaN.
+#[inline]
 fn least(x: f64, y: f64) -> f64 {
     if x < y { x } else { y }
 }
 
+#[inline]
 fn largest(x: f64, y: f64) -> f64 {
     if x > y { x } else { y }
 }
 
 impl Shape {
+    #[inline]
     pub(super) fn of(corners: [[f64; 2]; 3]) -> Self {
         let square = |k: usize| {
             let edge = minus(corners[(k + 1) % 3], corners[k]);
@@ -68,12 +79,14 @@ impl Shape {
     }
 
     /// The square of the shortest edge.
+    #[inline]
     pub(super) fn shortest(&self) -> f64 {
         let [a, b, c] = self.squares;
         least(least(a, b), c)
     }
 
     /// The corner at which the shortest edge begins.
+    #[inline]
     pub(super) fn first(&self) -> usize {
         let shorter = |j: usize, k: usize| if self.squares[k] < self.squares[j] { k } else { j };
         shorter(shorter(0, 1), 2)
@@ -82,6 +95,7 @@ impl Shape {
     /// The square of the cosine of the smallest angle, by the law of cosines.
     ///
     /// `PERF:` all triangles that come to be are asked for it, and which edge is the shortest is not predictable.
+    #[inline]
     pub(super) fn cosine(&self) -> f64 {
         let [a, b, c] = self.squares;
         let (short, long) = (self.shortest(), largest(largest(a, b), c));
@@ -103,6 +117,7 @@ impl Shape {
         [0, 1, 2].map(|k| self.corners[(first + k) % 3])
     }
 
+    #[inline]
     pub(super) fn area(&self) -> f64 {
         area(self.corners)
     }

@@ -8,15 +8,19 @@ use rustc_hash::FxHashMap;
 
 use crate::geometry::Crossing;
 use crate::num::Sign;
-use crate::tds::{VertexId, ccw, cw};
+use crate::tds::VertexId;
 
 use super::super::ConstrainedDelaunay;
 use super::shape::{dot, length, minus};
 
 /// Around each vertex, constraints that follow each other at less than 60 degrees form a cluster, which shares its
 /// circles. One of them has as its radius the shortest edge that the cluster has at its apex.
+///
+/// The clusters of a vertex are looked for before the first of its constraints is split.
 #[derive(Debug, Default)]
 pub(super) struct Shells {
+    /// Of the vertices that were there in the beginning: whether its clusters have been looked for.
+    is_known: Vec<bool>,
     /// By apex and other end of a constrained edge, as the edges were in the beginning: the cluster.
     cluster: FxHashMap<[VertexId; 2], u32>,
     /// Of the clusters.
@@ -24,25 +28,28 @@ pub(super) struct Shells {
 }
 
 impl Shells {
-    /// Those of a triangulation.
-    pub(super) fn of<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>) -> Self {
-        let mut shells = Shells::default();
-        let mut ends = Vec::new();
-        for apex in t.tds().vertices() {
-            ends.clear();
-            ends.extend(t.tds().around(apex).filter_map(|cell| {
-                let i = t.tds().index_of(cell, apex)?;
-                t.is_constrained(cell, cw(i)).then(|| t.tds().vertex(cell, ccw(i)))
-            }));
-            shells.add(t, apex, &ends);
+    /// Of a triangulation in which nothing has been split.
+    pub(super) fn new(vertex_slots: usize) -> Self {
+        Shells { is_known: vec![false; vertex_slots], ..Shells::default() }
+    }
+
+    /// Looks for the clusters at both ends of a constraint that is about to be split for the first time.
+    pub(super) fn learn<G: Crossing, V: Default>(&mut self, t: &ConstrainedDelaunay<G, V>, constraint: [VertexId; 2]) {
+        for apex in constraint {
+            if !std::mem::replace(&mut self.is_known[apex.index()], true) {
+                let ends: Vec<VertexId> = t.constrained_around(apex).collect();
+                self.add(t, apex, &ends);
+            }
         }
-        shells
     }
 
     /// Takes in the clusters of a vertex, given the other ends of its constraints counter-clockwise.
     fn add<G: Crossing, V: Default>(&mut self, t: &ConstrainedDelaunay<G, V>, apex: VertexId, ends: &[VertexId]) {
         let count = ends.len();
-        let is_narrow = |k: usize| count > 1 && is_below_60_degrees(t, ends[k % count], apex, ends[(k + 1) % count]);
+        if count < 2 {
+            return;
+        }
+        let is_narrow = |k: usize| is_below_60_degrees(t, ends[k % count], apex, ends[(k + 1) % count]);
         // Begin behind a gap, if there is one.
         let first = (0..count).find(|&k| !is_narrow(k)).map_or(0, |k| k + 1);
         let mut k = first;
@@ -118,8 +125,11 @@ fn is_below_60_degrees<G: Crossing, V: Default>(
     w: VertexId,
 ) -> bool {
     let [to_u, to_w] = [u, w].map(|end| minus(t.plan_of(end), t.plan_of(apex)));
-    let cosine = dot(to_u, to_w) / (length(to_u) * length(to_w));
-    u != w && cosine > 0.5 && t.geometry().orientation([apex, u, w].map(|v| t.point(v))) == Sign::Positive
+    let is_short = || 2.0 * dot(to_u, to_w) > length(to_u) * length(to_w);
+    u != w
+        && dot(to_u, to_w) >= 0.0
+        && is_short()
+        && t.geometry().orientation([apex, u, w].map(|v| t.point(v))) == Sign::Positive
 }
 
 #[cfg(test)]

@@ -31,6 +31,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             _ => None,
         };
         let constraint = ends_of(a).or(ends_of(b)).unwrap_or([a, b]);
+        self.shells.learn(&self.t, constraint);
         if let Law::Lens(_) = self.law
             && !self.shells.is_in_cluster(constraint)
         {
@@ -57,7 +58,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         self.t.inner.set_wall(edge, false);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
         if let Some(start) = [cell, beside].into_iter().find(|&side| self.t.inner.in_conflict(side, &p)) {
-            self.grow(&mut zone, start, &p);
+            self.grow(&mut zone, start, &p, |_, _| false);
         }
         let Some([after_a, after_b]) = self.rim(&zone, &p, [a, b]) else {
             zone.finish();
