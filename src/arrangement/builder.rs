@@ -24,7 +24,7 @@ pub(super) struct Builder<'a, F> {
     places: usize,
     place: &'a F,
     ends: &'a [[u32; 2]],
-    segments: Vec<Segment>,
+    segments: &'a [Segment],
     /// The area of a box over which many of the segments come to lie, if they are spread evenly.
     large: f64,
     added: Vec<Place>,
@@ -35,9 +35,8 @@ pub(super) struct Builder<'a, F> {
 }
 
 impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
-    pub(super) fn new(grid: Grid, places: usize, place: &'a F, ends: &'a [[u32; 2]]) -> Self {
+    pub(super) fn new(grid: Grid, places: usize, place: &'a F, ends: &'a [[u32; 2]], segments: &'a [Segment]) -> Self {
         const MANY: f64 = 8.0;
-        let segments: Vec<Segment> = ends.iter().map(|&[a, b]| [place(a), place(b)]).collect();
         let whole = segments.iter().fold(Box2::NOTHING, |sum, &segment| sum.with(&Box2::around(segment)));
         let large = MANY * whole.area() / segments.len() as f64;
         Builder {

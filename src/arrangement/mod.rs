@@ -80,23 +80,23 @@ impl Arrangement {
     /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at
     /// the worst, for long lines side by side across the axes.
     pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
-        let largest = segments.iter().flatten().fold([0.0f64; 2], |largest, &i| {
-            let p = place(i);
-            [largest[0].max(p[0].abs()), largest[1].max(p[1].abs())]
-        });
+        let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(&place)).collect();
+        let larger = |sum: Place, p: &Place| [sum[0].max(p[0].abs()), sum[1].max(p[1].abs())];
+        let largest = drawn.as_flattened().iter().fold([0.0; 2], larger);
         // Half of the smallest subnormal number is none: away from there, by a power of two.
         const UP: f64 = f64::from_bits((1023 + 400) << 52);
         let scale: Place = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
         // Zero has one sign only.
         let scaled = |p: Place| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
         let place = |i: u32| scaled(place(i));
+        drawn.as_flattened_mut().iter_mut().for_each(|p| *p = scaled(*p));
         let smallest = scale.map(|s| step.max(f64::from_bits(1)) * s);
         // Places on segments count like ends, once they are known.
         let mut on_segments: Vec<u32> = Vec::new();
         let mut arrangement = loop {
-            let known = segments.iter().flatten().chain(&on_segments).map(|&i| place(i));
-            let grid = Grid::through(scaled(largest), smallest, known);
-            let builder = Builder::new(grid, places, &place, segments);
+            let others: Vec<Place> = on_segments.iter().map(|&site| place(site)).collect();
+            let grid = Grid::through(scaled(largest), smallest, [drawn.as_flattened(), &others]);
+            let builder = Builder::new(grid, places, &place, segments, &drawn);
             let arrangement = if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() };
             let before = on_segments.len();
             let given = arrangement.chain_sites.iter().filter(|&&site| (site as usize) < places);

@@ -33,14 +33,14 @@ fn last_place(x: f64) -> f64 {
 impl Grid {
     /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles, but
     /// none smaller than `smallest`.
-    pub(super) fn through(largest: Place, smallest: Place, places: impl Iterator<Item = Place> + Clone) -> Self {
-        let is_ordinary = places.clone().flatten().all(|x| RANGE.admits(x));
+    pub(super) fn through(largest: Place, smallest: Place, places: [&[Place]; 2]) -> Self {
+        let is_ordinary = places.into_iter().all(|some| some.as_flattened().iter().all(|&x| RANGE.admits(x)));
         // Crossings of what the fast kernels admit are to be admitted.
         let ordinary = RANGE.min * f64::EPSILON;
         let smallest = if is_ordinary { smallest.map(|step| step.max(ordinary)) } else { smallest };
         let unit = [0, 1].map(|k| last_place(largest[k]).max(smallest[k]));
         let mut grid = Grid { unit, is_even: true, smallest, is_ordinary };
-        grid.is_even = places.clone().all(|place| grid.holds(place));
+        grid.is_even = places.into_iter().all(|some| some.iter().all(|&place| grid.holds(place)));
         grid
     }
 

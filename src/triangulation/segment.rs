@@ -128,8 +128,9 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         b: VertexId,
         mut at_wall: impl FnMut(&mut Self, [VertexId; 2], CellId, usize) -> Vec<(VertexId, VertexId)>,
     ) {
-        let mut pieces = vec![(a, b)];
-        while let Some((a, b)) = pieces.pop() {
+        // Nothing is allocated for a segment that is one piece.
+        let (mut first, mut pieces) = (Some((a, b)), Vec::new());
+        while let Some((a, b)) = first.take().or_else(|| pieces.pop()) {
             if a == b || self.inner.wall_up(a, b) {
                 continue;
             }

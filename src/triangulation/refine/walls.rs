@@ -70,14 +70,20 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let is_right =
             |k| if after_a < after_b { (after_a..after_b).contains(&k) } else { !(after_b..after_a).contains(&k) };
         let vertex = self.star(zone, p, Origin::Wall(constraint), |k| sides[usize::from(is_right(k))]);
-        for k in [after_a, after_b] {
+        self.t.lines.split(a, b, vertex);
+        for k in 0..self.t.inner.zone.star.len() {
             let cell = self.t.inner.zone.star[k];
-            if let Some(i) = self.t.tds().index_of(cell, vertex) {
+            let Some(i) = self.t.tds().index_of(cell, vertex) else { continue };
+            if self.is_encroached_by_apex(cell, i) {
+                self.encroached.push_back(self.t.tds().edge_ends(cell, i));
+            }
+            if k == after_a || k == after_b {
                 self.t.inner.set_wall((cell, cw(i)), true);
+                if self.is_encroached(cell, cw(i)) {
+                    self.encroached.push_back(self.t.tds().edge_ends(cell, cw(i)));
+                }
             }
         }
-        self.t.lines.split(a, b, vertex);
-        self.look_around(vertex);
         true
     }
 
@@ -99,20 +105,6 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         }
         let [Some(first), Some(second)] = at else { return None };
         Some([first, second])
-    }
-
-    /// Queues what is encroached upon of the constrained edges around the vertex of the last star, and at it.
-    fn look_around(&mut self, vertex: VertexId) {
-        for k in 0..self.t.inner.zone.star.len() {
-            let cell = self.t.inner.zone.star[k];
-            let Some(i) = self.t.tds().index_of(cell, vertex) else { continue };
-            if self.is_encroached_by_apex(cell, i) {
-                self.encroached.push_back(self.t.tds().edge_ends(cell, i));
-            }
-            if self.is_encroached(cell, cw(i)) {
-                self.encroached.push_back(self.t.tds().edge_ends(cell, cw(i)));
-            }
-        }
     }
 
     /// The same edge as the cell on its other side has it.
