@@ -68,18 +68,20 @@ impl Lines {
         let mut pieces = Vec::with_capacity(segments.len());
         for (i, ends) in (0..).zip(segments) {
             let [a, b] = ends.map(&vertex);
+            if !arrangement.is_led(i) {
+                pieces.push(undirected(a, b));
+                continue;
+            }
             let mut between: Box<[VertexId]> = arrangement.chain(i).iter().map(|&site| vertex(site)).collect();
             let mut at = a;
             for &next in between.iter().chain([&b]) {
                 pieces.push(undirected(at, next));
                 at = next;
             }
-            if arrangement.is_led(i) {
-                if a > b {
-                    between.reverse();
-                }
-                self.led.insert(undirected(a, b), between);
+            if a > b {
+                between.reverse();
             }
+            self.led.insert(undirected(a, b), between);
         }
         pieces.sort_unstable();
         pieces.dedup();

@@ -78,17 +78,21 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     }
 
     /// Queues a cell if it is to be destroyed.
+    #[inline]
     fn test(&mut self, cell: CellId) {
-        if !self.draft.t.tds().is_used(cell) || !self.draft.is_inside(cell) {
-            return;
+        if self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell) {
+            let shape = self.shape(cell);
+            let is_large = self.is_too_large(cell, &shape);
+            if is_large || self.is_too_thin(&shape) {
+                self.note(cell, &shape, is_large);
+            }
         }
-        let shape = self.shape(cell);
-        let is_large = self.is_too_large(cell, &shape);
-        if !is_large && !self.is_too_thin(&shape) {
-            return;
-        }
+    }
+
+    /// Takes down a cell that is not what is asked for.
+    fn note(&mut self, cell: CellId, shape: &Shape, is_large: bool) {
         let bad = Bad { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
-        if is_large || self.why_thin(cell, &shape).is_none() {
+        if is_large || self.why_thin(cell, shape).is_none() {
             self.queue.push(bad);
         } else {
             self.left.push(bad);
@@ -101,10 +105,12 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         tds.is_used(bad.cell) && *tds.corners(bad.cell) == bad.corners
     }
 
+    #[inline]
     fn is_too_large(&self, cell: CellId, shape: &Shape) -> bool {
-        if !self.bounds_areas {
-            return false;
-        }
+        self.bounds_areas && self.exceeds_bounds(cell, shape)
+    }
+
+    fn exceeds_bounds(&self, cell: CellId, shape: &Shape) -> bool {
         let quality = self.quality;
         let region = (self.draft.regions[cell.index()] as usize).checked_sub(1);
         let of_region = region.and_then(|k| quality.regions.get(k)).map_or(f64::INFINITY, |region| region.max_area);
