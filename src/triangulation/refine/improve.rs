@@ -49,27 +49,27 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         while self.draft.budget > 0
             && let Some(bad) = self.queue.pop()
         {
-            if !self.is_there(&bad) {
+            if !self.is_still_bad(&bad) {
                 continue;
             }
             let place = self.shape(bad.cell).off_center(self.reach);
             let was_changed = match self.draft.add_in(bad.cell, place) {
                 Attempt::Encroaches => {
-                    let was_changed = self.draft.settle();
-                    if was_changed {
+                    let was_split = self.draft.settle();
+                    if was_split {
                         self.queue.push(bad);
                     }
-                    was_changed
+                    was_split
                 }
                 attempt => attempt == Attempt::Added,
             };
             if !was_changed {
                 self.left.push(bad);
-            } else {
-                let mut fresh = std::mem::take(&mut self.draft.fresh);
-                fresh.drain(..).for_each(|cell| self.test(cell));
-                self.draft.fresh = fresh;
             }
+            // Where a split comes to nothing, vertices may have been taken out all the same.
+            let mut fresh = std::mem::take(&mut self.draft.fresh);
+            fresh.drain(..).for_each(|cell| self.test(cell));
+            self.draft.fresh = fresh;
         }
     }
 
@@ -80,29 +80,35 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     /// Queues a cell if it is to be destroyed.
     #[inline]
     fn test(&mut self, cell: CellId) {
-        if self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell) {
+        if self.is_bad(cell) {
+            self.note(cell);
+        }
+    }
+
+    /// Whether a cell is a triangle of the domain that is not what is asked for.
+    #[inline]
+    fn is_bad(&self, cell: CellId) -> bool {
+        self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell) && {
             let shape = self.shape(cell);
-            let is_large = self.is_too_large(cell, &shape);
-            if is_large || self.is_too_thin(&shape) {
-                self.note(cell, &shape, is_large);
-            }
+            self.is_too_large(cell, &shape) || self.is_too_thin(&shape)
         }
     }
 
     /// Takes down a cell that is not what is asked for.
-    fn note(&mut self, cell: CellId, shape: &Shape, is_large: bool) {
+    fn note(&mut self, cell: CellId) {
+        let shape = self.shape(cell);
         let bad = Bad { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
-        if is_large || self.why_thin(cell, shape).is_none() {
+        if self.is_too_large(cell, &shape) || self.why_thin(cell, &shape).is_none() {
             self.queue.push(bad);
         } else {
             self.left.push(bad);
         }
     }
 
-    /// Whether a triangle still is what it was.
-    fn is_there(&self, bad: &Bad) -> bool {
-        let tds = self.draft.t.tds();
-        tds.is_used(bad.cell) && *tds.corners(bad.cell) == bad.corners
+    /// Whether a triangle that was taken down is still there and still not what is asked for: vertices are taken out,
+    /// and both its number and those of its corners may have come to others since.
+    fn is_still_bad(&self, bad: &Bad) -> bool {
+        *self.draft.t.tds().corners(bad.cell) == bad.corners && self.is_bad(bad.cell)
     }
 
     #[inline]
@@ -153,7 +159,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     pub(super) fn shortfall(&mut self) -> Vec<(CellId, Shortfall)> {
         let mut bad = std::mem::take(&mut self.left);
         bad.extend(std::iter::from_fn(|| self.queue.pop()));
-        let mut cells: Vec<CellId> = bad.iter().filter(|bad| self.is_there(bad)).map(|bad| bad.cell).collect();
+        let mut cells: Vec<CellId> = bad.iter().filter(|bad| self.is_still_bad(bad)).map(|bad| bad.cell).collect();
         cells.sort_unstable();
         cells.dedup();
         let rest = if self.draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };

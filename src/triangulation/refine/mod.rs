@@ -14,8 +14,9 @@
 //! **Method.** Constrained edges that are encroached upon are split in the middle, at small angles on concentric
 //! circles (Ruppert 1995). Then triangles, the one with the shortest edge first, get a vertex at the center of their
 //! circle, or at the off-center if that is nearer (Üngör 2004), unless it encroaches upon a constrained edge: the first
-//! that is met is split instead. What lies in the lens of a constrained edge, as Chew (1993) and Shewchuk (2002) have it,
-//! encroaches upon it; vertices that were added before and lie in its circle are taken out before it is split.
+//! that is met is split instead, and the triangle is left if that edge cannot be. What lies in the lens of a constrained
+//! edge, as Chew (1993) and Shewchuk (2002) have it, encroaches upon it; vertices that were added before and lie in its
+//! circle are taken out before it is split.
 //!
 //! **Ends.** Angles up to 20.7 degrees are proven to be reached, up to about 33 in practice; where constraints
 //! themselves meet at less than 60 degrees, no better than they allow: triangles across a small angle are left (Miller,

@@ -125,10 +125,11 @@ fn is_below_60_degrees<G: Crossing, V: Default>(
     w: VertexId,
 ) -> bool {
     let [to_u, to_w] = [u, w].map(|end| minus(t.plan_of(end), t.plan_of(apex)));
-    let is_short = || 2.0 * dot(to_u, to_w) > length(to_u) * length(to_w);
+    let along = dot(to_u, to_w);
+    // Most angles are obtuse, and need no lengths.
     u != w
-        && dot(to_u, to_w) >= 0.0
-        && is_short()
+        && along >= 0.0
+        && 2.0 * along > length(to_u) * length(to_w)
         && t.geometry().orientation([apex, u, w].map(|v| t.point(v))) == Sign::Positive
 }
 

@@ -9,7 +9,8 @@ use super::draft::{Draft, Law, Origin};
 use super::shape::{length, minus};
 
 impl<G: Crossing, V: Default> Draft<G, V> {
-    /// Splits constrained edges until none is encroached upon that could be split. Says whether there was any change.
+    /// Splits constrained edges until none is encroached upon that could be split. Says whether any was: if none was,
+    /// vertices may have been taken out beside one, and cells are [fresh](Self::fresh) all the same.
     pub(super) fn settle(&mut self) -> bool {
         let before = self.budget;
         while self.budget > 0
