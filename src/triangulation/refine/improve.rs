@@ -53,18 +53,10 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
                 continue;
             }
             let place = self.shape(bad.cell).off_center(self.reach);
-            let was_changed = match self.draft.add_in(bad.cell, place) {
-                Attempt::Encroaches => {
-                    let was_split = self.draft.settle();
-                    if was_split {
-                        self.queue.push(bad);
-                    }
-                    was_split
-                }
-                attempt => attempt == Attempt::Added,
-            };
-            if !was_changed {
-                self.left.push(bad);
+            match self.draft.add_in(bad.cell, place) {
+                Attempt::Added => {}
+                Attempt::Encroaches if self.draft.settle() => self.queue.push(bad),
+                Attempt::Encroaches | Attempt::TooFine => self.left.push(bad),
             }
             // Where a split comes to nothing, vertices may have been taken out all the same.
             let mut fresh = std::mem::take(&mut self.draft.fresh);
