@@ -224,8 +224,7 @@ impl<'a, T: Complex<3>> Star<'a, T> {
         Ok(place.min(2)) // an index into a cell whatever the links say
     }
 
-    /// The next cell across the side that `turn` gives for the place of the vertex in a face. On a line both ways
-    /// lead to the only other cell.
+    /// The next cell across the side that `turn` gives for the place of the vertex in a face.
     #[inline(always)]
     fn beside(
         &self,
@@ -233,11 +232,11 @@ impl<'a, T: Complex<3>> Star<'a, T> {
         turn: impl Fn(usize) -> usize,
         back: impl Fn(usize) -> usize,
     ) -> Result<CellId, T::Error> {
-        let (complex, is_line) = (self.complex, self.complex.dimension() == 1);
-        let beside = complex.neighbor(cell, if is_line { 1 - place.min(1) } else { turn(place) })?;
+        let complex = self.complex;
+        let beside = complex.neighbor(cell, turned(complex, place, turn))?;
         complex.ensure(beside, || {
             let Ok(Some(j)) = complex.index_of(beside, self.vertex) else { return false };
-            complex.neighbor(beside, if is_line { 1 - j } else { back(j) }).is_ok_and(|c| c == cell)
+            complex.neighbor(beside, turned(complex, j, back)).is_ok_and(|c| c == cell)
         })?;
         Ok(beside)
     }
@@ -274,6 +273,12 @@ impl<T: Complex<3>> DoubleEndedIterator for Star<'_, T> {
 
 impl<T: Complex<3>> FusedIterator for Star<'_, T> {}
 
+/// The place in a cell that a turn leads to from another one; on a line both ways lead to the only other.
+#[inline(always)]
+fn turned<T: Complex<3>>(complex: &T, place: usize, turn: impl Fn(usize) -> usize) -> usize {
+    if complex.dimension() == 1 { 1 - place.min(1) } else { turn(place) }
+}
+
 /// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included.
 pub(crate) fn vertices_around<T: Complex<3>>(
     complex: &T,
@@ -281,7 +286,7 @@ pub(crate) fn vertices_around<T: Complex<3>>(
 ) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, T::Error>> + '_, T::Error> {
     Ok(Star::new(complex, vertex, 1)?.map(|cell| {
         let (cell, i) = cell?;
-        complex.vertex(cell, if complex.dimension() == 1 { 1 - i.min(1) } else { ccw(i) })
+        complex.vertex(cell, turned(complex, i, ccw))
     }))
 }
 
