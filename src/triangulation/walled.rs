@@ -210,7 +210,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         })
     }
 
-    /// The other ends of the constrained edges at a vertex, counter-clockwise. Time proportional to its degree.
+    /// The other ends of the constrained edges at a vertex, counter-clockwise; none below dimension 2. Time proportional to
+    /// its degree.
     pub fn constrained_around(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         let constrained = self.tds.edges_around(vertex).filter(|&(cell, i)| self.is_constrained(cell, i));
         constrained.map(|(cell, i)| self.tds.vertex(cell, cw(i)))
