@@ -14,7 +14,8 @@
 //! Files, if there are any, take the place of these: LAS or LAZ, of which the ground is thinned evenly to the number of
 //! the table's terrain, or pairs of coordinates, as little-endian 64-bit floating point. `--points` takes some of the
 //! points only: exact arithmetic without a filter takes long. The walk is that of `Near`: from the last insertion, and
-//! on from a nearer vertex if it takes more than 64 steps.
+//! on from a nearer vertex if it takes more than 64 steps. Under each kernel walks go by rounded numbers first; the
+//! kernel is asked where these end.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 

@@ -127,6 +127,11 @@ where
     }
 
     #[inline(always)]
+    fn rough_sides(&self, simplex: [&P; 3], q: &P) -> [f64; 3] {
+        Plane::<K>::default().rough_sides(simplex.map(&self.place).each_ref(), &(self.place)(q))
+    }
+
+    #[inline(always)]
     fn orientation(&self, simplex: [&P; 3]) -> Sign {
         Plane::<K>::default().orientation(simplex.map(&self.place).each_ref())
     }

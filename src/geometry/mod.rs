@@ -46,6 +46,7 @@ pub use weighted::Weighted;
 use std::cmp::Ordering;
 use std::fmt::Debug;
 
+use crate::kernel::{Orientation2, Predicate};
 use crate::num::Sign;
 
 /// The questions a triangulation asks of points. `N` is the number of vertices of a full cell: 3 for
@@ -115,6 +116,15 @@ pub trait Geometry<const N: usize> {
     #[inline]
     fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> f64 {
         f64::NAN
+    }
+
+    /// About how far inside of each facet of a positively oriented simplex `q` lies, opposite the vertex in the same
+    /// place; negative outside. Any measure will do in which facets can be compared, as the areas (volumes) that they
+    /// span with `q`: for choosing which way a walk goes, no answer depends on it. Without one, which is NaN, walks ask
+    /// for orientations at each step.
+    #[inline]
+    fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> [f64; N] {
+        [f64::NAN; N]
     }
 
     /// The orientation of fewer than `N` points within the flat (line, plane) that they span: of two
@@ -288,6 +298,12 @@ pub trait Crossing: Coordinates<3> {
 #[inline(always)]
 fn plan(p: &[f64; 3]) -> [f64; 2] {
     [p[0], p[1]]
+}
+
+/// Twice the areas that `q` spans with the edges of a triangle, rounded.
+#[inline(always)]
+fn rough_areas([a, b, c]: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
+    [[b, c], [c, a], [a, b]].map(|[from, to]| Orientation2([from, to, q]).value(|x, y| x - y))
 }
 
 /// Along the axes.

@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan};
+use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, rough_areas};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
@@ -25,6 +25,11 @@ impl<K: Kernel> Geometry<3> for Plane<K> {
     #[inline]
     fn rough_distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
         manhattan(*p, *q)
+    }
+
+    #[inline(always)]
+    fn rough_sides(&self, simplex: [&[f64; 2]; 3], q: &[f64; 2]) -> [f64; 3] {
+        rough_areas(simplex.map(|p| *p), *q)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@ use std::cmp::Ordering;
 use std::marker::PhantomData;
 
 use super::{Coordinates, Geometry, lexicographic, manhattan};
-use crate::kernel::{Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3};
+use crate::kernel::{Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3, Predicate};
 use crate::num::Sign;
 
 /// Points in space.
@@ -36,6 +36,13 @@ impl<K: Kernel> Geometry<4> for Space<K> {
     #[inline]
     fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
         manhattan(*p, *q)
+    }
+
+    #[inline(always)]
+    fn rough_sides(&self, [a, b, c, d]: [&[f64; 3]; 4], q: &[f64; 3]) -> [f64; 4] {
+        // Exchanging two points twice changes no sign.
+        let facets = [[b, d, c], [d, a, c], [b, a, d], [a, b, c]];
+        facets.map(|[a, b, c]| Orientation3([*a, *b, *c, *q]).value(|x, y| x - y))
     }
 
     #[inline(always)]

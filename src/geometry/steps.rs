@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, Plane, manhattan};
+use super::{Coordinates, Geometry, Plane, manhattan, rough_areas};
 use crate::kernel::{Kernel, Lattice};
 use crate::num::Sign;
 
@@ -34,6 +34,11 @@ impl<K: Kernel> Geometry<3> for Steps<K> {
     #[inline]
     fn rough_distance(&self, p: &[i32; 3], q: &[i32; 3]) -> f64 {
         manhattan(plan(p), plan(q))
+    }
+
+    #[inline(always)]
+    fn rough_sides(&self, simplex: [&[i32; 3]; 3], q: &[i32; 3]) -> [f64; 3] {
+        rough_areas(simplex.map(plan), plan(q))
     }
 
     #[inline(always)]

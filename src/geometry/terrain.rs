@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, plan};
+use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, plan, rough_areas};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
@@ -28,6 +28,11 @@ impl<K: Kernel> Geometry<3> for Terrain<K> {
     #[inline]
     fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
         manhattan(plan(p), plan(q))
+    }
+
+    #[inline(always)]
+    fn rough_sides(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> [f64; 3] {
+        rough_areas(simplex.map(plan), plan(q))
     }
 
     #[inline(always)]

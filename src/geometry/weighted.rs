@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, lexicographic, manhattan, plan};
+use super::{Coordinates, Geometry, lexicographic, manhattan, plan, rough_areas};
 use crate::kernel::{Adaptive, Kernel, Orientation2, PowerOnLine, PowerTest2};
 use crate::num::Sign;
 
@@ -42,6 +42,11 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
     #[inline]
     fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
         manhattan(plan(p), plan(q))
+    }
+
+    #[inline(always)]
+    fn rough_sides(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> [f64; 3] {
+        rough_areas(simplex.map(plan), plan(q))
     }
 
     #[inline(always)]

@@ -70,6 +70,11 @@ pub trait Complex<const N: usize> {
     /// If it does not hold.
     fn ensure(&self, at: CellId, holds: impl FnOnce() -> bool) -> Result<(), Self::Error>;
 
+    /// Has the memory send what is known of the neighbors of a cell, ahead of the question for one of them: nothing else,
+    /// or nothing at all.
+    #[inline(always)]
+    fn fetch_neighbors(&self, _: CellId) {}
+
     /// The number of vertices of a cell: `dimension + 1`.
     #[inline(always)]
     fn width(&self) -> usize {
@@ -182,6 +187,14 @@ impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {
     #[inline(always)]
     fn cell_of(&self, vertex: VertexId) -> Result<Option<CellId>, Infallible> {
         Ok(self.cell_of(vertex))
+    }
+
+    /// A read whose result nobody waits for.
+    #[inline(always)]
+    fn fetch_neighbors(&self, cell: CellId) {
+        for neighbor in self.links[cell.index()].neighbors {
+            std::hint::black_box(self.links[neighbor.index()].vertices[0]);
+        }
     }
 
     #[inline(always)]

@@ -1,11 +1,12 @@
 //! Strategies of point location: the same answer by each, on grids where points lie on vertices, edges and lines.
 
 use std::cell::Cell;
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use crate::common::random::Random;
 use breakline::geometry::{Geometry, Plane};
-use breakline::kernel::{Adaptive, Kernel, Predicate, Range, Wide};
+use breakline::kernel::{Adaptive, Wide};
 use breakline::num::Sign;
 use breakline::tds::{Tds, VertexId};
 use breakline::triangulation::{
@@ -25,7 +26,7 @@ enum Place {
 }
 
 /// The place, after a look at whether it is the one.
-fn place(t: &Free, location: Location, q: Point) -> Place {
+fn place<G: Geometry<3, Point = Point>>(t: &Delaunay<G, 3>, location: Location, q: Point) -> Place {
     let tds: &Tds<3> = t.tds();
     let plane = Plane::<breakline::kernel::Exact>::default();
     match location {
@@ -164,26 +165,50 @@ fn buckets_of_any_size() {
     }
 }
 
-thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
+/// The plane, with rounded numbers of a test's own for where walks go.
+#[derive(Debug, Clone, Copy)]
+struct Led<F>(F);
 
-/// Counts what it is asked.
-#[derive(Debug, Clone, Copy, Default)]
-struct Counting;
+impl<F: Fn([&Point; 3], &Point) -> [f64; 3]> Geometry<3> for Led<F> {
+    type Point = Point;
 
-impl Kernel for Counting {
-    const RANGE: Range = Adaptive::RANGE;
+    fn admits(&self, p: &Point) -> bool {
+        Plane::<Adaptive>::default().admits(p)
+    }
 
-    fn sign<P: Predicate>(predicate: &P) -> Sign {
+    fn compare(&self, p: &Point, q: &Point) -> Ordering {
+        Plane::<Adaptive>::default().compare(p, q)
+    }
+
+    fn orientation(&self, simplex: [&Point; 3]) -> Sign {
         ASKED.set(ASKED.get() + 1);
-        Adaptive::sign(predicate)
+        Plane::<Adaptive>::default().orientation(simplex)
+    }
+
+    fn side_of_sphere(&self, simplex: [&Point; 3], q: &Point) -> Sign {
+        ASKED.set(ASKED.get() + 1);
+        Plane::<Adaptive>::default().side_of_sphere(simplex, q)
+    }
+
+    fn rough_distance(&self, p: &Point, q: &Point) -> f64 {
+        Plane::<Adaptive>::default().rough_distance(p, q)
+    }
+
+    fn rough_sides(&self, simplex: [&Point; 3], q: &Point) -> [f64; 3] {
+        ASKED.set(ASKED.get() + 1);
+        (self.0)(simplex, q)
     }
 }
+
+thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
 
 /// Questions for each of some points that are inserted in random order, without a strategy.
 fn asked_one_by_one(place: impl Fn(f64) -> Point) -> usize {
     const COUNT: usize = 20_000;
     let mut random = Random(31);
-    let mut t = Delaunay::<Plane<Counting>, 3>::new(Plane::default());
+    let mut t = Delaunay::<_, 3>::new(Led(|simplex: [&Point; 3], q: &Point| {
+        Plane::<Adaptive>::default().rough_sides(simplex, q)
+    }));
     ASKED.set(0);
     for _ in 0..COUNT {
         t.insert(place(random.unit())).unwrap();
@@ -201,4 +226,44 @@ fn walks_along_curves_are_cut_short() {
     for curved in [parabola, spiral] {
         assert!(curved < 3 * spread, "{curved} questions a point on a curve, {spread} in a square");
     }
+}
+
+/// Wherever rounded numbers lead, or if they lead nowhere, the answer is the same.
+fn same_wherever_led(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
+    let mut random = Random(33);
+    for round in 0..40 {
+        let side = 2 + round % 12;
+        let (mut t, mut led) = (Free::new(Plane::default()), Delaunay::<_, 3>::new(Led(sides)));
+        let mut hierarchy = Hierarchy::new(Led(sides));
+        for _ in 0..side * side {
+            let p = tiny(&mut random, side);
+            assert_eq!(led.insert_by(&mut hierarchy, p, ()), t.insert(p));
+        }
+        assert_eq!(led.check(Level::Law), []);
+        for _ in 0..100 {
+            let q = tiny(&mut random, 4 * side).map(|x| 0.5 * x - 0.5 * side as f64);
+            let expected = place(&t, t.locate(&q, None), q);
+            let start = random.pick(&led.tds().cells().collect::<Vec<_>>());
+            for location in [led.locate(&q, Some(start)), hierarchy.locate(&led, &q)] {
+                assert_eq!(place(&led, location, q), expected, "{q:?} in {:?}", t.points());
+            }
+        }
+    }
+}
+
+#[test]
+fn rounded_numbers_change_no_answer() {
+    let sides = |simplex: [&Point; 3], q: &Point| Plane::<Adaptive>::default().rough_sides(simplex, q);
+    let dice = Cell::new(34);
+    let thrown = || {
+        let mut random = Random(dice.get());
+        let number = random.pick(&[-1.0, 0.0, 1.0, f64::NAN, f64::INFINITY, -f64::INFINITY]);
+        dice.set(random.0);
+        number
+    };
+    same_wherever_led(|_, _| [f64::NAN; 3]);
+    same_wherever_led(|_, _| [1.0; 3]); // always there
+    same_wherever_led(|_, _| [-1.0, 1.0, 1.0]);
+    same_wherever_led(|simplex, q| sides(simplex, q).map(|x| -x)); // away
+    same_wherever_led(|_, _| [thrown(), thrown(), thrown()]);
 }

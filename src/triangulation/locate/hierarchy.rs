@@ -58,16 +58,14 @@ impl<L: Geometry<3>> Level<L> {
     /// A cell at a point and a vertex near it, given one to start from.
     fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
         let tds = self.sample.tds();
-        let location = self.sample.locate(q, start.and_then(|vertex| tds.cell_of(vertex)));
-        let cell = location.cell(&self.sample);
-        let nearest = match (location, cell) {
-            (Location::Vertex(vertex), _) => Some(vertex),
-            (_, Some(cell)) => {
+        let cell = self.sample.approach(q, start.and_then(|vertex| tds.cell_of(vertex)));
+        let nearest = match cell {
+            Some(cell) => {
                 let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
-                let far = |v: &VertexId| self.sample.geometry().rough_distance(self.sample.point(*v), q);
-                finite.min_by(|p, q| far(p).total_cmp(&far(q)))
+                let far = |v: VertexId| self.sample.geometry().rough_distance(self.sample.point(v), q);
+                finite.map(|v| (v, far(v))).reduce(|p, q| if q.1 < p.1 { q } else { p }).map(|(v, _)| v)
             }
-            (_, None) => tds.vertices().next(),
+            None => tds.vertices().next(),
         };
         (cell, nearest)
     }
