@@ -121,7 +121,7 @@ pub trait Geometry<const N: usize> {
     /// About how far inside of each facet of a positively oriented simplex `q` lies, opposite the vertex in the same
     /// place; negative outside. Any measure will do in which facets can be compared, as the areas (volumes) that they
     /// span with `q`: for choosing which way a walk goes, no answer depends on it. Without one, which is NaN, walks ask
-    /// for orientations at each step.
+    /// for orientations at each step, and take half as long again.
     #[inline]
     fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> [f64; N] {
         [f64::NAN; N]
@@ -300,10 +300,11 @@ fn plan(p: &[f64; 3]) -> [f64; 2] {
     [p[0], p[1]]
 }
 
-/// Twice the areas that `q` spans with the edges of a triangle, rounded.
+/// Twice the areas that `q` spans with the edges of a triangle, rounded: from a corner, so that a triangle which is small
+/// beside its distance from `q` is not lost.
 #[inline(always)]
 fn rough_areas([a, b, c]: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
-    [[b, c], [c, a], [a, b]].map(|[from, to]| Orientation2([from, to, q]).value(|x, y| x - y))
+    [[b, c], [c, a], [a, b]].map(|[from, to]| Orientation2([to, q, from]).value(|x, y| x - y))
 }
 
 /// Along the axes.

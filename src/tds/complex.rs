@@ -193,7 +193,9 @@ impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {
     #[inline(always)]
     fn fetch_neighbors(&self, cell: CellId) {
         for neighbor in self.links[cell.index()].neighbors {
-            std::hint::black_box(self.links[neighbor.index()].vertices[0]);
+            if let Some(links) = self.links.get(neighbor.index()) {
+                std::hint::black_box(links.vertices[0]);
+            }
         }
     }
 

@@ -96,14 +96,16 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// A cell that `q` is in, or not far from, found from one nearby: where to start looking, with less certainty than
     /// [`locate`](Self::locate) and in less time.
     fn approach(&self, q: &G::Point, near: Option<CellId>) -> Option<CellId> {
+        let mut near = near.filter(|&c| self.tds.is_used(c));
         if self.tds.width() == N
-            && let Some(start) = near.filter(|&c| self.tds.is_used(c))
+            && let Some(start) = near
         {
             let Ok(start) = self.tds.inner(start);
             let Ok(reached) = walk::approach(self, q, start, PATIENCE);
             if reached.is_there {
                 return Some(reached.cell);
             }
+            near = Some(reached.cell);
         }
         self.locate(q, near).cell(self)
     }

@@ -37,6 +37,10 @@ pub(super) const PATIENCE: usize = 64;
 /// step for each is left in the mean.
 const PATIENCE_EACH: usize = 2;
 
+/// Every so many steps a walk looks whether it could leave the hull there. It would sooner or later, but along a curve it
+/// may come by a facet of the hull at each step until then.
+const LOOKOUT: usize = 8;
+
 /// How many of `n` vertices a walk looks at, the first time and the second. Along a curve it comes by all vertices in
 /// between: from the nearest of so many times `n^(1/2)`, looking and walking take equally long.
 ///
@@ -44,8 +48,8 @@ const PATIENCE_EACH: usize = 2;
 /// each with the second look; uniform points 4 to 5.
 pub(super) const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 
-/// A walk of that many times more steps than there are cells is lost: on a Delaunay triangulation none comes to a cell
-/// twice, and on others the chance is halved, at the least, with each round.
+/// A walk of that many times more steps than there are cells is lost: on a Delaunay triangulation none of certain steps
+/// comes to a cell twice, and on others the chance is halved, at the least, with each round.
 const WANDERING: usize = 8;
 
 /// Where `q` lies, by a walk from a cell, or if there is none by that number, from one at infinity.
@@ -78,6 +82,8 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
         return Ok(Location::OutsideAffineHull);
     }
     let mut dice = Dice::default();
+    // The facet that a certain step led in by: the place is on this side of it.
+    let mut entry = None;
     let mut steps = 0;
     let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
     loop {
@@ -86,8 +92,9 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
             let reached = approach(t, q, cell, patience.saturating_sub(steps))?;
             cell = reached.cell;
             steps += reached.steps;
+            entry = entry.filter(|_| reached.steps == 0);
         }
-        let [outside, touching] = facets_seen(t, cell, q)?;
+        let [outside, touching] = facets_seen(t, cell, q, entry)?;
         if outside == 0 {
             // On all facets lies nothing but what is flat.
             complex.ensure(cell, || (touching.count_ones() as usize) < width)?;
@@ -98,12 +105,15 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
             return Ok(Location::Cell { cell, touching });
         }
         let first = dice.below(width);
-        let i = (first..first + width).map(|i| i % width).find(|i| outside >> i & 1 == 1).unwrap_or(0);
-        let beyond = complex.neighbor(cell, i)?;
-        if complex.is_infinite(beyond)? {
-            return Ok(Location::OutsideHull { cell: beyond });
+        let mut next = cell;
+        for i in (first..first + width).map(|i| i % width).filter(|i| outside >> i & 1 == 1) {
+            next = complex.neighbor(cell, i)?;
+            if complex.is_infinite(next)? {
+                return Ok(Location::OutsideHull { cell: next });
+            }
         }
-        cell = beyond;
+        entry = Some(complex.index_of_neighbor(next, cell)?);
+        cell = next;
         steps += 1;
         if steps >= patience
             && let Some(look) = looks.next()
@@ -111,7 +121,7 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
             let samples = look(complex.vertex_slots() as f64) as usize;
             patience = steps + PATIENCE_EACH * samples;
             if let Some(nearer) = jump(t, cell, q, samples, &mut dice)? {
-                cell = nearer;
+                (cell, entry) = (nearer, None);
             }
         }
     }
@@ -152,9 +162,11 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
             }
         }
         let Some(beyond) = next else {
-            return Ok(Reached { cell, steps, is_there: sides.iter().all(|&side| side >= 0.0) });
+            // All zero they are where the cell is too small to be seen from there.
+            let is_there = sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0);
+            return Ok(Reached { cell, steps, is_there });
         };
-        if complex.is_infinite(beyond)? {
+        if complex.is_infinite(beyond)? || steps % LOOKOUT == LOOKOUT - 1 && is_out(t, cell, q)? {
             return Ok(Reached { cell, steps, is_there: true });
         }
         if from == Some(beyond) {
@@ -166,12 +178,32 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
     Ok(Reached { cell, steps: at_most, is_there: false })
 }
 
+/// Whether `q` seems to lie beyond a facet of the hull that a cell has.
+#[cold]
+fn is_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<bool, T::Error> {
+    let sides = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q);
+    for i in (0..N).filter(|&i| sides[i] < 0.0) {
+        if t.complex().is_infinite(t.complex().neighbor(cell, i)?)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
 /// The facets of a finite cell that `q` lies outside of, and those that it lies on: bit `i` stands for the one opposite
-/// vertex `i`.
+/// vertex `i`. One facet may be known to have it inside.
 #[inline(always)]
-fn facets_seen<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<[u8; 2], T::Error> {
+fn facets_seen<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    q: &PointOf<T, N>,
+    inside: Option<usize>,
+) -> Result<[u8; 2], T::Error> {
     let (mut outside, mut touching) = (0, 0);
     for i in 0..N.min(t.complex().width()) {
+        if inside == Some(i) {
+            continue;
+        }
         match side_of_facet(t, cell, i, q)? {
             Sign::Positive => {}
             Sign::Zero => touching |= 1 << i,
