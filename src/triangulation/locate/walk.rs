@@ -82,38 +82,43 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
         return Ok(Location::OutsideAffineHull);
     }
     let mut dice = Dice::default();
-    // The facet that a certain step led in by: the place is on this side of it.
-    let mut entry = None;
+    // Where a certain step came from: the place is on this side of the facet.
+    let mut from = None;
     let mut steps = 0;
     let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
     loop {
         complex.ensure(cell, || steps < WANDERING * (complex.cell_slots() + PATIENCE))?;
+        let mut seems_there = false;
         if width == N {
             let reached = approach(t, q, cell, patience.saturating_sub(steps))?;
             cell = reached.cell;
             steps += reached.steps;
-            entry = entry.filter(|_| reached.steps == 0);
+            from = from.filter(|_| reached.steps == 0);
+            seems_there = reached.is_there;
         }
-        let [outside, touching] = facets_seen(t, cell, q, entry)?;
-        if outside == 0 {
-            // On all facets lies nothing but what is flat.
-            complex.ensure(cell, || (touching.count_ones() as usize) < width)?;
-            if touching.count_ones() as usize == width - 1 {
-                // On all facets but one: on the vertex opposite that one.
-                return Ok(Location::Vertex(complex.vertex(cell, (!touching).trailing_zeros() as usize)?));
+        // `PERF:` an order that is known beforehand makes half the code. Not for ever: a walk in such an order may turn in
+        // circles.
+        let sides = if seems_there && steps < patience {
+            ask_sides(t, cell, q, 0, from)?
+        } else {
+            ask_sides(t, cell, q, dice.below(width), from)?
+        };
+        let beyond = match sides {
+            Sides::Outside(i) => complex.neighbor(cell, i)?,
+            Sides::Touching(touching) => {
+                // On all facets lies nothing but what is flat.
+                complex.ensure(cell, || (touching.count_ones() as usize) < width)?;
+                if touching.count_ones() as usize == width - 1 {
+                    // On all facets but one: on the vertex opposite that one.
+                    return Ok(Location::Vertex(complex.vertex(cell, (!touching).trailing_zeros() as usize)?));
+                }
+                return Ok(Location::Cell { cell, touching });
             }
-            return Ok(Location::Cell { cell, touching });
+        };
+        if complex.is_infinite(beyond)? {
+            return Ok(Location::OutsideHull { cell: beyond });
         }
-        let first = dice.below(width);
-        let mut next = cell;
-        for i in (first..first + width).map(|i| i % width).filter(|i| outside >> i & 1 == 1) {
-            next = complex.neighbor(cell, i)?;
-            if complex.is_infinite(next)? {
-                return Ok(Location::OutsideHull { cell: next });
-            }
-        }
-        entry = Some(complex.index_of_neighbor(next, cell)?);
-        cell = next;
+        (cell, from) = (beyond, Some(cell));
         steps += 1;
         if steps >= patience
             && let Some(look) = looks.next()
@@ -121,7 +126,7 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
             let samples = look(complex.vertex_slots() as f64) as usize;
             patience = steps + PATIENCE_EACH * samples;
             if let Some(nearer) = jump(t, cell, q, samples, &mut dice)? {
-                (cell, entry) = (nearer, None);
+                (cell, from) = (nearer, None);
             }
         }
     }
@@ -190,27 +195,38 @@ fn is_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>
     Ok(false)
 }
 
-/// The facets of a finite cell that `q` lies outside of, and those that it lies on: bit `i` stands for the one opposite
-/// vertex `i`. One facet may be known to have it inside.
+/// Where a place is of a finite cell.
+enum Sides {
+    /// Outside of the facet opposite this vertex.
+    Outside(usize),
+    /// Outside of none, and on those whose bit is set.
+    Touching(u8),
+}
+
+/// On which sides of a finite cell `q` lies, by the predicates: of one facet after the other from the `first` on, but for
+/// that of a neighbor from which the place is known to be on this side.
 #[inline(always)]
-fn facets_seen<const N: usize, T: Embedded<N>>(
+fn ask_sides<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
     q: &PointOf<T, N>,
-    inside: Option<usize>,
-) -> Result<[u8; 2], T::Error> {
-    let (mut outside, mut touching) = (0, 0);
-    for i in 0..N.min(t.complex().width()) {
-        if inside == Some(i) {
+    first: usize,
+    from: Option<CellId>,
+) -> Result<Sides, T::Error> {
+    let width = t.complex().width();
+    let mut touching = 0;
+    for turn in 0..N.min(width) {
+        let i = if first + turn < width { first + turn } else { first + turn - width };
+        if from.is_some() && from == Some(t.complex().neighbor(cell, i)?) {
             continue;
         }
         match side_of_facet(t, cell, i, q)? {
             Sign::Positive => {}
             Sign::Zero => touching |= 1 << i,
-            Sign::Negative => outside |= 1 << i,
+            Sign::Negative => return Ok(Sides::Outside(i)),
         }
     }
-    Ok([outside, touching])
+    Ok(Sides::Touching(touching))
 }
 
 /// A finite cell that is nearer to `q` than this one, as far as some vertices tell.
