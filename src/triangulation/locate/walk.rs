@@ -95,6 +95,11 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
             steps += reached.steps;
             from = from.filter(|_| reached.steps == 0);
             seems_there = reached.is_there;
+            if let Some(i) = reached.way_out
+                && side_of_facet(t, cell, i, q)? == Sign::Negative
+            {
+                return Ok(Location::OutsideHull { cell: complex.neighbor(cell, i)? });
+            }
         }
         // `PERF:` an order that is known beforehand makes half the code. Not for ever: a walk in such an order may turn in
         // circles.
@@ -138,6 +143,8 @@ pub(super) struct Reached {
     steps: usize,
     /// Whether the place seems to be in the cell, or outside of the hull there.
     pub(super) is_there: bool,
+    /// The facet of the hull that it seems to be outside of.
+    way_out: Option<usize>,
 }
 
 /// Goes from a full finite cell towards `q` without asking for certainty, for so many steps at most: across the facet
@@ -169,30 +176,33 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
         let Some(beyond) = next else {
             // All zero they are where the cell is too small to be seen from there.
             let is_there = sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0);
-            return Ok(Reached { cell, steps, is_there });
+            return Ok(Reached { cell, steps, is_there, way_out: None });
         };
-        if complex.is_infinite(beyond)? || steps % LOOKOUT == LOOKOUT - 1 && is_out(t, cell, q)? {
-            return Ok(Reached { cell, steps, is_there: true });
+        if complex.is_infinite(beyond)? || steps % LOOKOUT == LOOKOUT - 1 {
+            let way_out = way_out(t, cell, q)?;
+            if way_out.is_some() {
+                return Ok(Reached { cell, steps, is_there: true, way_out });
+            }
         }
         if from == Some(beyond) {
-            return Ok(Reached { cell, steps, is_there: false }); // rounded numbers lead there and back
+            return Ok(Reached { cell, steps, is_there: false, way_out: None }); // rounded numbers lead there and back
         }
         from = Some(cell);
         cell = beyond;
     }
-    Ok(Reached { cell, steps: at_most, is_there: false })
+    Ok(Reached { cell, steps: at_most, is_there: false, way_out: None })
 }
 
-/// Whether `q` seems to lie beyond a facet of the hull that a cell has.
+/// The facet of the hull that a cell has and that `q` seems to lie beyond.
 #[cold]
-fn is_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<bool, T::Error> {
+fn way_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<Option<usize>, T::Error> {
     let sides = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q);
     for i in (0..N).filter(|&i| sides[i] < 0.0) {
         if t.complex().is_infinite(t.complex().neighbor(cell, i)?)? {
-            return Ok(true);
+            return Ok(Some(i));
         }
     }
-    Ok(false)
+    Ok(None)
 }
 
 /// Where a place is of a finite cell.
