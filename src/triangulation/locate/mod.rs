@@ -33,7 +33,7 @@ use crate::tds::{CellId, Complex, VertexId};
 
 use super::Triangulation;
 pub(super) use walk::walk;
-use walk::{Dice, LOOKS, PATIENCE};
+use walk::{Dice, LOOKS, PATIENCE, Seems};
 
 /// Where a point lies in a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,7 +102,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         {
             let Ok(start) = self.tds.inner(start);
             let Ok(reached) = walk::approach(self, q, start, PATIENCE);
-            if reached.is_there {
+            if reached.seems != Seems::Elsewhere {
                 return Some(reached.cell);
             }
             near = Some(reached.cell);

@@ -88,22 +88,21 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
     let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
     loop {
         complex.ensure(cell, || steps < WANDERING * (complex.cell_slots() + PATIENCE))?;
-        let mut seems_there = false;
+        let mut seems = Seems::Elsewhere;
         if width == N {
             let reached = approach(t, q, cell, patience.saturating_sub(steps))?;
-            cell = reached.cell;
+            (cell, seems) = (reached.cell, reached.seems);
             steps += reached.steps;
             from = from.filter(|_| reached.steps == 0);
-            seems_there = reached.is_there;
-            if let Some(i) = reached.way_out
-                && side_of_facet(t, cell, i, q)? == Sign::Negative
-            {
-                return Ok(Location::OutsideHull { cell: complex.neighbor(cell, i)? });
-            }
+        }
+        if let Seems::Outside(i) = seems
+            && side_of_facet(t, cell, i, q)? == Sign::Negative
+        {
+            return Ok(Location::OutsideHull { cell: complex.neighbor(cell, i)? });
         }
         // `PERF:` an order that is known beforehand makes half the code. Not for ever: a walk in such an order may turn in
         // circles.
-        let sides = if seems_there && steps < patience {
+        let sides = if seems == Seems::There && steps < patience {
             ask_sides(t, cell, q, 0, from)?
         } else {
             ask_sides(t, cell, q, dice.below(width), from)?
@@ -141,10 +140,18 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
 pub(super) struct Reached {
     pub(super) cell: CellId,
     steps: usize,
-    /// Whether the place seems to be in the cell, or outside of the hull there.
-    pub(super) is_there: bool,
-    /// The facet of the hull that it seems to be outside of.
-    way_out: Option<usize>,
+    pub(super) seems: Seems,
+}
+
+/// Where a place seems to be, seen from a cell.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Seems {
+    /// In the cell.
+    There,
+    /// Outside of the hull, beyond the facet opposite this vertex.
+    Outside(usize),
+    /// There is no telling, or it is further away.
+    Elsewhere,
 }
 
 /// Goes from a full finite cell towards `q` without asking for certainty, for so many steps at most: across the facet
@@ -169,31 +176,35 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
         let mut next = None;
         for i in 0..N {
             if sides[i] < 0.0 && sides.iter().all(|&side| sides[i] <= side) {
-                next = Some(complex.neighbor(cell, i)?);
+                next = Some((i, complex.neighbor(cell, i)?));
                 break;
             }
         }
-        let Some(beyond) = next else {
+        let Some((i, beyond)) = next else {
             // All zero they are where the cell is too small to be seen from there.
             let is_there = sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0);
-            return Ok(Reached { cell, steps, is_there, way_out: None });
+            return Ok(Reached { cell, steps, seems: if is_there { Seems::There } else { Seems::Elsewhere } });
         };
-        if complex.is_infinite(beyond)? || steps % LOOKOUT == LOOKOUT - 1 {
-            let way_out = way_out(t, cell, q)?;
-            if way_out.is_some() {
-                return Ok(Reached { cell, steps, is_there: true, way_out });
-            }
+        if complex.is_infinite(beyond)? {
+            return Ok(Reached { cell, steps, seems: Seems::Outside(i) });
+        }
+        if steps % LOOKOUT == LOOKOUT - 1
+            && let Some(facet) = way_out(t, cell, q)?
+        {
+            return Ok(Reached { cell, steps, seems: Seems::Outside(facet) });
         }
         if from == Some(beyond) {
-            return Ok(Reached { cell, steps, is_there: false, way_out: None }); // rounded numbers lead there and back
+            return Ok(Reached { cell, steps, seems: Seems::Elsewhere }); // rounded numbers lead there and back
         }
         from = Some(cell);
         cell = beyond;
     }
-    Ok(Reached { cell, steps: at_most, is_there: false, way_out: None })
+    Ok(Reached { cell, steps: at_most, seems: Seems::Elsewhere })
 }
 
 /// The facet of the hull that a cell has and that `q` seems to lie beyond.
+///
+/// `PERF:` computes the sides anew, so that those of the many steps that do not ask need not be kept in memory.
 #[cold]
 fn way_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<Option<usize>, T::Error> {
     let sides = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q);
