@@ -8,7 +8,7 @@ use crate::num::Sign;
 
 use super::boxes::{Box2, BoxTree};
 use super::pixel::Grid;
-use super::{Arrangement, Crossing, FEW, Place, Segment, lexicographic, starts};
+use super::{Arrangement, Crossing, FEW, Place, PlaceOf, Segment, lexicographic, starts};
 
 /// A segment that is led through a site.
 #[derive(Debug, Clone, Copy)]
@@ -19,10 +19,10 @@ struct Pass {
     exact: bool,
 }
 
-pub(super) struct Builder<'a, F> {
+pub(super) struct Builder<'a> {
     grid: Grid,
     places: usize,
-    place: &'a F,
+    place: &'a PlaceOf<'a>,
     ends: &'a [[u32; 2]],
     segments: &'a [Segment],
     /// The area of a box over which many of the segments come to lie, if they are spread evenly.
@@ -34,8 +34,14 @@ pub(super) struct Builder<'a, F> {
     crossed_ends: Vec<u32>,
 }
 
-impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
-    pub(super) fn new(grid: Grid, places: usize, place: &'a F, ends: &'a [[u32; 2]], segments: &'a [Segment]) -> Self {
+impl<'a> Builder<'a> {
+    pub(super) fn new(
+        grid: Grid,
+        places: usize,
+        place: &'a PlaceOf<'a>,
+        ends: &'a [[u32; 2]],
+        segments: &'a [Segment],
+    ) -> Self {
         const MANY: f64 = 8.0;
         let whole = segments.iter().fold(Box2::NOTHING, |sum, &segment| sum.with(&Box2::around(segment)));
         let large = MANY * whole.area() / segments.len() as f64;
@@ -225,7 +231,7 @@ impl<'a, F: Fn(u32) -> Place + Sync> Builder<'a, F> {
     ///
     /// `PERF:` beside a short segment that finds little, and costs more than all of the rest: 50 000 segments between a
     /// million points take 18 ms instead of 30, and 100 000 that cross 13 % less in all.
-    fn along(&self, segment: u32) -> impl Fn(&Box2) -> bool + use<'a, F> {
+    fn along(&self, segment: u32) -> impl Fn(&Box2) -> bool + use<'a> {
         let s = self.segments[segment as usize];
         let around = Box2::around(s);
         let has_sides = self.grid.is_ordinary && around.area() >= self.large;

@@ -43,6 +43,9 @@ use pixel::Grid;
 const FEW: usize = 256;
 
 type Place = [f64; 2];
+/// Where the site of a number is. `PERF:` not a type of its own for each caller: all of this would be compiled anew for
+/// each, where a call by pointer is none of the time.
+type PlaceOf<'a> = dyn Fn(u32) -> Place + Sync + 'a;
 type Segment = [Place; 2];
 
 /// Two segments that cross in their interiors, by their numbers, and the site to which the crossing was rounded.
@@ -80,7 +83,11 @@ impl Arrangement {
     /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at
     /// the worst, for long lines side by side across the axes.
     pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
-        let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(&place)).collect();
+        Self::arrange(places, &place, segments, step)
+    }
+
+    fn arrange(places: usize, place: &PlaceOf<'_>, segments: &[[u32; 2]], step: f64) -> Self {
+        let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(place)).collect();
         let larger = |sum: Place, p: &Place| [sum[0].max(p[0].abs()), sum[1].max(p[1].abs())];
         let largest = drawn.as_flattened().iter().fold([0.0; 2], larger);
         // Half of the smallest subnormal number is none: away from there, by a power of two.
@@ -128,7 +135,7 @@ impl Arrangement {
     }
 
     /// Arranges the pieces once more; says whether any cross.
-    fn again(&mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> bool {
+    fn again(&mut self, place: &PlaceOf<'_>, segments: &[[u32; 2]], step: f64) -> bool {
         let row = |i: usize| {
             let [a, b] = segments[i];
             let sites = std::iter::once(a).chain(self.chain(i as u32).iter().copied()).chain([b]);
@@ -145,7 +152,7 @@ impl Arrangement {
             None => place(i),
             Some(added) => self.added[added],
         };
-        let inner = Arrangement::new(self.places + self.added.len(), site, &pieces, step);
+        let inner = Arrangement::arrange(self.places + self.added.len(), &site, &pieces, step);
         if inner.crossings.is_empty() {
             return false;
         }
