@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Terrain};
 use crate::kernel::{RANGE, Range};
 use crate::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing, Refused, Rounding, VertexLines, spatial_order};
+use crate::triangulation::{ConstrainedDelaunay, LineId, LineVertices, OnCrossing, Refused, Rounding, spatial_order};
 
 use super::clip::Clip;
 use super::crossings::{Pass, refuse, settle_heights};
@@ -250,7 +250,7 @@ struct Sites {
 }
 
 /// The vertices of each line.
-fn lines_of(vertices: &[VertexId], line_ends: &[usize]) -> VertexLines {
+fn lines_of(vertices: &[VertexId], line_ends: &[usize]) -> Vec<LineVertices> {
     let starts = std::iter::once(&0).chain(line_ends);
     starts.zip(line_ends).map(|(&start, &end)| vertices[start..end].into()).collect()
 }

@@ -172,7 +172,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 }
             }
             ids.push(LineId::new(self.lines.given.len()));
-            self.lines.given.push(Some(vertices.into()));
+            self.lines.given.push(Some(vertices[..].into()));
         }
         self.rearrange();
         Ok(ids)
@@ -220,8 +220,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         if first == second || head.is_empty() || head.last() != tail.first() {
             return false;
         }
-        let joined = head.iter().chain(&tail[1..]).copied().collect();
-        self.lines.given[first.index()] = Some(joined);
+        let joined = [head, &tail[1..]].concat();
+        self.lines.given[first.index()] = Some(joined[..].into());
         self.lines.given[second.index()] = None;
         self.lines.touch();
         true
@@ -230,7 +230,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// Carries out the difference between what is there and what the lines ask for.
     pub(super) fn rearrange(&mut self) {
         self.lines.touch();
-        let used: HashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
+        let used: HashSet<VertexId> = self.lines.each().flatten().copied().collect();
         let leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
         let demand = self.demand(&leaving);
         if self.dimension() < 2 {
@@ -268,7 +268,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
         let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
         let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
-        let segments = segments_of(self.lines.given.iter().flatten().map(|line| &**line), number);
+        let segments = segments_of(self.lines.each(), number);
         let places = given.iter().map(|&v| self.plan_of(v)).collect();
         Demand { given, places, segments }
     }

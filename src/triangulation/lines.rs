@@ -1,5 +1,6 @@
 //! Who is who among the lines of a constrained triangulation.
 
+use std::ops::{Deref, DerefMut};
 use std::sync::OnceLock;
 
 use rustc_hash::FxHashMap;
@@ -22,18 +23,65 @@ pub type LineId = Id<LineTag>;
 ///
 /// A line is kept as the vertices that it was given by. What lies between two of them is told by two tables that hold
 /// nothing for a segment that is one edge: through which sites a segment is led, and at which vertex an edge was split.
-/// So a line takes 16 bytes, and 4 for each of its vertices; a segment that crosses others about 40 more, and 4 for
-/// each site on it.
+/// So a line takes 24 bytes, and 4 for each of its vertices if they are not two; a segment that crosses others about 40
+/// more, and 4 for each site on it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lines {
     /// By their ids.
-    pub(super) given: Vec<Option<Box<[VertexId]>>>,
+    pub(super) given: Vec<Option<LineVertices>>,
     /// Of segments, from the smaller vertex to the larger: the sites between.
     pub(super) led: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
     /// Of pieces: the vertex on which they were split.
     pub(super) splits: FxHashMap<[VertexId; 2], VertexId>,
     /// The lines on each edge, sorted; made when it is first asked for.
     on_edges: OnceLock<Vec<([VertexId; 2], LineId)>>,
+}
+
+/// The vertices that a line was given by.
+///
+/// `PERF:` those of a segment are kept in place, as programs give millions of these.
+#[derive(Debug, Clone)]
+pub(crate) enum LineVertices {
+    Segment([VertexId; 2]),
+    Other(Box<[VertexId]>),
+}
+
+impl LineVertices {
+    #[inline]
+    pub(crate) fn of<T: Copy>(given: &[T], vertex: impl Fn(T) -> VertexId) -> Self {
+        match *given {
+            [a, b] => LineVertices::Segment([vertex(a), vertex(b)]),
+            _ => LineVertices::Other(given.iter().map(|&v| vertex(v)).collect()),
+        }
+    }
+}
+
+impl From<&[VertexId]> for LineVertices {
+    fn from(vertices: &[VertexId]) -> Self {
+        LineVertices::of(vertices, |v| v)
+    }
+}
+
+impl Deref for LineVertices {
+    type Target = [VertexId];
+
+    #[inline]
+    fn deref(&self) -> &[VertexId] {
+        match self {
+            LineVertices::Segment(ends) => ends,
+            LineVertices::Other(vertices) => vertices,
+        }
+    }
+}
+
+impl DerefMut for LineVertices {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [VertexId] {
+        match self {
+            LineVertices::Segment(ends) => ends,
+            LineVertices::Other(vertices) => vertices,
+        }
+    }
 }
 
 /// The same key for both directions.
@@ -56,6 +104,11 @@ pub(super) fn segments_of<'a>(
 }
 
 impl Lines {
+    /// The vertices of each line that is there.
+    pub(super) fn each(&self) -> impl Iterator<Item = &[VertexId]> {
+        self.given.iter().flatten().map(|line| &**line)
+    }
+
     /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each
     /// once, in order.
     pub(super) fn lead(
@@ -241,7 +294,7 @@ mod tests {
     /// What the docs of [`Lines`] say.
     #[test]
     fn lines_are_small() {
-        assert_eq!(size_of::<Option<Box<[VertexId]>>>(), 16, "a line");
+        assert_eq!(size_of::<Option<LineVertices>>(), 24, "a line");
         assert_eq!(size_of::<VertexId>(), 4, "a vertex of a line, a site on a segment");
         assert_eq!(size_of::<([VertexId; 2], Box<[VertexId]>)>(), 24, "a segment that crosses others, in the table");
         assert_eq!(size_of::<([VertexId; 2], VertexId)>(), 12, "an edge that was split, in the table");

@@ -13,7 +13,7 @@ use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::bulk::{Grain, Sites};
-use super::lines::{segments_of, undirected};
+use super::lines::{LineVertices, segments_of, undirected};
 use super::{ConstrainedDelaunay, Refused};
 
 /// What becomes of lines that cross between their vertices.
@@ -36,9 +36,6 @@ pub struct Rounding {
     /// displaced by more than half a unit on each axis, proven.
     pub on_grid: bool,
 }
-
-/// Lines as vertices in a row each.
-pub(crate) type VertexLines = Vec<Box<[VertexId]>>;
 
 impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// Triangulates many points and lines. A line is a list of points, by their positions; it may touch itself and
@@ -68,7 +65,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         if lines.is_empty() {
             return Ok((Self::from_sites(geometry, sites), vertices));
         }
-        let named = |line: &L| line.as_ref().iter().map(|&i| vertices[i as usize]).collect();
+        let named = |line: &L| LineVertices::of(line.as_ref(), |i| vertices[i as usize]);
         let lines = lines.iter().map(named).collect();
         let (triangulation, renumbered) = Self::from_sorted_lines(geometry, sites, lines, on_crossing)?;
         if let Some(renumbered) = renumbered {
@@ -82,7 +79,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     pub(crate) fn from_sorted_lines(
         geometry: G,
         mut sites: Sites<G::Point>,
-        mut lines: VertexLines,
+        mut lines: Vec<LineVertices>,
         on_crossing: OnCrossing,
     ) -> Result<(Self, Option<Vec<VertexId>>), Refused> {
         let index = |v: VertexId| v.index() as u32;
@@ -100,7 +97,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             None => VertexId::new(site as usize),
         };
         if let Some(renumbered) = &renumbered {
-            lines.iter_mut().flatten().for_each(|v| *v = renumbered[v.index()]);
+            lines.iter_mut().flat_map(|line| line.iter_mut()).for_each(|v| *v = renumbered[v.index()]);
         }
 
         let mut triangulation = Self::from_sites(geometry, sites);
@@ -140,7 +137,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 fn reject<G: Crossing>(
     geometry: &G,
     sites: &[G::Point],
-    lines: &VertexLines,
+    lines: &[LineVertices],
     arrangement: &Arrangement,
     segments: &[[u32; 2]],
 ) -> Result<(), Refused> {
@@ -161,7 +158,7 @@ fn reject<G: Crossing>(
 }
 
 /// The first line with a segment, and its position in the line.
-fn find(lines: &VertexLines, segment: [u32; 2]) -> (usize, usize) {
+fn find(lines: &[LineVertices], segment: [u32; 2]) -> (usize, usize) {
     let segment = segment.map(|site| VertexId::new(site as usize));
     let in_line = |line: &[VertexId]| line.windows(2).position(|pair| undirected(pair[0], pair[1]) == segment);
     let mut found = lines.iter().enumerate().filter_map(|(i, line)| Some((i, in_line(line)?)));

@@ -50,7 +50,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         }
         kept.extend(vertices.last());
         if !gone.is_empty() {
-            self.lines.given[line.index()] = Some(kept.into());
+            self.lines.given[line.index()] = Some(kept[..].into());
             self.rearrange();
         }
         gone.len()

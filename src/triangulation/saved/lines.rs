@@ -48,7 +48,7 @@ fn number(v: &VertexId) -> u32 {
 impl<G: Crossing, V, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// The segments of all lines, each once, from the smaller vertex to the larger.
     fn segments(&self) -> Vec<[VertexId; 2]> {
-        let segments = segments_of(self.lines.given.iter().flatten().map(|line| &**line), |v| number(&v));
+        let segments = segments_of(self.lines.each(), |v| number(&v));
         segments.into_iter().map(|ends| ends.map(|i| VertexId::new(i as usize))).collect()
     }
 
@@ -127,7 +127,7 @@ impl<G: Crossing, V, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         let segments = self.segments();
         self.check_ways(&segments, &constraints)?;
         self.check_rounding(&segments)?;
-        let named: FxHashSet<VertexId> = self.lines.given.iter().flatten().flatten().copied().collect();
+        let named: FxHashSet<VertexId> = self.lines.each().flatten().copied().collect();
         let constrained: FxHashSet<VertexId> = constraints.into_iter().flatten().collect();
         if !self.crossings.iter().all(|v| constrained.contains(v) && !named.contains(v)) {
             return Err(Damage::Shape("lines do not cross in a vertex that was added for it"));
@@ -164,7 +164,7 @@ impl<P, V, C: Copy + Default> WithLines<Owned<P, V, Walls<C>>> {
         };
         let mut lines = Lines::default();
         for line in &self.lines {
-            lines.given.push(line.as_deref().map(vertices).transpose()?.map(Vec::into_boxed_slice));
+            lines.given.push(line.as_deref().map(vertices).transpose()?.map(|vertices| vertices[..].into()));
         }
         for way in &self.led {
             let is_new = match vertices(way)?[..] {
