@@ -120,8 +120,9 @@ pub trait Geometry<const N: usize> {
 
     /// About how far inside of each facet of a positively oriented simplex `q` lies, opposite the vertex in the same
     /// place; negative outside. Any measure will do in which facets can be compared, as the areas (volumes) that they
-    /// span with `q`: for choosing which way a walk goes, no answer depends on it. Without one, which is NaN, walks ask
-    /// for orientations at each step, and take half as long again.
+    /// span with `q`: for choosing which way a walk goes, no answer depends on it (structural filtering; Funke,
+    /// Mehlhorn and Näher 1999). Without one, which is NaN, walks ask for orientations at each step, and take 1.6 times as
+    /// long.
     #[inline]
     fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> [f64; N] {
         [f64::NAN; N]
@@ -204,8 +205,8 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     fn coordinates(&self, p: &Self::Point) -> Self::Coordinates;
 
     /// Where a point lies in the plane, if the predicates' answers are the signs of
-    /// [`Orientation2`](crate::kernel::Orientation2) and [`InCircle`](crate::kernel::InCircle) of such places, within
-    /// the [range](crate::kernel::RANGE) of floating point. Construction in bulk then asks the geometry what floating
+    /// [`Orientation2`] and [`InCircle`](crate::kernel::InCircle) of such places, within the
+    /// [range](crate::kernel::RANGE) of floating point. Construction in bulk then asks the geometry what floating
     /// point cannot answer with certainty only, and takes half the time.
     #[inline(always)]
     fn exact_plan(&self, _: &Self::Point) -> Option<[f64; 2]> {
