@@ -229,6 +229,26 @@ fn walks_along_curves_are_cut_short() {
     }
 }
 
+/// Rounded numbers lead over long edges first, and from far outside of a curve all long ones lead along it: a walk that
+/// did not look for a way out would come by all vertices.
+#[test]
+fn walks_from_a_curve_look_for_a_way_out() {
+    const COUNT: usize = 20_000;
+    let mut random = Random(36);
+    let geometry = Led(|simplex: [&Point; 3], q: &Point| Plane::<Adaptive>::default().rough_sides(simplex, q));
+    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(geometry), Hierarchy::new(geometry));
+    for _ in 0..COUNT {
+        let x = random.unit() - 0.5;
+        t.insert_by(&mut hierarchy, [x, x * x], ()).unwrap();
+    }
+    ASKED.set(0);
+    for _ in 0..1000 {
+        hierarchy.locate(&t, &[0, 1].map(|_| 2e6 * (random.unit() - 0.5)));
+    }
+    let asked = ASKED.get() / 1000;
+    assert!(asked < 200, "{asked} questions for a place far outside of {COUNT} points");
+}
+
 /// Wherever rounded numbers lead, or if they lead nowhere, the answer is the same: with the law of Delaunay, and without
 /// any.
 fn same_wherever_led(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
