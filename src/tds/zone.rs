@@ -83,24 +83,24 @@ impl Zone {
         }
         let width = tds.dimension() as u8 + 1;
         self.add(start);
-        self.open.extend((0..width).rev().map(|i| (start, i)));
+        self.open.extend((1..width).rev().map(|i| (start, i)));
         // Depth first, over the facets of each cell counter-clockwise from where it was entered: in the plane the
         // border comes in order.
-        while let Some((cell, i)) = self.open.pop() {
+        let mut next = Some((start, 0));
+        while let Some((cell, i)) = next {
             let beyond = tds.neighbor(cell, i as usize);
-            if self.marked[beyond.index()] {
-                continue;
-            }
-            if takes(cell, i as usize, beyond) {
+            next = if self.marked[beyond.index()] {
+                self.open.pop()
+            } else if takes(cell, i as usize, beyond) {
                 self.add(beyond);
                 let entry = tds.index_of_neighbor(beyond, cell) as u8;
-                for turn in (1..width).rev() {
-                    let i = entry + turn;
-                    self.open.push((beyond, if i < width { i } else { i - width }));
-                }
+                let turned = |turn| (beyond, if entry + turn < width { entry + turn } else { entry + turn - width });
+                self.open.extend((2..width).rev().map(turned));
+                Some(turned(1))
             } else {
                 self.border.push((cell, i));
-            }
+                self.open.pop()
+            };
         }
         // A cell refused across one facet may have been taken across another. In a ball of triangles
         // there are two facets more on the border than cells, in any other case it is worth a look.

@@ -49,11 +49,8 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         while self.draft.budget > 0
             && let Some(bad) = self.queue.pop()
         {
-            if !self.is_still_bad(&bad) {
-                continue;
-            }
-            let place = self.shape(bad.cell).off_center(self.reach);
-            match self.draft.add_in(bad.cell, place) {
+            let Some(shape) = self.still_bad(&bad) else { continue };
+            match self.draft.add_in(bad.cell, shape.off_center(self.reach)) {
                 Attempt::Added => {}
                 Attempt::Encroaches if self.draft.settle() => self.queue.push(bad),
                 Attempt::Encroaches | Attempt::TooFine => self.left.push(bad),
@@ -72,35 +69,33 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     /// Queues a cell if it is to be destroyed.
     #[inline]
     fn test(&mut self, cell: CellId) {
-        if self.is_bad(cell) {
-            self.note(cell);
+        if let Some(shape) = self.bad(cell) {
+            self.note(cell, &shape);
         }
     }
 
-    /// Whether a cell is a triangle of the domain that is not what is asked for.
+    /// The shape of a cell, if it is a triangle of the domain that is not what is asked for.
     #[inline]
-    fn is_bad(&self, cell: CellId) -> bool {
-        self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell) && {
-            let shape = self.shape(cell);
-            self.is_too_large(cell, &shape) || self.is_too_thin(&shape)
-        }
+    fn bad(&self, cell: CellId) -> Option<Shape> {
+        let is_asked = self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell);
+        let shape = is_asked.then(|| self.shape(cell))?;
+        (self.is_too_large(cell, &shape) || self.is_too_thin(&shape)).then_some(shape)
     }
 
     /// Takes down a cell that is not what is asked for.
-    fn note(&mut self, cell: CellId) {
-        let shape = self.shape(cell);
+    fn note(&mut self, cell: CellId, shape: &Shape) {
         let bad = Bad { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
-        if self.is_too_large(cell, &shape) || self.why_thin(cell, &shape).is_none() {
+        if self.is_too_large(cell, shape) || self.why_thin(cell, shape).is_none() {
             self.queue.push(bad);
         } else {
             self.left.push(bad);
         }
     }
 
-    /// Whether a triangle that was taken down is still there and still not what is asked for: vertices are taken out,
-    /// and both its number and those of its corners may have come to others since.
-    fn is_still_bad(&self, bad: &Bad) -> bool {
-        *self.draft.t.tds().corners(bad.cell) == bad.corners && self.is_bad(bad.cell)
+    /// The shape of a triangle that was taken down, if it is still there and still not what is asked for: vertices are
+    /// taken out, and both its number and those of its corners may have come to others since.
+    fn still_bad(&self, bad: &Bad) -> Option<Shape> {
+        if *self.draft.t.tds().corners(bad.cell) == bad.corners { self.bad(bad.cell) } else { None }
     }
 
     #[inline]
@@ -151,7 +146,8 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     pub(super) fn shortfall(&mut self) -> Vec<(CellId, Shortfall)> {
         let mut bad = std::mem::take(&mut self.left);
         bad.extend(std::iter::from_fn(|| self.queue.pop()));
-        let mut cells: Vec<CellId> = bad.iter().filter(|bad| self.is_still_bad(bad)).map(|bad| bad.cell).collect();
+        let mut cells: Vec<CellId> =
+            bad.iter().filter(|bad| self.still_bad(bad).is_some()).map(|bad| bad.cell).collect();
         cells.sort_unstable();
         cells.dedup();
         let rest = if self.draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
