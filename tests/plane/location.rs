@@ -200,15 +200,18 @@ impl<F: Fn([&Point; 3], &Point) -> [f64; 3]> Geometry<3> for Led<F> {
     }
 }
 
+/// Where the plane leads.
+fn rightly(simplex: [&Point; 3], q: &Point) -> [f64; 3] {
+    Plane::<Adaptive>::default().rough_sides(simplex, q)
+}
+
 thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
 
 /// Questions for each of some points that are inserted in random order, without a strategy.
 fn asked_one_by_one(place: impl Fn(f64) -> Point) -> usize {
     const COUNT: usize = 20_000;
     let mut random = Random(31);
-    let mut t = Delaunay::<_, 3>::new(Led(|simplex: [&Point; 3], q: &Point| {
-        Plane::<Adaptive>::default().rough_sides(simplex, q)
-    }));
+    let mut t = Delaunay::<_, 3>::new(Led(rightly));
     ASKED.set(0);
     for _ in 0..COUNT {
         t.insert(place(random.unit())).unwrap();
@@ -235,8 +238,7 @@ fn walks_along_curves_are_cut_short() {
 fn walks_from_a_curve_look_for_a_way_out() {
     const COUNT: usize = 20_000;
     let mut random = Random(36);
-    let geometry = Led(|simplex: [&Point; 3], q: &Point| Plane::<Adaptive>::default().rough_sides(simplex, q));
-    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(geometry), Hierarchy::new(geometry));
+    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(Led(rightly)), Hierarchy::new(Led(rightly)));
     for _ in 0..COUNT {
         let x = random.unit() - 0.5;
         t.insert_by(&mut hierarchy, [x, x * x], ()).unwrap();
@@ -280,7 +282,6 @@ fn same_wherever_led(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
 
 #[test]
 fn rounded_numbers_change_no_answer() {
-    let sides = |simplex: [&Point; 3], q: &Point| Plane::<Adaptive>::default().rough_sides(simplex, q);
     let dice = Cell::new(34);
     let thrown = || {
         let mut random = Random(dice.get());
@@ -291,7 +292,7 @@ fn rounded_numbers_change_no_answer() {
     same_wherever_led(|_, _| [f64::NAN; 3]);
     same_wherever_led(|_, _| [1.0; 3]); // always there
     same_wherever_led(|_, _| [-1.0, 1.0, 1.0]); // always over the same edge
-    same_wherever_led(|simplex, q| sides(simplex, q).map(|x| -x)); // away
+    same_wherever_led(|simplex, q| rightly(simplex, q).map(|x| -x)); // away
     same_wherever_led(|_, _| [thrown(), thrown(), thrown()]);
 }
 
