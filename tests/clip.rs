@@ -2,7 +2,8 @@
 
 mod common;
 
-use breakline::terrain::TinBuilder;
+use breakline::data::{EdgeKind, Surface};
+use breakline::terrain::{Tin, TinBuilder};
 use breakline::triangulation::Level;
 use common::random::Random;
 
@@ -119,4 +120,124 @@ fn parcels_add_up() {
     let tin = builder.build().unwrap();
     assert_eq!(tin.report().triangles, 2 * 18 * 18);
     assert!(tin.elevation(0.5, 5.0).is_none() && tin.elevation(5.0, 5.0).is_some());
+}
+
+/// The vertices of a surface that faces use, sorted.
+fn vertices(tin: &Tin) -> Vec<[f64; 3]> {
+    let corners = (0..tin.face_count() as u32).filter_map(|face| tin.face(face)).flatten();
+    let mut vertices: Vec<[f64; 3]> = corners.map(|vertex| tin.position(vertex)).collect();
+    vertices.sort_by(|p, q| p.partial_cmp(q).unwrap());
+    vertices.dedup();
+    vertices
+}
+
+/// A side of the clip polygon runs between two points of the ground and over a breakline that is 10 high.
+#[test]
+fn a_side_that_crosses_a_breakline_is_as_high_as_the_breakline_there() {
+    let mut builder = TinBuilder::default();
+    builder.add_points(
+        &[0.0, 10.0, 10.0, 0.0, 5.0, 5.0],
+        &[-10.0, -10.0, 10.0, 10.0, 1.0, -1.0],
+        &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0],
+    );
+    builder.add_breakline(&[[0.0, 0.0, 10.0], [10.0, 0.0, 10.0]]);
+    builder.add_boundary(&[vec![[5.0, 1.0], [5.0, -1.0], [9.0, -1.0], [9.0, 1.0]]]);
+    let tin = builder.build().unwrap();
+    let on_breakline: Vec<[f64; 3]> = vertices(&tin).into_iter().filter(|p| p[1] == 0.0).collect();
+    assert_eq!(on_breakline, [[5.0, 0.0, 10.0], [9.0, 0.0, 10.0]]);
+    // The breakline and the sides of the polygon are told apart, and nothing else is a line.
+    let sides = (0..tin.face_count() as u32).filter_map(|face| Some((face, tin.face(face)?)));
+    let kinds = sides.flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i))).map(|(face, corners, i)| {
+        let [p, q] = [1, 2].map(|k| tin.position(corners[(i + k) % 3]));
+        let is_on = |line: fn([f64; 3]) -> bool| line(p) && line(q);
+        let is_side = is_on(|p| p[0] == 5.0) || is_on(|p| p[0] == 9.0) || is_on(|p| p[1].abs() == 1.0);
+        let expected = match (is_on(|p| p[1] == 0.0), is_side) {
+            (true, _) => EdgeKind::Breakline,
+            (_, true) => EdgeKind::Clip,
+            _ => EdgeKind::Plain,
+        };
+        assert_eq!(tin.edge_kind(face, i), expected, "{p:?} {q:?}");
+        expected
+    });
+    assert!(kinds.filter(|kind| *kind == EdgeKind::Clip).count() >= 6);
+}
+
+/// Two polygons, one with a corner in the middle of the other's side, over ground in waves: no crack, so that contours
+/// do not end there; and no trace of the common side, where both sides are kept.
+#[test]
+fn polygons_that_share_part_of_a_side_are_one_surface() {
+    let ground = |round: u64| {
+        let mut random = Random(round);
+        let mut builder = TinBuilder::default();
+        let origin = [500_000.0 + random.unit(), 4_649_000.0 + random.unit()];
+        for (i, j) in (0..=16).flat_map(|i| (0..=16).map(move |j| (i, j))) {
+            let [x, y] = [origin[0] + f64::from(i), origin[1] + f64::from(j)];
+            builder.add_points(&[x], &[y], &[(x - y).sin() * 3.0]);
+        }
+        (builder, origin, random)
+    };
+    for round in 0..60 {
+        let (mut builder, origin, mut random) = ground(round);
+        let at = |x: f64, y: f64| [origin[0] + x, origin[1] + y];
+        let (a, b) = (at(2.0, 3.0), at(14.0, 11.0));
+        let part = random.unit();
+        let middle = [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
+        builder.add_boundary(&[vec![a, b, at(14.0, 1.0)]]);
+        builder.add_boundary(&[vec![middle, b, at(3.0, 14.0)]]);
+        let tin = builder.build().unwrap();
+        // All rim lies on the sides of the union: none between the corner and the common end.
+        let rims = (0..tin.face_count() as u32).filter_map(|face| Some((face, tin.face(face)?)));
+        for (face, corners) in rims {
+            for i in (0..3).filter(|&i| tin.neighbor(face, i).is_none()) {
+                let [p, q] = [1, 2].map(|k| tin.position(corners[(i + k) % 3]));
+                let way = [0, 1].map(|k| 0.5 * (p[k] + q[k]) - middle[k]);
+                let along = [0, 1].map(|k| b[k] - middle[k]);
+                let off = (along[0] * way[1] - along[1] * way[0]) / along[0].hypot(along[1]);
+                let fraction = (along[0] * way[0] + along[1] * way[1]) / (along[0].powi(2) + along[1].powi(2));
+                assert!(
+                    off.abs() > 1e-8 || !(1e-6..1.0 - 1e-6).contains(&fraction),
+                    "round {round}: a crack {part} {p:?} {q:?} {off} {fraction}"
+                );
+            }
+        }
+    }
+}
+
+/// A spike that goes out and comes back over itself, and polygons without an area, leave nothing.
+#[test]
+fn what_has_no_area_leaves_nothing() {
+    let clipped = |rings: &[Ring]| {
+        let mut builder = TinBuilder::default();
+        let [x, y] = [500_000.0, 4_649_000.0];
+        builder.add_points(&[x, x + 90.0, x + 90.0, x], &[y, y, y + 90.0, y + 90.0], &[1.0, 2.0, 5.0, 3.0]);
+        let ring = |ring: &Ring| ring.iter().map(|p| [x + p[0], y + p[1]]).collect();
+        builder.add_boundary(&rings.iter().map(ring).collect::<Vec<Ring>>());
+        builder.build().unwrap()
+    };
+    let square: Ring = vec![[10.0, 10.0], [30.0, 10.0], [30.0, 30.0], [10.0, 30.0]];
+    // Out from a corner to 50.1 70.3 and back over a place a tenth of the way, rounded.
+    let mut spike = square.clone();
+    spike.splice(2..3, [[30.0, 30.0], [50.1, 70.3], [30.0 + 0.1 * 20.1, 30.0 + 0.1 * 40.3], [30.0, 30.0]]);
+    assert_eq!(vertices(&clipped(&[spike])).len(), vertices(&clipped(&[square])).len());
+    for flat in [
+        vec![[10.0, 10.0], [50.1, 70.3], [10.0 + 0.3 * 40.1, 10.0 + 0.3 * 60.3]],
+        vec![[10.0, 10.0], [50.1, 70.3], [10.0, 10.0]],
+        vec![[10.0, 10.0], [10.0, 10.0], [10.0, 10.0]],
+    ] {
+        assert_eq!(clipped(&[flat]).report().triangles, 0);
+    }
+}
+
+/// Rings that cross in the middle of a flat triangle, and one through a vertex of the surface.
+#[test]
+fn rings_that_cross_each_other_find_the_height_of_the_ground() {
+    let mut builder = TinBuilder::default();
+    builder.add_points(&[0.0, 8.0, 8.0, 0.0, 3.0], &[0.0, 0.0, 8.0, 8.0, 3.0], &[0.5; 5]);
+    builder.add_boundary(&[
+        vec![[1.0, 1.0], [5.0, 5.0], [5.0, 2.0], [1.0, 6.0]],
+        vec![[3.0, 3.0], [7.0, 4.0], [2.0, 7.3]],
+    ]);
+    let tin = builder.build().unwrap();
+    assert!(tin.report().triangles > 4);
+    assert!(vertices(&tin).iter().all(|p| p[2] == 0.5));
 }

@@ -285,6 +285,16 @@ fn errors_name_the_value_and_the_place() {
         (ply("4", "1", &format!("{square} 99 0 1 1")), "face 0: a list of 99 values, with 6 bytes left"),
         (ply("4", "1", &format!("{square} 3 0 nul 1")), "face 0: 'nul' is no number"),
         (ply("4", "1", &format!("{square} 3 0 0 1")), "face 0 names one vertex twice: 0 0 1"),
+        (ply("4", "1", "0 0 0 1 0 0 nan 1 0 0 1 0 3 0 1 2"), "vertex 2 is at NaN 1 0, expected finite coordinates"),
+        (
+            ply("4", "1", "0 0 0 1 0 0 nan 1 0 0 1 0 4 0 1 2 3"),
+            "face 0: vertex 2 is at NaN 1 0, expected finite coordinates",
+        ),
+        (
+            ply("4", "1", "0 0 0 1 -inf 0 1 1 0 0 1 0 4 0 1 2 3"),
+            "face 0: vertex 1 is at 1 -inf 0, expected finite coordinates",
+        ),
+        (ply("4", "1", "0 0 0 1 0 0 1 1 inf 0 1 0 4 0 1 2 3"), "vertex 2 is at 1 1 inf, expected finite coordinates"),
         (ply("4", "0", square), "there are no faces: the file is a point cloud"),
         (
             ply("9999999999999", "1", square),
@@ -309,6 +319,10 @@ fn errors_name_the_value_and_the_place() {
     assert_eq!(message("odd.obj", b"v 0 0\n"), "line 1: a vertex without z");
     assert_eq!(message("odd.obj", b"v 0 0 z\n"), "line 1: 'z' is no number for z");
     assert_eq!(message("odd.obj", b"v 0 0 0\n"), "there are no faces ('f a b c' lines)");
+    assert_eq!(
+        message("odd.obj", b"v 0 0 0\nv 1 0 0\nv 1 1e999 0\nv 0 1 0\nf 1 2 3 4\n"),
+        "line 5: vertex 2 is at 1 inf 0, expected finite coordinates"
+    );
     let beyond = message("odd.obj", b"v 0 0 0\nf 1 2 3\n");
     assert_eq!(beyond, "line 2: a face names vertex 1, but there are 1 vertices");
     let off = |rest: &str| message("odd.off", format!("OFF\n3 1 0\n0 0 0\n1 0 0\n{rest}").as_bytes());

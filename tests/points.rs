@@ -54,12 +54,12 @@ fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summ
     Ok(summary)
 }
 
-/// The facts of the shared folder, by path; `None` when it is absent.
+/// The facts of the shared folder, by path.
 ///
 /// Fractions are kept as text: the JSON reader rounds some of them wrongly, and Python wrote NaN and
 /// Infinity, which JSON does not have.
-fn facts() -> Option<BTreeMap<String, Value>> {
-    let text = std::fs::read_to_string(common::shared("FACTS.json")?).unwrap();
+fn facts() -> BTreeMap<String, Value> {
+    let text = std::fs::read_to_string(common::shared("FACTS.json")).unwrap();
     let mut quoted = String::with_capacity(text.len());
     for (i, part) in text.split('"').enumerate() {
         let is_string = i % 2 == 1;
@@ -77,7 +77,7 @@ fn facts() -> Option<BTreeMap<String, Value>> {
             quoted.extend([mark, word, mark, end]);
         }
     }
-    Some(serde_json::from_str(&quoted).unwrap())
+    serde_json::from_str(&quoted).unwrap()
 }
 
 fn is_las(path: &str) -> bool {
@@ -93,14 +93,15 @@ fn triple(value: &Value) -> [f64; 3] {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn every_lidar_file_gives_what_is_known_of_it() {
-    let Some(facts) = facts() else { return };
+    let facts = facts();
     let mut seen = 0;
     for (path, fact) in &facts {
         if !path.starts_with("lidar/") || path.contains("/broken/") || !is_las(path) {
             continue;
         }
-        let mut source = las::open(common::shared(path).unwrap()).unwrap();
+        let mut source = las::open(common::shared(path)).unwrap();
         let found = summarize(&mut source).unwrap_or_else(|error| panic!("{path}: {error}"));
         let info = source.info();
         let version = fact["hdr_version"].as_str().unwrap();
@@ -154,18 +155,18 @@ fn check_crs(path: &str, info: &PointInfo, fact: &Value) {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn geocentric_coordinates_are_known_as_such() {
-    let Some(file) = common::shared("lidar/formats/lone-star.copc.laz") else { return };
-    let source = las::open(file).unwrap();
+    let source = las::open(common::shared("lidar/formats/lone-star.copc.laz")).unwrap();
     assert_eq!(source.info().crs.as_ref().unwrap().kind, CrsKind::Geocentric);
 }
 
 /// Files whose header counts by return are the truth (they are wrong in some).
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn returns_are_those_of_the_header() {
     for path in ["lidar/bcts/bcts_1.laz", "lidar/ign_0292_6833/test_semis_2023_0292_6833_LA93_IGN69.laz"] {
-        let Some(file) = common::shared(path) else { return };
-        let mut source = las::open(file).unwrap();
+        let mut source = las::open(common::shared(path)).unwrap();
         let found = summarize(&mut source).unwrap();
         let stated: BTreeMap<u8, u64> = (1..).zip(source.header().returns.iter().copied()).collect();
         // The header has no place for points that state return 0.
@@ -176,13 +177,10 @@ fn returns_are_those_of_the_header() {
 
 /// The oldest kind of LAZ, one run of points without chunks, holds the points of `simple.las`.
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn laz_without_chunks_equals_its_las() {
-    let (Some(laz), Some(las)) = (
-        common::shared("lidar/formats/simple-laszip-compressor-version-1.2r0.laz"),
-        common::shared("lidar/formats/simple.las"),
-    ) else {
-        return;
-    };
+    let laz = common::shared("lidar/formats/simple-laszip-compressor-version-1.2r0.laz");
+    let las = common::shared("lidar/formats/simple.las");
     let (mut a, mut b) = (las::open(laz).unwrap(), las::open(las).unwrap());
     let (mut left, mut right) = (PointBatch::default(), PointBatch::default());
     a.read(&mut left).unwrap();
@@ -245,8 +243,9 @@ const BROKEN: &[(&str, Fate)] = &[
 ];
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn every_broken_file_has_its_fate() {
-    let Some(folder) = common::shared("lidar/broken") else { return };
+    let folder = common::shared("lidar/broken");
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -256,7 +255,7 @@ fn every_broken_file_has_its_fate() {
     let mut listed: Vec<&str> = BROKEN.iter().map(|(name, _)| *name).collect();
     listed.sort_unstable();
     assert_eq!(names, listed);
-    let facts = facts().unwrap();
+    let facts = facts();
     for (name, fate) in BROKEN {
         let path = folder.join(name);
         let started = Instant::now();
@@ -302,14 +301,15 @@ fn compare_with_fact(path: &Path, found: &Summary, fact: &Value) {
 
 /// What a cut or damaged LAZ file still gives are points of the whole file.
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn points_before_the_damage_are_good() {
     for (cut, whole) in [
         ("mut_Topography__truncated_half.laz", "quebec_lidR/Topography.laz"),
         ("mut_point-time-color__truncated_half.laz", "formats/lazrs/point-time-color.las"),
         ("mut_point-time-color__chunktable_ptr_garbage.laz", "formats/lazrs/point-time-color.las"),
     ] {
-        let Some(cut) = common::shared(&format!("lidar/broken/{cut}")) else { return };
-        let whole = common::shared(&format!("lidar/{whole}")).unwrap();
+        let cut = common::shared(&format!("lidar/broken/{cut}"));
+        let whole = common::shared(&format!("lidar/{whole}"));
         let (part, all) = (columns(&cut), columns(&whole));
         let count = part.len();
         assert!(count > 500);
@@ -339,9 +339,10 @@ fn columns(path: &Path) -> PointBatch {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_stream_gives_what_its_file_gives() {
     for path in ["lidar/formats/lazrs/point10.laz", "lidar/formats/simple.las"] {
-        let Some(file) = common::shared(path) else { return };
+        let file = common::shared(path);
         let mut from_file = las::open(&file).unwrap();
         let mut from_stream = las::from_stream(std::fs::File::open(&file).unwrap(), PathBuf::from("stream")).unwrap();
         let (a, b) = (summarize(&mut from_file).unwrap(), summarize(&mut from_stream).unwrap());
@@ -351,12 +352,13 @@ fn a_stream_gives_what_its_file_gives() {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn points_are_opened_by_what_they_are() {
     for (path, format, count) in [
         ("lidar/formats/simple_with_page.copc.laz", "LAS 1.4, point format 7, COPC", 1065),
         ("lidar/formats/lazrs/point-color.las", "LAS 1.2, point format 2", 1065),
     ] {
-        let Some(file) = common::shared(path) else { return };
+        let file = common::shared(path);
         let mut source = points::open(&file).unwrap();
         assert_eq!(source.info().format, format);
         assert_eq!(summarize(source.as_mut()).unwrap().count, count);
@@ -366,28 +368,26 @@ fn points_are_opened_by_what_they_are() {
         std::fs::copy(&file, &renamed).unwrap();
         assert_eq!(points::open(&renamed).unwrap().info().format, format);
     }
-    let Some(file) = common::shared("shp/shapelib_eg/masspntz.shp") else { return };
-    let mut source = points::open(&file).unwrap();
+    let mut source = points::open(common::shared("shp/shapelib_eg/masspntz.shp")).unwrap();
     let mut batch = PointBatch::default();
     source.read(&mut batch).unwrap();
     assert_eq!(batch.len(), 815);
     assert!(batch.z.iter().all(|z| (678.0..1050.0).contains(z)));
-    let lines = common::shared("shp/shapelib_eg/brklinz.shp").unwrap();
+    let lines = common::shared("shp/shapelib_eg/brklinz.shp");
     let error = points::open(&lines).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("has no points, but 122 other shapes"), "{error}");
     assert_eq!(error.path(), Some(lines.as_path()));
-    let Some(file) = common::shared("dem/bigtujunga.tif") else { return };
-    let error = points::open(&file).map(|_| ()).unwrap_err();
+    let error = points::open(common::shared("dem/bigtujunga.tif")).map(|_| ()).unwrap_err();
     assert_eq!(error.kind(), Kind::Unsupported);
     assert!(error.to_string().contains("a TIFF file; points are read from LAS"), "{error}");
 }
 
 /// Points written as text come back as they were.
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn text_of_real_points_is_read_back() {
     use std::fmt::Write as _;
-    let Some(file) = common::shared("lidar/lake_breakline/lake.laz") else { return };
-    let all = columns(&file);
+    let all = columns(&common::shared("lidar/lake_breakline/lake.laz"));
     let mut text = String::from("Easting;Northing;Height;Class\n");
     for i in 0..all.len() {
         let line = format!("{};{};{};{}", all.x[i], all.y[i], all.z[i], all.class[i]);
@@ -415,6 +415,7 @@ fn text_of_real_points_is_read_back() {
 
 /// Bytes changed at random: an answer, in time, whatever they are.
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn changed_bytes_do_not_bring_it_down() {
     let mut state = 1_u64;
     let mut random = move || {
@@ -429,7 +430,7 @@ fn changed_bytes_do_not_bring_it_down() {
         "lidar/formats/simple-laszip-compressor-version-1.2r0.laz",
         "lidar/formats/test1_4.las",
     ] {
-        let Some(file) = common::shared(path) else { return };
+        let file = common::shared(path);
         let bytes = std::fs::read(file).unwrap();
         for round in 0..200 {
             let mut changed = bytes.clone();

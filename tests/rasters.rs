@@ -13,11 +13,11 @@ use breakline::io::{png, raster};
 use common::shared;
 use serde_json::Value;
 
-fn facts() -> Option<Value> {
-    let text = std::fs::read_to_string(shared("FACTS.json")?).expect("FACTS.json can be read");
+fn facts() -> Value {
+    let text = std::fs::read_to_string(shared("FACTS.json")).expect("FACTS.json can be read");
     // A few numbers elsewhere in the file are NaN or Infinity, which JSON does not have.
     let text = text.replace(" NaN", " null").replace("-Infinity", "null").replace(" Infinity", " null");
-    Some(serde_json::from_str(&text).expect("FACTS.json is JSON"))
+    serde_json::from_str(&text).expect("FACTS.json is JSON")
 }
 
 fn number(value: &Value) -> f64 {
@@ -56,14 +56,15 @@ const PLACED_BY_TIEPOINTS: &[&str] = &[
 ];
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn real_files_are_what_the_facts_say() {
-    let (Some(facts), Some(folder)) = (facts(), shared("dem")) else { return };
+    let (facts, folder) = (facts(), shared("dem"));
     let mut read = 0;
     for name in tiffs(&folder, "dem") {
         if name.starts_with("dem/broken") {
             continue;
         }
-        let path = shared(&name).expect("it was listed");
+        let path = shared(&name);
         if let Some((_, words)) = REFUSED.iter().find(|(refused, _)| *refused == name) {
             let error = geotiff::open(&path).expect_err(&name);
             assert_eq!(error.kind(), Kind::Unsupported, "{name}");
@@ -76,7 +77,7 @@ fn real_files_are_what_the_facts_say() {
     }
     assert_eq!(read, 83);
     let name = "lidar/bcts/bcts_dsm_5m.tif";
-    check_facts(name, &shared(name).expect("it is there"), &facts[name]);
+    check_facts(name, &shared(name), &facts[name]);
 }
 
 fn check_facts(name: &str, path: &Path, facts: &Value) {
@@ -157,17 +158,18 @@ fn check_facts(name: &str, path: &Path, facts: &Value) {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_raster_is_in_the_same_place_however_its_georeferencing_is_written() {
     let encoding = |kind: &str, cells: &str| {
-        let path = shared(&format!("dem/pointarea/austrian_capitals_{kind}_pixel_is_{cells}.tif"))?;
+        let path = shared(&format!("dem/pointarea/austrian_capitals_{kind}_pixel_is_{cells}.tif"));
         let reader = geotiff::open(path).unwrap();
         assert_eq!(reader.info().is_point, cells == "point");
-        Some(reader.read_grid().unwrap())
+        reader.read_grid().unwrap()
     };
     for cells in ["area", "point"] {
-        let Some(first) = encoding("model_tie_point_and_pixel_scale", cells) else { return };
+        let first = encoding("model_tie_point_and_pixel_scale", cells);
         for kind in ["model_tie_points", "model_transformation"] {
-            let other = encoding(kind, cells).unwrap();
+            let other = encoding(kind, cells);
             for (a, b) in first.frame.transform.iter().zip(other.frame.transform) {
                 assert!((a - b).abs() < 1e-6, "{kind} {cells}: {a} is not {b}");
             }
@@ -177,8 +179,9 @@ fn a_raster_is_in_the_same_place_however_its_georeferencing_is_written() {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_window_is_the_same_part_of_the_whole() {
-    let Some(folder) = shared("dem") else { return };
+    let folder = shared("dem");
     for name in
         ["gdal/byte_LZW_tiled.tif", "gdal/utm.tif", "bigtujunga.tif", "gdal/separate_tiled.tif", "dem-hills.tiff"]
     {
@@ -231,8 +234,9 @@ const BROKEN: &[(&str, Verdict)] = &[
 ];
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn every_broken_file_gets_its_verdict() {
-    let Some(folder) = shared("dem/broken") else { return };
+    let folder = shared("dem/broken");
     let mut names: Vec<PathBuf> = std::fs::read_dir(&folder).unwrap().flatten().map(|e| e.path()).collect();
     names.sort();
     assert_eq!(names.len(), BROKEN.len());
@@ -264,9 +268,9 @@ fn every_broken_file_gets_its_verdict() {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn other_formats_are_named() {
-    let Some(path) = shared("dem/gdal/n43.dt0") else { return };
-    let error = raster::open(path).unwrap_err();
+    let error = raster::open(shared("dem/gdal/n43.dt0")).unwrap_err();
     assert_eq!(error.kind(), Kind::Unsupported);
     assert!(error.to_string().contains("DTED") && error.cure_text().unwrap().contains("`gdal`"), "{error}");
 }
@@ -450,15 +454,21 @@ fn a_source_that_fails_leaves_no_file() {
 
 #[test]
 fn a_damaged_byte_anywhere_ends_in_values_or_an_error() {
+    let (_, _, whole) = written(&Hills::new(40, 9), CellFormat::Heights);
+    damage_each_byte(&[whole]);
+}
+
+#[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
+fn a_damaged_byte_in_files_of_others_does_too() {
+    let names =
+        ["byte_LZW_tiled", "byte_ZSTD_tiled", "byte_bigtiff_strip5lines", "sparse_tiled_contig", "int16_big_endian"];
+    damage_each_byte(&names.map(|name| std::fs::read(shared(&format!("dem/gdal/{name}.tif"))).unwrap()));
+}
+
+fn damage_each_byte(files: &[Vec<u8>]) {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("damaged.tif");
-    let (_, _, whole) = written(&Hills::new(40, 9), CellFormat::Heights);
-    let mut files = vec![whole];
-    for name in
-        ["byte_LZW_tiled", "byte_ZSTD_tiled", "byte_bigtiff_strip5lines", "sparse_tiled_contig", "int16_big_endian"]
-    {
-        files.extend(shared(&format!("dem/gdal/{name}.tif")).map(|path| std::fs::read(path).unwrap()));
-    }
     let (mut opened, mut read, mut refused) = (0, 0, 0);
     for file in files {
         // Beyond the header, one of 29 bytes is enough.
@@ -477,6 +487,5 @@ fn a_damaged_byte_anywhere_ends_in_values_or_an_error() {
             read += usize::from(reader.read_window(part).is_ok());
         }
     }
-    // So many come from the first file alone, where the shared data is absent.
     assert!(refused > 100 && opened > 200 && read > 200, "{refused} {opened} {read}");
 }

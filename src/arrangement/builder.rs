@@ -24,6 +24,8 @@ pub(super) struct Builder<'a> {
     places: usize,
     place: &'a PlaceOf<'a>,
     ends: &'a [[u32; 2]],
+    /// How many of the first segments are led through all pixels that they meet, without being bent by others.
+    snapped: usize,
     segments: &'a [Segment],
     /// The area of a box over which many of the segments come to lie, if they are spread evenly.
     large: f64,
@@ -40,6 +42,7 @@ impl<'a> Builder<'a> {
         places: usize,
         place: &'a PlaceOf<'a>,
         ends: &'a [[u32; 2]],
+        snapped: usize,
         segments: &'a [Segment],
     ) -> Self {
         const MANY: f64 = 8.0;
@@ -50,6 +53,7 @@ impl<'a> Builder<'a> {
             places,
             place,
             ends,
+            snapped,
             segments,
             large,
             added: Vec::new(),
@@ -167,10 +171,11 @@ impl<'a> Builder<'a> {
         crossings
     }
 
-    /// Phase 3: leads the segments that cross others through all sites whose pixels they meet; and, as long as there
-    /// are any, those that meet a pixel by which another was bent.
+    /// Phase 3: leads the segments that cross others, and those to be snapped, through all sites whose pixels they
+    /// meet; and, as long as there are any, those that meet a pixel by which another was bent, or an end of one that
+    /// is snapped.
     fn lead<K: Kernel>(&self, crossings: &[Crossing]) -> (Vec<bool>, Vec<Pass>) {
-        if crossings.is_empty() {
+        if crossings.is_empty() && self.snapped == 0 {
             return (vec![false; self.segments.len()], Vec::new());
         }
         let mut is_hot = vec![false; self.places + self.added.len()];
@@ -178,9 +183,11 @@ impl<'a> Builder<'a> {
         sites.iter().for_each(|&site| is_hot[site as usize] = true);
         let mut hot = vec![self.pixels(sites)];
         let mut is_active = vec![false; is_hot.len()];
+        self.ends[..self.snapped].as_flattened().iter().for_each(|&site| is_active[site as usize] = true);
         let mut is_led = vec![false; self.segments.len()];
         let mut led: Vec<u32> = Vec::new();
-        let mut fresh: Vec<u32> = crossings.iter().flat_map(|crossing| crossing.segments).collect();
+        let mut fresh: Vec<u32> =
+            crossings.iter().flat_map(|crossing| crossing.segments).chain(0..self.snapped as u32).collect();
         fresh.par_sort_unstable();
         fresh.dedup();
         let mut passes = self.passes_of_crossings();

@@ -22,7 +22,8 @@
 //! another half a unit of displacement.
 //!
 //! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
-//! however close it passes by an end: nothing forces it.
+//! however close it passes by an end: nothing forces it. Unless it is to be [snapped](Arrangement::with_snapped): then
+//! it is led through every center whose pixel it meets, so that what runs within a rounding of it runs along it.
 //!
 //! The result is a function of the set of segments: no order shows.
 
@@ -83,10 +84,25 @@ impl Arrangement {
     /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at
     /// the worst, for long lines side by side across the axes.
     pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
-        Self::arrange(places, &place, segments, step)
+        Self::arrange(places, &place, segments, 0, step)
     }
 
-    fn arrange(places: usize, place: &PlaceOf<'_>, segments: &[[u32; 2]], step: f64) -> Self {
+    /// Like [`new`](Self::new), but the first `snapped` segments are led through all sites whose pixels they meet,
+    /// whether they cross anything or not; and others are led through the ends of these whose pixels they meet.
+    ///
+    /// # Complexity
+    /// That of [`new`](Self::new).
+    pub fn with_snapped(
+        places: usize,
+        place: impl Fn(u32) -> Place + Sync,
+        segments: &[[u32; 2]],
+        snapped: usize,
+        step: f64,
+    ) -> Self {
+        Self::arrange(places, &place, segments, snapped, step)
+    }
+
+    fn arrange(places: usize, place: &PlaceOf<'_>, segments: &[[u32; 2]], snapped: usize, step: f64) -> Self {
         let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(place)).collect();
         let larger = |sum: Place, p: &Place| [sum[0].max(p[0].abs()), sum[1].max(p[1].abs())];
         let largest = drawn.as_flattened().iter().fold([0.0; 2], larger);
@@ -103,7 +119,7 @@ impl Arrangement {
         let mut arrangement = loop {
             let others: Vec<Place> = on_segments.iter().map(|&site| place(site)).collect();
             let grid = Grid::through(scaled(largest), smallest, [drawn.as_flattened(), &others]);
-            let builder = Builder::new(grid, places, &place, segments, &drawn);
+            let builder = Builder::new(grid, places, &place, segments, snapped, &drawn);
             let arrangement = if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() };
             let before = on_segments.len();
             let given = arrangement.chain_sites.iter().filter(|&&site| (site as usize) < places);
@@ -152,7 +168,7 @@ impl Arrangement {
             None => place(i),
             Some(added) => self.added[added],
         };
-        let inner = Arrangement::arrange(self.places + self.added.len(), &site, &pieces, step);
+        let inner = Arrangement::arrange(self.places + self.added.len(), &site, &pieces, 0, step);
         if inner.crossings.is_empty() {
             return false;
         }

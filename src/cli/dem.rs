@@ -2,7 +2,6 @@ use super::args::DemArgs;
 use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
 use super::raster::{self, Watched};
-use super::summary::SurfaceFacts;
 use super::talk::Talk;
 use super::units::Units;
 use super::{Exit, gather, inputs, open};
@@ -19,7 +18,7 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
     let gathered = gather::surface(&mut plan, talk)?;
     let surface = gathered.surface.as_ref();
-    let frame = raster::frame(&args.frame, SurfaceFacts::of(surface).extent, surface.crs(), talk)?;
+    let frame = raster::frame(&args.frame, gathered.made.extent(surface), surface.crs(), talk)?;
     let dem = open::dem(surface, frame)?;
     let mut written = None;
     for target in &targets {

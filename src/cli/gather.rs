@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::args::EdgeLength;
+use super::args::{Corners, EdgeLength};
 use super::crossings::{self, LineNames};
+use super::inputs;
 use super::lines::{self, Rings};
 use super::open;
 use super::outputs;
@@ -19,7 +20,7 @@ use super::units::Units;
 use crate::crs::Crs;
 use crate::data::{Bounds, Grid, Layer, Surface};
 use crate::error::{Error, Result};
-use crate::terrain::{Classes, Selection, SelectionReport, TinBuilder, TinReport};
+use crate::terrain::{Classes, Selection, SelectionReport, TinBuilder, TinReport, Window};
 
 /// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
@@ -139,47 +140,59 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
             roads.take(*road, &mut line.points).map_err(|e| e.in_file(path))?;
             made.breaklines += 1;
             line.points.iter().for_each(|&vertex| line_extent.add(vertex));
-            let runs = match plan.bounds {
-                Some(bounds) => lines::near(&line.points, &bounds.grown(rim.buffer)),
-                None => vec![line.points.as_slice()],
-            };
-            for run in runs {
-                builder.add_breakline(run);
-                names.add(file, &line);
-            }
+            builder.add_breakline(&line.points);
+            names.add(file, &line);
         }
     }
     for rings in clip_polygons(&boundary, boundary_roads, &roads)? {
         builder.add_boundary(&rings);
     }
 
-    let window = plan.bounds.map(|bounds| bounds.grown(rim.buffer));
-    let mut selection = Selection::new(plan.classes.clone(), window);
-    point_files::read_all(&mut files, point_roads, &roads, &mut selection, talk)?;
-    let (points, report) = selection.finish();
-    roads.warn(talk);
-    tell_classes(&report, &plan.classes, talk);
-    if points.is_empty() && made.breaklines == 0 {
-        return Err(nothing_left(&report, &plan.files));
-    }
-    if plan.bounds.is_none() && boundary.is_empty() {
-        tell_beyond(&points, line_extent, &rim, &units, talk);
-    }
-    builder.add_owned_points(points);
-
-    let bar = talk.spinner("triangulating");
-    let start = Instant::now();
-    let tin = builder.build_named(&|line| names.tell(line)).map_err(|error| match plan.files.as_slice() {
-        [file] if plan.breaklines.is_empty() => error.in_file(file),
-        _ => error,
-    })?;
-    bar.finish_and_clear();
+    let mut reach = Reach::new(plan, &rim);
+    let (tin, report) = loop {
+        let mut selection = Selection::new(plan.classes.clone(), reach.window());
+        point_files::read_all(&mut files, point_roads, &roads, &mut selection, talk)?;
+        let (points, report) = selection.finish();
+        roads.warn(talk);
+        tell_classes(&report, &plan.classes, talk);
+        if points.is_empty() && made.breaklines == 0 && !reach.may_grow_into(&report) {
+            return Err(nothing_left(&report, &plan.files));
+        }
+        if plan.bounds.is_none() && boundary.is_empty() {
+            tell_beyond(&points, line_extent, &rim, &units, talk);
+        }
+        let mut builder = builder.clone();
+        builder.window = reach.window().map(|read| Window { read, all: report.extent });
+        builder.add_owned_points(points);
+        let bar = talk.spinner("triangulating");
+        let start = Instant::now();
+        let tin = builder.build_named(&|line| names.tell(line));
+        bar.finish_and_clear();
+        talk.detail(format_args!("triangulated in {}", seconds(start.elapsed())));
+        match tin {
+            Ok(tin) if tin.report().uncertain == 0 => break (tin, report),
+            Ok(tin) => talk.detail(format_args!(
+                "{} triangles within the bounds may change with points further out than {}",
+                tin.report().uncertain,
+                units.length(reach.buffer)
+            )),
+            // Too few points are an error only if there are no others.
+            Err(_) if reach.may_grow_into(&report) => (),
+            Err(error) => {
+                return Err(match plan.files.as_slice() {
+                    [file] if plan.breaklines.is_empty() => error.in_file(file),
+                    _ => error,
+                });
+            }
+        }
+        reach.grow();
+    };
+    reach.tell(&report, &units, talk);
     crossings::tell(tin.report(), &names, &units, talk);
     if let Some(report) = &plan.crossing_report {
         crossings::write(report, &tin.report().crossing_heights, &names)?;
         outputs::tell_file(report, talk);
     }
-    talk.detail(format_args!("triangulated in {}", seconds(start.elapsed())));
     if tin.report().triangles == 0 {
         return Err(no_triangle(tin.report(), &rim, &units));
     }
@@ -212,13 +225,49 @@ impl Rim {
             None => talk.note("the whole convex hull is kept (--max-edge none)"),
         }
         let buffer = max_edge.unwrap_or(default);
-        if plan.bounds.is_some() {
-            talk.note(format_args!(
-                "points up to {} outside of the bounds are used, then the surface is clipped to them",
-                units.length(buffer)
-            ));
-        }
         Rim { max_edge, buffer }
+    }
+}
+
+/// How far outside of the bounds points are used: as far as it takes for the surface within to be that of all points.
+struct Reach {
+    bounds: Option<Corners>,
+    buffer: f64,
+}
+
+impl Reach {
+    fn new(plan: &PointPlan, rim: &Rim) -> Self {
+        // What comes through a pipe is read once.
+        let is_stream = plan.files.iter().any(|file| file.as_os_str() == inputs::STDIN);
+        Reach { bounds: plan.bounds, buffer: if is_stream { f64::INFINITY } else { rim.buffer } }
+    }
+
+    /// Where points are used.
+    fn window(&self) -> Option<Bounds> {
+        self.bounds.map(|bounds| bounds.grown(self.buffer))
+    }
+
+    /// Whether there are points that were not used, and that bounds within the extent of all points do not rule out.
+    fn may_grow_into(&self, report: &SelectionReport) -> bool {
+        let all = &report.extent;
+        self.bounds.map(|bounds| bounds.grown(0.0)).is_some_and(|bounds| {
+            let is_apart = |k: usize| bounds.min[k] > all.max[k] || bounds.max[k] < all.min[k];
+            report.outside > 0 && !is_apart(0) && !is_apart(1)
+        })
+    }
+
+    fn grow(&mut self) {
+        self.buffer *= 2.0;
+    }
+
+    fn tell(&self, report: &SelectionReport, units: &Units, talk: &Talk) {
+        if self.bounds.is_some() {
+            let how_far = match report.outside {
+                0 => "all points are used".to_owned(),
+                _ => format!("points up to {} outside of the bounds are used", units.length(self.buffer)),
+            };
+            talk.note(format_args!("{how_far}, so that the surface within is that of all points"));
+        }
     }
 }
 

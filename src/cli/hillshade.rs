@@ -4,7 +4,7 @@ use super::open::{self, ShadeFormat};
 use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
 use super::raster::{self, Watched};
-use super::summary::{SurfaceFacts, tell_place};
+use super::summary::tell_place;
 use super::talk::Talk;
 use super::units::number;
 use super::{Exit, gather, inputs};
@@ -28,7 +28,7 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
     match gather::ground(&mut plan, talk)? {
         Ground::Surface(gathered) => {
             let surface = gathered.surface.as_ref();
-            let frame = raster::frame(&args.frame, SurfaceFacts::of(surface).extent, surface.crs(), talk)?;
+            let frame = raster::frame(&args.frame, gathered.made.extent(surface), surface.crs(), talk)?;
             shade(open::dem(surface, frame)?.as_ref(), args, &targets, talk)?;
             gathered.made.tell(surface, talk);
             talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));

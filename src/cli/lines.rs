@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::rings;
-use crate::data::{Bounds, Layer, Shape};
+use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
 
 /// A polygon in plan: its rings.
@@ -125,32 +125,6 @@ fn kind_of(layer: &Layer) -> &str {
     }
 }
 
-/// The runs of pieces of a line that have to do with a window: whole pieces, never cut.
-pub(super) fn near<'a>(line: &'a [[f64; 3]], window: &Bounds) -> Vec<&'a [[f64; 3]]> {
-    let touches = |piece: &[[f64; 3]]| {
-        (0..2).all(|axis| {
-            let (a, b) = (piece[0][axis], piece[1][axis]);
-            a.min(b) <= window.max[axis] && a.max(b) >= window.min[axis]
-        })
-    };
-    let mut runs = Vec::new();
-    let mut start = None;
-    for (i, piece) in line.windows(2).enumerate() {
-        match (touches(piece), start) {
-            (true, None) => start = Some(i),
-            (false, Some(from)) => {
-                runs.push(&line[from..=i]);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    if let Some(from) = start {
-        runs.push(&line[from..]);
-    }
-    runs
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -197,15 +171,5 @@ mod tests {
         let points = layer(vec![Shape::Points(vec![[0.0; 3]])]);
         assert!(breaklines(&points, Path::new("p")).is_err());
         assert!(polygons(&points, Path::new("p")).is_err());
-    }
-
-    #[test]
-    fn a_line_leaves_and_enters_a_window() {
-        let window = Bounds { min: [0.0, 0.0, 0.0], max: [10.0, 10.0, 0.0] };
-        let at = |x: f64, y: f64| [x, y, 0.0];
-        let line =
-            [at(5.0, 5.0), at(15.0, 5.0), at(15.0, 20.0), at(20.0, 20.0), at(12.0, 5.0), at(5.0, 6.0), at(4.0, 6.0)];
-        assert_eq!(near(&line, &window), [&line[0..2], &line[4..7]]);
-        assert_eq!(near(&line[2..4], &window), Vec::<&[[f64; 3]]>::new());
     }
 }

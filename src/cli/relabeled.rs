@@ -1,5 +1,5 @@
 use crate::crs::Crs;
-use crate::data::Surface;
+use crate::data::{EdgeKind, Surface};
 
 /// A surface under the coordinate system that the user says it has.
 pub(super) struct Relabeled<S> {
@@ -28,8 +28,12 @@ impl<S: Surface> Surface for Relabeled<S> {
         self.surface.neighbor(face, i)
     }
 
-    fn is_constrained(&self, face: u32, i: usize) -> bool {
-        self.surface.is_constrained(face, i)
+    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
+        self.surface.edge_kind(face, i)
+    }
+
+    fn is_piece(&self, face: u32) -> bool {
+        self.surface.is_piece(face)
     }
 
     fn crs(&self) -> Option<&Crs> {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::talk::Talk;
 use super::units::{neat, number, thousandths};
 use crate::crs::Crs;
-use crate::data::{Bounds, Surface};
+use crate::data::{self, Bounds, Surface};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// How a surface was made.
@@ -28,15 +28,24 @@ impl Made {
         if let Some(tin) = &self.tin {
             self.tell_tin(tin, talk);
         }
-        let facts = SurfaceFacts::of(surface);
-        if self.tin.is_none() {
-            if facts.constrained > 0 {
-                talk.line(format_args!("breaklines  {} edges, lines of a clip included", facts.constrained));
+        let (triangles, extent) = match &self.tin {
+            Some(tin) => (tin.triangles, tin.extent),
+            None => {
+                let facts = SurfaceFacts::of(surface);
+                if facts.constrained > 0 {
+                    talk.line(format_args!("breaklines  {} edges, lines of a clip included", facts.constrained));
+                }
+                talk.line(format_args!("vertices    {}", facts.vertices));
+                (facts.triangles, facts.extent)
             }
-            talk.line(format_args!("vertices    {}", facts.vertices));
-        }
-        talk.line(format_args!("triangles   {}{}", facts.triangles, self.left_out()));
-        tell_place(facts.extent, surface.crs(), talk);
+        };
+        talk.line(format_args!("triangles   {triangles}{}", self.left_out()));
+        tell_place(extent, surface.crs(), talk);
+    }
+
+    /// The box around the surface that was made.
+    pub(super) fn extent(&self, surface: &dyn Surface) -> Bounds {
+        self.tin.as_ref().map_or_else(|| SurfaceFacts::of(surface).extent, |tin| tin.extent)
     }
 
     fn tell_tin(&self, tin: &TinReport, talk: &Talk) {
@@ -139,19 +148,20 @@ impl SurfaceFacts {
     pub(super) fn of(surface: &dyn Surface) -> Self {
         let mut is_used = vec![false; surface.vertex_count()];
         let mut facts = SurfaceFacts { vertices: 0, triangles: 0, constrained: 0, extent: Bounds::default() };
-        for face in (0u32..).take(surface.face_count()) {
-            let Some(corners) = surface.face(face) else { continue };
+        data::faces(surface).for_each(|face| {
             facts.triangles += 1;
-            for (i, vertex) in corners.into_iter().enumerate() {
+            for i in (0..3).filter(|&i| face.edges[i].is_constrained()) {
+                // An edge inside is met from both sides.
+                facts.constrained +=
+                    usize::from(surface.neighbor(face.number, i).is_none_or(|other| face.number < other));
+            }
+            for vertex in face.corners {
                 if !std::mem::replace(&mut is_used[vertex as usize], true) {
                     facts.vertices += 1;
                     facts.extent.add(surface.position(vertex));
                 }
-                // An edge inside is met from both sides.
-                let is_ours = surface.neighbor(face, i).is_none_or(|other| face < other);
-                facts.constrained += usize::from(is_ours && surface.is_constrained(face, i));
             }
-        }
+        });
         facts
     }
 }

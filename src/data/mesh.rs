@@ -1,4 +1,4 @@
-use super::{LinkFlaw, Surface, Triangles};
+use super::{EdgeKind, LinkFlaw, Surface, Triangles};
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::kernel::{Adaptive, Exact, Kernel, Orientation2};
@@ -10,7 +10,10 @@ pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
     neighbors: Vec<[u32; 3]>,
-    constrained: Vec<[bool; 3]>,
+    /// Plain, breakline or clip; what is rim follows from the neighbors.
+    kinds: Vec<[EdgeKind; 3]>,
+    /// In ascending order.
+    pieces: Vec<u32>,
     crs: Option<Crs>,
 }
 
@@ -38,8 +41,15 @@ impl Surface for Mesh {
         Some(self.neighbors[face as usize][i]).filter(|&n| n != NONE)
     }
 
-    fn is_constrained(&self, face: u32, i: usize) -> bool {
-        self.constrained[face as usize][i]
+    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
+        match self.kinds[face as usize][i] {
+            EdgeKind::Plain if self.neighbors[face as usize][i] == NONE => EdgeKind::Rim,
+            kind => kind,
+        }
+    }
+
+    fn is_piece(&self, face: u32) -> bool {
+        self.pieces.binary_search(&face).is_ok()
     }
 
     fn crs(&self) -> Option<&Crs> {
@@ -62,10 +72,21 @@ impl Mesh {
     /// Linear, but for sorting the edges around each vertex; 24 bytes a face beside the result.
     pub fn new(
         vertices: Vec<[f64; 3]>,
-        mut faces: Vec<[u32; 3]>,
+        faces: Vec<[u32; 3]>,
         constrained_edges: &[[u32; 2]],
         crs: Option<Crs>,
     ) -> Result<Self> {
+        let constrained_edges = constrained_edges.to_vec();
+        Self::of(Triangles { vertices, faces, constrained_edges, crs, ..Triangles::default() })
+    }
+
+    /// Like [`new`](Self::new), but of all that a file can tell of a surface. Neighbors that it states are not
+    /// looked at.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new); a clip edge has to be an edge of a face, too.
+    pub fn of(triangles: Triangles) -> Result<Self> {
+        let Triangles { vertices, mut faces, constrained_edges, clip_edges, pieces, crs, .. } = triangles;
         check_numbers(&vertices, &faces)?;
         check_values(&vertices, &faces)?;
         turn_counter_clockwise(&vertices, &mut faces)?;
@@ -74,18 +95,11 @@ impl Mesh {
             (neighbors, flaws) if flaws.is_empty() => neighbors,
             (_, flaws) => return Err(folded(flaws[0])),
         };
-        let mut constrained = vec![[false; 3]; faces.len()];
-        for &edge in constrained_edges {
-            let found = edges.find(edge);
-            if found.is_empty() {
-                let [a, b] = edge;
-                return Err(Error::format(format!("the constrained edge {a} {b} is no edge of a face")));
-            }
-            for half in found {
-                constrained[half.face()][half.side()] = true;
-            }
+        let (kinds, strays) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
+        if let Some(flaw) = strays.first() {
+            return Err(Error::format(flaw.to_string()));
         }
-        Ok(Mesh { vertices, faces, neighbors, constrained, crs })
+        Ok(Mesh { vertices, faces, neighbors, kinds, pieces, crs })
     }
 
     /// Links triangles as far as they can be linked, for whoever wants to know what is wrong with them: a
@@ -97,23 +111,17 @@ impl Mesh {
     /// # Complexity
     /// That of [`new`](Self::new).
     pub fn link(triangles: Triangles) -> Result<(Self, Vec<LinkFlaw>)> {
-        let Triangles { vertices, mut faces, constrained_edges, neighbors: stated, crs } = triangles;
+        let Triangles { vertices, mut faces, constrained_edges, clip_edges, pieces, neighbors: stated, crs } =
+            triangles;
         check_numbers(&vertices, &faces)?;
         let is_turned = is_clockwise(&vertices, &faces);
         if is_turned {
             faces.iter_mut().for_each(|face| face.swap(1, 2));
         }
         let edges = EdgeTable::new(vertices.len(), &faces);
-        let (neighbors, folds) = edges.neighbors(&faces);
-        let mut flaws: Vec<LinkFlaw> = folds;
-        let mut constrained = vec![[false; 3]; faces.len()];
-        for &edge in &constrained_edges {
-            let halves = edges.find(edge);
-            if halves.is_empty() {
-                flaws.push(LinkFlaw::NoEdge(edge));
-            }
-            halves.iter().for_each(|half| constrained[half.face()][half.side()] = true);
-        }
+        let (neighbors, mut flaws) = edges.neighbors(&faces);
+        let (kinds, strays) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
+        flaws.extend(strays);
         for (face, mut stated) in (0u32..).zip(stated.into_iter().flatten()).take(faces.len()) {
             if is_turned {
                 stated.swap(1, 2);
@@ -125,7 +133,7 @@ impl Mesh {
                 }
             }
         }
-        Ok((Mesh { vertices, faces, neighbors, constrained, crs }, flaws))
+        Ok((Mesh { vertices, faces, neighbors, kinds, pieces, crs }, flaws))
     }
 }
 
@@ -151,14 +159,19 @@ fn check_numbers(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
 
 fn check_values(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
     if let Some(i) = vertices.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
-        let [x, y, z] = vertices[i];
-        return Err(Error::format(format!("vertex {i} is at {x} {y} {z}, expected finite coordinates")));
+        return Err(not_finite(i, vertices[i]));
     }
     if let Some(i) = faces.iter().position(|&[a, b, c]| a == b || b == c || c == a) {
         let [a, b, c] = faces[i];
         return Err(Error::format(format!("face {i} names one vertex twice: {a} {b} {c}")));
     }
     Ok(())
+}
+
+/// Says that a vertex is nowhere.
+#[cold]
+pub(crate) fn not_finite(vertex: usize, [x, y, z]: [f64; 3]) -> Error {
+    Error::format(format!("vertex {vertex} is at {x} {y} {z}, expected finite coordinates"))
 }
 
 /// Whether there are clockwise faces and no counter-clockwise ones.
@@ -272,6 +285,26 @@ impl EdgeTable {
             }
         }
         (neighbors, flaws)
+    }
+
+    /// The kinds of the sides of so many faces, and the edges that are the side of none.
+    fn kinds(
+        &self,
+        face_count: usize,
+        constrained_edges: &[[u32; 2]],
+        clip_edges: &[[u32; 2]],
+    ) -> (Vec<[EdgeKind; 3]>, Vec<LinkFlaw>) {
+        let mut kinds = vec![[EdgeKind::Plain; 3]; face_count];
+        let mut strays = Vec::new();
+        // Breaklines last: where both run along an edge, it is a breakline.
+        for (edges, kind) in [(clip_edges, EdgeKind::Clip), (constrained_edges, EdgeKind::Breakline)] {
+            for &edge in edges {
+                let halves = self.find(edge);
+                strays.extend(halves.is_empty().then_some(LinkFlaw::NoEdge(edge)));
+                halves.iter().for_each(|half| kinds[half.face()][half.side()] = kind);
+            }
+        }
+        (kinds, strays)
     }
 
     fn find(&self, [a, b]: [u32; 2]) -> &[HalfEdge] {

@@ -9,6 +9,10 @@ pub struct Triangles {
     pub faces: Vec<[u32; 3]>,
     /// Edges that are breaklines or other constraints.
     pub constrained_edges: Vec<[u32; 2]>,
+    /// Edges along which the surface was cut.
+    pub clip_edges: Vec<[u32; 2]>,
+    /// Positions of the faces that are pieces of triangles that were cut, in ascending order.
+    pub pieces: Vec<u32>,
     /// The face opposite each corner, where the file says so.
     pub neighbors: Option<Vec<[Option<u32>; 3]>>,
     /// Coordinate system, if known.

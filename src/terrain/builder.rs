@@ -8,7 +8,8 @@ use crate::triangulation::{ConstrainedDelaunay, LineId, LineVertices, OnCrossing
 
 use super::clip::Clip;
 use super::crossings::{Pass, refuse, settle_heights};
-use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin};
+use super::window::uncertain;
+use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin, Window};
 
 /// Collects points and lines and makes a [`Tin`] of them.
 ///
@@ -27,7 +28,7 @@ use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin};
 /// assert_eq!(tin.elevation(4.0, 5.0), Some(0.0));
 /// # Ok::<(), breakline::Error>(())
 /// ```
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct TinBuilder {
     /// Which height stands where several points share one place.
     pub duplicates: DuplicateRule,
@@ -42,6 +43,9 @@ pub struct TinBuilder {
     pub max_edge: Option<f64>,
     /// Clips the surface to this box in plan.
     pub bounds: Option<Bounds>,
+    /// What was read, if the points that are added are some of many, read for the sake of `bounds`:
+    /// [`TinReport::uncertain`] says then whether these are enough.
+    pub window: Option<Window>,
     /// Coordinate system of everything that is added.
     pub crs: Option<Crs>,
     points: Vec<[f64; 3]>,
@@ -71,16 +75,23 @@ pub struct TinReport {
     pub crossings: usize,
     /// How these were rounded; `None` if no breaklines cross.
     pub rounding: Option<Rounding>,
-    /// Where breaklines meet with heights that differ by more than the tolerance, from west to east.
+    /// Where breaklines meet with heights that differ by more than the tolerance, from west to east; within the bounds.
     pub crossing_heights: Vec<CrossingHeights>,
     /// Vertices of the surface.
     pub vertices: usize,
     /// Triangles of the surface.
     pub triangles: usize,
+    /// The box around the surface.
+    pub extent: Bounds,
     /// Triangles left out by `max_edge`.
     pub faces_beyond_max_edge: usize,
+    /// Triangles within the bounds that may be others once all points are read; see [`TinBuilder::window`]. If there
+    /// are none, the surface is that of all points, in every triangle and every height.
+    pub uncertain: usize,
     /// Triangles left out by the boundary or the bounds.
     pub faces_clipped: usize,
+    /// Triangles that the boundary or the bounds cut: what is left of them is part of the surface in pieces.
+    pub faces_cut: usize,
 }
 
 /// Zero has one sign only: places are compared bit by bit when sorted, and of two zeros neither is the lower.
@@ -122,8 +133,8 @@ impl TinBuilder {
     }
 
     /// Clips the surface to a polygon, given as its rings (by the even-odd rule: a ring within a ring is
-    /// a hole). Heights along the rings are taken from the surface, and they and the rim of the surface become
-    /// constraints. May be called several times: what is inside of any polygon stays.
+    /// a hole). The finished surface is cut along them, and no height changes. May be called several times: what is
+    /// inside of any polygon stays.
     pub fn add_boundary(&mut self, rings: &[Vec<[f64; 2]>]) {
         self.boundaries.push(rings.to_vec());
     }
@@ -179,20 +190,27 @@ impl TinBuilder {
         report.rounding = triangulation.rounding();
         report.crossing_heights =
             settle_heights(&mut triangulation, disputed, self.crossing_heights, self.crossing_tolerance);
+        if let Some(bounds) = &self.bounds {
+            report.crossing_heights.retain(|crossing| bounds.holds(crossing.place[0], crossing.place[1]));
+        }
         if self.crossing_heights == CrossingRule::Refuse {
             refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
         }
-        report.constrained_edges = triangulation.constrained_edges().count();
+        // Without lines there are none, however many edges there are to look at.
+        report.constrained_edges = if report.breaklines == 0 { 0 } else { triangulation.constrained_edges().count() };
 
         let mut tin = Tin::new(triangulation, self.crs.take());
         if let Some(limit) = self.max_edge {
             report.faces_beyond_max_edge = tin.peel(limit);
         }
-        let clip = Clip { polygons: self.boundaries, bounds: self.bounds };
+        let clip = Clip { polygons: std::mem::take(&mut self.boundaries), bounds: self.bounds };
         if !clip.is_everything() {
-            report.faces_clipped = clip.apply(&mut tin)?;
+            (report.faces_clipped, report.faces_cut) = clip.apply(&mut tin)?;
         }
-        (report.vertices, report.triangles) = tin.count();
+        if let (Some(bounds), Some(window)) = (&self.bounds, &self.window) {
+            report.uncertain = uncertain(&tin.triangulation, bounds, window, self.max_edge, tin.replaced());
+        }
+        (report.vertices, report.triangles, report.extent) = tin.count();
         tin.report = report;
         Ok(tin)
     }
@@ -210,6 +228,12 @@ impl TinBuilder {
         let mut disputed = Vec::new();
         let mut heights = Vec::new();
         for group in order.chunk_by(|&i, &j| place(i) == place(j)) {
+            if let &[only] = group
+                && (only as usize) < lines_from
+            {
+                vertices.push(all[only as usize]); // nothing to choose: nearly all
+                continue;
+            }
             // Equal places are in the order of the input: points first, then lines.
             let first_of_lines = group.partition_point(|&i| (i as usize) < lines_from);
             let (points, lines) = group.split_at(first_of_lines);
@@ -276,24 +300,10 @@ pub(super) fn refused(p: [f64; 3]) -> Error {
     Error::format(format!("{p:?} is not a finite point"))
 }
 
-/// Each pair of consecutive vertices once, the smaller number first, in order.
-pub(super) fn sorted_segments(vertices: &[VertexId], line_ends: &[usize]) -> Vec<[VertexId; 2]> {
-    let mut segments = Vec::with_capacity(vertices.len());
-    let mut start = 0;
-    for &end in line_ends {
-        let pairs = vertices[start..end].windows(2).filter(|pair| pair[0] != pair[1]);
-        segments.extend(pairs.map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]));
-        start = end;
-    }
-    segments.sort_unstable();
-    segments.dedup();
-    segments
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Surface;
+    use crate::data::{self, Surface};
 
     fn square() -> TinBuilder {
         let mut builder = TinBuilder::default();
@@ -338,5 +348,34 @@ mod tests {
                 scope.spawn(|| assert_eq!((tin.elevation(0.0, 8.0), tin.face_count()), (Some(3.0), tin.face_count())));
             }
         });
+    }
+
+    /// In batches as one by one, also where numbers are unused and the last batch is not full.
+    #[test]
+    fn many_faces_are_those_that_one_asks_for() {
+        let mut builder = TinBuilder { max_edge: Some(1.5), ..TinBuilder::default() };
+        let places: Vec<[f64; 2]> = (0..2500).map(|k| [f64::from(k % 50), f64::from(k / 50)]).collect();
+        let [x, y] = [0, 1].map(|axis| places.iter().map(|p| p[axis]).collect::<Vec<_>>());
+        builder.add_points(&x, &y, &x);
+        builder.add_points(&[90.0], &[20.0], &[0.0]);
+        builder.add_breakline(&[[3.0, 3.0, 1.0], [40.0, 3.0, 2.0]]);
+        let tin = builder.build().unwrap();
+        let surface: &dyn Surface = &tin;
+        let numbers: Vec<u32> = (0..surface.face_count() as u32).filter(|&face| surface.face(face).is_some()).collect();
+        assert!(numbers.len() > 4000 && numbers.len() < surface.face_count());
+        assert!(data::corners(surface).eq(numbers.iter().map(|&face| surface.face(face).unwrap())));
+        assert!(data::faces(surface).map(|face| face.number).eq(numbers.iter().copied()));
+        let mut sides = 0;
+        for face in data::faces(surface) {
+            assert_eq!(Some(face.corners), surface.face(face.number));
+            let places = face.corners.map(|v| surface.position(v));
+            assert_eq!(surface.triangle(face.number), Some(places));
+            for i in 0..3 {
+                assert_eq!(face.edges[i], surface.edge_kind(face.number, i));
+                assert_eq!(face.edges[i].is_constrained(), surface.is_constrained(face.number, i));
+                sides += usize::from(face.edges[i].is_constrained());
+            }
+        }
+        assert!(sides > 60 && sides == 2 * tin.report().constrained_edges);
     }
 }

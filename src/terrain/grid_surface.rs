@@ -1,5 +1,5 @@
 use crate::crs::Crs;
-use crate::data::{Grid, Surface};
+use crate::data::{EdgeKind, Grid, Surface};
 use crate::error::{Error, Result};
 
 /// The surface over the centers of a raster's cells, for contours of a DEM.
@@ -178,8 +178,8 @@ impl Surface for GridSurface<'_> {
         }
     }
 
-    fn is_constrained(&self, _face: u32, _i: usize) -> bool {
-        false
+    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
+        if self.neighbor(face, i).is_some() { EdgeKind::Plain } else { EdgeKind::Rim }
     }
 
     fn crs(&self) -> Option<&Crs> {

@@ -18,7 +18,7 @@ pub enum Classes {
 }
 
 /// What a [`Selection`] saw and kept. Does not depend on the order of the points.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SelectionReport {
     /// Points seen.
     pub read: u64,
@@ -36,6 +36,8 @@ pub struct SelectionReport {
     pub without_class: u64,
     /// The classes that are used; `None` where all are.
     pub classes: Option<Vec<u8>>,
+    /// The box around all points that are not withheld, those outside of the window included; empty without a window.
+    pub extent: Bounds,
 }
 
 /// Chooses the points that a surface is made of, and keeps nothing but their coordinates.
@@ -58,6 +60,7 @@ pub struct Selection {
     /// One for every class.
     by_class: [Tally; 256],
     without_class: Tally,
+    extent: Bounds,
 }
 
 /// Points of one class, by place.
@@ -103,6 +106,7 @@ impl Selection {
             withheld: 0,
             by_class: [Tally::default(); 256],
             without_class: Tally::default(),
+            extent: Bounds::default(),
         }
     }
 
@@ -159,9 +163,12 @@ impl Selection {
             Some(class) => &mut self.by_class[usize::from(class)],
             None => &mut self.without_class,
         };
-        if self.window.is_some_and(|window| !window.holds(point[0], point[1])) {
-            tally.outside += 1;
-            return;
+        if let Some(window) = self.window {
+            self.extent.add(point);
+            if !window.holds(point[0], point[1]) {
+                tally.outside += 1;
+                return;
+            }
         }
         tally.inside += 1;
         let fate = self.fate(class);
@@ -222,6 +229,7 @@ impl Selection {
             without_class: self.without_class.all(),
             used: self.without_class.inside,
             outside: self.without_class.outside,
+            extent: self.extent,
             classes: match &self.classes {
                 Classes::Only(classes) => Some(classes.clone()),
                 Classes::GroundOrAll if self.has_ground => Some(vec![GROUND]),

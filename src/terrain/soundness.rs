@@ -33,8 +33,8 @@ impl std::fmt::Display for SurfaceFlaw {
 }
 
 /// Checks any surface as far as faces and neighbors tell: finite vertices, mutual links, fans around the
-/// vertices, orientation, and the constrained Delaunay law across each inner unconstrained edge. Ties
-/// count as Delaunay. Returns all flaws of the first kind that has any, as each check relies on those before.
+/// vertices, orientation, and the constrained Delaunay law across each inner unconstrained edge between whole
+/// triangles, which is not asked of pieces of cut ones. Ties count as Delaunay. Returns all flaws of the first kind that has any, as each check relies on those before.
 ///
 /// # Complexity
 /// Linear.
@@ -130,6 +130,9 @@ fn bad_circles(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
         let points = corners.map(|v| surface.position(v));
         for i in (0..3).filter(|&i| !surface.is_constrained(face, i)) {
             let Some((beside, j)) = mirror(surface, face, corners, i) else { continue };
+            if surface.is_piece(face) || surface.is_piece(beside) {
+                continue;
+            }
             let Some(theirs) = surface.face(beside) else { continue };
             let far = surface.position(theirs[j]);
             if face < beside && geometry.side_of_sphere(points.each_ref(), &far) == Sign::Positive {

@@ -1,19 +1,22 @@
 use crate::crs::Crs;
-use crate::data::Surface;
-use crate::geometry::{Geometry, Terrain, height_along};
+use crate::data::{Bounds, EdgeKind, Surface};
+use crate::geometry::{Terrain, height_along};
 use crate::kernel::RANGE;
 use crate::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
 use super::TinReport;
+use super::cut::Cut;
 
 /// A surface of triangles over points and breaklines: a constrained Delaunay triangulation in plan, and
 /// which of its triangles are part of the surface.
 #[derive(Debug)]
 pub struct Tin {
     pub(super) triangulation: ConstrainedDelaunay<Terrain>,
-    /// For each cell number, whether it is part of the surface.
+    /// For each cell number, whether it is part of the surface as a whole.
     pub(super) inside: Vec<bool>,
+    /// Pieces of triangles that are part of the surface, if it was cut.
+    pub(super) cut: Option<Cut>,
     pub(super) report: TinReport,
     crs: Option<Crs>,
 }
@@ -21,7 +24,7 @@ pub struct Tin {
 impl Tin {
     /// With all finite faces.
     pub(super) fn new(triangulation: ConstrainedDelaunay<Terrain>, crs: Option<Crs>) -> Self {
-        let mut tin = Tin { triangulation, inside: Vec::new(), report: TinReport::default(), crs };
+        let mut tin = Tin { triangulation, inside: Vec::new(), cut: None, report: TinReport::default(), crs };
         tin.include_all();
         tin
     }
@@ -38,29 +41,28 @@ impl Tin {
         &self.report
     }
 
-    /// The triangulation beneath, which goes on to the convex hull.
+    /// The triangulation beneath, which goes on to the convex hull, and knows of no cut by a boundary or bounds.
     pub fn triangulation(&self) -> &ConstrainedDelaunay<Terrain> {
         &self.triangulation
     }
 
     /// Checks the triangulation up to the level, with exact predicates; no flaw means that it is a
-    /// constrained Delaunay triangulation.
+    /// constrained Delaunay triangulation. The pieces of triangles that were cut are no part of it:
+    /// [`surface_flaws`](super::surface_flaws) checks them.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         self.triangulation.check(level)
     }
 
-    /// The height at a place in plan, linear on the triangle there; `None` outside of the surface.
+    /// The height at a place in plan, linear on the triangle there; `None` outside of the surface, and where a coordinate is
+    /// not finite.
     ///
     /// # Complexity
     /// A walk through about as many triangles as lie in a row across the surface.
     pub fn elevation(&self, x: f64, y: f64) -> Option<f64> {
         // Closer to zero than the arithmetic goes is zero; what is beyond its other end is beyond all vertices.
         let [x, y] = [x, y].map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
-        if !self.triangulation.geometry().admits(&[x, y, 0.0]) {
-            return None;
-        }
-        match self.triangulation.locate(&[x, y, 0.0], None) {
+        let in_whole = match self.triangulation.locate(&[x, y, 0.0], None) {
             Location::Vertex(vertex) => {
                 let inside = self.triangulation.tds().around(vertex).any(|cell| self.inside[cell.index()]);
                 inside.then(|| self.triangulation.point(vertex)[2])
@@ -68,12 +70,13 @@ impl Tin {
             Location::Cell { cell, touching } => {
                 let beside = (0..3).filter(|i| touching >> i & 1 == 1);
                 let beside = beside.map(|i| self.triangulation.tds().neighbor(cell, i));
-                let cell = std::iter::once(cell).chain(beside).find(|cell| self.inside[cell.index()])?;
-                let corners = self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
-                Some(linear(corners, [x, y]))
+                let cell = std::iter::once(cell).chain(beside).find(|cell| self.inside[cell.index()]);
+                let corners = |cell| self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
+                cell.map(|cell| linear(corners(cell), [x, y]))
             }
-            Location::OutsideHull { .. } | Location::OutsideAffineHull => None,
-        }
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,
+        };
+        in_whole.or_else(|| self.cut.as_ref()?.elevation([x, y]))
     }
 
     /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges longer
@@ -81,11 +84,8 @@ impl Tin {
     pub(super) fn peel(&mut self, limit: f64) -> usize {
         let tds = self.triangulation.tds();
         let mut peeled = 0;
-        let at_hull = |cell: CellId| {
-            let infinite = tds.index_of(cell, VertexId::INFINITE)?;
-            Some((tds.neighbor(cell, infinite), cell))
-        };
-        let mut exposed: Vec<(CellId, CellId)> = tds.cells().filter_map(at_hull).collect();
+        let at_hull = tds.corners_around(VertexId::INFINITE).map(|(cell, i)| (tds.neighbor(cell, i), cell));
+        let mut exposed: Vec<(CellId, CellId)> = at_hull.collect();
         while let Some((cell, from)) = exposed.pop() {
             let i = tds.index_of_neighbor(cell, from);
             let ends = [ccw(i), cw(i)].map(|k| self.triangulation.point(tds.vertex(cell, k)));
@@ -102,16 +102,25 @@ impl Tin {
         peeled
     }
 
-    /// Vertices and faces of the surface.
-    pub(super) fn count(&self) -> (usize, usize) {
-        let tds = self.triangulation.tds();
-        let mut used = vec![false; tds.vertex_slots()];
+    /// The triangles that a cut looked at.
+    pub(super) fn replaced(&self) -> &[CellId] {
+        self.cut.as_ref().map(Cut::replaced).unwrap_or_default()
+    }
+
+    /// Vertices and faces of the surface, and the box around it.
+    pub(super) fn count(&self) -> (usize, usize, Bounds) {
+        let mut used = vec![false; self.vertex_count()];
         let mut faces = 0;
-        for index in (0..self.inside.len()).filter(|&i| self.inside[i]) {
+        for corners in (0..self.face_count() as u32).filter_map(|face| self.face(face)) {
             faces += 1;
-            tds.corners(CellId::new(index)).iter().for_each(|v| used[v.index()] = true);
+            corners.iter().for_each(|&v| used[v as usize] = true);
         }
-        (used.into_iter().filter(|&u| u).count(), faces)
+        let (mut vertices, mut extent) = (0, Bounds::default());
+        for (vertex, _) in (0u32..).zip(used).filter(|&(_, is_used)| is_used) {
+            vertices += 1;
+            extent.add(self.position(vertex));
+        }
+        (vertices, faces, extent)
     }
 }
 
@@ -148,29 +157,56 @@ fn square(p: [f64; 3], q: [f64; 3]) -> f64 {
 
 impl Surface for Tin {
     fn vertex_count(&self) -> usize {
-        self.triangulation.tds().vertex_slots()
+        self.cut.as_ref().map_or(self.triangulation.tds().vertex_slots(), Cut::vertex_count)
     }
 
     fn position(&self, vertex: u32) -> [f64; 3] {
-        self.triangulation.points()[vertex as usize]
+        match (self.triangulation.points().get(vertex as usize), &self.cut) {
+            (None, Some(cut)) => cut.position(vertex),
+            _ => self.triangulation.points()[vertex as usize],
+        }
     }
 
     fn face_count(&self) -> usize {
-        self.inside.len()
+        self.cut.as_ref().map_or(self.inside.len(), Cut::face_count)
     }
 
     fn face(&self, face: u32) -> Option<[u32; 3]> {
-        let inside = *self.inside.get(face as usize)?;
-        inside.then(|| self.triangulation.tds().corners(CellId::new(face as usize)).map(|v| v.index() as u32))
+        match self.inside.get(face as usize) {
+            Some(inside) => {
+                inside.then(|| self.triangulation.tds().corners(CellId::new(face as usize)).map(|v| v.index() as u32))
+            }
+            None => self.cut.as_ref()?.face(face),
+        }
     }
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
-        let beside = self.triangulation.tds().neighbor(CellId::new(face as usize), i);
-        self.inside[beside.index()].then_some(beside.index() as u32)
+        if (face as usize) < self.inside.len() {
+            let beside = self.triangulation.tds().neighbor(CellId::new(face as usize), i);
+            if self.inside[beside.index()] {
+                return Some(beside.index() as u32);
+            }
+        }
+        self.cut.as_ref()?.neighbor(face, i)
     }
 
-    fn is_constrained(&self, face: u32, i: usize) -> bool {
-        self.triangulation.is_constrained(CellId::new(face as usize), i)
+    #[inline]
+    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
+        if let Some(kind) = self.cut.as_ref().and_then(|cut| cut.edge_kind(face, i)) {
+            return kind;
+        }
+        if self.triangulation.is_constrained(CellId::new(face as usize), i) {
+            return EdgeKind::Breakline;
+        }
+        match self.neighbor(face, i) {
+            Some(_) => EdgeKind::Plain,
+            None if self.cut.as_ref().is_some_and(|cut| cut.is_clipped(face, i)) => EdgeKind::Clip,
+            None => EdgeKind::Rim,
+        }
+    }
+
+    fn is_piece(&self, face: u32) -> bool {
+        face as usize >= self.inside.len()
     }
 
     fn crs(&self) -> Option<&Crs> {

@@ -174,12 +174,6 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         vertex
     }
 
-    /// Adds a point as part of no input: it splits the constraint that it lies on, and lines stay as they are.
-    pub(crate) fn insert_apart(&mut self, p: G::Point) -> Result<VertexId, Refused> {
-        self.inner.admit(&p)?;
-        Ok(self.insert_near(p, None))
-    }
-
     /// Forces the edge between two vertices, with all that it meets on its way. Where it crosses a constraint, a vertex
     /// is added at once.
     ///

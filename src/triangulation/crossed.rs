@@ -9,13 +9,14 @@ use super::{Location, Triangulation};
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// The finite edges that the open segment from `a` to `b` crosses between their ends, each once, from no
     /// end in particular. The two need not be vertices, nor lie in the hull. Edges that the segment runs
-    /// along or touches with an end are not crossed.
+    /// along or touches with an end are not crossed. None if the geometry does not [admit](Geometry::admits) both.
     ///
     /// # Complexity
     /// Linear in the number of triangles met, after location; in the size of the hull where `a` is outside.
     pub fn edges_crossed(&self, a: &G::Point, b: &G::Point) -> Vec<[VertexId; 2]> {
         let mut crossed = Vec::new();
-        if self.dimension() < 2 || self.geometry.compare(a, b).is_eq() {
+        let is_segment = [a, b].into_iter().all(|p| self.geometry.admits(p)) && self.geometry.compare(a, b).is_ne();
+        if self.dimension() < 2 || !is_segment {
             return crossed;
         }
         let mut open = self.cells_at(a);
@@ -52,7 +53,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 let beside = (0..3).filter(|i| touching >> i & 1 == 1).map(|i| self.tds.neighbor(cell, i));
                 std::iter::once(cell).chain(beside).collect()
             }
-            Location::OutsideHull { .. } | Location::OutsideAffineHull => self.tds.around(VertexId::INFINITE).collect(),
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => {
+                self.tds.around(VertexId::INFINITE).collect()
+            }
         }
     }
 

@@ -80,7 +80,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         takes: impl Fn(&Self, CellId, usize, CellId) -> bool,
     ) -> Option<Zone> {
         let (cell, touching) = match location {
-            Location::OutsideAffineHull => return None,
+            Location::OutsideAffineHull | Location::Nowhere => return None,
             Location::Vertex(vertex) => (self.tds.cell_of(vertex)?, 0),
             Location::Cell { cell, touching } => (cell, touching),
             Location::OutsideHull { cell } => (cell, 0),

@@ -257,14 +257,16 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     }
 
     /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it
-    /// is one edge.
+    /// is one edge, and if one of the two does not exist.
     ///
     /// # Complexity
     /// Linear in the length of the result.
     pub fn way(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
         let mut chain = Vec::new();
-        self.walk(a, b, &mut chain);
-        chain.pop();
+        if [a, b].into_iter().all(|v| self.tds().is_vertex(v)) {
+            self.walk(a, b, &mut chain);
+            chain.pop();
+        }
         chain
     }
 

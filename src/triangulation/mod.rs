@@ -217,7 +217,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.tds.vertex_count()
     }
 
-    /// The point of a finite vertex.
+    /// The point of a finite vertex. Of one that was removed it is still there, see [`points`](Self::points).
+    ///
+    /// # Panics
+    /// If there never was such a vertex, like an index; of the infinite one, too.
     #[inline(always)]
     pub fn point(&self, vertex: VertexId) -> &G::Point {
         &self.points[vertex.index()]

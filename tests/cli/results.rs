@@ -329,6 +329,14 @@ fn the_demo_runs_every_verb_and_prints_each_command() {
     assert!(run.stdout.contains("boundary.shp\n") && !run.stdout.contains(".dbf"), "{}", run.stdout);
 }
 
+/// Where `demo` writes if nothing else is said is no file of the repository.
+#[test]
+fn a_clone_stays_clean_after_the_demo() {
+    let help = run_in(&folder_with(&[]), &["demo", "--help"]);
+    assert!(help.stdout.contains("[default: breakline-demo]"), "{}", help.stdout);
+    assert!(include_str!("../../.gitignore").lines().any(|line| line == "/breakline-demo"));
+}
+
 #[test]
 fn the_tasks_of_the_readme_run_on_what_the_demo_leaves() {
     let folder = folder_with(&[]);

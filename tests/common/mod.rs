@@ -10,12 +10,13 @@ pub(crate) mod subject;
 
 use std::path::{Path, PathBuf};
 
-/// A file of the shared data folder, beside the repository; `None`, said plainly, when it is absent.
-pub(crate) fn shared(path: &str) -> Option<PathBuf> {
+/// A file of the shared data folder, beside the repository.
+///
+/// Tests that ask for one are marked, so that they are counted as ignored where the folder is absent (`build.rs` looks):
+/// `#[cfg_attr(not(has_shared), ignore = "needs ../shared")]`.
+#[track_caller]
+pub(crate) fn shared(path: &str) -> PathBuf {
     let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
-    if full.exists() {
-        return Some(full);
-    }
-    eprintln!("skipped: {path} is not here (the shared data folder is absent)");
-    None
+    assert!(full.exists(), "../shared/data has no {path}; tests that need it are to be marked, see `shared`");
+    full
 }

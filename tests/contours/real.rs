@@ -9,10 +9,10 @@ use std::collections::{HashMap, HashSet};
 
 type Piece = [[f64; 2]; 2];
 
-fn tin(points: &[&str], breaklines: Option<&str>) -> Option<Tin> {
+fn tin(points: &[&str], breaklines: Option<&str>) -> Tin {
     let mut builder = TinBuilder::default();
     for path in points {
-        let mut source = breakline::io::points::open(&shared(path)?).unwrap();
+        let mut source = breakline::io::points::open(shared(path)).unwrap();
         let mut batch = PointBatch::default();
         while source.read(&mut batch).map(|()| !batch.is_empty()).unwrap() {
             let is_used = |i: &usize| batch.class.is_empty() || batch.class[*i] == 2;
@@ -22,14 +22,14 @@ fn tin(points: &[&str], breaklines: Option<&str>) -> Option<Tin> {
         }
     }
     if let Some(path) = breaklines {
-        let layer = breakline::io::layer::read(shared(path)?.to_str().unwrap()).unwrap();
+        let layer = breakline::io::layer::read(shared(path).to_str().unwrap()).unwrap();
         for shape in layer.shapes {
             if let Shape::Lines(parts) | Shape::Polygon(parts) = shape {
                 parts.iter().for_each(|part| builder.add_breakline(part));
             }
         }
     }
-    Some(builder.build().unwrap())
+    builder.build().unwrap()
 }
 
 fn check(tin: &Tin, interval: f64) {
@@ -93,24 +93,25 @@ fn crossing(pieces: &[Piece]) -> Option<[Piece; 2]> {
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn mass_points_and_breaklines() {
-    let Some(tin) = tin(&["shp/shapelib_eg/masspntz.shp"], Some("shp/shapelib_eg/brklinz.shp")) else { return };
+    let tin = tin(&["shp/shapelib_eg/masspntz.shp"], Some("shp/shapelib_eg/brklinz.shp"));
     check(&tin, 1.0);
     check(&tin, 5.0);
 }
 
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_lake_with_its_shore() {
-    let Some(tin) = tin(&["lidar/lake_breakline/lake.laz"], Some("lidar/lake_breakline/lake_breakline.shp")) else {
-        return;
-    };
+    let tin = tin(&["lidar/lake_breakline/lake.laz"], Some("lidar/lake_breakline/lake_breakline.shp"));
     check(&tin, 0.5);
 }
 
 /// Heights in whole centimetres, every one of them on a level.
 #[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn levels_through_all_vertices() {
-    let Some(tin) = tin(&["lidar/bcts/bcts_1.laz"], None) else { return };
+    let tin = tin(&["lidar/bcts/bcts_1.laz"], None);
     check(&tin, 1.0);
     check(&tin, 0.01);
 }

@@ -1,7 +1,7 @@
 //! Small surfaces with whole-numbered places and heights, where levels hit vertices all the time.
 
 use breakline::crs::Crs;
-use breakline::data::Surface;
+use breakline::data::{EdgeKind, Surface};
 use proptest::prelude::*;
 use std::collections::HashMap;
 
@@ -73,8 +73,8 @@ impl Surface for Faces {
         self.neighbors.get(&[corners[(i + 2) % 3], corners[(i + 1) % 3]]).copied()
     }
 
-    fn is_constrained(&self, _face: u32, _i: usize) -> bool {
-        false
+    fn edge_kind(&self, _face: u32, _i: usize) -> EdgeKind {
+        EdgeKind::Plain
     }
 
     fn crs(&self) -> Option<&Crs> {

@@ -54,6 +54,7 @@ fn place<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Locat
             Place::Outside
         }
         Location::OutsideAffineHull => Place::OffTheFlat,
+        Location::Nowhere => panic!("{q:?} is a place"),
     }
 }
 

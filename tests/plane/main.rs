@@ -15,6 +15,7 @@ mod kinds;
 mod location;
 mod mapped;
 mod natural;
+mod nowhere;
 mod payloads;
 mod polygon;
 mod power;

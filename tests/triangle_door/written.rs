@@ -435,3 +435,26 @@ fn switches_of_triangle_refine() {
         assert_eq!(run(&folder, &format!("triangulate {wrong} box.poly -o wrong.ele")).code, 2, "{wrong}");
     }
 }
+
+/// An angle that cannot be reached: an error that tells how far it came, or what is there at the limit that was given.
+#[test]
+fn refinement_without_an_end_stops_at_its_limit() {
+    let points = "8 2 0 0\n1 0 0\n2 10 0\n3 10 10\n4 0 10\n5 3 4\n6 7 2\n7 8 7\n8 2 8\n";
+    let folder = folder_with(&[("eight.node", points)]);
+    let unbounded = run(&folder, "triangulate -q45 eight.node -o e.1.ele");
+    unbounded
+        .fails(1, &["eight.node: 1000000 vertices were added, and ", " are still not as asked for", "--max-added"]);
+    assert_eq!(files_of(folder.path()), ["eight.node"]);
+    for switches in ["-q45S500", "-q45 --max-added 500"] {
+        let bounded = run(&folder, &format!("triangulate {switches} eight.node -o e.1.ele --overwrite"));
+        bounded.works(&["triangles are not as asked for: left when 500 vertices had been added (--max-added)"]);
+        assert_eq!(table(&folder, "e.1.node").len(), 1 + 508);
+        assert_eq!(run(&folder, "check e.1.ele").code, 0);
+    }
+    // A limit that is not reached says nothing; none at all is a triangulation without added vertices.
+    run(&folder, "triangulate -q30S500 eight.node -o f.ele").works(&["for angles and areas"]);
+    assert!(!run(&folder, "triangulate -q30S500 eight.node -o g.ele").stderr.contains("warning"));
+    run(&folder, "triangulate -q30S eight.node -o h.ele").works(&["left when 0 vertices had been added"]);
+    assert_eq!(table(&folder, "h.node").len(), 1 + 8);
+    assert_eq!(run(&folder, "triangulate -q30S1.5 eight.node -o i.ele").code, 2);
+}

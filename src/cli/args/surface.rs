@@ -28,16 +28,17 @@ pub(in crate::cli) struct SurfaceArgs {
 
     /// Polygons that the surface is clipped to (repeatable)
     ///
-    /// What is inside of any polygon stays. Heights on the boundary are those of the surface. Lines are
-    /// taken for one polygon if they close to rings, end to end, and otherwise refused with the gap.
+    /// What is inside of any polygon stays, at the height that it has without the boundary: the finished surface is
+    /// cut. Lines are taken for one polygon if they close to rings, end to end, and otherwise refused with the gap.
     #[arg(long, value_name = "FILE", help_heading = "Surface")]
     pub(in crate::cli) boundary: Vec<PathBuf>,
 
     /// Clip to a rectangle
     ///
-    /// Points in a buffer around it (as wide as the longest edge allowed, or 100 metres) are used
-    /// too, so that triangles near the cut are those of the whole data; then it is clipped. In the units of
-    /// the coordinate system of the result; with commas or blanks between the values.
+    /// Points around it are used, too: first in a buffer as wide as the longest edge allowed (or 100 metres), then
+    /// further out, until every triangle within is proven to be that of the whole data; then the surface is cut. The
+    /// summary says how far that was. In the units of the coordinate system of the result; with commas or blanks
+    /// between the values.
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Surface")]
     pub(in crate::cli) bounds: Option<Corners>,
 

@@ -2,8 +2,8 @@
 
 use std::ffi::OsString;
 
-/// Writes the words for `triangulate` that are made of Triangle's switches `p`, `q`, `a` and `c` only, like
-/// `-pq30a0.5`, as the options that they mean. `-p` says nothing that the name of the file does not.
+/// Writes the words for `triangulate` that are made of Triangle's switches `p`, `q`, `a`, `c` and `S` only, like
+/// `-pq30a0.5S9000`, as the options that they mean. `-p` says nothing that the name of the file does not.
 pub(in crate::cli) fn expand_switches(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut is_verb = false;
     let mut is_over = false;
@@ -33,6 +33,8 @@ fn options_of(word: &str) -> Option<Vec<String>> {
             ('c', "") => options.push("--convex".to_owned()),
             ('q', "") => options.push("--min-angle=20".to_owned()),
             ('a', "") => options.push("--region-areas".to_owned()),
+            ('S', "") => options.push("--max-added=0".to_owned()),
+            ('S', number) => options.push(format!("--max-added={number}")),
             ('q', number) => options.push(format!("--min-angle={number}")),
             ('a', number) => options.push(format!("--max-area={number}")),
             _ => return None,
@@ -56,6 +58,8 @@ mod tests {
             ("b triangulate -pq30a0.5 x.poly", "b triangulate --min-angle=30 --max-area=0.5 x.poly"),
             ("b triangulate -q x.poly -c -a", "b triangulate --min-angle=20 x.poly --convex --region-areas"),
             ("b triangulate -p x.poly -o a.ele", "b triangulate x.poly -o a.ele"),
+            ("b triangulate -pq30S500 x.poly -S", "b triangulate --min-angle=30 --max-added=500 x.poly --max-added=0"),
+            ("b triangulate -s9 x.poly", "b triangulate -s9 x.poly"),
             ("b triangulate -v -qv -z --convex -q1.", "b triangulate -v -qv -z --convex --min-angle=1."),
             ("b triangulate - -- -q", "b triangulate - -- -q"),
             ("b tin -q x.las", "b tin -q x.las"),

@@ -114,8 +114,8 @@ pub(in crate::cli) struct TriangulateArgs {
     /// Add vertices until no angle is smaller (also `-q[DEGREES]`: 20)
     ///
     /// Up to 20.7 degrees are always reached, up to about 33 nearly always; not where segments meet at
-    /// small angles. Triangles that fall short are counted. `-q`, `-a`, `-p` and `-c` are written as for
-    /// Triangle, alone or in one word: `-pq30a0.5`; they are not `--quiet` here.
+    /// small angles. Triangles that fall short are counted. `-q`, `-a`, `-S`, `-p` and `-c` are written as
+    /// for Triangle, alone or in one word: `-pq30a0.5`; they are not `--quiet` here.
     #[arg(long, value_name = "DEGREES", value_parser = smallest_angle, help_heading = "Quality")]
     pub(in crate::cli) min_angle: Option<f64>,
 
@@ -126,6 +126,13 @@ pub(in crate::cli) struct TriangulateArgs {
     /// Keep to the largest areas of the .poly's regions (also `-a`)
     #[arg(long, help_heading = "Quality")]
     pub(in crate::cli) region_areas: bool,
+
+    /// Stop after so many added vertices, and write what is there (also `-S[COUNT]`: 0)
+    ///
+    /// Triangles that fall short are counted, then. Without this option it is an error if 1 000 000 are not
+    /// enough, and nothing is written: some angles are never reached, whatever the number.
+    #[arg(long, value_name = "COUNT", help_heading = "Quality")]
+    pub(in crate::cli) max_added: Option<usize>,
 
     /// The arithmetic that decides on which side a point lies
     #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::geometry::{Geometry, Plane};
+use crate::geometry::Plane;
 use crate::kernel::{Kernel, twice_area};
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::refine::{Quality, Shortfall};
@@ -104,7 +104,7 @@ fn weights<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, p: &[f64; 2]) -> Option
         Location::Cell { cell, .. } => cell,
         // By a rounding, on the hull.
         Location::OutsideHull { cell } => t.tds().neighbor(cell, t.tds().index_of(cell, VertexId::INFINITE)?),
-        Location::Vertex(_) | Location::OutsideAffineHull => return None,
+        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return None,
     };
     let corners = *t.tds().corners(cell);
     let [a, b, c] = corners.map(|v| *t.point(v));
@@ -113,8 +113,7 @@ fn weights<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, p: &[f64; 2]) -> Option
 }
 
 fn place<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], p: [f64; 2]) -> Place {
-    // A place that the predicates have no answer for is further out, or nearer to zero, than any vertex.
-    if t.dimension() < 2 || !t.geometry().admits(&p) {
+    if t.dimension() < 2 {
         return Place::Outside;
     }
     let in_face = |cell: CellId| face_of[cell.index()].map_or(Place::Outside, Place::Face);
@@ -129,6 +128,7 @@ fn place<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], 
                 false => in_face(cell),
             }
         }
-        Location::OutsideHull { .. } | Location::OutsideAffineHull => Place::Outside,
+        // What lies nowhere is further out, or nearer to zero, than any vertex.
+        Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => Place::Outside,
     }
 }

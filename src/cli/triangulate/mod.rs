@@ -74,6 +74,9 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     }
 
     let built = build(&graph, args, path)?;
+    if args.max_added.is_none() && built.shortfall.contains(&Shortfall::Limit) {
+        return Err(unfinished(&built).in_file(path));
+    }
     tell_places(&built, &graph, path, talk);
     let keeps_hull = args.convex || graph.segments.is_empty();
     // Refined, the hull is a constraint, beyond which there may be less than a rounding.
@@ -88,7 +91,7 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     }
     let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&targets, formats, family));
     write(&meshes, &files, &triangulated)?;
-    tell(&graph, &built, &triangulated, talk);
+    tell(&graph, args, &built, &triangulated, talk);
     outputs::tell(&files, talk);
     outputs::tell(&meshes, talk);
     Ok(Exit::Done)
@@ -142,8 +145,20 @@ fn quality(args: &TriangulateArgs, graph: &LineGraph) -> Option<Quality<'static>
         max_area: args.max_area.unwrap_or(f64::INFINITY),
         regions: bounds.filter_map(|region| Some(Region { seed: region.at, max_area: region.max_area? })).collect(),
         domain: if is_hull { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
+        max_added: args.max_added.unwrap_or(Quality::MAX_ADDED),
         ..Quality::default()
     })
+}
+
+/// Says how far a refinement came that nobody had bounded.
+#[cold]
+fn unfinished(built: &Built) -> Error {
+    let (added, all, short) = (Quality::MAX_ADDED, built.faces.len(), built.shortfall.len());
+    Error::limit(format!("{added} vertices were added, and {short} of {all} triangles are still not as asked for"))
+        .cure(
+            "ask for a smaller angle (33 degrees are nearly always reached) or a larger area, or set a limit with \
+             --max-added and get what is there then",
+        )
 }
 
 /// With the numbers and lines of the file.
@@ -232,7 +247,7 @@ fn write(meshes: &[Target<Family>], files: &[Target<Family>], triangulated: &Tri
 }
 
 /// Says what went in and what came out.
-fn tell(graph: &LineGraph, built: &Built, triangulated: &Triangulated, talk: &Talk) {
+fn tell(graph: &LineGraph, args: &TriangulateArgs, built: &Built, triangulated: &Triangulated, talk: &Talk) {
     let given = graph.nodes.points.len();
     let added = triangulated.nodes.points.len() - given;
     let doubled = given + added - built.vertices.len();
@@ -254,9 +269,10 @@ fn tell(graph: &LineGraph, built: &Built, triangulated: &Triangulated, talk: &Ta
     let (all, kept) = (built.faces.len(), triangulated.triangles.len());
     let eaten = if kept < all { format!(" ({} outside or in holes eaten away)", all - kept) } else { String::new() };
     talk.line(format_args!("triangles   {kept}{eaten}"));
+    let limit = format!("left when {} vertices had been added (--max-added)", args.max_added.unwrap_or_default());
     for (why, text) in [
         (Shortfall::SmallAngle, "at small angles between segments"),
-        (Shortfall::Limit, "left when the limit of added vertices was reached"),
+        (Shortfall::Limit, &limit),
         (Shortfall::Coordinates, "too small for the coordinates to tell more vertices"),
     ] {
         let count = built.shortfall.iter().filter(|&&other| other == why).count();

@@ -1,4 +1,4 @@
-use crate::data::Surface;
+use crate::data::{self, Surface};
 
 const UNUSED: u32 = u32::MAX;
 
@@ -20,19 +20,24 @@ impl<'a> Listing<'a> {
     pub(super) fn new(surface: &'a dyn Surface) -> Self {
         let mut number = vec![UNUSED; surface.vertex_count()];
         let mut face_count = 0;
-        for corners in (0..surface.face_count() as u32).filter_map(|f| surface.face(f)) {
+        let mut lines = Vec::new();
+        data::faces(surface).for_each(|face| {
             face_count += 1;
-            corners.iter().for_each(|&v| number[v as usize] = 0);
-        }
+            face.corners.iter().for_each(|&v| number[v as usize] = 0);
+            let constrained = (0..3).filter(|&i| face.edges[i].is_constrained());
+            lines.extend(constrained.map(|i| [1, 2].map(|k| face.corners[(i + k) % 3])));
+        });
         let mut vertex_count = 0;
         for number in number.iter_mut().filter(|n| **n != UNUSED) {
             *number = vertex_count;
             vertex_count += 1;
         }
-        let mut listing =
-            Listing { surface, number, vertex_count: vertex_count as usize, face_count, constrained_edges: Vec::new() };
-        listing.constrained_edges = listing.find_constrained_edges();
-        listing
+        let ends = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let mut constrained_edges: Vec<[u32; 2]> =
+            lines.into_iter().map(|line: [u32; 2]| ends(line.map(|v| number[v as usize]))).collect();
+        constrained_edges.sort_unstable();
+        constrained_edges.dedup();
+        Listing { surface, number, vertex_count: vertex_count as usize, face_count, constrained_edges }
     }
 
     pub(super) fn vertices(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
@@ -51,21 +56,7 @@ impl<'a> Listing<'a> {
     }
 
     fn corners(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        (0..self.surface.face_count() as u32).filter_map(|f| self.surface.face(f))
-    }
-
-    fn find_constrained_edges(&self) -> Vec<[u32; 2]> {
-        let mut edges = Vec::new();
-        for f in 0..self.surface.face_count() as u32 {
-            let Some(corners) = self.surface.face(f) else { continue };
-            for i in (0..3).filter(|&i| self.surface.is_constrained(f, i)) {
-                let [a, b] = [1, 2].map(|k| self.number[corners[(i + k) % 3] as usize]);
-                edges.push([a.min(b), a.max(b)]);
-            }
-        }
-        edges.sort_unstable();
-        edges.dedup();
-        edges
+        data::corners(self.surface)
     }
 }
 

@@ -116,8 +116,7 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
 /// If the file is damaged, is no surface ([`Mesh::new`] says what is none), has no faces or polygons
 /// that are far from convex, or the format is not one that is read.
 pub fn read(path: &Path) -> Result<Mesh> {
-    let Triangles { vertices, faces, constrained_edges, crs, .. } = read_triangles(path)?;
-    Mesh::new(vertices, faces, &constrained_edges, crs).map_err(|e| e.in_file(path))
+    Mesh::of(read_triangles(path)?).map_err(|e| e.in_file(path))
 }
 
 /// Reads the triangles of a mesh, whether they are a surface or not: for a check, say.

@@ -1,4 +1,4 @@
-use crate::data::orientation;
+use crate::data::{not_finite, orientation};
 use crate::error::{Error, Result};
 use crate::num::Sign;
 
@@ -8,8 +8,8 @@ use crate::num::Sign;
 /// without area. Triangles are taken as they are; [`Mesh::new`](crate::data::Mesh::new) judges them.
 ///
 /// # Errors
-/// If there are fewer than three corners, a corner is no vertex, or no fan fits: one does for every
-/// polygon that is convex in plan, and for some others.
+/// If there are fewer than three corners, a corner is no vertex, one of four or more has no place in plan, or no fan fits:
+/// one does for every polygon that is convex in plan, and for some others.
 pub(super) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Vec<[u32; 3]>) -> Result<()> {
     let count = corners.len();
     if count < 3 {
@@ -24,6 +24,10 @@ pub(super) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Ve
     }
     if count > MOST_CORNERS {
         return Err(Error::limit(format!("a face has {count} corners; at most {MOST_CORNERS} are divided")));
+    }
+    let is_nowhere = |v: &&u32| vertices[**v as usize][..2].iter().any(|c| !c.is_finite());
+    if let Some(&v) = corners.iter().find(is_nowhere) {
+        return Err(not_finite(v as usize, vertices[v as usize]));
     }
     let fan = |start: usize| (1..count - 1).map(move |i| [start, start + i, start + i + 1].map(|k| corners[k % count]));
     let turns =
@@ -58,6 +62,25 @@ mod tests {
         assert_eq!(divided(&[0, 2, 3, 5]), Ok(vec![[2, 3, 5], [2, 5, 0]]));
         assert_eq!(divided(&[0, 1]), Err("a face has 2 corners, expected 3 or more".into()));
         assert_eq!(divided(&[0, 1, 2, 9]), Err("a face names vertex 9, but there are 6 vertices".into()));
+    }
+
+    #[test]
+    fn refuses_corners_that_are_nowhere() {
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for (corner, axis) in (0..4).flat_map(|corner| [(corner, 0), (corner, 1)]) {
+                let mut vertices = square;
+                vertices[corner][axis] = odd;
+                let error = add_polygon(&vertices, &[0, 1, 2, 3], &mut Vec::new()).unwrap_err().to_string();
+                let [x, y, z] = vertices[corner];
+                assert_eq!(error, format!("vertex {corner} is at {x} {y} {z}, expected finite coordinates"));
+            }
+            // A height says nothing about how a polygon is divided.
+            let mut vertices = square;
+            vertices[2][2] = odd;
+            let mut faces = Vec::new();
+            assert!(add_polygon(&vertices, &[0, 1, 2, 3], &mut faces).is_ok() && faces.len() == 2);
+        }
     }
 
     #[test]

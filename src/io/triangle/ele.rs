@@ -40,7 +40,7 @@ pub(super) fn read_file(path: &Path) -> Result<Triangles> {
         None => None,
     };
     let vertices = nodes.points.into_iter().map(|[x, y]| [x, y, 0.0]).collect();
-    Ok(Triangles { vertices, faces, constrained_edges, neighbors, crs: None })
+    Ok(Triangles { vertices, faces, constrained_edges, neighbors, ..Triangles::default() })
 }
 
 fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 3]>> {

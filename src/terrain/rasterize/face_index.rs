@@ -44,8 +44,8 @@ impl FaceIndex {
             .map(|chunk| {
                 let mut found = Vec::new();
                 for face in chunk * CHUNK..(chunk + 1).saturating_mul(CHUNK).min(face_count) {
-                    let Some(corners) = surface.face(face) else { continue };
-                    let corners = corners.map(|v| placement.place(surface.position(v)));
+                    let Some(corners) = surface.triangle(face) else { continue };
+                    let corners = corners.map(|p| placement.place(p));
                     empty.bins_of(&corners, placement, |bin| found.push((bin, face)));
                 }
                 found

@@ -63,8 +63,8 @@ impl<S: Surface + ?Sized> BlockSource for Dem<'_, S> {
             let rows = rows.start - row..rows.end - row;
             let columns = columns.start - column..columns.end - column;
             for &face in faces {
-                let Some(corners) = self.surface.face(face) else { continue };
-                let corners = corners.map(|v| self.placement.place(self.surface.position(v)));
+                let Some(corners) = self.surface.triangle(face) else { continue };
+                let corners = corners.map(|p| self.placement.place(p));
                 scan.draw(corners, &rows, &columns);
             }
         }

@@ -138,7 +138,8 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         rim: &[f64; D],
     ) -> Result<impl Iterator<Item = Result<VertexId, Damaged>> + use<'_, G, B, D>, Damaged> {
         self.demand_delaunay()?;
-        let nearest = NearestFirst::new(self, center, self.locate(center, None)?)?;
+        let location = if self.geometry.admits(rim) { self.locate(center, None)? } else { Location::Nowhere };
+        let nearest = NearestFirst::new(self, center, location)?;
         let rim = *rim;
         let is_within = move |candidate: &Result<_, Damaged>| {
             candidate.as_ref().map_or(true, |candidate: &query::Candidate<'_, Self>| candidate.is_within(&rim))

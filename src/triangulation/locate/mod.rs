@@ -56,6 +56,10 @@ pub enum Location {
     /// Outside of the line or plane that all points lie in; also for an empty triangulation, and for
     /// a second place beside a single point.
     OutsideAffineHull,
+    /// Not a place: the geometry does not [admit](Geometry::admits) the point. A coordinate is NaN or infinite, or beyond
+    /// the [range](crate::kernel::Kernel::RANGE) of the kernel; [`Wide`](crate::kernel::Wide) has every finite number in its
+    /// range.
+    Nowhere,
 }
 
 impl Location {
@@ -73,7 +77,7 @@ impl Location {
         match self {
             Location::Vertex(vertex) => complex.cell_of(vertex),
             Location::Cell { cell, .. } | Location::OutsideHull { cell } => Ok(Some(cell)),
-            Location::OutsideAffineHull => Ok(None),
+            Location::OutsideAffineHull | Location::Nowhere => Ok(None),
         }
     }
 }
@@ -85,8 +89,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// of the `n` vertices (Mücke, Saias and Zhu 1996): then about as many steps are left where points are spread evenly.
     /// If it is many more, as along curves, it goes on from the nearest of `3 n^(1/2)`.
     ///
-    /// The point must be one that the geometry [admits](Geometry::admits): for others the predicates have no
-    /// answer, and so has this.
+    /// A point that the geometry does not [admit](Geometry::admits) is [`Location::Nowhere`].
     pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
         let start = near.filter(|&c| self.tds.is_used(c)).or(self.last);
         let Ok(location) = walk(self, q, start);

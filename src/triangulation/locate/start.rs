@@ -46,7 +46,7 @@ use super::Location;
 /// # Ok::<(), breakline::triangulation::Refused>(())
 /// ```
 pub trait Locate<G: Geometry<N>, const N: usize> {
-    /// Where a point lies, which the geometry must [admit](Geometry::admits).
+    /// Returns where a point lies; [`Location::Nowhere`] for one that the geometry does not [admit](Geometry::admits).
     fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location;
 
     /// Learns of a new vertex of a triangulation with this geometry.

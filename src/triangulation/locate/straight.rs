@@ -21,6 +21,7 @@ impl<G: Geometry<3>> Locate<G, 3> for StraightLine {
         };
         let start = self.0.filter(|&v| triangulation.tds.is_vertex(v));
         let start = start.or_else(last).or_else(|| triangulation.tds.vertices().next());
+        let start = start.filter(|_| triangulation.geometry.admits(q));
         let cell = start.and_then(|from| triangulation.walk_straight(from, q));
         triangulation.locate(q, cell)
     }

@@ -52,7 +52,8 @@ pub(super) const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 /// comes to a cell twice, and on others the chance is halved, at the least, with each round.
 const WANDERING: usize = 8;
 
-/// Where `q` lies, by a walk from a cell, or if there is none by that number, from one at infinity.
+/// Where `q` lies, by a walk from a cell, or if there is none by that number, from one at infinity. A point that the
+/// geometry does not admit lies nowhere: no predicate is asked about it.
 ///
 /// On links that are damaged it ends with an error: if a link leads nowhere, or if there are many times more steps than
 /// cells.
@@ -61,6 +62,9 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
     q: &PointOf<T, N>,
     start: Option<CellId>,
 ) -> Result<Location, T::Error> {
+    if !t.geometry().admits(q) {
+        return Ok(Location::Nowhere);
+    }
     let complex = t.complex();
     let start = match start.filter(|&c| complex.is_used(c)) {
         Some(cell) => Some(cell),

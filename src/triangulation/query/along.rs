@@ -28,8 +28,8 @@ pub enum Passage {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// All that a segment meets, in order from `a` to `b`, which may be any points that the geometry admits, equal ones
-    /// too. What meets two parts only at their border is told by the border: a segment through a vertex meets the
+    /// All that a segment meets, in order from `a` to `b`, which may be equal; nothing if the geometry does not
+    /// [admit](Geometry::admits) one of them. What meets two parts only at their border is told by the border: a segment through a vertex meets the
     /// vertex and perhaps two faces, none of the edges there. Nothing is told of the way outside of the hull, nor below
     /// dimension 2. Exact.
     ///
@@ -73,7 +73,7 @@ impl<'t, T: Embedded<3>> Along<'t, T> {
     /// Given where the segment starts.
     pub(in crate::triangulation) fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
         let way = Way { t, a: *a, b: *b };
-        let next = way.first(location);
+        let next = if t.geometry().admits(b) { way.first(location) } else { Ok(None) };
         Along { way, next, faces: 0, vertex: None }
     }
 
@@ -170,7 +170,7 @@ impl<T: Embedded<3>> Way<'_, T> {
                 })
             }
             Location::OutsideHull { .. } => self.entry()?,
-            Location::OutsideAffineHull => None,
+            Location::OutsideAffineHull | Location::Nowhere => None,
         })
     }
 

@@ -100,7 +100,8 @@ pub(super) fn twice_area(polygon: &[Place]) -> f64 {
 
 /// The cell of a site: the part of a convex polygon in half planes that are given relative to the site.
 pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>, within: &[Place]) -> VoronoiCell {
-    let polygon = within.iter().map(|&p| minus(p, site)).collect();
+    let is_polygon = within.as_flattened().iter().all(|x| x.is_finite());
+    let polygon = within.iter().filter(|_| is_polygon).map(|&p| minus(p, site)).collect();
     let cell: Vec<Place> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(&polygon));
     if cell.len() < 3 {
         return VoronoiCell { corners: Vec::new(), area: 0.0 };
@@ -109,7 +110,7 @@ pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>,
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// The center of the circle around a finite face, weights aside; `None` for infinite ones and below dimension 2.
+    /// The center of the circle around a finite face, weights aside; `None` for what is not one, as below dimension 2.
     /// Right to a few units in the last place of the larger of its coordinates and its
     /// [distance](kernel::power_center) from the corners. O(1).
     pub fn circumcenter(&self, cell: CellId) -> Option<[f64; 2]> {
@@ -117,12 +118,24 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         Some(plus(corners[0], kernel::circumcenter(corners)))
     }
 
-    /// The corners of a finite face; `None` below dimension 2.
+    /// The corners of a finite face; `None` if the cell is not one.
     pub(super) fn finite_face(&self, cell: CellId) -> Option<[VertexId; 3]> {
-        (self.is_full() && !self.tds().is_infinite(cell)).then(|| *self.tds().corners(cell))
+        let is_face = self.is_full() && self.tds().is_used(cell) && !self.tds().is_infinite(cell);
+        is_face.then(|| *self.tds().corners(cell))
     }
 
-    /// The dual of an edge between finite vertices, given the centers of finite faces, and which place between two
+    /// The ends of a finite edge, given as in [`Tds::edges`](crate::tds::Tds::edges); `None` if it is not one.
+    pub(super) fn finite_edge(&self, cell: CellId, i: usize) -> Option<[VertexId; 2]> {
+        let is_edge = match self.dimension() {
+            2 => i < 3,
+            1 => i == 2,
+            _ => false,
+        };
+        let ends = (is_edge && self.tds().is_used(cell)).then(|| self.tds().edge_ends(cell, i))?;
+        (!ends.contains(&VertexId::INFINITE)).then_some(ends)
+    }
+
+    /// The dual of a finite edge, `None` of what is not one; given the centers of finite faces, and which place between two
     /// collinear vertices belongs to both.
     pub(super) fn dual_edge(
         &self,
@@ -131,10 +144,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         center: impl Fn(CellId) -> Option<Place>,
         between: impl Fn([VertexId; 2]) -> Place,
     ) -> Option<VoronoiEdge> {
-        let ends = self.tds().edge_ends(cell, i);
-        if ends.contains(&VertexId::INFINITE) {
-            return None;
-        }
+        let ends = self.finite_edge(cell, i)?;
         let [a, b] = ends.map(|v| self.place(v));
         let [dx, dy] = minus(b, a);
         if self.dimension() == 1 {
@@ -151,8 +161,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// The places that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
-    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex.
-    /// O(1).
+    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex, and
+    /// for what is not an edge: on a line an edge has index 2, below that there is none. O(1).
     pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
         let middle = |ends: [VertexId; 2]| {
             let [a, b] = ends.map(|v| self.place(v));
@@ -162,8 +172,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 
     /// What of a convex polygon, counter-clockwise, is nearest to a finite vertex. The cells of all vertices tile it,
-    /// in every dimension, as long as squares of distances are numbers: between `1e-150` and `1e150`, say. That of what
-    /// is no vertex has no corners.
+    /// in every dimension, as long as squares of distances are numbers: between `1e-150` and `1e150`, say. No corners for
+    /// what is not a vertex, nor where a corner of the polygon is not finite.
     ///
     /// # Complexity
     /// The degree of the vertex times the corners of the polygon and the cell.

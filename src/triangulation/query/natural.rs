@@ -34,9 +34,9 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// are some 10 apart.
     ///
     /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends
-    /// in linear proportion, which is the limit from within. Outside of the hull there are none: `None`; nor where
-    /// squares of distances are no numbers (beyond `1e150`, below `1e-150`). The place must be one that the geometry
-    /// admits; its coordinates, those that circles are circles of.
+    /// in linear proportion, which is the limit from within. `None` outside of the hull, at a place that the geometry does
+    /// not [admit](crate::geometry::Geometry::admits), and where squares of distances are no numbers (beyond `1e150`, below
+    /// `1e-150`). The coordinates must be those that circles are circles of.
     ///
     /// After Sibson 1981, *A brief description of natural neighbour interpolation*; without insertion as Watson 1992,
     /// *Contouring*.
@@ -116,7 +116,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         let location = self.locate(q, near);
         let mut weights = match location {
             Location::Vertex(vertex) => return Some(vec![(vertex, 1.0)]),
-            Location::OutsideHull { .. } | Location::OutsideAffineHull => return None,
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => return None,
             Location::Cell { cell, .. } if self.dimension() == 1 => self.between(self.tds().edge_ends(cell, 2), at),
             Location::Cell { cell, touching } => {
                 let on_hull =

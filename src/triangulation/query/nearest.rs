@@ -133,6 +133,7 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
             complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
         }
         Location::OutsideAffineHull => tds::vertices(complex).next().transpose()?,
+        Location::Nowhere => None,
     };
     let mut nearest: Vec<VertexId> = start.into_iter().collect();
     // Of these, all but the first.
@@ -161,7 +162,9 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
 
 impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// The vertex nearest to a place; of several, the first in the [order](crate::geometry::Geometry::compare) of the
-    /// geometry. `None` if there are no vertices. Exact. The place must be one that the geometry admits.
+    /// geometry. `None` if there are no vertices, or if the geometry does not
+    /// [admit](crate::geometry::Geometry::admits) the place: with the kernel [`Wide`](crate::kernel::Wide) it admits every
+    /// finite one. Exact.
     ///
     /// # Complexity
     /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and the degrees of a few vertices.
@@ -183,7 +186,7 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 
     /// All vertices from the nearest to the furthest: [`take`](Iterator::take) as many as are wanted. Those that are
-    /// equally far come in the order of the geometry. Exact.
+    /// equally far come in the order of the geometry. None where [`nearest`](Self::nearest) is `None`. Exact.
     ///
     /// # Complexity
     /// As [`nearest`](Self::nearest), and O(d log k) for the `k`-th, of degree `d`.
@@ -197,7 +200,8 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 
     /// The vertices no further from a place than `rim` is, nearest first. Exact: the circle is given by a point on it,
-    /// as the length of a radius is rounded.
+    /// as the length of a radius is rounded. None if the geometry does not [admit](crate::geometry::Geometry::admits) the
+    /// center or the rim.
     ///
     /// # Complexity
     /// As [`nearest_first`](Self::nearest_first).
@@ -206,7 +210,8 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         center: &G::Point,
         rim: &G::Point,
     ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
-        let Ok(nearest) = NearestFirst::new(&self.inner, center, self.locate(center, None));
+        let location = if self.geometry().admits(rim) { self.locate(center, None) } else { Location::Nowhere };
+        let Ok(nearest) = NearestFirst::new(&self.inner, center, location);
         let rim = *rim;
         nearest.map(|Ok(candidate)| candidate).take_while(move |c| c.is_within(&rim)).map(|candidate| candidate.vertex)
     }

@@ -11,8 +11,8 @@ use super::nearest::nearest;
 impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
     /// The point of the least power at a place, its squared distance less its weight; of several, the first in the
     /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be
-    /// one of the same power. `None` if there are no points. Exact. The place must be one that the geometry admits; its
-    /// weight does not count.
+    /// one of the same power. `None` if there are no points, or if the geometry does not
+    /// [admit](crate::geometry::Geometry::admits) the place, whose weight does not count otherwise. Exact.
     ///
     /// # Complexity
     /// As [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
@@ -24,8 +24,8 @@ impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
 
 impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
     /// The place that has the same power with the corners of a finite face, and less with no other point: the corner of
-    /// the power diagram, and the center of the circle that is orthogonal to those of the three. `None` for infinite
-    /// faces and below dimension 2. As right as a [circumcenter](crate::triangulation::Triangulation::circumcenter),
+    /// the power diagram, and the center of the circle that is orthogonal to those of the three. `None` for what is not a
+    /// finite face, as below dimension 2. As right as a [circumcenter](crate::triangulation::Triangulation::circumcenter),
     /// which it is where all weights are equal. O(1).
     ///
     /// ```
@@ -50,7 +50,8 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
 
     /// The places that have the same power with the ends of an edge, and less with no other point: the edge between
     /// their cells of the power diagram, given as in [`Tds::edges`](crate::tds::Tds::edges). A segment leads from the
-    /// center of `cell` to that of the other face. `None` for edges with the infinite vertex. O(1).
+    /// center of `cell` to that of the other face. `None` for edges with the infinite vertex, and for what is not an edge:
+    /// on a line an edge has index 2, below that there is none. O(1).
     pub fn power_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
         let between = |ends: [VertexId; 2]| {
             let [[x, y, weight], [u, w, other]] = ends.map(|v| *self.point(v));
@@ -62,7 +63,8 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
     }
 
     /// What of a convex polygon, counter-clockwise, has no less power with any other point than with this one. The
-    /// cells of all points tile it; that of a hidden point has no corners. What is computed is rounded.
+    /// cells of all points tile it; that of a hidden point has no corners. None either where a corner of the polygon is not
+    /// finite. What is computed is rounded.
     ///
     /// # Complexity
     /// The degree of the vertex times the corners of the polygon and the cell.

@@ -9,7 +9,7 @@ use super::super::embedded::{Embedded, PointOf};
 use super::super::{Location, Triangulation};
 use super::{place, place_of};
 
-/// A rectangle along the axes, its border included.
+/// A rectangle along the axes, its border included; it may be unbounded, and is empty if a coordinate is NaN.
 #[derive(Clone, Copy)]
 struct Rectangle {
     low: [f64; 2],
@@ -18,7 +18,13 @@ struct Rectangle {
 
 impl Rectangle {
     fn new(p: [f64; 2], q: [f64; 2]) -> Self {
-        Rectangle { low: [0, 1].map(|k| p[k].min(q[k])), high: [0, 1].map(|k| p[k].max(q[k])) }
+        // NaN compares with nothing, and nothing lies on either side of it.
+        let [(left, right), (below, above)] = [0, 1].map(|k| if p[k] <= q[k] { (p[k], q[k]) } else { (q[k], p[k]) });
+        Rectangle { low: [left, below], high: [right, above] }
+    }
+
+    fn is_bounded(self) -> bool {
+        [self.low, self.high].as_flattened().iter().all(|x| x.is_finite())
     }
 
     fn holds(self, p: [f64; 2]) -> bool {
@@ -42,11 +48,13 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// The vertices whose coordinates lie in the rectangle along the axes of which two opposite corners are given, its
-    /// border included; in order of their numbers. Exact. The corners must be points that the geometry admits.
+    /// border included; in order of their numbers. Exact. Any corners will do, infinite ones too; a rectangle with a NaN
+    /// has nothing in it.
     ///
     /// # Complexity
     /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes meet the rectangle
-    /// and, where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at.
+    /// and, where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at; so
+    /// they are if a corner is infinite, or the geometry does not [admit](crate::geometry::Geometry::admits) the first.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::Delaunay};
@@ -74,7 +82,8 @@ pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordi
     let [p, q] = corners.map(|corner| place_of(t.geometry(), corner));
     let rectangle = Rectangle::new(p, q);
     let mut vertices = Vec::new();
-    if complex.width() < 3 {
+    let start = if complex.width() < 3 || !rectangle.is_bounded() { None } else { location.cell_in(complex)? };
+    let Some(start) = start else {
         for vertex in tds::vertices(complex) {
             let vertex = vertex?;
             if rectangle.holds(place(t, vertex)?) {
@@ -82,10 +91,9 @@ pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordi
             }
         }
         return Ok(vertices);
-    }
-    let start = location.cell_in(complex)?;
-    let mut seen: FxHashSet<CellId> = start.into_iter().collect();
-    let mut met: Vec<CellId> = start.into_iter().collect();
+    };
+    let mut seen = FxHashSet::from_iter([start]);
+    let mut met = vec![start];
     while let Some(cell) = met.pop() {
         for vertex in complex.corners(cell)? {
             if vertex != VertexId::INFINITE && rectangle.holds(place(t, vertex)?) {

@@ -1,16 +1,17 @@
 use std::fmt::{self, Write};
 
 use crate::geometry::Coordinates;
-use crate::tds::{CellId, VertexId};
+use crate::tds::CellId;
 
 use super::super::Triangulation;
 
 /// What a [picture](Triangulation::svg) is to show beside the edges and vertices.
 #[derive(Debug, Clone, Copy)]
 pub enum Mark<'a> {
-    /// Finite cells, filled: those of a conflict zone, say. Infinite ones are passed over.
+    /// Finite cells, filled: those of a conflict zone, say. Infinite ones, and what is not a cell, are left out.
     Cells(&'a [CellId]),
-    /// Edges, bold, as in [`Tds::edges`](crate::tds::Tds::edges); those with the infinite vertex are passed over.
+    /// Edges, bold, as in [`Tds::edges`](crate::tds::Tds::edges). Those with the infinite vertex, and what is not an edge,
+    /// are left out: the border of a conflict zone on a line has no edges.
     Edges(&'a [(CellId, usize)]),
     /// A polygon, filled: a Voronoi cell, say.
     Polygon(&'a [[f64; 2]]),
@@ -58,9 +59,15 @@ impl Frame {
     }
 }
 
+/// The places among these that can be drawn.
+fn finite<'a>(places: impl IntoIterator<Item = &'a [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
+    places.into_iter().copied().filter(|p| p.iter().all(|x| x.is_finite()))
+}
+
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// A picture of the finite edges and vertices, with their numbers if there are few, over what is marked, the first
-    /// mark lowest: as the text of an SVG file. For eyes, to two decimals of a thousandth of the longer side.
+    /// mark lowest: as the text of an SVG file. For eyes, to two decimals of a thousandth of the longer side. Marked places
+    /// that are not finite are left out.
     ///
     /// ```
     /// use breakline::{geometry::Plane, triangulation::{Delaunay, Mark}};
@@ -84,29 +91,31 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             Mark::Polygon(places) | Mark::Line(places) => *places,
             Mark::Cells(_) | Mark::Edges(_) => &[],
         });
-        let frame = Frame::around(self.tds.vertices().map(|v| self.place(v)).chain(drawn.copied()));
+        let frame = Frame::around(self.tds.vertices().map(|v| self.place(v)).chain(finite(drawn)));
         let side = SIZE + 2.0 * MARGIN;
         writeln!(svg, r#"<svg xmlns="http://www.w3.org/2000/svg" class="tri" viewBox="0 0 {side} {side}">"#)?;
         writeln!(svg, "<style>{STYLE}</style>")?;
         for mark in marks {
             match *mark {
                 Mark::Cells(cells) => {
-                    for &cell in cells.iter().filter(|&&cell| !self.tds.is_infinite(cell)) {
+                    let is_finite = |cell: CellId| self.tds.is_used(cell) && !self.tds.is_infinite(cell);
+                    for &cell in cells.iter().filter(|&&cell| is_finite(cell)) {
                         let corners = self.tds.cell_vertices(cell).iter().map(|&v| self.place(v));
                         writeln!(svg, r#"<polygon class="cell" points="{}"/>"#, frame.list(corners))?;
                     }
                 }
                 Mark::Edges(edges) => self.draw_edges(svg, &frame, "edge", edges.iter().copied())?,
                 Mark::Polygon(places) => {
-                    let corners = frame.list(places.iter().copied());
+                    let corners = frame.list(finite(places));
                     writeln!(svg, r#"<polygon class="polygon" points="{corners}"/>"#)?;
                 }
-                Mark::Line(&[only]) => {
-                    let [x, y] = frame.place(only);
-                    writeln!(svg, r#"<circle class="dot" cx="{x:.2}" cy="{y:.2}" r="7"/>"#)?;
+                Mark::Line(dot @ &[_]) => {
+                    for [x, y] in finite(dot).map(|p| frame.place(p)) {
+                        writeln!(svg, r#"<circle class="dot" cx="{x:.2}" cy="{y:.2}" r="7"/>"#)?;
+                    }
                 }
                 Mark::Line(places) => {
-                    let places = frame.list(places.iter().copied());
+                    let places = frame.list(finite(places));
                     writeln!(svg, r#"<polyline class="line" points="{places}"/>"#)?;
                 }
             }
@@ -129,10 +138,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         class: &str,
         edges: impl Iterator<Item = (CellId, usize)>,
     ) -> fmt::Result {
-        for ends in edges.map(|(cell, i)| self.tds.edge_ends(cell, i)) {
-            if ends.contains(&VertexId::INFINITE) {
-                continue;
-            }
+        for ends in edges.filter_map(|(cell, i)| self.finite_edge(cell, i)) {
             let [[x1, y1], [x2, y2]] = ends.map(|v| frame.place(self.place(v)));
             writeln!(svg, r#"<line class="{class}" x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#)?;
         }

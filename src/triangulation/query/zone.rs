@@ -30,7 +30,7 @@ pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
 ) -> Result<Option<ConflictZone>, T::Error> {
     let complex = t.complex();
     let (start, touching) = match location {
-        Location::Vertex(_) | Location::OutsideAffineHull => return Ok(None),
+        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return Ok(None),
         Location::Cell { cell, touching } => (cell, touching),
         Location::OutsideHull { cell } => (cell, 0),
     };
@@ -64,10 +64,8 @@ pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
 
 impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// What would be destroyed if a point was inserted: the cells whose circumscribed circle it is in, ties decided
-    /// as the insertion does, in the plane or on a line. `None` if it is on a vertex, or if it would raise the
-    /// dimension.
-    ///
-    /// The point must be one that the geometry [admits](Geometry::admits).
+    /// as the insertion does, in the plane or on a line. `None` if it is on a vertex, if it would raise the
+    /// dimension, or if the geometry does not [admit](Geometry::admits) it.
     ///
     /// # Complexity
     /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of

@@ -48,8 +48,8 @@ use improve::Refiner;
 /// Of a cell that is in no region, since it is not in the domain.
 const OUTSIDE: u32 = u32::MAX;
 
-/// Added vertices, if nothing else is said.
-const MAX_ADDED: usize = 10_000_000;
+/// Vertices that splitting constraints may add: that comes to an end, in memory that a machine has.
+const MAX_SPLITS: usize = 10_000_000;
 
 /// What constrained edges are to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,12 +107,18 @@ pub struct Quality<'a> {
     pub area_at: Option<&'a dyn Fn([f64; 2]) -> f64>,
     /// Where.
     pub domain: Domain,
-    /// Limit of the vertices that are put in; those taken out again count, too.
+    /// Limit of the vertices that are put in; those taken out again count, too. An angle that cannot be reached takes as many
+    /// as there may be, and about 350 bytes for each.
     pub max_added: usize,
 }
 
+impl Quality<'_> {
+    /// The limit of vertices that are put in, if nothing else is said.
+    pub const MAX_ADDED: usize = 1_000_000;
+}
+
 impl Default for Quality<'_> {
-    /// 20.7 degrees in all that constraints close off, of any size; ten million vertices at the most.
+    /// 20.7 degrees in all that constraints close off, of any size; [`MAX_ADDED`](Self::MAX_ADDED) vertices at the most.
     fn default() -> Self {
         Quality {
             min_angle: 20.7,
@@ -120,7 +126,7 @@ impl Default for Quality<'_> {
             regions: Vec::new(),
             area_at: None,
             domain: Domain::Enclosed { holes: Vec::new() },
-            max_added: MAX_ADDED,
+            max_added: Self::MAX_ADDED,
         }
     }
 }
@@ -197,7 +203,9 @@ impl<G: Crossing, V: Default> Refined<G, V> {
 
     /// Whether a cell is in the domain that was to be improved.
     pub fn is_inside(&self, cell: CellId) -> bool {
-        self.regions.get(cell.index()).is_some_and(|&region| region != OUTSIDE) && !self.tds().is_infinite(cell)
+        self.regions.get(cell.index()).is_some_and(|&region| region != OUTSIDE)
+            && self.tds().is_used(cell)
+            && !self.tds().is_infinite(cell)
     }
 
     /// The triangles of the domain, in order of their numbers.
@@ -233,7 +241,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             Conformity::Delaunay => Law::Delaunay,
             Conformity::Gabriel => Law::Gabriel,
         };
-        let mut draft = Draft::new(self, regions, law, MAX_ADDED);
+        let mut draft = Draft::new(self, regions, law, MAX_SPLITS);
         draft.settle();
         let why = if draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
         let does_not_conform = |&cell: &CellId| (0..3).any(|i| draft.is_encroached(cell, i));

@@ -72,9 +72,9 @@ fn cell_at<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, place: [f64; 
     let cell = t.finite_cells().next()?;
     let [a, b, _] = t.tds().corners(cell).map(|v| t.point(v));
     let p = t.geometry().meet(t.geometry().on_step(place), &[[a, b]]);
-    match t.geometry().admits(&p).then(|| t.locate(&p, None))? {
+    match t.locate(&p, None) {
         Location::Cell { cell, .. } => Some(cell),
         Location::Vertex(vertex) => t.tds().around(vertex).find(|&cell| !t.tds().is_infinite(cell)),
-        Location::OutsideHull { .. } | Location::OutsideAffineHull => None,
+        Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,
     }
 }

@@ -38,20 +38,20 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
         write!(output, "element constrained_edge {count}\nproperty int vertex1\nproperty int vertex2\n")?;
     }
     output.write_all(b"end_header\n")?;
-    for p in mesh.vertices() {
+    mesh.vertices().try_for_each(|p| {
         let mut row = [0; 24];
         for (bytes, value) in row.chunks_exact_mut(8).zip(p) {
             bytes.copy_from_slice(&value.to_le_bytes());
         }
-        output.write_all(&row)?;
-    }
-    for face in mesh.faces() {
+        output.write_all(&row)
+    })?;
+    mesh.faces().try_for_each(|face| {
         let mut row = [3; 13];
         for (bytes, v) in row[1..].chunks_exact_mut(4).zip(face) {
             bytes.copy_from_slice(&v.to_le_bytes());
         }
-        output.write_all(&row)?;
-    }
+        output.write_all(&row)
+    })?;
     for [a, b] in &mesh.constrained_edges {
         output.write_all(&a.to_le_bytes())?;
         output.write_all(&b.to_le_bytes())?;
@@ -90,7 +90,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
         start = end;
     }
     let crs = crs_text::parse(&header.crs)?;
-    Ok(Triangles { vertices, faces, constrained_edges: edges, neighbors: None, crs })
+    Ok(Triangles { vertices, faces, constrained_edges: edges, crs, ..Triangles::default() })
 }
 
 fn read_vertices(body: &mut Body, element: &Element) -> Result<Vec<[f64; 3]>> {

@@ -1,0 +1,189 @@
+//! Cutting a finished surface along lines.
+//!
+//! The surface is cut as it is, not triangulated anew: triangles that no line meets stay, and the others are divided
+//! into pieces on which the height is that of the triangle.
+//!
+//! ```text
+//!        +                    +
+//!       / \                  / \          the line crosses two triangles:
+//!      /   \                / _-\         one has three pieces now,
+//!   --/-----\--    ->    --+-----+--      the other two; both have the
+//!    /_______\            /_______\       same new vertices
+//! ```
+//!
+//! 1. *Met*: the triangles that each segment of the lines meets are found by walking.
+//! 2. *Snap*: these segments are snapped to each other, so that a corner of one polygon that was meant to lie on the side
+//!    of another one does, and a side that goes out and back over itself encloses nothing.
+//! 3. *Patch*: the segments and the edges of the triangles are [arranged](crate::arrangement) together: where they
+//!    cross, they get a common vertex, rounded, and bend with it. No piece can be turned around by that, and no crack
+//!    can open, since what is bent is bent for both sides. All is triangulated, with edges and lines as constraints.
+//! 4. *Heights* at new vertices are those of the edge that they lie on, breaklines first, or of the triangle.
+//! 5. *Regions*: lines are closed curves, which bound domains. One walk over all faces finds in which of them each lies.
+//! 6. Triangles of which all pieces are kept are made whole again, unless a neighbor needs a vertex on their side.
+//!
+//! The pieces of a triangle need not be Delaunay with those beside: the triangulation that was cut stays as it is
+//! underneath.
+
+mod met;
+mod patch;
+mod patched;
+mod regions;
+mod snap;
+mod steps;
+
+use crate::data::EdgeKind;
+use crate::error::Result;
+use crate::geometry::Terrain;
+use crate::tds::{CellId, VertexId};
+use crate::triangulation::{ConstrainedDelaunay, Location};
+
+use super::tin::linear;
+use patch::Patch;
+use patched::{Patched, Remains};
+use snap::snapped;
+
+/// The number of what some closed curves bound together, by the even-odd rule.
+pub(super) type Domain = usize;
+
+/// The ends of a straight part of a line, in plan.
+pub(super) type Segment = [[f64; 2]; 2];
+
+/// A side of a face: its number, and that of the corner opposite.
+type Side = (u32, usize);
+
+/// What a cut leaves of a triangulation beside whole triangles: pieces of others.
+///
+/// Faces and vertices of the surface are numbered on from those of the triangulation: after these come all of the
+/// patch.
+#[derive(Debug)]
+pub(super) struct Cut {
+    patch: Patch,
+    remains: Remains,
+    first_piece: usize,
+    first_vertex: usize,
+}
+
+/// Cuts a triangulation along closed curves, given as segments, each with the number of a domain that it bounds.
+/// `is_kept` tells of the domains that a face lies in, sorted, whether it stays. Of the triangles `inside`, those that
+/// stay whole remain; pieces of others are returned.
+///
+/// # Errors
+/// If there are more vertices than can be numbered.
+///
+/// # Complexity
+/// Linear in the number of triangles, and O(m log m) for m segments and triangles that they meet.
+pub(super) fn cut(
+    base: &ConstrainedDelaunay<Terrain>,
+    inside: &mut [bool],
+    curves: &[(Domain, Segment)],
+    is_kept: impl Fn(&[Domain]) -> bool,
+) -> Result<Option<Cut>> {
+    let curves = &snapped(base, curves);
+    let segments: Vec<Segment> = curves.iter().map(|(_, segment)| *segment).collect();
+    let Some(patch) = Patch::new(base, &segments)? else {
+        let start = base.finite_cells().next();
+        let corners = start.map(|cell| base.tds().corners(cell).map(|vertex| *base.point(vertex)));
+        let within = corners.map(|corners| regions::domains_at(base.geometry(), corners, curves));
+        if !within.is_some_and(|within| is_kept(&within)) {
+            inside.fill(false);
+        }
+        return Ok(None);
+    };
+    let patched = Patched::new(base, &patch, curves);
+    let Some(start) = patched.first() else {
+        inside.fill(false);
+        return Ok(None);
+    };
+    let within = regions::domains_at(base.geometry(), patched.corners(start), &patched.drawn(curves));
+    let kept = regions::keep(&patched, patched.count(), start, within, is_kept);
+    let remains = patched.remains(inside, &kept);
+    let (first_piece, first_vertex) = (base.tds().cell_slots(), base.tds().vertex_slots());
+    Ok(Some(Cut { patch, remains, first_piece, first_vertex }))
+}
+
+impl Cut {
+    /// How many triangles are in pieces.
+    pub(super) fn cut_count(&self) -> usize {
+        self.remains.cut
+    }
+
+    /// The triangles that lines meet, and some beside them, in order of their numbers; not all of them are in pieces.
+    pub(super) fn replaced(&self) -> &[CellId] {
+        &self.patch.replaced
+    }
+
+    /// One more than the largest number of a face.
+    pub(super) fn face_count(&self) -> usize {
+        self.first_piece + self.remains.is_piece.len()
+    }
+
+    /// One more than the largest number of a vertex.
+    pub(super) fn vertex_count(&self) -> usize {
+        self.first_vertex + self.patch.vertices.len()
+    }
+
+    /// Where a vertex is that is none of the triangulation.
+    pub(super) fn position(&self, vertex: u32) -> [f64; 3] {
+        self.point(VertexId::new(vertex as usize - self.first_vertex))
+    }
+
+    fn point(&self, vertex: VertexId) -> [f64; 3] {
+        let [x, y, _] = *self.patch.triangulation.point(vertex);
+        [x, y, self.patch.heights[vertex.index()]]
+    }
+
+    /// The face of the patch with a number, if it is a piece.
+    fn piece(&self, face: u32) -> Option<CellId> {
+        let at = (face as usize).checked_sub(self.first_piece)?;
+        let is_piece = *self.remains.is_piece.get(at)?;
+        is_piece.then(|| CellId::new(at))
+    }
+
+    /// The corners of a piece, counter-clockwise.
+    pub(super) fn face(&self, face: u32) -> Option<[u32; 3]> {
+        let number = |vertex: VertexId| match self.patch.vertices[vertex.index()] {
+            Some(vertex) => vertex.index() as u32,
+            None => (self.first_vertex + vertex.index()) as u32,
+        };
+        Some(self.patch.triangulation.tds().corners(self.piece(face)?).map(number))
+    }
+
+    /// What lies beyond a side, if it or the face is a piece.
+    pub(super) fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
+        if let Some(piece) = self.piece(face) {
+            let beyond = self.patch.triangulation.tds().neighbor(piece, i);
+            if self.remains.is_piece[beyond.index()] {
+                return Some((self.first_piece + beyond.index()) as u32);
+            }
+        }
+        self.remains.beside.get(&(face, i)).copied()
+    }
+
+    /// What a side of a piece is.
+    pub(super) fn edge_kind(&self, face: u32, i: usize) -> Option<EdgeKind> {
+        self.piece(face).map(|piece| self.remains.kinds[piece.index()][i])
+    }
+
+    /// Whether a line runs along the side of a whole triangle.
+    pub(super) fn is_clipped(&self, face: u32, i: usize) -> bool {
+        self.remains.clipped.contains(&(face, i))
+    }
+
+    /// The height at a place in plan that is admitted, if it lies in a piece.
+    pub(super) fn elevation(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let triangulation = &self.patch.triangulation;
+        let is_piece = |cell: &CellId| self.remains.is_piece[cell.index()];
+        match triangulation.locate(&[x, y, 0.0], None) {
+            Location::Vertex(vertex) => {
+                triangulation.tds().around(vertex).any(|cell| is_piece(&cell)).then(|| self.point(vertex)[2])
+            }
+            Location::Cell { cell, touching } => {
+                let beside = (0..3).filter(|i| touching >> i & 1 == 1);
+                let beside = beside.map(|i| triangulation.tds().neighbor(cell, i));
+                let cell = std::iter::once(cell).chain(beside).find(is_piece)?;
+                Some(linear(triangulation.tds().corners(cell).map(|vertex| self.point(vertex)), [x, y]))
+            }
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! The triangles that lines meet, triangulated anew together with the lines.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::arrangement::Arrangement;
+use crate::error::{Error, Result};
+use crate::geometry::{Crossing, Geometry, Terrain, height_along};
+use crate::tds::{CellId, VertexId};
+use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing};
+
+use super::super::tin::linear;
+use super::Segment;
+use super::met::met;
+use super::steps::{Arranged, is_breakline};
+
+/// The part of a triangulation that lines meet, in pieces that the lines do not cross.
+///
+/// It is a constrained triangulation of its own: of the corners of the triangles that are met, of the ends of the lines
+/// and of the points where lines and edges cross. Its constraints are the lines and the edges of these triangles, so
+/// that each of its faces is a piece of one triangle, or lies beside all of them.
+#[derive(Debug)]
+pub(super) struct Patch {
+    pub(super) triangulation: ConstrainedDelaunay<Terrain>,
+    /// The triangles that the patch replaces, in order of their numbers.
+    pub(super) replaced: Vec<CellId>,
+    /// For each vertex of the patch that of the surface at the same point, if it has one.
+    pub(super) vertices: Vec<Option<VertexId>>,
+    /// For each face of the patch the triangle that it is a piece of, if it is one.
+    pub(super) cells: Vec<Option<CellId>>,
+    /// The heights of the vertices: of those that lie in no triangle that is met, none.
+    pub(super) heights: Vec<f64>,
+    /// The edges of the triangles that are met, from the smaller vertex to the larger. The lines of the triangulation
+    /// from [`first_edge`](Self::first_edge) on.
+    pub(super) edges: Vec<[VertexId; 2]>,
+    first_edge: usize,
+    /// For each segment that was given its line in the triangulation, if it meets a triangle.
+    pub(super) segments: Vec<Option<LineId>>,
+}
+
+/// The corners of a triangle, counter-clockwise from the first in lexicographic order: what is computed from them does
+/// not depend on how the triangles are numbered.
+fn corners(base: &ConstrainedDelaunay<Terrain>, cell: CellId) -> [[f64; 3]; 3] {
+    let mut corners = base.tds().corners(cell).map(|corner| *base.point(corner));
+    let order = |p: &[f64; 3], q: &[f64; 3]| base.geometry().compare(p, q);
+    let first = (0..3).min_by(|&i, &j| order(&corners[i], &corners[j])).unwrap_or_default();
+    corners.rotate_left(first);
+    corners
+}
+
+/// A segment to arrange, as positions among the points.
+type Ends = [u32; 2];
+
+/// What is arranged: the edges of some triangles, and the segments that meet them.
+struct Drawing {
+    /// The corners of the triangles, in order, and then the other ends of segments.
+    points: Vec<[f64; 3]>,
+    corners: Vec<VertexId>,
+    /// The segments that meet triangles, and then the edges, each once.
+    lines: Vec<Ends>,
+    first_edge: usize,
+    edges: Vec<[VertexId; 2]>,
+    segments: Vec<Option<u32>>,
+}
+
+impl Drawing {
+    fn new(
+        base: &ConstrainedDelaunay<Terrain>,
+        cells: &FxHashSet<CellId>,
+        segments: &[Segment],
+        is_met: &[bool],
+    ) -> Self {
+        let tds = base.tds();
+        let mut corners: Vec<VertexId> = cells.iter().flat_map(|&cell| *tds.corners(cell)).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let mut points: Vec<[f64; 3]> = corners.iter().map(|&vertex| *base.point(vertex)).collect();
+        let key = |x: f64, y: f64| [x.to_bits(), y.to_bits()];
+        let mut at: FxHashMap<[u64; 2], u32> = points.iter().zip(0..).map(|(p, i)| (key(p[0], p[1]), i)).collect();
+        let mut number: FxHashMap<Ends, u32> = FxHashMap::default();
+        let mut lines: Vec<Ends> = Vec::new();
+        let mut drawn = vec![None; segments.len()];
+        for (i, segment) in segments.iter().enumerate().filter(|&(i, _)| is_met[i]) {
+            let [a, b] = segment.map(|[x, y]| {
+                *at.entry(key(x, y)).or_insert_with(|| {
+                    points.push([x, y, f64::NAN]);
+                    points.len() as u32 - 1
+                })
+            });
+            let next = lines.len() as u32;
+            drawn[i] = Some(*number.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                lines.push([a.min(b), a.max(b)]);
+                next
+            }));
+        }
+        let first_edge = lines.len();
+        let position = |vertex: VertexId| corners.partition_point(|&corner| corner < vertex) as u32;
+        let mut edges: Vec<[VertexId; 2]> = Vec::new();
+        for &cell in cells {
+            let [u, v, w] = *tds.corners(cell);
+            edges.extend([[u, v], [v, w], [w, u]].map(|[p, q]| [p.min(q), p.max(q)]));
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        lines.extend(edges.iter().map(|&[u, v]| [position(u), position(v)]));
+        Drawing { points, corners, lines, first_edge, edges, segments: drawn }
+    }
+
+    /// Arranges the lines: those to cut along are led through all that they come near, so that nothing is left of
+    /// spikes and gaps that are narrower than a rounding. An edge that is such a line, too, is arranged once. Returns
+    /// the segment of each line, too.
+    fn arrange(&self, step: f64) -> (Arrangement, Vec<u32>) {
+        let place = |i: u32| [self.points[i as usize][0], self.points[i as usize][1]];
+        let cut: FxHashMap<Ends, u32> = self.lines[..self.first_edge].iter().copied().zip(0..).collect();
+        let mut distinct = self.lines[..self.first_edge].to_vec();
+        let mut at: Vec<u32> = (0..self.first_edge as u32).collect();
+        for line in &self.lines[self.first_edge..] {
+            at.push(cut.get(line).copied().unwrap_or(distinct.len() as u32));
+            if at.last() == Some(&(distinct.len() as u32)) {
+                distinct.push(*line);
+            }
+        }
+        let arrangement = Arrangement::with_snapped(self.points.len(), place, &distinct, self.first_edge, step)
+            .settled(place, &distinct, step);
+        (arrangement, at)
+    }
+}
+
+impl Patch {
+    /// The patch of what some segments meet; `None` if they meet nothing.
+    ///
+    /// # Errors
+    /// If there are more points than can be numbered.
+    pub(super) fn new(base: &ConstrainedDelaunay<Terrain>, segments: &[Segment]) -> Result<Option<Self>> {
+        let mut cells: FxHashSet<CellId> = FxHashSet::default();
+        let mut is_met = vec![false; segments.len()];
+        for (of_segment, is_met) in met(base, segments.iter().copied()).zip(&mut is_met) {
+            *is_met = !of_segment.is_empty();
+            cells.extend(of_segment);
+        }
+        if cells.is_empty() {
+            return Ok(None);
+        }
+        // An edge that is divided belongs to the patch with the triangles on both of its sides.
+        loop {
+            let drawing = Drawing::new(base, &cells, segments, &is_met);
+            let patch = Self::triangulated(base, &cells, drawing)?;
+            let divided = (0..patch.edges.len()).filter(|&edge| patch.chain_of_edge(edge).len() > 2);
+            let beside = divided.map(|edge| patch.edges[edge]);
+            let beside = beside.flat_map(|[u, v]| [base.tds().edge(u, v), base.tds().edge(v, u)]);
+            let beside = beside.flatten().map(|(cell, _)| cell).filter(|&cell| !base.tds().is_infinite(cell));
+            let before = cells.len();
+            cells.extend(beside);
+            if cells.len() == before {
+                return Ok(Some(patch));
+            }
+        }
+    }
+
+    fn triangulated(base: &ConstrainedDelaunay<Terrain>, cells: &FxHashSet<CellId>, drawing: Drawing) -> Result<Self> {
+        let (arrangement, at) = drawing.arrange(base.geometry().step());
+        let Drawing { mut points, corners, lines, first_edge, edges, segments } = drawing;
+        points.extend(arrangement.added().iter().map(|&[x, y]| [x, y, f64::NAN]));
+        let chains = lines.iter().zip(at).map(|(&[a, b], at)| {
+            let between = arrangement.chain(at).iter().copied();
+            std::iter::once(a).chain(between).chain([b]).collect()
+        });
+        let chains: Vec<Vec<u32>> = chains.collect();
+        let unit = arrangement.unit();
+        let mut arranged = Arranged { base, corners: &corners, edges: &edges, unit, points, chains };
+        arranged.separate();
+        let Arranged { points, chains, .. } = arranged;
+        let (triangulation, numbers) =
+            ConstrainedDelaunay::from_lines(Terrain::default(), &points, &chains, OnCrossing::Split)
+                .map_err(|error| Error::limit(error.to_string()))?;
+        let mut vertices = vec![None; triangulation.tds().vertex_slots()];
+        for (corner, number) in corners.iter().zip(&numbers) {
+            vertices[number.index()] = Some(*corner);
+        }
+        let mut replaced: Vec<CellId> = cells.iter().copied().collect();
+        replaced.sort_unstable();
+        let mut patch = Patch {
+            replaced,
+            cells: Vec::new(),
+            heights: Vec::new(),
+            segments: segments.into_iter().map(|line| Some(LineId::new(line? as usize))).collect(),
+            triangulation,
+            vertices,
+            edges,
+            first_edge,
+        };
+        patch.cells = patch.find_cells(base, cells);
+        patch.heights = patch.find_heights(base);
+        Ok(patch)
+    }
+
+    /// How many lines of the triangulation are parts of lines to cut along: those before the edges.
+    pub(super) fn first_edge(&self) -> usize {
+        self.first_edge
+    }
+
+    /// The vertices of an edge of the surface in the patch, in order.
+    pub(super) fn chain_of_edge(&self, edge: usize) -> Vec<VertexId> {
+        self.triangulation.chain(LineId::new(self.first_edge + edge))
+    }
+
+    /// The edges of the surface that run along an edge of the patch, by their positions.
+    pub(super) fn edges_along(&self, [p, q]: [VertexId; 2]) -> impl Iterator<Item = usize> + '_ {
+        self.triangulation.lines_through(p, q).filter_map(|line| line.index().checked_sub(self.first_edge))
+    }
+
+    /// Whether a line to cut along runs along an edge of the patch.
+    pub(super) fn is_cut_along(&self, [p, q]: [VertexId; 2]) -> bool {
+        self.triangulation.lines_through(p, q).next().is_some_and(|line| line.index() < self.first_edge)
+    }
+
+    /// For each face the triangle that it is a piece of. Beside the chain of an edge that is known from the edge; from
+    /// there it spreads over all that is no such chain.
+    fn find_cells(&self, base: &ConstrainedDelaunay<Terrain>, cells: &FxHashSet<CellId>) -> Vec<Option<CellId>> {
+        let tds = self.triangulation.tds();
+        // On the left of each edge of the patch; twice where triangles have collapsed onto it, which are then on its
+        // other side, too.
+        let mut left: Vec<([VertexId; 2], CellId)> = Vec::new();
+        for (edge, &[u, v]) in self.edges.iter().enumerate() {
+            let sides = [base.tds().edge(u, v), base.tds().edge(v, u)];
+            for pair in self.chain_of_edge(edge).windows(2) {
+                let both = [[pair[0], pair[1]], [pair[1], pair[0]]];
+                left.extend(both.into_iter().zip(sides).filter_map(|(edge, side)| Some((edge, side?.0))));
+            }
+        }
+        left.sort_unstable();
+        let all_left = |[p, q]: [VertexId; 2]| {
+            let from = left.partition_point(|(edge, _)| *edge < [p, q]);
+            let count = left[from..].partition_point(|(edge, _)| *edge == [p, q]);
+            &left[from..from + count]
+        };
+        let mut found = vec![None; tds.cell_slots()];
+        let mut is_known = vec![false; tds.cell_slots()];
+        let mut ahead = Vec::new();
+        for [p, q] in left.chunk_by(|a, b| a.0 == b.0).map(|same| same[0].0) {
+            let others = all_left([q, p]);
+            let standing = all_left([p, q]).iter().find(|(_, cell)| others.iter().all(|(_, other)| other != cell));
+            let (Some((_, cell)), Some((face, _))) = (standing, tds.edge(p, q)) else { continue };
+            if !std::mem::replace(&mut is_known[face.index()], true) {
+                found[face.index()] = Some(*cell).filter(|cell| cells.contains(cell));
+                ahead.push(face);
+            }
+        }
+        while let Some(face) = ahead.pop() {
+            for i in 0..3 {
+                let beside = tds.neighbor(face, i);
+                let is_border = || self.edges_along(tds.edge_ends(face, i)).next().is_some();
+                if is_known[beside.index()] || self.triangulation.is_constrained(face, i) && is_border() {
+                    continue;
+                }
+                is_known[beside.index()] = true;
+                found[beside.index()] = found[face.index()];
+                ahead.push(beside);
+            }
+        }
+        let is_face = |face: usize| !tds.is_infinite(CellId::new(face));
+        (0..found.len()).map(|face| found[face].filter(|_| is_face(face))).collect()
+    }
+
+    /// The heights of the vertices: those of the surface have theirs, on an edge it is that of the edge, and in a
+    /// triangle that of its plane. Where several edges come so near that they share a vertex, breaklines go first, and
+    /// of equal ones the lowest.
+    fn find_heights(&self, base: &ConstrainedDelaunay<Terrain>) -> Vec<f64> {
+        let slots = self.triangulation.tds().vertex_slots();
+        let mut on_edges: Vec<Option<(bool, f64)>> = vec![None; slots];
+        for (edge, &[u, v]) in self.edges.iter().enumerate() {
+            let is_plain = !is_breakline(base, [u, v]);
+            let chain = self.chain_of_edge(edge);
+            for &vertex in chain.iter().skip(1).rev().skip(1) {
+                let [x, y, _] = *self.triangulation.point(vertex);
+                let here = (is_plain, height_along(*base.point(u), *base.point(v), [x, y]));
+                let known = on_edges[vertex.index()].get_or_insert(here);
+                if here < *known {
+                    *known = here;
+                }
+            }
+        }
+        let height = |slot: usize| {
+            let vertex = VertexId::new(slot);
+            if let Some(corner) = self.vertices[slot] {
+                return base.point(corner)[2];
+            }
+            if let Some((_, height)) = on_edges[slot] {
+                return height;
+            }
+            if !self.triangulation.tds().is_vertex(vertex) {
+                return f64::NAN;
+            }
+            let within = self.triangulation.tds().around(vertex).find_map(|face| self.cells[face.index()]);
+            let [x, y, _] = *self.triangulation.point(vertex);
+            within.map_or(f64::NAN, |cell| linear(corners(base, cell), [x, y]))
+        };
+        (0..slots).map(height).collect()
+    }
+}

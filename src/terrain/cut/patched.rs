@@ -1,0 +1,271 @@
+//! A triangulation with a patch in place of some of its triangles.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::data::EdgeKind;
+use crate::geometry::Terrain;
+use crate::tds::{CellId, VertexId};
+use crate::triangulation::ConstrainedDelaunay;
+
+use super::patch::Patch;
+use super::regions::Faces;
+use super::steps::is_breakline;
+use super::{Domain, Segment, Side};
+
+/// The finite faces of a triangulation, of which some are replaced by those of a patch.
+///
+/// Faces are numbered: first those of the triangulation, then those of the patch.
+pub(super) struct Patched<'a> {
+    base: &'a ConstrainedDelaunay<Terrain>,
+    patch: &'a Patch,
+    /// For each triangle, whether the patch replaces it.
+    is_replaced: Vec<bool>,
+    /// For each line of the patch to cut along the domains that it bounds: as often as it was given for them.
+    domains: Vec<Vec<Domain>>,
+    /// Sides between the patch and what is not replaced, from either.
+    border: FxHashMap<Side, Side>,
+}
+
+/// What is left of a patched triangulation.
+#[derive(Debug)]
+pub(super) struct Remains {
+    /// For each face of the patch, whether it is part of the surface as a piece.
+    pub(super) is_piece: Vec<bool>,
+    /// What the sides of the pieces are.
+    pub(super) kinds: Vec<[EdgeKind; 3]>,
+    /// Across sides between a piece and a whole triangle, from either.
+    pub(super) beside: FxHashMap<Side, u32>,
+    /// Sides of triangles along which a line runs.
+    pub(super) clipped: FxHashSet<Side>,
+    /// How many triangles are in pieces.
+    pub(super) cut: usize,
+}
+
+impl<'a> Patched<'a> {
+    pub(super) fn new(base: &'a ConstrainedDelaunay<Terrain>, patch: &'a Patch, curves: &[(Domain, Segment)]) -> Self {
+        let mut is_replaced = vec![false; base.tds().cell_slots()];
+        patch.replaced.iter().for_each(|cell| is_replaced[cell.index()] = true);
+        let mut domains = vec![Vec::new(); patch.first_edge()];
+        for (line, (domain, _)) in patch.segments.iter().zip(curves) {
+            if let Some(line) = line {
+                domains[line.index()].push(*domain);
+            }
+        }
+        let mut patched = Patched { base, patch, is_replaced, domains, border: FxHashMap::default() };
+        for edge in 0..patch.edges.len() {
+            let [u, v] = patch.edges[edge];
+            let (Some(left), Some(right)) = (base.tds().edge(u, v), base.tds().edge(v, u)) else { continue };
+            if [left, right].iter().any(|(cell, _)| base.tds().is_infinite(*cell)) {
+                continue;
+            }
+            let [p, q] = patch.chain_of_edge(edge)[..] else { continue };
+            for ((cell, i), [p, q]) in [left, right].into_iter().zip([[q, p], [p, q]]) {
+                if let Some((face, k)) =
+                    patch.triangulation.tds().edge(p, q).filter(|_| !patched.is_replaced[cell.index()])
+                {
+                    let [outer, inner] = [(cell.index() as u32, i), (patched.number(face), k)];
+                    patched.border.extend([(outer, inner), (inner, outer)]);
+                }
+            }
+        }
+        patched
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.first_piece() + self.patch.cells.len()
+    }
+
+    fn first_piece(&self) -> usize {
+        self.base.tds().cell_slots()
+    }
+
+    fn number(&self, face: CellId) -> u32 {
+        (self.first_piece() + face.index()) as u32
+    }
+
+    /// A face of the patch by its number, or `None` if it is one of the triangulation.
+    fn piece(&self, face: u32) -> Option<CellId> {
+        (face as usize).checked_sub(self.first_piece()).map(CellId::new)
+    }
+
+    /// Any face.
+    pub(super) fn first(&self) -> Option<u32> {
+        let whole = self.base.finite_cells().find(|cell| !self.is_replaced[cell.index()]);
+        let piece = || self.patch.cells.iter().position(Option::is_some).map(|at| self.number(CellId::new(at)));
+        whole.map(|cell| cell.index() as u32).or_else(piece)
+    }
+
+    /// The corners of a face, counter-clockwise.
+    pub(super) fn corners(&self, face: u32) -> [[f64; 3]; 3] {
+        match self.piece(face) {
+            Some(piece) => self.patch.triangulation.tds().corners(piece).map(|v| *self.patch.triangulation.point(v)),
+            None => self.base.tds().corners(CellId::new(face as usize)).map(|v| *self.base.point(v)),
+        }
+    }
+
+    /// The curves as they run between the faces.
+    pub(super) fn drawn(&self, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
+        let mut drawn = Vec::with_capacity(curves.len());
+        for (line, &(domain, segment)) in self.patch.segments.iter().zip(curves) {
+            let Some(line) = line else {
+                drawn.push((domain, segment));
+                continue;
+            };
+            let place = |v: VertexId| {
+                let [x, y, _] = *self.patch.triangulation.point(v);
+                [x, y]
+            };
+            let chain = self.patch.triangulation.chain(*line);
+            drawn.extend(chain.windows(2).map(|pair| (domain, [place(pair[0]), place(pair[1])])));
+        }
+        drawn
+    }
+
+    /// What is left of the triangles `inside`, given which faces are kept. Of these, those that stay whole remain
+    /// `inside`.
+    pub(super) fn remains(&self, inside: &mut [bool], kept: &[bool]) -> Remains {
+        let was_inside: Vec<(CellId, bool)> =
+            self.patch.replaced.iter().map(|&cell| (cell, inside[cell.index()])).collect();
+        let whole = self.whole(inside, kept);
+        for (cell, inside) in inside.iter_mut().enumerate() {
+            *inside &= if self.is_replaced[cell] { whole.contains(&CellId::new(cell)) } else { kept[cell] };
+        }
+        let in_pieces: FxHashSet<CellId> =
+            was_inside.into_iter().filter(|(cell, was)| *was && !whole.contains(cell)).map(|(cell, _)| cell).collect();
+        let is_piece: Vec<bool> = (0..self.patch.cells.len())
+            .map(|face| {
+                kept[self.first_piece() + face] && self.patch.cells[face].is_some_and(|cell| in_pieces.contains(&cell))
+            })
+            .collect();
+        let mut remains = Remains {
+            kinds: vec![[EdgeKind::Plain; 3]; is_piece.len()],
+            beside: FxHashMap::default(),
+            clipped: self.clipped(),
+            cut: 0,
+            is_piece,
+        };
+        let mut cut: Vec<CellId> = Vec::new();
+        for face in (0..remains.is_piece.len()).filter(|&face| remains.is_piece[face]).map(CellId::new) {
+            cut.extend(self.patch.cells[face.index()]);
+            for i in 0..3 {
+                let beyond = self.patch.triangulation.tds().neighbor(face, i);
+                let whole = self.whole_beside(face, i, beyond).filter(|(cell, _)| inside[*cell as usize]);
+                if let Some(side) = whole {
+                    remains.beside.extend([((self.number(face), i), side.0), (side, self.number(face))]);
+                }
+                let is_rim = whole.is_none() && !remains.is_piece[beyond.index()];
+                remains.kinds[face.index()][i] = self.kind(face, i, is_rim);
+            }
+        }
+        cut.sort_unstable();
+        cut.dedup();
+        remains.cut = cut.len();
+        remains
+    }
+
+    /// The replaced triangles that stay whole: those of which all is kept, if what lies beside them needs none of the
+    /// vertices that their sides have in the patch.
+    fn whole(&self, inside: &[bool], kept: &[bool]) -> FxHashSet<CellId> {
+        let mut faces: FxHashMap<CellId, [usize; 2]> = FxHashMap::default();
+        for (face, cell) in self.patch.cells.iter().enumerate() {
+            if let Some(cell) = cell {
+                let [all, left] = faces.entry(*cell).or_default();
+                *all += 1;
+                *left += usize::from(kept[self.first_piece() + face]);
+            }
+        }
+        let is_whole = |cell: &CellId| inside[cell.index()] && faces.get(cell).is_some_and(|[all, left]| all == left);
+        let mut whole: FxHashSet<CellId> = self.patch.replaced.iter().copied().filter(is_whole).collect();
+        // Of a triangle that has collapsed, the neighbor's neighbor is not known here.
+        let is_gone = |cell: CellId| {
+            self.base.tds().is_infinite(cell)
+                || !inside[cell.index()]
+                || faces.get(&cell).is_some_and(|[_, left]| *left == 0)
+        };
+        let mut divided: FxHashMap<CellId, Vec<CellId>> = FxHashMap::default();
+        for edge in (0..self.patch.edges.len()).filter(|&edge| self.patch.chain_of_edge(edge).len() > 2) {
+            let [u, v] = self.patch.edges[edge];
+            if let (Some((left, _)), Some((right, _))) = (self.base.tds().edge(u, v), self.base.tds().edge(v, u)) {
+                divided.entry(left).or_default().push(right);
+                divided.entry(right).or_default().push(left);
+            }
+        }
+        let mut unsure: Vec<CellId> = whole.iter().copied().collect();
+        while let Some(cell) = unsure.pop() {
+            let beside = divided.get(&cell).map(Vec::as_slice).unwrap_or_default();
+            let fits = |beside: &CellId| whole.contains(beside) || is_gone(*beside);
+            if !beside.iter().all(fits) && whole.remove(&cell) {
+                unsure.extend(beside.iter().filter(|beside| whole.contains(beside)));
+            }
+        }
+        whole
+    }
+
+    /// The sides of triangles along which a line runs.
+    fn clipped(&self) -> FxHashSet<Side> {
+        let mut clipped = FxHashSet::default();
+        for (edge, &[u, v]) in self.patch.edges.iter().enumerate() {
+            let chain = self.patch.chain_of_edge(edge);
+            if chain.windows(2).any(|pair| self.patch.is_cut_along([pair[0], pair[1]])) {
+                let sides = [self.base.tds().edge(u, v), self.base.tds().edge(v, u)];
+                clipped.extend(sides.into_iter().flatten().map(|(cell, i)| (cell.index() as u32, i)));
+            }
+        }
+        clipped
+    }
+
+    /// The triangle that lies beyond a side of a face of the patch, and its side, if these have both ends in common.
+    fn whole_beside(&self, face: CellId, i: usize, beyond: CellId) -> Option<Side> {
+        let Some(cell) = self.patch.cells[beyond.index()] else {
+            return self.border.get(&(self.number(face), i)).copied();
+        };
+        let ends = self.patch.triangulation.tds().edge_ends(face, i).map(|v| self.patch.vertices[v.index()]);
+        let sides = 0..3;
+        let is_same = |&k: &usize| {
+            let [u, v] = self.base.tds().edge_ends(cell, k);
+            ends == [Some(v), Some(u)]
+        };
+        sides.into_iter().find(is_same).map(|k| (cell.index() as u32, k))
+    }
+
+    fn kind(&self, face: CellId, i: usize, is_rim: bool) -> EdgeKind {
+        if self.patch.triangulation.is_constrained(face, i) {
+            let ends = self.patch.triangulation.tds().edge_ends(face, i);
+            if self.patch.edges_along(ends).any(|edge| is_breakline(self.base, self.patch.edges[edge])) {
+                return EdgeKind::Breakline;
+            }
+            if is_rim && self.patch.is_cut_along(ends) {
+                return EdgeKind::Clip;
+            }
+        }
+        if is_rim { EdgeKind::Rim } else { EdgeKind::Plain }
+    }
+}
+
+impl Faces for Patched<'_> {
+    fn beyond(&self, face: u32, side: usize, domains: &mut Vec<Domain>) -> Option<u32> {
+        let tds = self.patch.triangulation.tds();
+        let across_border = self.border.get(&(face, side)).copied();
+        // The side of a piece, on whichever side of it, and what is beyond.
+        let (piece, i, beyond) = match (self.piece(face), across_border) {
+            (Some(piece), Some((beyond, _))) => (piece, side, beyond),
+            (Some(piece), None) => {
+                let beyond = tds.neighbor(piece, side);
+                self.patch.cells[beyond.index()]?;
+                (piece, side, self.number(beyond))
+            }
+            (None, Some((beyond, i))) => (self.piece(beyond)?, i, beyond),
+            (None, None) => {
+                let beyond = self.base.tds().neighbor(CellId::new(face as usize), side);
+                let is_there = !self.base.tds().is_infinite(beyond) && !self.is_replaced[beyond.index()];
+                return is_there.then_some(beyond.index() as u32);
+            }
+        };
+        if self.patch.triangulation.is_constrained(piece, i) {
+            let [p, q] = tds.edge_ends(piece, i);
+            let lines = self.patch.triangulation.lines_through(p, q);
+            lines.filter_map(|line| self.domains.get(line.index())).for_each(|of_line| domains.extend(of_line));
+        }
+        Some(beyond)
+    }
+}

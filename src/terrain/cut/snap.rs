@@ -1,0 +1,65 @@
+//! Lines to cut along, snapped to each other.
+
+use rustc_hash::FxHashMap;
+
+use crate::arrangement::Arrangement;
+use crate::geometry::{Crossing, Terrain};
+use crate::triangulation::ConstrainedDelaunay;
+
+use super::met::met;
+use super::{Domain, Segment};
+
+/// Closed curves whose segments have common ends only, or both ends in common: they are led through the ends of others
+/// and the crossings that they come near. So a side that runs along another one, or was meant to, is the same from then
+/// on, and is rounded alike whatever it crosses. No segment moves by more than half a unit.
+///
+/// Segments that meet no triangle stay as they are.
+///
+/// # Complexity
+/// O(n log n + k) for n segments that meet triangles and k pairs whose boxes overlap.
+pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut at: FxHashMap<[u64; 2], u32> = FxHashMap::default();
+    let mut number = |point: [f64; 2]| {
+        *at.entry(point.map(f64::to_bits)).or_insert_with(|| {
+            points.push(point);
+            points.len() as u32 - 1
+        })
+    };
+    let mut distinct: FxHashMap<[u32; 2], usize> = FxHashMap::default();
+    let mut segments: Vec<[u32; 2]> = Vec::new();
+    let mut drawn: Vec<Option<([u32; 2], usize)>> = Vec::with_capacity(curves.len());
+    for ((_, segment), cells) in curves.iter().zip(met(base, curves.iter().map(|(_, segment)| *segment))) {
+        let ends = (!cells.is_empty()).then(|| segment.map(&mut number));
+        drawn.push(ends.map(|[a, b]| {
+            let next = segments.len();
+            let segment = *distinct.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                segments.push([a.min(b), a.max(b)]);
+                next
+            });
+            ([a, b], segment)
+        }));
+    }
+    let step = base.geometry().step();
+    let place = |i: u32| points[i as usize];
+    let arrangement =
+        Arrangement::with_snapped(points.len(), place, &segments, segments.len(), step).settled(place, &segments, step);
+    let place = |site: u32| match (site as usize).checked_sub(points.len()) {
+        Some(added) => arrangement.added()[added],
+        None => points[site as usize],
+    };
+    let mut snapped = Vec::with_capacity(curves.len());
+    for (&(domain, segment), drawn) in curves.iter().zip(drawn) {
+        let Some(([a, b], at)) = drawn else {
+            snapped.push((domain, segment));
+            continue;
+        };
+        let mut chain: Vec<u32> = arrangement.chain(at as u32).to_vec();
+        if a > b {
+            chain.reverse();
+        }
+        let chain: Vec<u32> = std::iter::once(a).chain(chain).chain([b]).collect();
+        snapped.extend(chain.windows(2).map(|pair| (domain, [place(pair[0]), place(pair[1])])));
+    }
+    snapped
+}

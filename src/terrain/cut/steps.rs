@@ -1,0 +1,231 @@
+//! Where the surface steps from one height to another within a rounding.
+//!
+//! A point beside a breakline by less than doubles resolve leaves a triangle between them that is as thin, and as steep
+//! as the heights differ. Where a line crosses it, its sides come to one vertex, which can have the height of one of
+//! them only; the triangle beyond the other side would be tilted as a whole. There, that side gets a vertex of its own,
+//! a unit further out:
+//!
+//! ```text
+//!          |                          |
+//!   -------V------- side, breakline   |---W--- side
+//!          |                   -------V------- breakline
+//!          | line                     |
+//! ```
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::geometry::{Geometry, Terrain, height_along};
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId};
+use crate::triangulation::ConstrainedDelaunay;
+
+/// Lines to cut along and edges of triangles as they were arranged.
+pub(super) struct Arranged<'a> {
+    pub(super) base: &'a ConstrainedDelaunay<Terrain>,
+    /// Vertices of the triangles, which are the first points.
+    pub(super) corners: &'a [VertexId],
+    /// The edges of the triangles, from the smaller vertex to the larger, sorted.
+    pub(super) edges: &'a [[VertexId; 2]],
+    /// How far one center of a pixel is from the next.
+    pub(super) unit: [f64; 2],
+    pub(super) points: Vec<[f64; 3]>,
+    /// The points of each line to cut along, and then those of each edge, in order.
+    pub(super) chains: Vec<Vec<u32>>,
+}
+
+/// A side that gets a vertex of its own.
+struct Step {
+    edge: usize,
+    vertex: u32,
+}
+
+impl Arranged<'_> {
+    /// Gives sides of steep triangles vertices of their own where they share one with another height.
+    ///
+    /// # Complexity
+    /// Linear in the length of all chains, but for sorting.
+    pub(super) fn separate(&mut self) {
+        let first_edge = self.chains.len() - self.edges.len();
+        let mut edges_at: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
+        for (edge, chain) in self.chains[first_edge..].iter().enumerate().filter(|(_, chain)| chain.len() > 2) {
+            chain[1..chain.len() - 1].iter().for_each(|&site| edges_at.entry(site).or_default().push(edge));
+        }
+        let mut shared: Vec<(u32, Vec<usize>)> = edges_at.into_iter().collect();
+        shared.retain(|(site, edges)| edges.len() > usize::from(self.corner(*site).is_none()));
+        shared.sort_unstable();
+        let mut taken: FxHashSet<[u64; 2]> = self.points.iter().map(|p| [p[0].to_bits(), p[1].to_bits()]).collect();
+        let mut steps: FxHashMap<u32, Vec<Step>> = FxHashMap::default();
+        for (site, edges) in shared {
+            let here = self.steps_at(site, &edges, first_edge, &mut taken);
+            if !here.is_empty() {
+                steps.insert(site, here);
+            }
+        }
+        if steps.is_empty() {
+            return;
+        }
+        for line in 0..first_edge {
+            self.chains[line] = self.through_steps(&self.chains[line], &steps, first_edge);
+        }
+        for (site, here) in steps {
+            for Step { edge, vertex } in here {
+                let chain = &mut self.chains[first_edge + edge];
+                chain.iter_mut().filter(|at| **at == site).for_each(|at| *at = vertex);
+            }
+        }
+    }
+
+    fn corner(&self, site: u32) -> Option<VertexId> {
+        self.corners.get(site as usize).copied()
+    }
+
+    fn height_on(&self, edge: usize, site: u32) -> f64 {
+        let [u, v] = self.edges[edge].map(|vertex| *self.base.point(vertex));
+        let [x, y, _] = self.points[site as usize];
+        height_along(u, v, [x, y])
+    }
+
+    /// The edges at a point that get a vertex of their own, those nearer to the point's own height first.
+    fn steps_at(
+        &mut self,
+        site: u32,
+        edges: &[usize],
+        first_edge: usize,
+        taken: &mut FxHashSet<[u64; 2]>,
+    ) -> Vec<Step> {
+        let tds = self.base.tds();
+        // From the triangles at the vertex, or on both sides of the edge, that the point's height is that of.
+        let (start, height, own) = match self.corner(site) {
+            Some(vertex) => (tds.around(vertex).collect::<Vec<CellId>>(), self.base.point(vertex)[2], None),
+            None => {
+                let Some((_, height, own)) = edges
+                    .iter()
+                    .map(|&edge| (!is_breakline(self.base, self.edges[edge]), self.height_on(edge, site), edge))
+                    .min_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)))
+                else {
+                    return Vec::new();
+                };
+                let [u, v] = self.edges[own];
+                let sides = [tds.edge(u, v), tds.edge(v, u)];
+                (sides.into_iter().flatten().map(|(cell, _)| cell).collect(), height, Some(own))
+            }
+        };
+        let mut steps: Vec<Step> = Vec::new();
+        let mut seen: FxHashSet<CellId> = start.iter().copied().collect();
+        let mut ahead: Vec<(CellId, u32, f64, u32)> = start.into_iter().map(|cell| (cell, site, height, 0)).collect();
+        while let Some((cell, vertex, height, distance)) = ahead.pop() {
+            if tds.is_infinite(cell) {
+                continue;
+            }
+            for i in 0..3 {
+                let [u, v] = tds.edge_ends(cell, i);
+                let edge = self.edges.binary_search(&[u.min(v), u.max(v)]);
+                let Some(edge) = edge.ok().filter(|edge| edges.contains(edge) && Some(*edge) != own) else { continue };
+                let beyond = tds.neighbor(cell, i);
+                if !seen.insert(beyond) {
+                    continue;
+                }
+                let z = self.height_on(edge, site);
+                let is_level = tds.is_infinite(beyond) || (z - height).abs() <= self.tolerance(beyond);
+                let moved = if is_level { None } else { self.beside(site, [u, v], distance + 1, taken) };
+                let (vertex, height, distance) = match moved {
+                    Some(vertex) => (vertex, z, distance + 1),
+                    None => (vertex, height, distance),
+                };
+                if vertex != site {
+                    steps.push(Step { edge, vertex });
+                }
+                ahead.push((beyond, vertex, height, distance));
+            }
+        }
+        // What runs along such an edge for a while shares its steps: a chain of one point is none.
+        steps.retain(|step| self.chains[first_edge + step.edge].len() > 2);
+        steps
+    }
+
+    /// What a height may be off in a triangle, if its vertices are a unit off.
+    fn tolerance(&self, cell: CellId) -> f64 {
+        let [a, b, c] = self.base.tds().corners(cell).map(|vertex| *self.base.point(vertex));
+        let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
+        let area = u[0] * v[1] - u[1] * v[0];
+        let slope = ((u[1] * v[2] - u[2] * v[1]) / area).hypot((u[2] * v[0] - u[0] * v[2]) / area);
+        let highest = a[2].abs().max(b[2].abs()).max(c[2].abs());
+        self.unit[0].max(self.unit[1]) * slope + 1e-12 * highest
+    }
+
+    /// A new point some units from another one, to the right of the direction from one vertex to another.
+    fn beside(
+        &mut self,
+        site: u32,
+        [from, to]: [VertexId; 2],
+        distance: u32,
+        taken: &mut FxHashSet<[u64; 2]>,
+    ) -> Option<u32> {
+        let [x, y, _] = self.points[site as usize];
+        let [p, q] = [from, to].map(|vertex| *self.base.point(vertex));
+        let right = [q[1] - p[1], p[0] - q[0]];
+        let longer = right[0].abs().max(right[1].abs());
+        let [dx, dy] = [0, 1].map(|k| (right[k] / longer * f64::from(distance)).round() * self.unit[k]);
+        let moved = [x + dx + 0.0, y + dy + 0.0, f64::NAN];
+        let is_new = self.base.geometry().admits(&moved) && taken.insert([moved[0].to_bits(), moved[1].to_bits()]);
+        is_new.then(|| {
+            self.points.push(moved);
+            self.points.len() as u32 - 1
+        })
+    }
+
+    /// A line's chain with the vertices that it passes on its way to and from steps.
+    fn through_steps(&self, chain: &[u32], steps: &FxHashMap<u32, Vec<Step>>, first_edge: usize) -> Vec<u32> {
+        let mut through = Vec::with_capacity(chain.len());
+        for (at, &site) in chain.iter().enumerate() {
+            let none = Vec::new();
+            let here = steps.get(&site).unwrap_or(&none);
+            // From the innermost to the outermost that lies between the point and what is next to it on the line.
+            let passed = |beside: u32| {
+                let mut passed: Vec<u32> = Vec::new();
+                for step in here.iter().filter(|step| self.is_beyond(step, site, beside, first_edge)) {
+                    if passed.last() != Some(&step.vertex) {
+                        passed.push(step.vertex);
+                    }
+                }
+                passed
+            };
+            if let Some(&before) = at.checked_sub(1).and_then(|before| chain.get(before)) {
+                through.extend(passed(before).into_iter().rev());
+            }
+            through.push(site);
+            if let Some(&after) = chain.get(at + 1) {
+                through.extend(passed(after));
+            }
+        }
+        through
+    }
+
+    /// Whether a point lies on that side of an edge at a site on which the step's vertex does.
+    fn is_beyond(&self, step: &Step, site: u32, beside: u32, first_edge: usize) -> bool {
+        let chain = &self.chains[first_edge + step.edge];
+        let Some(at) = chain.iter().position(|&other| other == site) else { return false };
+        let (Some(&before), Some(&after)) = (at.checked_sub(1).and_then(|at| chain.get(at)), chain.get(at + 1)) else {
+            return false;
+        };
+        let side = |p: u32, q: u32, r: u32| {
+            let [p, q, r] = [p, q, r].map(|site| self.points[site as usize]);
+            self.base.geometry().orientation([&p, &q, &r])
+        };
+        // On the left of the way from one neighbor to the next, or not; on it counts as neither.
+        let is_left = |r: u32| {
+            let sides = [side(before, site, r), side(site, after, r)];
+            match side(before, site, after) {
+                Sign::Negative => sides.contains(&Sign::Positive),
+                _ => sides == [Sign::Positive; 2],
+            }
+        };
+        let is_along = beside == before || beside == after;
+        !is_along && is_left(beside) == is_left(step.vertex)
+    }
+}
+
+/// Whether an edge of a triangulation is a constraint.
+pub(super) fn is_breakline(base: &ConstrainedDelaunay<Terrain>, [u, v]: [VertexId; 2]) -> bool {
+    base.tds().edge(u, v).is_some_and(|(cell, i)| base.is_constrained(cell, i))
+}

@@ -1,0 +1,236 @@
+//! Whether a triangulation of some of the points is that of all of them, within a box.
+//!
+//! A triangle of the points that were read is one of all points if no other point lies in its circumdisk, as far as the
+//! disk can be seen from the triangle past constraints. Points that were not read lie outside of what was read; so
+//! nothing has to be known of them but the box that they lie in. Arithmetic is rounded, and disks are made larger than
+//! all that rounding can hide: a triangle that is called certain is.
+
+use crate::data::Bounds;
+use crate::geometry::{Geometry, Terrain};
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId};
+use crate::triangulation::ConstrainedDelaunay;
+
+/// What is known of points of which not all were read, in plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// All points in this box were read, those on its border included.
+    pub read: Bounds,
+    /// All points lie in this box, read or not.
+    pub all: Bounds,
+}
+
+/// A box in plan: the smallest and the largest corner.
+type Box2 = [[f64; 2]; 2];
+
+impl Window {
+    /// The boxes that may hold points that were not read. They overlap at the corners.
+    fn unread(&self) -> Vec<Box2> {
+        let Window { read, all } = self;
+        let mut unread = Vec::new();
+        for axis in 0..2 {
+            let whole = [[all.min[0], all.min[1]], [all.max[0], all.max[1]]];
+            let (mut below, mut above) = (whole, whole);
+            below[1][axis] = read.min[axis].next_down();
+            above[0][axis] = read.max[axis].next_up();
+            unread.extend([below, above].into_iter().filter(|[min, max]| min[axis] <= max[axis]));
+        }
+        unread
+    }
+}
+
+/// How many triangles that meet a box, or were cut along it, may be others once all points are read; those count, too, by
+/// which triangles in the box hang on the rim over unconstrained edges longer than `max_edge`, and places at which the
+/// hull may be another.
+///
+/// # Complexity
+/// Linear in the number of triangles, and for those that are near the border of what was read, the number of triangles
+/// that their circles meet.
+pub(super) fn uncertain(
+    triangulation: &ConstrainedDelaunay<Terrain>,
+    bounds: &Bounds,
+    window: &Window,
+    max_edge: Option<f64>,
+    cut: &[CellId],
+) -> usize {
+    let unread = window.unread();
+    if unread.is_empty() {
+        return 0;
+    }
+    let judge = Judge { triangulation, unread };
+    let tds = triangulation.tds();
+    let within: Box2 = [[bounds.min[0], bounds.min[1]], [bounds.max[0], bounds.max[1]]];
+    let mut is_seen = vec![false; tds.cell_slots()];
+    let mut ahead: Vec<CellId> = tds
+        .cells()
+        .filter(|&cell| match judge.hull_edge(cell) {
+            None => overlap(judge.box_of(cell), within).is_some(),
+            // What comes beyond an edge along the box counts: it is met by a cut there.
+            Some(edge) => judge.is_beyond(edge, within, Sign::Zero),
+        })
+        .collect();
+    ahead.extend(cut);
+    let beside = cut.iter().flat_map(|&cell| tds.cell_neighbors(cell));
+    ahead.extend(beside.filter(|&&cell| tds.is_infinite(cell)));
+    ahead.retain(|cell| !std::mem::replace(&mut is_seen[cell.index()], true));
+    let mut uncertain = 0;
+    while let Some(cell) = ahead.pop() {
+        if let Some(edge) = judge.hull_edge(cell) {
+            uncertain += usize::from(judge.unread.iter().any(|&unread| judge.is_beyond(edge, unread, Sign::Positive)));
+            continue;
+        }
+        uncertain += usize::from(!judge.is_certain(cell));
+        for i in (0..3).filter(|&i| !triangulation.is_constrained(cell, i)) {
+            let [p, q] = judge.ends(cell, i);
+            let beyond = tds.neighbor(cell, i);
+            if max_edge.is_some_and(|limit| (p[0] - q[0]).hypot(p[1] - q[1]) > limit)
+                && !std::mem::replace(&mut is_seen[beyond.index()], true)
+            {
+                ahead.push(beyond);
+            }
+        }
+    }
+    uncertain
+}
+
+struct Judge<'a> {
+    triangulation: &'a ConstrainedDelaunay<Terrain>,
+    unread: Vec<Box2>,
+}
+
+impl Judge<'_> {
+    fn place(&self, vertex: VertexId) -> [f64; 2] {
+        let [x, y, _] = *self.triangulation.point(vertex);
+        [x, y]
+    }
+
+    fn ends(&self, cell: CellId, i: usize) -> [[f64; 2]; 2] {
+        self.triangulation.tds().edge_ends(cell, i).map(|vertex| self.place(vertex))
+    }
+
+    fn corners(&self, cell: CellId) -> [[f64; 2]; 3] {
+        self.triangulation.tds().corners(cell).map(|vertex| self.place(vertex))
+    }
+
+    fn box_of(&self, cell: CellId) -> Box2 {
+        let [a, b, c] = self.corners(cell);
+        [[0, 1].map(|k| a[k].min(b[k]).min(c[k])), [0, 1].map(|k| a[k].max(b[k]).max(c[k]))]
+    }
+
+    /// Of an infinite cell its edge on the hull, with the outside on the left.
+    fn hull_edge(&self, cell: CellId) -> Option<[[f64; 2]; 2]> {
+        let infinite = self.triangulation.tds().index_of(cell, VertexId::INFINITE)?;
+        Some(self.ends(cell, infinite))
+    }
+
+    /// Whether a box reaches beyond an edge of the hull, or to its line, if `least` is zero.
+    fn is_beyond(&self, [p, q]: [[f64; 2]; 2], [min, max]: Box2, least: Sign) -> bool {
+        let space = |[x, y]: [f64; 2]| [x, y, 0.0];
+        let corners = [min, [max[0], min[1]], max, [min[0], max[1]]].map(space);
+        let geometry = self.triangulation.geometry();
+        corners
+            .iter()
+            .any(|corner| !geometry.admits(corner) || geometry.orientation([&space(p), &space(q), corner]) >= least)
+    }
+
+    /// Whether the longest side of a triangle that is hardly more than a line is a constraint. Its disk is nearly a half
+    /// plane then, all beyond that side but a cap that is not wider than the triangle.
+    fn is_hidden(&self, cell: CellId) -> bool {
+        let length = |&i: &usize| {
+            let [p, q] = self.ends(cell, i);
+            (p[0] - q[0]).hypot(p[1] - q[1])
+        };
+        let longest = (0..3).max_by(|i, j| length(i).total_cmp(&length(j)));
+        let [min, max] = self.box_of(cell);
+        let width = THIN * (0..2).map(|k| min[k].abs().max(max[k].abs())).fold(0.0, f64::max);
+        let around = [min.map(|c| c - width), max.map(|c| c + width)];
+        longest.is_some_and(|i| self.triangulation.is_constrained(cell, i))
+            && !self.unread.iter().any(|&unread| overlap(around, unread).is_some())
+    }
+
+    /// Whether no point that was not read can lie in the circumdisk of a triangle, as far as it can be seen from there.
+    fn is_certain(&self, cell: CellId) -> bool {
+        let Some(disk) = Disk::around(self.corners(cell)) else { return self.is_hidden(cell) };
+        if !self.unread.iter().any(|&unread| disk.meets(unread)) {
+            return true;
+        }
+        let is_open = |part: Box2| {
+            let in_disk = overlap(part, disk.bounds());
+            in_disk.is_some_and(|part| self.unread.iter().any(|&unread| overlap(part, unread).is_some()))
+        };
+        let tds = self.triangulation.tds();
+        // Triangles that are seen, each from a neighbor. Constraints hide what is behind, so that no cycle is gone
+        // round but around a vertex: each triangle is left by the edges that it was not entered by.
+        let mut ahead: Vec<(CellId, CellId)> = Vec::new();
+        let mut seen = rustc_hash::FxHashSet::default();
+        let mut here = Some((cell, CellId::NONE));
+        while let Some((cell, from)) = here {
+            if tds.is_infinite(cell) || is_open(self.box_of(cell)) {
+                return false;
+            }
+            for i in 0..3 {
+                let beyond = tds.neighbor(cell, i);
+                let is_way = beyond != from && !self.triangulation.is_constrained(cell, i);
+                if is_way && disk.meets_segment(self.ends(cell, i)) && seen.insert(beyond) {
+                    ahead.push((beyond, cell));
+                }
+            }
+            here = ahead.pop();
+        }
+        true
+    }
+}
+
+/// Of triangles that are thinner than this part of their size, rounding hides how large their circles are.
+const THIN: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// What two boxes have in common, if they have anything.
+fn overlap([a, b]: Box2, [c, d]: Box2) -> Option<Box2> {
+    let common = [[0, 1].map(|k| a[k].max(c[k])), [0, 1].map(|k| b[k].min(d[k]))];
+    (0..2).all(|k| common[0][k] <= common[1][k]).then_some(common)
+}
+
+/// A disk that holds the closed circumdisk of a triangle, and is about a hundredth larger.
+#[derive(Debug, Clone, Copy)]
+struct Disk {
+    center: [f64; 2],
+    radius: f64,
+}
+
+impl Disk {
+    /// `None` for triangles so thin that rounding hides how large their circles are.
+    fn around([a, b, c]: [[f64; 2]; 3]) -> Option<Self> {
+        // From a corner. The relative error of the area is at most 2^-50 / THIN here, and goes into the hundredth; what
+        // the differences below lose by cancellation is `lost`.
+        const LOST: f64 = 1.0 / (1u64 << 48) as f64;
+        let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+        let (p, q) = (u[0] * v[1], u[1] * v[0]);
+        let area = p - q;
+        if area.is_nan() || area <= THIN * (p.abs() + q.abs()) {
+            return None;
+        }
+        let [uu, vv] = [u, v].map(|w| w[0] * w[0] + w[1] * w[1]);
+        let terms = [uu * v[1], vv * u[1], vv * u[0], uu * v[0]];
+        let to_center = [(terms[0] - terms[1]) / (2.0 * area), (terms[2] - terms[3]) / (2.0 * area)];
+        let lost = LOST * terms.iter().map(|term| term.abs()).sum::<f64>() / area;
+        let center = [a[0] + to_center[0], a[1] + to_center[1]];
+        let far = a[0].abs() + a[1].abs();
+        let radius = 1.01 * (to_center[0].hypot(to_center[1]) + lost) + LOST * far;
+        radius.is_finite().then_some(Disk { center, radius })
+    }
+
+    fn bounds(&self) -> Box2 {
+        [self.center.map(|c| c - self.radius), self.center.map(|c| c + self.radius)]
+    }
+
+    fn meets(&self, [min, max]: Box2) -> bool {
+        let gap = |k: usize| (min[k] - self.center[k]).max(self.center[k] - max[k]).max(0.0);
+        gap(0).hypot(gap(1)) <= self.radius
+    }
+
+    fn meets_segment(&self, [a, b]: [[f64; 2]; 2]) -> bool {
+        let [u, v] = [[b[0] - a[0], b[1] - a[1]], [self.center[0] - a[0], self.center[1] - a[1]]];
+        let along = ((u[0] * v[0] + u[1] * v[1]) / (u[0] * u[0] + u[1] * u[1])).clamp(0.0, 1.0);
+        (v[0] - along * u[0]).hypot(v[1] - along * u[1]) <= self.radius
+    }
+}

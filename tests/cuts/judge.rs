@@ -1,0 +1,306 @@
+//! What is left of a surface: told from the definition, in exact numbers.
+//!
+//! - *Area*: by slabs between all places where sides of rings and of the surface end or cross. In a slab they come in
+//!   one order from below to above, and the even-odd rule tells what stays between each two.
+//! - *Rim*: each side without a neighbor lies along what bounds that area. So there is no crack.
+//! - *Heights*: each vertex, and the middle of each face, is as high as the triangle of the uncut surface there.
+//! - *Pieces*: each has an area, and none has a vertex of another one in the middle of its side.
+
+use breakline::terrain::{Tin, surface_flaws};
+use dashu_ratio::RBig;
+
+use crate::found::{Exact, Found, exact, turn};
+use crate::scene::Scene;
+
+/// What a cut may move, in units of the last place of the largest coordinate.
+const UNITS: f64 = 2.0;
+
+/// Judges the clipped surface of a scene; returns the number of its faces.
+pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
+    let uncut = match scene.builder().build() {
+        Ok(tin) if tin.report().triangles > 0 => tin,
+        _ => return Ok(0), // nothing to cut
+    };
+    let mut builder = scene.builder();
+    scene.polygons.iter().for_each(|rings| builder.add_boundary(rings));
+    builder.bounds = scene.bounds;
+    let tin = builder.build().map_err(|error| error.to_string())?;
+    let (before, after) = (Found::new(&uncut)?, Found::new(&tin)?);
+    let region = Region::new(scene, &before);
+    judge_pieces(&after)?;
+    judge_area(&region, &after)?;
+    judge_rim(&region, &after)?;
+    judge_heights(&region, &before, &after)?;
+    judge_uncut(&uncut, &tin)?;
+    match surface_flaws(&tin).first() {
+        Some(flaw) => Err(format!("check: {flaw}")),
+        None => Ok(after.faces.len()),
+    }
+}
+
+fn judge_pieces(after: &Found) -> Result<(), String> {
+    for &face in &after.faces {
+        let [a, b, c] = after.corners(face);
+        if turn(a, b, c) <= RBig::ZERO {
+            return Err(format!("face {face:?} has no area"));
+        }
+    }
+    for &[from, to] in &after.rim {
+        let (p, q) = (after.at(from), after.at(to));
+        for vertex in after.faces.as_flattened().iter().filter(|&&v| v != from && v != to) {
+            let v = after.at(*vertex);
+            let along = (&v[0] - &p[0]) * (&q[0] - &p[0]) + (&v[1] - &p[1]) * (&q[1] - &p[1]);
+            let length = (&q[0] - &p[0]) * (&q[0] - &p[0]) + (&q[1] - &p[1]) * (&q[1] - &p[1]);
+            if turn(p, q, v) == RBig::ZERO && along > RBig::ZERO && along < length {
+                return Err(format!("vertex {vertex} lies in the middle of the side {from} {to}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn judge_area(region: &Region, after: &Found) -> Result<(), String> {
+    let twice = after.faces.iter().fold(RBig::ZERO, |sum, &face| {
+        let [a, b, c] = after.corners(face);
+        sum + turn(a, b, c)
+    });
+    let off = (twice / exact(2.0) - &region.area).to_f64().value();
+    let tolerance = UNITS * region.unit * region.perimeter;
+    if off.abs() > tolerance {
+        let area = region.area.to_f64().value();
+        return Err(format!("the area is off by {off}, tolerance {tolerance}, expected {area}"));
+    }
+    Ok(())
+}
+
+fn judge_rim(region: &Region, after: &Found) -> Result<(), String> {
+    for &[from, to] in &after.rim {
+        let (p, q) = (after.at(from), after.at(to));
+        let middle = [0, 1].map(|k| ((&p[k] + &q[k]) / exact(2.0) - &region.origin[k]).to_f64().value());
+        if !region.rim.iter().any(|&side| distance(side, middle) <= UNITS * region.unit) {
+            return Err(format!(
+                "a crack: nothing bounds the surface along {from} {to}, at {middle:?} from its corner"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Each vertex and the middle of each face against the planes of the triangles there.
+fn judge_heights(region: &Region, before: &Found, after: &Found) -> Result<(), String> {
+    let vertices = (0..).zip(&after.vertices).filter_map(|(i, p)| Some((format!("vertex {i}"), p.clone()?)));
+    let middle = |&face: &[usize; 3]| {
+        let [a, b, c] = after.corners(face);
+        let corners = [a, b, c].map(|p| [0, 1, 2].map(|k| p[k].to_f64().value()));
+        (format!("the middle of {face:?}, {corners:?}"), [0, 1, 2].map(|k| (&a[k] + &b[k] + &c[k]) / exact(3.0)))
+    };
+    for (what, p) in vertices.chain(after.faces.iter().map(middle)) {
+        let here = before.faces.iter().map(|&face| before.corners(face)).filter(|face| is_near(face, &p, region.unit));
+        let off: Vec<(f64, f64)> = here.map(|face| off_plane(face, &p, region.unit)).collect();
+        if !off.iter().any(|(off, tolerance)| off <= tolerance) {
+            let place = [0, 1, 2].map(|k| p[k].to_f64().value());
+            return Err(format!("{what}, at {place:?}, is off by and may be by {off:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a triangle comes as near to a place as a cut may move it.
+fn is_near([a, b, c]: &[&Exact; 3], p: &Exact, unit: f64) -> bool {
+    // Far less is lost by rounding than this, and most are further away.
+    const FAR: f64 = 1e-3;
+    let [at, corners] = [[p, p, p], [*a, *b, *c]].map(|points| points.map(|p| [0, 1].map(|k| p[k].to_f64().value())));
+    let is_far = |k: usize| {
+        let [u, v, w] = corners.map(|corner| corner[k] - at[0][k]);
+        u.min(v).min(w) > FAR || u.max(v).max(w) < -FAR
+    };
+    if is_far(0) || is_far(1) {
+        return false;
+    }
+    [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| {
+        let length = [0, 1].map(|k| (&to[k] - &from[k]).to_f64().value());
+        turn(*from, *to, p).to_f64().value() >= -UNITS * unit * length[0].hypot(length[1])
+    })
+}
+
+/// By how much a point is off the plane of a triangle, and how much is allowed.
+fn off_plane([a, b, c]: [&Exact; 3], p: &Exact, unit: f64) -> (f64, f64) {
+    let size = turn(a, b, c);
+    let (at_b, at_c) = (turn(a, p, c) / &size, turn(a, b, p) / &size);
+    let [up_b, up_c] = [&b[2] - &a[2], &c[2] - &a[2]];
+    let off = (&p[2] - &a[2] - at_b * &up_b - at_c * &up_c).to_f64().value();
+    let slope = [(1, &up_b, &up_c), (0, &up_b, &up_c)]
+        .map(|(k, up_b, up_c)| (((&c[k] - &a[k]) * up_b - (&b[k] - &a[k]) * up_c) / &size).to_f64().value());
+    let highest = [a, b, c].map(|q| q[2].to_f64().value().abs()).into_iter().fold(0.0, f64::max);
+    (off.abs(), UNITS * unit * slope[0].hypot(slope[1]) + 1e-12 * highest)
+}
+
+/// The triangulation beneath is that of the uncut surface.
+fn judge_uncut(uncut: &Tin, tin: &Tin) -> Result<(), String> {
+    let all = |tin: &Tin| {
+        let t = tin.triangulation();
+        t.finite_cells().map(|cell| t.tds().corners(cell).map(|v| t.point(v).map(f64::to_bits))).collect::<Vec<_>>()
+    };
+    if all(uncut) == all(tin) { Ok(()) } else { Err("the triangulation beneath has changed".to_owned()) }
+}
+
+/// What is to stay.
+struct Region {
+    area: RBig,
+    /// The parts of what bounds it, from the origin.
+    rim: Vec<[[f64; 2]; 2]>,
+    origin: [RBig; 2],
+    /// Of the rings and of the surface.
+    perimeter: f64,
+    /// The last place of the largest coordinate.
+    unit: f64,
+}
+
+/// A side of a ring, of which domain; sheared, so that it is not upright.
+struct Line {
+    domain: usize,
+    from: [RBig; 2],
+    to: [RBig; 2],
+    slope: RBig,
+    /// Rounded: the ends and the slope.
+    about: [[f64; 2]; 2],
+    about_slope: f64,
+}
+
+/// Far more than what rounding hides in numbers of the size of a scene.
+const DOUBT: f64 = 1e-6;
+
+impl Line {
+    fn new(domain: usize, from: [RBig; 2], to: [RBig; 2]) -> Self {
+        assert!(from[0] < to[0], "a side is upright when sheared");
+        let slope = (&to[1] - &from[1]) / (&to[0] - &from[0]);
+        let about = [&from, &to].map(|p| [0, 1].map(|k| p[k].to_f64().value()));
+        Line { domain, from, to, about_slope: slope.to_f64().value(), slope, about }
+    }
+
+    fn height(&self, x: &RBig) -> RBig {
+        &self.from[1] + (x - &self.from[0]) * &self.slope
+    }
+
+    /// The height, rounded, and what it may be off.
+    fn about(&self, x: f64) -> (f64, f64) {
+        (self.about[0][1] + (x - self.about[0][0]) * self.about_slope, DOUBT * (1.0 + self.about_slope.abs()))
+    }
+
+    fn is_apart(&self, other: &Line) -> bool {
+        (0..2).any(|k| {
+            let low = |line: &Line| line.about[0][k].min(line.about[1][k]) - DOUBT;
+            let high = |line: &Line| line.about[0][k].max(line.about[1][k]) + DOUBT;
+            low(self) > high(other) || low(other) > high(self)
+        })
+    }
+
+    /// Where it crosses another line, along x, if they are not parallel.
+    fn crossing(&self, other: &Line) -> Option<RBig> {
+        if self.is_apart(other) || self.slope == other.slope {
+            return None;
+        }
+        let x = (other.height(&RBig::ZERO) - self.height(&RBig::ZERO)) / (&self.slope - &other.slope);
+        let is_within = |line: &Line| line.from[0] < x && x < line.to[0];
+        (is_within(self) && is_within(other)).then_some(x)
+    }
+}
+
+impl Region {
+    fn new(scene: &Scene, before: &Found) -> Self {
+        let curves = scene.curves();
+        let origin = before.at(before.faces[0][0]);
+        let origin = [origin[0].clone(), origin[1].clone()];
+        // The surface is one more domain.
+        let surface = scene.polygons.len() + 1;
+        let shear = RBig::from_parts(1.into(), 65_537u32.into());
+        let sheared = |p: &[RBig]| {
+            let [x, y] = [0, 1].map(|k| &p[k] - &origin[k]);
+            [x + &shear * &y, y]
+        };
+        let mut sides: Vec<(usize, [[RBig; 2]; 2])> = Vec::new();
+        for (domain, ring) in &curves {
+            let next = ring.iter().cycle().skip(1);
+            sides.extend(ring.iter().zip(next).map(|(p, q)| (*domain, [p, q].map(|p| sheared(&p.map(exact))))));
+        }
+        sides.extend(before.rim.iter().map(|ends| (surface, ends.map(|end| sheared(before.at(end))))));
+        sides.retain(|(_, [p, q])| p != q);
+        let length = |[p, q]: &[[RBig; 2]; 2]| {
+            let [x, y] = [0, 1].map(|k| (&q[k] - &p[k]).to_f64().value());
+            x.hypot(y)
+        };
+        let perimeter = sides.iter().map(|(_, side)| length(side)).sum();
+        let largest = curves.iter().flat_map(|(_, ring)| ring.as_flattened()).fold(0.0, |sum: f64, x| sum.max(x.abs()));
+        let largest = before
+            .vertices
+            .iter()
+            .flatten()
+            .flat_map(|p| &p[..2])
+            .fold(largest, |sum, x| sum.max(x.to_f64().value().abs()));
+        let lines: Vec<Line> = sides
+            .into_iter()
+            .map(|(domain, [p, q])| {
+                let (from, to) = if p[0] < q[0] { (p, q) } else { (q, p) };
+                Line::new(domain, from, to)
+            })
+            .collect();
+        let mut region =
+            Region { area: RBig::ZERO, rim: Vec::new(), origin, perimeter, unit: largest.next_up() - largest };
+        let mut at: Vec<RBig> = lines.iter().flat_map(|line| [line.from[0].clone(), line.to[0].clone()]).collect();
+        for (i, line) in lines.iter().enumerate() {
+            at.extend(lines[..i].iter().filter_map(|other| line.crossing(other)));
+        }
+        at.sort();
+        at.dedup();
+        for slab in at.windows(2) {
+            region.add_slab(scene, surface, &lines, &slab[0], &slab[1]);
+        }
+        region
+    }
+
+    fn add_slab(&mut self, scene: &Scene, surface: usize, lines: &[Line], left: &RBig, right: &RBig) {
+        let middle = (left + right) / exact(2.0);
+        let here = lines.iter().filter(|line| line.from[0] <= *left && *right <= line.to[0]);
+        let about = middle.to_f64().value();
+        let mut here: Vec<&Line> = here.collect();
+        let order = |p: &Line, q: &Line| {
+            let ((mine, doubt), (theirs, other)) = (p.about(about), q.about(about));
+            if (mine - theirs).abs() > doubt + other {
+                return mine.total_cmp(&theirs);
+            }
+            p.height(&middle).cmp(&q.height(&middle))
+        };
+        here.sort_by(|p, q| order(p, q));
+        let mut within = vec![false; surface + 1];
+        let mut is_kept = false;
+        let mut start: Option<RBig> = None;
+        for same in here.chunk_by(|p, q| order(p, q).is_eq()) {
+            same.iter().for_each(|line| within[line.domain] ^= true);
+            let now = within[surface] && scene.is_kept(|domain| within[domain]);
+            if now == is_kept {
+                continue;
+            }
+            is_kept = now;
+            let line = same[0];
+            // Back to where it was before the shear; far less than a unit is lost.
+            let end = |x: &RBig| {
+                let y = line.height(x).to_f64().value();
+                [x.to_f64().value() - y / 65_537.0, y]
+            };
+            self.rim.push([end(left), end(right)]);
+            match start.take() {
+                None => start = Some(line.height(&middle)),
+                Some(below) => self.area += (line.height(&middle) - below) * (right - left),
+            }
+        }
+    }
+}
+
+/// How far a place is from a segment.
+fn distance([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
+    let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
+    let [vx, vy] = [p[0] - a[0], p[1] - a[1]];
+    let along = ((vx * ux + vy * uy) / (ux * ux + uy * uy)).clamp(0.0, 1.0);
+    let along = if along.is_nan() { 0.0 } else { along };
+    (vx - along * ux).hypot(vy - along * uy)
+}
