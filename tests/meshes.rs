@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use breakline::crs::Crs;
-use breakline::data::{Mesh, Surface};
+use breakline::data::{EdgeKind, Mesh, Surface, Triangles};
 use breakline::io::mesh;
 
 /// A bumpy field of `n` x `n` vertices at map coordinates, with a breakline through it.
@@ -23,16 +23,16 @@ fn field(n: u32) -> Mesh {
     Mesh::new(vertices, faces, &breakline, None).unwrap()
 }
 
-/// Each face by the places of its corners and whether its edges are constrained, in an order of its own.
-fn content(surface: &impl Surface) -> Vec<[([u64; 3], bool); 3]> {
+/// Each face by the places of its corners, the kinds of its edges and whether it is a piece, in an order of its own.
+fn content(surface: &impl Surface) -> Vec<([([u64; 3], EdgeKind); 3], bool)> {
     let mut faces: Vec<_> = (0..surface.face_count() as u32)
         .filter_map(|f| {
             let corners = surface.face(f)?;
             let mut sides =
-                [0, 1, 2].map(|i| (surface.position(corners[i]).map(f64::to_bits), surface.is_constrained(f, i)));
+                [0, 1, 2].map(|i| (surface.position(corners[i]).map(f64::to_bits), surface.edge_kind(f, i)));
             let first = (0..3).min_by_key(|&i| sides[i]).unwrap();
             sides.rotate_left(first);
-            Some(sides)
+            Some((sides, surface.is_piece(f)))
         })
         .collect();
     faces.sort_unstable();
@@ -61,6 +61,48 @@ fn ply_keeps_everything() {
     let again = folder.path().join("again.PLY");
     mesh::write(&again, &back).unwrap();
     assert_eq!(std::fs::read(&path).unwrap(), std::fs::read(&again).unwrap());
+}
+
+#[test]
+fn ply_tells_breaklines_clip_lines_rim_and_pieces_apart() {
+    // A strip of triangles, clipped at both ends.
+    let at = |x: u32, y: u32| [f64::from(x), f64::from(y), f64::from(x * y)];
+    let cut = Mesh::of(Triangles {
+        vertices: (0..8).map(|i| at(i / 2, i % 2)).collect(),
+        faces: (0..3).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect(),
+        constrained_edges: vec![[3, 2]],
+        clip_edges: vec![[1, 0], [6, 7]],
+        pieces: vec![1, 4],
+        ..Triangles::default()
+    });
+    let cut = cut.unwrap();
+    let folder = folder();
+    let path = folder.path().join("cut.ply");
+    assert_eq!(mesh::write(&path, &cut).unwrap().constrained_edges, 3);
+    assert_eq!(content(&mesh::read(&path).unwrap()), content(&cut));
+    let bytes = std::fs::read(&path).unwrap();
+    // From the first corner to the second, to the third, and back: face 1 is 0 3 1.
+    let row = |face: usize| &bytes[bytes.len() - 17 * (6 - face)..][13..17];
+    assert_eq!([row(0), row(1), row(4)], [[3, 1, 0, 0], [0, 3, 2, 1], [3, 2, 0, 1]]);
+    // Programs pass over no element that they do not know, and QGIS shows no faces beside edges.
+    let header = String::from_utf8_lossy(&bytes);
+    let elements: Vec<&str> = header.lines().filter_map(|line| line.strip_prefix("element ")).collect();
+    assert_eq!(elements, ["vertex 8", "face 6"]);
+}
+
+/// How breaklines stood in files of earlier versions.
+#[test]
+fn constrained_edges_as_an_element_are_still_read() {
+    let old = "ply\nformat ascii 1.0\ncomment crs PROJCS[\"x\",GEOG\nelement vertex 4\nproperty double x\nproperty double y\n\
+               property double z\nelement face 2\nproperty list uchar int vertex_indices\nelement constrained_edge 1\n\
+               property int vertex1\nproperty int vertex2\nend_header\n0 0 1\n1 0 2\n1 1 3\n0 1 4\n3 0 1 2\n3 0 2 3\n0 2\n";
+    let wkt = Crs::from_epsg(25832).unwrap().to_wkt();
+    let (one, other) = wkt.split_at(150);
+    let old = old.replace("comment crs PROJCS[\"x\",GEOG", &format!("comment crs {one}\ncomment crs {other}"));
+    let folder = folder();
+    let mesh = mesh::read(&written(folder.path(), "old.ply", old)).unwrap();
+    assert_eq!((mesh.edge_kind(0, 1), mesh.edge_kind(0, 0)), (EdgeKind::Breakline, EdgeKind::Rim));
+    assert_eq!(mesh.crs().unwrap().epsg, Some(25832));
 }
 
 #[test]
@@ -122,8 +164,13 @@ fn stl_counts_from_an_origin_that_stands_beside_it() {
 #[test]
 fn the_coordinate_system_comes_along() {
     let folder = folder();
-    let text = format!("LOCAL_CS[\"{}  site\",UNIT[\"metre\",1]]", "long ".repeat(90));
-    for system in [Crs::from_epsg(25832).unwrap(), Crs::from_wkt(&text).unwrap()] {
+    let local = |name: String| Crs::from_wkt(&format!("LOCAL_CS[\"{name}  site\",UNIT[\"metre\",1]]")).unwrap();
+    // rply takes 1024 bytes a line.
+    for (system, start) in [
+        (Crs::from_epsg(25832).unwrap(), " crs: EPSG:25832\n"),
+        (local("long ".repeat(180)), " crs: LOCAL_CS["),
+        (local("long ".repeat(250)), " crs LOCAL_CS["),
+    ] {
         let plain = field(3);
         let vertices = (0..9).map(|v| plain.position(v)).collect();
         let faces = (0..8).map(|f| plain.face(f).unwrap()).collect();
@@ -136,7 +183,8 @@ fn the_coordinate_system_comes_along() {
             assert!(back.is_same(&system), "{back:?} is not {system:?}");
             assert_eq!((&back.name, back.epsg), (&system.name, system.epsg));
             let bytes = std::fs::read(&path).unwrap();
-            assert!(bytes.split(|&b| b == b'\n').take(6).all(|line| line.len() < 256));
+            assert!(bytes.split(|&b| b == b'\n').take(6).all(|line| line.len() < 1024));
+            assert!(String::from_utf8_lossy(&bytes).contains(start), "{name}");
         }
     }
     let odd = FOREIGN[0].replace("comment VCGLIB generated", "comment crs nonsense");
@@ -301,6 +349,10 @@ fn errors_name_the_value_and_the_place() {
             "the header says 9999999999999 of 'vertex', but there is room for 4 in the 24 bytes left",
         ),
         (ply("18446744073709551616", "1", square), "line 3: '18446744073709551616' is no count"),
+        (
+            ply("4", "1", &format!("{square} 3 0 1 2 7 0 0")).replace("end_header", "property uchar edge1\nend_header"),
+            "face 0: edge1 is 7, expected 0 (plain), 1 (breakline), 2 (clip line) or 3 (rim)",
+        ),
         ("solid x\n".into(), "the file does not begin with 'ply'"),
         ("ply\nformat ascii 1.0\n".into(), "the header has no end"),
         ("ply\nformat ascii 2.0\nend_header\n".into(), "line 2: 'format ascii 2.0' is no line of a PLY 1.0 header"),

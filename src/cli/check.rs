@@ -23,8 +23,8 @@ pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
         print(&format!("{flaw}\n"))?;
     }
     gathered.made.tell(surface, talk);
-    let SurfaceFacts { vertices, triangles, constrained, .. } = SurfaceFacts::of(surface);
-    let what = format!("{vertices} vertices, {triangles} triangles, {constrained} constrained edges");
+    let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = SurfaceFacts::of(surface);
+    let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", breaklines + clips);
     match flaws.len() {
         0 => {
             print(&format!("{what}: no flaw found\n"))?;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::talk::Talk;
 use super::units::{neat, number, thousandths};
 use crate::crs::Crs;
-use crate::data::{self, Bounds, Surface};
+use crate::data::{self, Bounds, EdgeKind, Surface};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// How a surface was made.
@@ -32,8 +32,10 @@ impl Made {
             Some(tin) => (tin.triangles, tin.extent),
             None => {
                 let facts = SurfaceFacts::of(surface);
-                if facts.constrained > 0 {
-                    talk.line(format_args!("breaklines  {} edges, lines of a clip included", facts.constrained));
+                for (name, edges) in [("breaklines", facts.breaklines), ("clip lines", facts.clips)] {
+                    if edges > 0 {
+                        talk.line(format_args!("{name}  {edges} edges"));
+                    }
                 }
                 talk.line(format_args!("vertices    {}", facts.vertices));
                 (facts.triangles, facts.extent)
@@ -82,6 +84,9 @@ impl Made {
         }
         if tin.faces_clipped > 0 {
             parts.push(format!("{} clipped", tin.faces_clipped));
+        }
+        if tin.faces_cut > 0 {
+            parts.push(format!("{} cut", tin.faces_cut));
         }
         if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
     }
@@ -138,8 +143,10 @@ pub(super) struct SurfaceFacts {
     /// Vertices that a face uses.
     pub(super) vertices: usize,
     pub(super) triangles: usize,
-    /// Constrained edges.
-    pub(super) constrained: usize,
+    /// Edges on breaklines.
+    pub(super) breaklines: usize,
+    /// Edges on clip lines.
+    pub(super) clips: usize,
     pub(super) extent: Bounds,
 }
 
@@ -147,13 +154,17 @@ impl SurfaceFacts {
     /// Goes over all faces once.
     pub(super) fn of(surface: &dyn Surface) -> Self {
         let mut is_used = vec![false; surface.vertex_count()];
-        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, constrained: 0, extent: Bounds::default() };
+        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, breaklines: 0, clips: 0, extent: Bounds::default() };
         data::faces(surface).for_each(|face| {
             facts.triangles += 1;
-            for i in (0..3).filter(|&i| face.edges[i].is_constrained()) {
+            for (i, kind) in face.edges.into_iter().enumerate() {
+                let count = match kind {
+                    EdgeKind::Breakline => &mut facts.breaklines,
+                    EdgeKind::Clip => &mut facts.clips,
+                    EdgeKind::Plain | EdgeKind::Rim => continue,
+                };
                 // An edge inside is met from both sides.
-                facts.constrained +=
-                    usize::from(surface.neighbor(face.number, i).is_none_or(|other| face.number < other));
+                *count += usize::from(surface.neighbor(face.number, i).is_none_or(|other| face.number < other));
             }
             for vertex in face.corners {
                 if !std::mem::replace(&mut is_used[vertex as usize], true) {

@@ -98,9 +98,9 @@ fn a_breakline_height_wins_and_lines_come_from_attributes_and_rings() {
 fn the_surface_is_clipped_to_bounds_and_boundary() {
     let triangle = geojson(25832, "Polygon", "[[[0,0],[3,0],[0,3],[0,0]]]");
     let folder = folder_with(&[("a.xyz", SLOPE), ("b.geojson", &triangle)]);
-    let extent = |args: &[&str]| -> serde_json::Value {
+    let extent = |args: &[&str], cut: &str| -> serde_json::Value {
         let run = run_in(&folder, &[&["tin", "a.xyz", "-o", "t.ply", "--overwrite"], args].concat());
-        run.works(&[" clipped)"]);
+        run.works(&[" clipped", cut]);
         let info = run_in(&folder, &["info", "--json", "t.ply"]);
         let files: serde_json::Value = serde_json::from_str(&info.stdout).unwrap();
         files[0]["bounds"].clone()
@@ -110,16 +110,20 @@ fn the_surface_is_clipped_to_bounds_and_boundary() {
             assert!((found[i].as_f64().unwrap() - value).abs() < 1e-6, "{found}: expected {expected:?}");
         }
     };
-    let bounds = extent(&["--bounds", "0.5,-1,2.5,1.5"]);
+    let bounds = extent(&["--bounds", "0.5,-1,2.5,1.5"], "(7 clipped, 9 cut)");
     close(&bounds["min"], [0.5, 0.0, 10.5]);
     close(&bounds["max"], [2.5, 1.5, 12.5]);
-    let both = extent(&["--bounds", "1,-9,9,9", "--boundary", "b.geojson"]);
+    // The file tells clip lines and pieces, of which the Delaunay law is not asked.
+    let check = run_in(&folder, &["check", "t.ply"]);
+    check.works(&["clip lines  "]);
+    assert!(check.stdout.ends_with("no flaw found\n") && !check.stderr.contains("breaklines"), "{}", check.stderr);
+    let both = extent(&["--bounds", "1,-9,9,9", "--boundary", "b.geojson"], "(14 clipped)");
     close(&both["min"], [1.0, 0.0, 11.0]);
     close(&both["max"], [3.0, 2.0, 13.0]);
     // The same boundary as lines.
     let lines = geojson(25832, "MultiLineString", "[[[0,0],[3,0],[0,3]],[[0,0],[0,3]]]");
     std::fs::write(folder.path().join("b.geojson"), lines).unwrap();
-    assert_eq!(extent(&["--bounds", "1,-9,9,9", "--boundary", "b.geojson"]), both);
+    assert_eq!(extent(&["--bounds", "1,-9,9,9", "--boundary", "b.geojson"], "(14 clipped)"), both);
     // Points beyond the buffer are not used, those in it are.
     let run = run_in(&folder, &["tin", "a.xyz", "--bounds", "0,0,1,1", "--max-edge", "1.5", "-o", "w.ply"]);
     run.works(&["points up to 1.5 units outside of the bounds are used", "9 used; dropped: 7 outside of the bounds"]);

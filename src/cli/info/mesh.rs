@@ -16,7 +16,10 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     sheet.plain("format", format!("TIN, {extension}"));
     sheet.plain("vertices", facts.vertices);
     sheet.plain("triangles", facts.triangles);
-    sheet.row("breaklines", format!("{} edges, lines of a clip included", facts.constrained), facts.constrained);
+    sheet.row("breaklines", format!("{} edges", facts.breaklines), facts.breaklines);
+    if facts.clips > 0 {
+        sheet.row("clip_lines", format!("{} edges", facts.clips), facts.clips);
+    }
     sheet.bounds(facts.extent);
     sheet.crs(mesh.crs());
     Ok(sheet)

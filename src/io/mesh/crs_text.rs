@@ -3,29 +3,56 @@
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 
-/// Bytes in a line: rply, which CloudCompare reads with, takes 1024 with the keyword.
-const LINE: usize = 200;
+/// A definition of fewer bytes stands in one line: rply, which CloudCompare reads with, takes 1024 with the keyword.
+const WHOLE: usize = 1000;
 
-/// What to write of a coordinate system, cut into short lines without line breaks.
-pub(super) fn lines(crs: Option<&Crs>) -> Vec<String> {
+/// Bytes of a line of a longer definition.
+const PART: usize = 200;
+
+/// The comments that say a coordinate system: `crs: EPSG:25832` or `crs: WKT`, as QGIS reads it; of a long definition
+/// `crs PART`, one comment a part.
+pub(super) fn comments(crs: Option<&Crs>) -> Vec<String> {
+    let Some(crs) = crs else { return Vec::new() };
+    if let Some(code) = code(crs) {
+        return vec![format!("crs: {code}")];
+    }
     // WKT may be laid out in lines; the breaks and indents between its parts mean nothing.
-    let text: String = crs.map(Crs::to_wkt).unwrap_or_default().lines().map(str::trim).collect();
-    let mut lines = Vec::new();
-    let mut line = String::new();
-    for c in text.chars() {
-        // A blank at the end of a line may get lost.
-        if line.len() + c.len_utf8() > LINE && !line.ends_with(' ') && c != ' ' {
-            lines.push(std::mem::take(&mut line));
-        }
-        line.push(c);
+    let text: String = crs.to_wkt().lines().map(str::trim).collect();
+    match text.len() {
+        0 => Vec::new(),
+        length if length < WHOLE => vec![format!("crs: {text}")],
+        _ => parts(&text).iter().map(|part| format!("crs {part}")).collect(),
     }
-    if !line.is_empty() {
-        lines.push(line);
-    }
-    lines
 }
 
-/// The coordinate system that the joined lines hold; `None` if there are none.
+/// `EPSG:25832`, if that says all that is known. Two codes, as in `EPSG:25832+7837`, QGIS does not read.
+fn code(crs: &Crs) -> Option<String> {
+    let code = crs.epsg?;
+    let named = Crs::from_epsg(code).ok()?;
+    let facts = |crs: &Crs| (crs.kind, crs.vertical_epsg, crs.vertical_unit.is_some());
+    (facts(&named) == facts(crs) && named.unit.is_same(&crs.unit)).then(|| format!("EPSG:{code}"))
+}
+
+/// A text cut into short ones.
+fn parts(text: &str) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    for c in text.chars() {
+        let last = &parts[parts.len() - 1];
+        // A blank at the end of a line may get lost.
+        if last.len() + c.len_utf8() > PART && !last.ends_with(' ') && c != ' ' {
+            parts.push(String::new());
+        }
+        parts.last_mut().into_iter().for_each(|last| last.push(c));
+    }
+    parts
+}
+
+/// What a comment says of the coordinate system, in whole or in part; `None` if it is about something else.
+pub(super) fn said(comment: &str) -> Option<&str> {
+    comment.strip_prefix("crs:").or_else(|| comment.strip_prefix("crs "))
+}
+
+/// The coordinate system that is said in all comments, joined; `None` if there are none.
 pub(super) fn parse(joined: &str) -> Result<Option<Crs>> {
     if joined.is_empty() {
         return Ok(None);
@@ -39,17 +66,37 @@ mod tests {
     use super::*;
     use crate::crs::{CrsKind, Unit};
 
-    #[test]
-    fn long_texts_become_short_lines() {
-        let wkt = format!("LOCAL_CS[\"{} x\",\r\n    UNIT[\"metre\",1]]\n", "é".repeat(300));
+    fn local(name: &str) -> Crs {
+        let wkt = Some(format!("LOCAL_CS[\"{name} x\",\r\n    UNIT[\"metre\",1]]\n"));
         let unit = Unit { name: "metre".into(), factor: 1.0 };
         let name = "x".into();
-        let kind = CrsKind::Local;
-        let crs = Crs { name, epsg: None, vertical_epsg: None, kind, unit, vertical_unit: None, wkt: Some(wkt) };
-        let lines = lines(Some(&crs));
-        assert_eq!(lines.len(), 4);
-        assert!(lines.iter().all(|line| line.len() <= LINE && !line.contains(['\r', '\n'])));
-        assert_eq!(lines.concat(), format!("LOCAL_CS[\"{} x\",UNIT[\"metre\",1]]", "é".repeat(300)));
-        assert!(super::lines(None).is_empty());
+        Crs { name, epsg: None, vertical_epsg: None, kind: CrsKind::Local, unit, vertical_unit: None, wkt }
+    }
+
+    #[test]
+    fn long_texts_become_short_lines() {
+        let text = |name: &str| format!("LOCAL_CS[\"{name} x\",UNIT[\"metre\",1]]");
+        let whole = "é".repeat(480);
+        assert_eq!(comments(Some(&local(&whole))), [format!("crs: {}", text(&whole))]);
+        let long = "é".repeat(490);
+        let lines = comments(Some(&local(&long)));
+        assert_eq!(lines.len(), 6);
+        assert!(lines.iter().all(|line| line.len() <= PART + 4 && !line.contains(['\r', '\n'])));
+        assert_eq!(lines.iter().map(|line| said(line).unwrap()).collect::<String>(), text(&long));
+        assert!(comments(None).is_empty());
+    }
+
+    #[test]
+    fn a_code_stands_for_what_it_says_in_full() {
+        for text in ["EPSG:25832", "EPSG:4326", "EPSG:2994"] {
+            let crs = Crs::from_user(text).unwrap();
+            let [line] = &comments(Some(&crs))[..] else { panic!("{text}") };
+            assert_eq!(parse(said(line).unwrap()).unwrap().as_ref(), Some(&crs));
+        }
+        let with_heights = Crs::from_user("EPSG:25832+7837").unwrap();
+        assert!(comments(Some(&with_heights))[0].starts_with("crs: COMPD_CS["));
+        let mut crs = Crs::from_epsg(25832).unwrap();
+        crs.vertical_unit = Some(Unit { name: "metre".into(), factor: 1.0 });
+        assert!(comments(Some(&crs))[0].starts_with("crs: PROJCS["));
     }
 }

@@ -1,8 +1,8 @@
-use crate::data::{self, Surface};
+use crate::data::{self, EdgeKind, Surface};
 
 const UNUSED: u32 = u32::MAX;
 
-/// The vertices, faces and constrained edges of a surface as a mesh file lists them: in the surface's own
+/// The vertices and faces of a surface as a mesh file lists them: in the surface's own
 /// order, without what no face uses.
 pub(super) struct Listing<'a> {
     surface: &'a dyn Surface,
@@ -10,33 +10,29 @@ pub(super) struct Listing<'a> {
     number: Vec<u32>,
     pub(super) vertex_count: usize,
     pub(super) face_count: usize,
-    /// Smaller number first; ascending, none twice.
-    pub(super) constrained_edges: Vec<[u32; 2]>,
+    /// Edges on breaklines and clip lines.
+    pub(super) constrained_edges: usize,
 }
 
 impl<'a> Listing<'a> {
     /// # Complexity
-    /// Linear. Needs 4 bytes a vertex and 8 a constrained edge.
+    /// Linear. Needs 4 bytes a vertex.
     pub(super) fn new(surface: &'a dyn Surface) -> Self {
         let mut number = vec![UNUSED; surface.vertex_count()];
         let mut face_count = 0;
-        let mut lines = Vec::new();
+        let mut constrained_edges = 0;
         data::faces(surface).for_each(|face| {
             face_count += 1;
             face.corners.iter().for_each(|&v| number[v as usize] = 0);
-            let constrained = (0..3).filter(|&i| face.edges[i].is_constrained());
-            lines.extend(constrained.map(|i| [1, 2].map(|k| face.corners[(i + k) % 3])));
+            // An edge inside is met from both sides.
+            let is_first = |i: &usize| surface.neighbor(face.number, *i).is_none_or(|other| face.number < other);
+            constrained_edges += (0..3).filter(|&i| face.edges[i].is_constrained()).filter(is_first).count();
         });
         let mut vertex_count = 0;
         for number in number.iter_mut().filter(|n| **n != UNUSED) {
             *number = vertex_count;
             vertex_count += 1;
         }
-        let ends = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-        let mut constrained_edges: Vec<[u32; 2]> =
-            lines.into_iter().map(|line: [u32; 2]| ends(line.map(|v| number[v as usize]))).collect();
-        constrained_edges.sort_unstable();
-        constrained_edges.dedup();
         Listing { surface, number, vertex_count: vertex_count as usize, face_count, constrained_edges }
     }
 
@@ -48,6 +44,14 @@ impl<'a> Listing<'a> {
     /// The corners' numbers, counter-clockwise.
     pub(super) fn faces(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.corners().map(|corners| corners.map(|v| self.number[v as usize]))
+    }
+
+    /// The faces, with the kinds of the edges opposite their corners, and whether they are pieces of cut triangles.
+    pub(super) fn lined_faces(&self) -> impl Iterator<Item = ([u32; 3], [EdgeKind; 3], bool)> + '_ {
+        data::faces(self.surface).map(|face| {
+            let corners = face.corners.map(|v| self.number[v as usize]);
+            (corners, face.edges, self.surface.is_piece(face.number))
+        })
     }
 
     /// The corners' places, counter-clockwise.
@@ -73,7 +77,9 @@ mod tests {
         assert!(listing.vertices().eq(p[1..].iter().copied()));
         assert!(listing.faces().eq([[0, 2, 1], [0, 3, 2]]));
         assert!(listing.triangles().eq([[p[1], p[3], p[2]], [p[1], p[4], p[3]]]));
-        assert_eq!(listing.constrained_edges, [[0, 2]]);
-        assert_eq!((listing.vertex_count, listing.face_count), (4, 2));
+        assert_eq!((listing.vertex_count, listing.face_count, listing.constrained_edges), (4, 2, 1));
+        let kinds: Vec<_> = listing.lined_faces().map(|(_, kinds, _)| kinds).collect();
+        let [rim, line] = [EdgeKind::Rim, EdgeKind::Breakline];
+        assert_eq!(kinds, [[rim, rim, line], [rim, line, rim]]);
     }
 }

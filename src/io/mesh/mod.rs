@@ -1,6 +1,6 @@
 //! Triangle meshes: PLY, OBJ, OFF and STL; to read, Triangle's `.ele` too.
 //!
-//! | format | coordinates | breaklines, coordinate system | read |
+//! | format | coordinates | lines, coordinate system | read |
 //! |---|---|---|---|
 //! | PLY | doubles | yes | yes |
 //! | OBJ | decimals that give the same doubles back | coordinate system, as a comment | yes |
@@ -14,14 +14,17 @@
 //! # What PLY files hold
 //! `format binary_little_endian 1.0`, then the elements
 //! - `vertex`: `double x`, `double y`, `double z`;
-//! - `face`: `list uchar int vertex_indices`, three each, counter-clockwise in plan;
-//! - `constrained_edge`: `int vertex1`, `int vertex2`, the ends of each edge on a breakline, smaller
-//!   number first. Left out when there is none. Programs skip elements that they do not know.
+//! - `face`: `list uchar int vertex_indices`, three each, counter-clockwise in plan; where the surface has lines,
+//!   then `uchar edge1`, `uchar edge2`, `uchar edge3`, what the edges from the first corner to the second and so on around
+//!   are (0 plain, 1 on a breakline, 2 on a clip line, 3 at the rim), and `uchar piece`, 1 for a piece of a triangle
+//!   that was cut. QGIS shows these as values of the faces; of files with the element `edge` it would show the lines
+//!   only, and it opens none with an element that it does not know.
 //!
-//! The coordinate system stands in the header as WKT, in lines `comment crs TEXT`. Some readers take
-//! no line over 1024 bytes, so that the text is cut into lines of about 200; it is what follows
-//! `crs ` in all of them, joined. The OBJ comments are alike, with `# crs `, and so are those of OFF.
-//! Readers also take a code there, as in `EPSG:25832`.
+//! Files of earlier versions have breaklines as an element `constrained_edge` instead, with `vertex1` and `vertex2`.
+//!
+//! The coordinate system stands in the header as `comment crs: EPSG:25832`, or as WKT in the place of the code. Some
+//! readers take no line over 1024 bytes, so that WKT of 1000 bytes and more is cut into lines `comment crs PART`, to be
+//! joined. The comments of OBJ and OFF are alike, with `#`.
 
 mod crs_text;
 mod listing;
@@ -78,7 +81,7 @@ pub struct MeshSummary {
     pub vertices: usize,
     /// Triangles.
     pub faces: usize,
-    /// Edges on breaklines (also where the format cannot hold them).
+    /// Edges on breaklines and clip lines (also where the format cannot hold them).
     pub constrained_edges: usize,
     /// What was subtracted from all coordinates, and the file beside the mesh that says so.
     pub origin: Option<([f64; 3], PathBuf)>,
@@ -103,7 +106,7 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
     Ok(MeshSummary {
         vertices: mesh.vertex_count,
         faces: mesh.face_count,
-        constrained_edges: mesh.constrained_edges.len(),
+        constrained_edges: mesh.constrained_edges,
         origin: origin.map_err(|e| e.in_file(target))?,
     })
 }

@@ -16,8 +16,8 @@ use crate::io::Output;
 pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let mut output = Output::create(target)?;
     writeln!(output, "# breakline")?;
-    for line in crs_text::lines(crs) {
-        writeln!(output, "# crs {line}")?;
+    for line in crs_text::comments(crs) {
+        writeln!(output, "# {line}")?;
     }
     write_lines(&mut output, mesh.vertices(), |text, [x, y, z]| writeln!(text, "v {x} {y} {z}"))?;
     write_lines(&mut output, mesh.faces(), |text, face| {
@@ -48,7 +48,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
                 }
                 polygons.push((number, first..corners.len()));
             }
-            Some("#") => crs.push_str(line.strip_prefix("# crs ").unwrap_or("")),
+            Some("#") => crs.push_str(line.strip_prefix("# ").and_then(crs_text::said).unwrap_or_default()),
             _ => (),
         }
     }

@@ -21,8 +21,8 @@ use crate::io::rows::{Row, Rows, shown};
 pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let mut output = Output::create(target)?;
     writeln!(output, "OFF")?;
-    for line in crs_text::lines(crs) {
-        writeln!(output, "# crs {line}")?;
+    for line in crs_text::comments(crs) {
+        writeln!(output, "# {line}")?;
     }
     writeln!(output, "{} {} 0", mesh.vertex_count, mesh.face_count)?;
     write_lines(&mut output, mesh.vertices(), |text, p| {
@@ -57,8 +57,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     if faces.is_empty() {
         return Err(Error::format("there are no faces: the file is a point cloud"));
     }
-    let comments = bytes.split(|&b| b == b'\n').filter_map(|line| line.strip_prefix(b"# crs "));
-    let crs: String = comments.map(|text| String::from_utf8_lossy(text).trim_end_matches('\r').to_owned()).collect();
+    let comments = bytes.split(|&b| b == b'\n').filter_map(|line| line.strip_prefix(b"# "));
+    let comments = comments.map(|text| String::from_utf8_lossy(text).trim_end_matches('\r').to_owned());
+    let crs: String = comments.filter_map(|text| crs_text::said(&text).map(str::to_owned)).collect();
     Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
 }
 

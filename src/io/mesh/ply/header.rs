@@ -1,4 +1,5 @@
 use crate::error::{Error, Result};
+use crate::io::mesh::crs_text;
 
 /// How values are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,7 +71,7 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// What the `comment crs` lines hold, joined.
+    /// What comments say of the coordinate system, joined.
     pub(super) crs: String,
     /// Bytes up to the values.
     pub(super) length: usize,
@@ -108,8 +109,11 @@ impl Header {
                     let element = element.ok_or_else(|| place(Error::format("a property before any element")))?;
                     element.properties.push(property);
                 }
-                ["comment" | "obj_info", "crs", ..] => crs.push_str(after_two_words(&line)),
-                ["comment" | "obj_info", ..] | [] => (),
+                ["comment" | "obj_info", ..] => {
+                    let comment = line.split_once(' ').map_or("", |(_, comment)| comment);
+                    crs.push_str(crs_text::said(comment).unwrap_or_default());
+                }
+                [] => (),
                 ["end_header"] => break,
                 _ => {
                     let line: String = line.chars().take(80).collect();
@@ -149,9 +153,4 @@ fn property(words: &[&str]) -> Result<Property> {
         [_, kind, name] => Ok(Property { name: name.into(), kind: Scalar::named(kind)?, length: None }),
         _ => Err(Error::format(format!("'{}' describes no property", words.join(" ")))),
     }
-}
-
-/// The rest of `comment crs REST`, with the blanks in it: they may be a part of the text.
-fn after_two_words(line: &str) -> &str {
-    line.splitn(3, ' ').nth(2).unwrap_or("")
 }

@@ -16,11 +16,16 @@ use header::{Element, Header, Property};
 use super::listing::Listing;
 use super::{crs_text, polygon};
 use crate::crs::Crs;
-use crate::data::Triangles;
+use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};
 use crate::io::Output;
 
-/// Writes vertices, faces, constrained edges and the coordinate system.
+/// The kinds of a face's edges, by their numbers in the file: from the first corner to the second, and so on around.
+const KINDS: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
+const EDGES: [&str; 3] = ["edge1", "edge2", "edge3"];
+const PIECE: &str = "piece";
+
+/// Writes vertices, faces, the kinds of their edges where there are lines, and the coordinate system.
 pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let vertex_count = mesh.vertex_count;
     if i32::try_from(vertex_count).is_err() {
@@ -28,14 +33,14 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
     }
     let mut output = Output::create(target)?;
     write!(output, "ply\nformat binary_little_endian 1.0\ncomment breakline\n")?;
-    for line in crs_text::lines(crs) {
-        writeln!(output, "comment crs {line}")?;
+    for line in crs_text::comments(crs) {
+        writeln!(output, "comment {line}")?;
     }
     write!(output, "element vertex {vertex_count}\nproperty double x\nproperty double y\nproperty double z\n")?;
     write!(output, "element face {}\nproperty list uchar int vertex_indices\n", mesh.face_count)?;
-    if !mesh.constrained_edges.is_empty() {
-        let count = mesh.constrained_edges.len();
-        write!(output, "element constrained_edge {count}\nproperty int vertex1\nproperty int vertex2\n")?;
+    let has_lines = mesh.constrained_edges > 0;
+    if has_lines {
+        EDGES.iter().chain([&PIECE]).try_for_each(|name| writeln!(output, "property uchar {name}"))?;
     }
     output.write_all(b"end_header\n")?;
     mesh.vertices().try_for_each(|p| {
@@ -45,21 +50,27 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
         }
         output.write_all(&row)
     })?;
-    mesh.faces().try_for_each(|face| {
+    let corners = |face: [u32; 3]| {
         let mut row = [3; 13];
         for (bytes, v) in row[1..].chunks_exact_mut(4).zip(face) {
             bytes.copy_from_slice(&v.to_le_bytes());
         }
-        output.write_all(&row)
-    })?;
-    for [a, b] in &mesh.constrained_edges {
-        output.write_all(&a.to_le_bytes())?;
-        output.write_all(&b.to_le_bytes())?;
+        row
+    };
+    if has_lines {
+        mesh.lined_faces().try_for_each(|(face, [b, c, a], is_piece)| {
+            let [a, b, c] = [a, b, c].map(|kind| KINDS.iter().position(|k| *k == kind).unwrap_or_default() as u8);
+            output.write_all(&corners(face))?;
+            output.write_all(&[a, b, c, u8::from(is_piece)])
+        })?;
+    } else {
+        mesh.faces().try_for_each(|face| output.write_all(&corners(face)))?;
     }
     output.commit()
 }
 
-/// Reads the elements `vertex`, `face` and `constrained_edge`, whatever their order and types.
+/// Reads the elements `vertex`, `face` and, of files from before the faces had kinds of edges, `constrained_edge`;
+/// whatever their order and types.
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let header = Header::read(bytes)?;
     let has = |name: &str| header.elements.iter().any(|e| e.name == name && e.count > 0);
@@ -72,25 +83,34 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut body = Body::new(&bytes[header.length..], header.encoding);
     let mut vertices = Vec::new();
     let mut polygons = Polygons::default();
-    let mut edges = Vec::new();
+    let mut constrained_edges = Vec::new();
     for element in &header.elements {
         body.check_room(element)?;
         match element.name.as_str() {
             "vertex" => vertices = read_vertices(&mut body, element)?,
             "face" => polygons = read_faces(&mut body, element)?,
-            "constrained_edge" => edges = read_edges(&mut body, element)?,
+            "constrained_edge" => constrained_edges = read_edges(&mut body, element)?,
             _ => body.rows(element, |_, _| Ok(()))?,
         }
     }
-    let mut faces = Vec::with_capacity(polygons.ends.len());
+    let crs = crs_text::parse(&header.crs)?;
+    constrained_edges.append(&mut polygons.breaklines);
+    let clip_edges = polygons.clips;
+    let mut triangles = Triangles { vertices, constrained_edges, clip_edges, crs, ..Triangles::default() };
+    triangles.faces.reserve_exact(polygons.ends.len());
     let mut start = 0;
+    let mut pieces = polygons.pieces.into_iter().peekable();
     for (i, end) in polygons.ends.into_iter().enumerate() {
         let corners = &polygons.corners[start..end];
-        polygon::add_polygon(&vertices, corners, &mut faces).map_err(|e| e.at(format!("face {i}")))?;
+        let first = triangles.faces.len() as u32;
+        polygon::add_polygon(&triangles.vertices, corners, &mut triangles.faces)
+            .map_err(|e| e.at(format!("face {i}")))?;
+        if pieces.next_if_eq(&i).is_some() {
+            triangles.pieces.extend(first..triangles.faces.len() as u32);
+        }
         start = end;
     }
-    let crs = crs_text::parse(&header.crs)?;
-    Ok(Triangles { vertices, faces, constrained_edges: edges, crs, ..Triangles::default() })
+    Ok(triangles)
 }
 
 fn read_vertices(body: &mut Body, element: &Element) -> Result<Vec<[f64; 3]>> {
@@ -103,26 +123,64 @@ fn read_vertices(body: &mut Body, element: &Element) -> Result<Vec<[f64; 3]>> {
     Ok(vertices)
 }
 
-/// Corners of faces, one after the other, and where each face ends.
+/// Faces as the file has them.
 #[derive(Default)]
 struct Polygons {
+    /// Their corners, one after the other.
     corners: Vec<u32>,
+    /// Where the corners of each face end.
     ends: Vec<usize>,
+    /// Edges of these kinds.
+    breaklines: Vec<[u32; 2]>,
+    clips: Vec<[u32; 2]>,
+    /// Which faces are pieces of cut triangles.
+    pieces: Vec<usize>,
 }
 
 fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
     let names = ["vertex_indices", "vertex_index"];
     let list = element.properties.iter().position(|p| names.contains(&p.name.as_str()) && p.length.is_some());
     let list = list.ok_or_else(|| Error::format("the faces have no list 'vertex_indices'").at("header"))?;
-    let mut polygons = Polygons { corners: Vec::with_capacity(element.count), ends: Vec::with_capacity(element.count) };
-    body.rows(element, |_, row| {
+    let kinds = EDGES.map(|name| scalar(element, name).ok());
+    let piece = scalar(element, PIECE).ok();
+    let mut polygons = Polygons::default();
+    polygons.corners.reserve_exact(element.count);
+    polygons.ends.reserve_exact(element.count);
+    body.rows(element, |number, row| {
+        let first = polygons.corners.len();
         for &number in &row[list] {
             polygons.corners.push(vertex_number(number)?);
         }
         polygons.ends.push(polygons.corners.len());
+        let corners = &polygons.corners[first..];
+        for (i, property) in kinds.into_iter().enumerate().filter_map(|(i, kind)| Some((i, kind?))) {
+            let edges = match edge_kind(EDGES[i], row[property][0])? {
+                EdgeKind::Breakline => &mut polygons.breaklines,
+                EdgeKind::Clip => &mut polygons.clips,
+                EdgeKind::Plain | EdgeKind::Rim => continue,
+            };
+            if let (Some(&a), Some(&b)) = (corners.get(i), corners.iter().cycle().nth(i + 1)) {
+                edges.push([a.min(b), a.max(b)]);
+            }
+        }
+        if piece.is_some_and(|piece| row[piece][0] != 0.0) {
+            polygons.pieces.push(number);
+        }
         Ok(())
     })?;
+    // Edges inside are met from both sides.
+    for edges in [&mut polygons.breaklines, &mut polygons.clips] {
+        edges.sort_unstable();
+        edges.dedup();
+    }
     Ok(polygons)
+}
+
+fn edge_kind(name: &str, number: f64) -> Result<EdgeKind> {
+    let kind = KINDS.into_iter().enumerate().find(|(i, _)| *i as f64 == number);
+    kind.map(|(_, kind)| kind).ok_or_else(|| {
+        Error::format(format!("{name} is {number}, expected 0 (plain), 1 (breakline), 2 (clip line) or 3 (rim)"))
+    })
 }
 
 fn read_edges(body: &mut Body, element: &Element) -> Result<Vec<[u32; 2]>> {
