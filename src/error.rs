@@ -140,6 +140,33 @@ impl std::error::Error for Error {
 impl From<std::io::Error> for Error {
     #[cold]
     fn from(source: std::io::Error) -> Self {
-        Self::caused_by(Kind::Io, source)
+        let plain = plain_words(&source);
+        let mut error = Self::caused_by(Kind::Io, source);
+        if let Some((message, cure)) = plain {
+            error.inner.message = message.to_owned();
+            error.inner.cure = Some(cure.to_owned());
+        }
+        error
+    }
+}
+
+/// What the system says in words of its own, where a user can act on it; and the cure.
+fn plain_words(error: &std::io::Error) -> Option<(&'static str, &'static str)> {
+    use std::io::ErrorKind;
+    // Others come from this crate, and say more.
+    error.raw_os_error()?;
+    match error.kind() {
+        ErrorKind::StorageFull => Some(("the disk is full", "free some space, or write to another disk")),
+        ErrorKind::QuotaExceeded => Some(("your share of the disk is used up", "free some space, or write elsewhere")),
+        ErrorKind::FileTooLarge => Some((
+            "the file would be larger than is allowed here",
+            "raise the limit (ulimit -f), or write to another disk",
+        )),
+        ErrorKind::ReadOnlyFilesystem => Some(("the disk can only be read", "write to another disk")),
+        ErrorKind::PermissionDenied => {
+            Some(("no permission", "ask the owner for it: `ls -ld` tells who may read and write"))
+        }
+        ErrorKind::BrokenPipe => Some(("the program that read it has ended", "see what that program says")),
+        _ => None,
     }
 }

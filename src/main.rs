@@ -3,5 +3,40 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    #[cfg(unix)]
+    signals::clean_up();
     breakline::cli::run(std::env::args_os()).into()
+}
+
+/// A program that is asked to end removes its temporary files first.
+#[cfg(unix)]
+mod signals {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use signal_hook::low_level::emulate_default_handler;
+
+    /// Removes temporary files at SIGINT, SIGTERM and SIGHUP, and then ends as the signal would have it: a shell sees the
+    /// status 128 + the signal's number, and a loop in a script ends, too.
+    pub(super) fn clean_up() {
+        let heeded = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
+        // Without it, only temporary files would stay.
+        let Ok(mut signals) = Signals::new(heeded) else { return };
+        std::thread::spawn(move || {
+            let Some(signal) = signals.forever().next() else { return };
+            let _nothing_appears_now = breakline::io::abandon_outputs();
+            // No signal ends the first process of a container.
+            if std::process::id() != 1 {
+                let _ = emulate_default_handler(signal);
+            }
+            std::process::exit(128 + signal);
+        });
+    }
+
+    /// Returns true for a signal that the parent had ignored, as `nohup` does; where the system tells.
+    fn is_ignored(signal: i32) -> bool {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+    }
 }

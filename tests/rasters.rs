@@ -447,7 +447,7 @@ fn a_source_that_fails_leaves_no_file() {
     let target = folder.path().join("out.tif");
     let error = geotiff::write(&target, &Failing, WriteOptions::default()).unwrap_err();
     assert!(error.to_string().contains("the source broke"));
-    let error = png::write_gray(folder.path().join("out.png"), &Failing).unwrap_err();
+    let error = png::write_gray(&folder.path().join("out.png"), &Failing).unwrap_err();
     assert!(error.to_string().contains("the source broke"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -9,11 +9,11 @@ use crate::error::Result;
 /// Lists the flaws of a TIN, or of a mesh that may be none.
 pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
-    outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
+    let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
     let (gathered, flaws) = match &plan.from {
         From::Mesh(path) => gather::mesh_with_flaws(path, &plan.wish, talk)?,
         From::Points(_) | From::Raster(_) => {
-            let gathered = gather::surface(&mut plan, talk)?;
+            let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
             let flaws = open::flaws(gathered.surface.as_ref(), &[]);
             (gathered, flaws)
         }
@@ -23,6 +23,7 @@ pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
         print(&format!("{flaw}\n"))?;
     }
     gathered.made.tell(surface, talk);
+    outputs.commit(talk)?;
     let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = SurfaceFacts::of(surface);
     let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", breaklines + clips);
     match flaws.len() {

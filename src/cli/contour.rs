@@ -1,7 +1,7 @@
 use super::args::ContourArgs;
 use super::gather::Ground;
 use super::open;
-use super::outputs::{self, Format, Target};
+use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
 use super::summary::tell_place;
 use super::talk::Talk;
@@ -24,21 +24,22 @@ const DEFAULT_INTERVAL: f64 = 1.0;
 /// Draws contours of a TIN or of a DEM.
 pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
-    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
     let levels = levels(args)?;
-    let ground = gather::ground(&mut plan, talk)?;
+    let ground = gather::ground(&mut plan, &outputs.set, talk)?;
     let crs = ground.crs();
     if args.interval.is_none() && args.levels.is_empty() {
         let height = Units::of(crs).height(DEFAULT_INTERVAL);
         talk.note(format_args!("contours are {height} apart (--interval)"));
     }
     let mut drawn = ContourSummary::default();
-    for Target { path, .. } in &targets {
+    for target in &outputs.targets {
+        let (path, target) = (&target.path, target.within(&outputs.set));
         let written = match &ground {
-            Ground::Surface(gathered) => open::contours_of_surface(path, gathered.surface.as_ref(), &levels),
-            Ground::Raster(grid) => open::contours_of_grid(path, grid, &levels),
+            Ground::Surface(gathered) => open::contours_of_surface(target, gathered.surface.as_ref(), &levels),
+            Ground::Raster(grid) => open::contours_of_grid(target, grid, &levels),
         };
-        drawn = written.map_err(|e| e.in_file(path))?;
+        drawn = written?;
         drawn.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
     }
     match &ground {
@@ -49,7 +50,7 @@ pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
         }
     }
     tell_lines(&drawn, crs, talk);
-    outputs::tell(&targets, talk);
+    outputs.commit(talk)?;
     Ok(Exit::Done)
 }
 

@@ -7,7 +7,7 @@ use super::lines::Drawn;
 use super::talk::Talk;
 use super::units::{Units, neat};
 use crate::error::{Error, Result};
-use crate::io::Output;
+use crate::io::{Output, OutputSet};
 use crate::terrain::{CrossingHeights, TinReport};
 use crate::triangulation::Rounding;
 
@@ -94,15 +94,21 @@ fn rounded(Rounding { unit: [ux, uy], on_grid }: Rounding, units: &Units) -> Str
     format!("crossings of breaklines are rounded to {unit}; {bound}")
 }
 
-/// Writes the places where the heights of lines differ as a table: of each place a row for every line above the lowest.
+/// Adds the places where the heights of lines differ to the outputs, as a table: of each place a row for every line above the lowest.
 /// Numbers read back are the same doubles.
 ///
 /// # Errors
 /// If the file cannot be written.
-pub(super) fn write(target: &Path, crossings: &[CrossingHeights], names: &LineNames) -> Result<()> {
+pub(super) fn write(
+    outputs: &OutputSet,
+    target: &Path,
+    crossings: &[CrossingHeights],
+    names: &LineNames,
+) -> Result<()> {
     let mut output = Output::create(target)?;
     write_rows(&mut output, crossings, names).map_err(|e| Error::from(e).in_file(target))?;
-    output.commit()
+    outputs.add(output);
+    Ok(())
 }
 
 fn write_rows(out: &mut impl Write, crossings: &[CrossingHeights], names: &LineNames) -> std::io::Result<()> {

@@ -15,15 +15,15 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     inputs::require(&args.frame.align_to)?;
     plan.inputs.extend(args.frame.align_to.clone());
-    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
-    let gathered = gather::surface(&mut plan, talk)?;
+    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
     let surface = gathered.surface.as_ref();
     let frame = raster::frame(&args.frame, gathered.made.extent(surface), surface.crs(), talk)?;
     let dem = open::dem(surface, frame)?;
     let mut written = None;
-    for target in &targets {
+    for target in &outputs.targets {
         let watched = Watched::new(dem.as_ref(), "writing cells", talk);
-        written = Some(open::write_heights(&target.path, &watched).map_err(|e| e.in_file(&target.path))?);
+        written = Some(open::write_heights(target.within(&outputs.set), &watched)?);
     }
     gathered.made.tell(surface, talk);
     talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
@@ -35,6 +35,6 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
         let (low, high) = (units.height(cells.min), units.height(cells.max));
         talk.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
     }
-    outputs::tell(&targets, talk);
+    outputs.commit(talk)?;
     Ok(Exit::Done)
 }

@@ -8,7 +8,6 @@ use super::crossings::{self, LineNames};
 use super::inputs;
 use super::lines::{self, Rings};
 use super::open;
-use super::outputs;
 use super::plan::{From, PointPlan, SurfacePlan};
 use super::point_files;
 use super::relabeled::Relabeled;
@@ -20,6 +19,7 @@ use super::units::Units;
 use crate::crs::Crs;
 use crate::data::{Bounds, Grid, Layer, Surface};
 use crate::error::{Error, Result};
+use crate::io::OutputSet;
 use crate::terrain::{Classes, Selection, SelectionReport, TinBuilder, TinReport, Window};
 
 /// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
@@ -50,13 +50,14 @@ pub(super) struct Gathered {
     pub(super) made: Made,
 }
 
-/// Reads what the plan names; builds the TIN where there is none yet.
+/// Reads what the plan names; builds the TIN where there is none yet. The report of crossings, where one is wanted,
+/// is added to the outputs.
 ///
 /// # Errors
 /// If anything cannot be read or is refused.
-pub(super) fn ground(plan: &mut SurfacePlan, talk: &Talk) -> Result<Ground> {
+pub(super) fn ground(plan: &mut SurfacePlan, outputs: &OutputSet, talk: &Talk) -> Result<Ground> {
     match &mut plan.from {
-        From::Points(points) => build(points, &plan.wish, talk).map(Ground::Surface),
+        From::Points(points) => build(points, &plan.wish, outputs, talk).map(Ground::Surface),
         From::Mesh(path) => {
             let mesh = open::mesh(path)?;
             let crs = one_system(path, mesh.crs(), &plan.wish, talk)?;
@@ -86,13 +87,13 @@ pub(super) fn mesh_with_flaws(path: &Path, wish: &Wish, talk: &Talk) -> Result<(
 ///
 /// # Errors
 /// Also if the input is a raster.
-pub(super) fn surface(plan: &mut SurfacePlan, talk: &Talk) -> Result<Gathered> {
+pub(super) fn surface(plan: &mut SurfacePlan, outputs: &OutputSet, talk: &Talk) -> Result<Gathered> {
     if let From::Raster(path) = &plan.from {
         return Err(Error::usage("the input is a raster; points or a .ply are needed")
             .in_file(path)
             .cure("`contour` and `hillshade` take rasters"));
     }
-    match ground(plan, talk)? {
+    match ground(plan, outputs, talk)? {
         Ground::Surface(gathered) => Ok(gathered),
         Ground::Raster(_) => Err(Error::usage("points or a .ply are needed")),
     }
@@ -103,7 +104,7 @@ fn one_system(path: &Path, crs: Option<&Crs>, wish: &Wish, talk: &Talk) -> Resul
     Ok(systems::reconcile(&stated, wish, talk)?.crs)
 }
 
-fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
+fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) -> Result<Gathered> {
     let mut files = point_files::open_all(&plan.files, talk)?;
     let breaklines = layers(&plan.breaklines, talk)?;
     let boundary = layers(&plan.boundary, talk)?;
@@ -190,8 +191,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, talk: &Talk) -> Result<Gathered> {
     reach.tell(&report, &units, talk);
     crossings::tell(tin.report(), &names, &units, talk);
     if let Some(report) = &plan.crossing_report {
-        crossings::write(report, &tin.report().crossing_heights, &names)?;
-        outputs::tell_file(report, talk);
+        crossings::write(outputs, report, &tin.report().crossing_heights, &names)?;
     }
     if tin.report().triangles == 0 {
         return Err(no_triangle(tin.report(), &rim, &units));

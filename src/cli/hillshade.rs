@@ -1,7 +1,7 @@
 use super::args::{FrameArgs, HillshadeArgs};
 use super::gather::Ground;
 use super::open::{self, ShadeFormat};
-use super::outputs::{self, Format};
+use super::outputs::{self, Format, Outputs};
 use super::plan::SurfacePlan;
 use super::raster::{self, Watched};
 use super::summary::tell_place;
@@ -24,36 +24,31 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     inputs::require(&args.frame.align_to)?;
     plan.inputs.extend(args.frame.align_to.clone());
-    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
-    match gather::ground(&mut plan, talk)? {
+    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    match gather::ground(&mut plan, &outputs.set, talk)? {
         Ground::Surface(gathered) => {
             let surface = gathered.surface.as_ref();
             let frame = raster::frame(&args.frame, gathered.made.extent(surface), surface.crs(), talk)?;
-            shade(open::dem(surface, frame)?.as_ref(), args, &targets, talk)?;
+            shade(open::dem(surface, frame)?.as_ref(), args, &outputs, talk)?;
             gathered.made.tell(surface, talk);
             talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
         }
         Ground::Raster(grid) => {
             refuse_frame(&args.frame)?;
-            shade(&grid, args, &targets, talk)?;
+            shade(&grid, args, &outputs, talk)?;
             talk.line(format_args!("raster      {}", raster::describe(&grid.frame, grid.crs.as_ref())));
             tell_place(raster::extent_of(&grid), grid.crs.as_ref(), talk);
         }
     }
-    outputs::tell(&targets, talk);
+    outputs.commit(talk)?;
     Ok(Exit::Done)
 }
 
-fn shade(
-    heights: &dyn BlockSource,
-    args: &HillshadeArgs,
-    targets: &[outputs::Target<ShadeFormat>],
-    talk: &Talk,
-) -> Result<()> {
+fn shade(heights: &dyn BlockSource, args: &HillshadeArgs, outputs: &Outputs<ShadeFormat>, talk: &Talk) -> Result<()> {
     let shade = Hillshade::new(heights, light(args, heights.crs(), talk))?;
-    for target in targets {
+    for target in &outputs.targets {
         let watched = Watched::new(&shade, "shading cells", talk);
-        open::write_shade(&target.path, target.kind, &watched).map_err(|e| e.in_file(&target.path))?;
+        open::write_shade(target.within(&outputs.set), target.kind, &watched)?;
     }
     Ok(())
 }

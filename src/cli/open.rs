@@ -1,7 +1,7 @@
 //! The one place where the command line meets readers, writers and verbs of the library.
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::crs::{Crs, Transform};
 use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointSource, Surface, Triangles};
@@ -10,7 +10,7 @@ use crate::io::contours::{self, ContourSummary};
 use crate::io::geotiff::{self, CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
 use crate::io::mesh::{self, MeshSummary};
 use crate::io::triangle::{self, LineGraph, Triangulated};
-use crate::io::{gdal, layer, png, points, proj, raster};
+use crate::io::{Destination, gdal, layer, png, points, proj, raster};
 use crate::terrain::{self, Dem, GridSurface, Levels, SurfaceFlaw};
 
 use super::overlaps::overlaps;
@@ -222,8 +222,8 @@ pub(super) fn line_graph(path: &Path) -> Result<LineGraph> {
     triangle::read(path)
 }
 
-/// Writes files of Triangle, all or none.
-pub(super) fn write_triangulated(targets: &[PathBuf], triangulated: &Triangulated) -> Result<()> {
+/// Writes files of Triangle.
+pub(super) fn write_triangulated(targets: &[Destination], triangulated: &Triangulated) -> Result<()> {
     triangle::write(targets, triangulated)
 }
 
@@ -241,7 +241,7 @@ pub(super) fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
 }
 
 /// Writes a mesh, format by extension.
-pub(super) fn write_mesh(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
+pub(super) fn write_mesh(target: Destination, surface: &dyn Surface) -> Result<MeshSummary> {
     mesh::write(target, surface)
 }
 
@@ -263,7 +263,7 @@ pub(super) fn flaws(surface: &dyn Surface, links: &[LinkFlaw]) -> Vec<String> {
 }
 
 /// Writes heights as GeoTIFF.
-pub(super) fn write_heights(target: &Path, source: &dyn BlockSource) -> Result<RasterSummary> {
+pub(super) fn write_heights(target: Destination, source: &dyn BlockSource) -> Result<RasterSummary> {
     geotiff::write(target, source, WriteOptions { cells: CellFormat::Heights, progress: None })
 }
 
@@ -275,7 +275,7 @@ pub(super) enum ShadeFormat {
 }
 
 /// Writes brightness as a picture.
-pub(super) fn write_shade(target: &Path, format: ShadeFormat, source: &dyn BlockSource) -> Result<()> {
+pub(super) fn write_shade(target: Destination, format: ShadeFormat, source: &dyn BlockSource) -> Result<()> {
     match format {
         ShadeFormat::GeoTiff => {
             geotiff::write(target, source, WriteOptions { cells: CellFormat::Shades, progress: None }).map(drop)
@@ -285,12 +285,16 @@ pub(super) fn write_shade(target: &Path, format: ShadeFormat, source: &dyn Block
 }
 
 /// Draws contours straight from triangles and writes them as they come, format by extension.
-pub(super) fn contours_of_surface(target: &Path, surface: &dyn Surface, levels: &Levels) -> Result<ContourSummary> {
+pub(super) fn contours_of_surface(
+    target: Destination,
+    surface: &dyn Surface,
+    levels: &Levels,
+) -> Result<ContourSummary> {
     contours::write(target, &mut terrain::contours(surface, levels)?, surface.crs())
 }
 
 /// Draws contours between the centers of cells.
-pub(super) fn contours_of_grid(target: &Path, grid: &Grid, levels: &Levels) -> Result<ContourSummary> {
+pub(super) fn contours_of_grid(target: Destination, grid: &Grid, levels: &Levels) -> Result<ContourSummary> {
     let surface = GridSurface::new(grid)?;
     contours::write(target, &mut terrain::contours(&surface, levels)?, surface.crs())
 }

@@ -7,6 +7,7 @@ use super::inputs::identity;
 use super::plan::SurfacePlan;
 use super::talk::Talk;
 use crate::error::{Error, Result};
+use crate::io::{self, Destination, OutputSet};
 
 /// A file format that a verb can write.
 #[derive(Debug)]
@@ -22,6 +23,37 @@ pub(super) struct Format<F: 'static> {
 pub(super) struct Target<F> {
     pub(super) path: PathBuf,
     pub(super) kind: F,
+    /// Of its format, whatever the path says.
+    pub(super) extension: &'static str,
+}
+
+impl<F> Target<F> {
+    /// Where a writer is to put it.
+    pub(super) fn within<'a>(&'a self, set: &'a OutputSet) -> Destination<'a> {
+        set.at(&self.path).in_format(self.extension)
+    }
+}
+
+/// What a run writes: all of it appears at its end, or nothing.
+#[derive(Debug)]
+pub(super) struct Outputs<F> {
+    pub(super) targets: Vec<Target<F>>,
+    pub(super) set: OutputSet,
+    report: Option<PathBuf>,
+}
+
+impl<F> Outputs<F> {
+    /// Lets all files appear, and says which.
+    ///
+    /// # Errors
+    /// If one cannot; then none does.
+    pub(super) fn commit(self, talk: &Talk) -> Result<()> {
+        self.set.commit()?;
+        for path in self.report.iter().chain(self.targets.iter().map(|target| &target.path)) {
+            tell(path, talk);
+        }
+        Ok(())
+    }
 }
 
 /// What becomes of a file that is in the way.
@@ -48,18 +80,18 @@ pub(super) fn resolve<F: Copy>(
     args: &OutputArgs,
     formats: &'static [Format<F>],
     inputs: &[PathBuf],
-) -> Result<Vec<Target<F>>> {
+) -> Result<Outputs<F>> {
     let existing = Existing::of(args.overwrite);
     let mut targets: Vec<Target<F>> = Vec::new();
     for path in &args.output {
         let format = find(path, formats)?;
-        if targets.iter().any(|target| target.path == *path) {
+        if targets.iter().any(|target| is_same(&target.path, path)) {
             return Err(Error::usage("the output is named twice").in_file(path));
         }
         require_free(path, format, existing, inputs)?;
-        targets.push(Target { path: path.clone(), kind: format.kind });
+        targets.push(Target { path: path.clone(), kind: format.kind, extension: format.extension });
     }
-    Ok(targets)
+    Ok(Outputs { targets, set: OutputSet::default(), report: None })
 }
 
 /// The same for a verb that makes a surface, and reports its crossings where that is wished.
@@ -70,29 +102,43 @@ pub(super) fn resolve_with_report<F: Copy>(
     args: &OutputArgs,
     formats: &'static [Format<F>],
     plan: &SurfacePlan,
-) -> Result<Vec<Target<F>>> {
-    let targets = resolve(args, formats, &plan.inputs)?;
-    if let Some(report) = plan.crossing_report().filter(|report| targets.iter().any(|target| target.path == **report)) {
-        return Err(Error::usage("the output is named twice").in_file(report));
+) -> Result<Outputs<F>> {
+    let Outputs { targets, set, .. } = resolve(args, formats, &plan.inputs)?;
+    let report = resolve_report(Existing::of(args.overwrite), plan)?.report;
+    match report.as_deref().filter(|report| targets.iter().any(|target| is_same(&target.path, report))) {
+        Some(report) => Err(Error::usage("the output is named twice").in_file(report)),
+        None => Ok(Outputs { targets, set, report }),
     }
-    resolve_report(Existing::of(args.overwrite), plan)?;
-    Ok(targets)
 }
 
 /// The same for the report of crossings alone.
 ///
 /// # Errors
 /// As [`resolve`].
-pub(super) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<()> {
-    match plan.crossing_report() {
-        Some(report) => require_free(report, find(report, REPORTS)?, existing, &plan.inputs),
-        None => Ok(()),
+pub(super) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<Outputs<()>> {
+    let report = plan.crossing_report();
+    if let Some(report) = report {
+        require_free(report, find(report, REPORTS)?, existing, &plan.inputs)?;
     }
+    Ok(Outputs { targets: Vec::new(), set: OutputSet::default(), report: report.map(Path::to_path_buf) })
+}
+
+/// Returns true for two names of one file, there or to be.
+fn is_same(path: &Path, other: &Path) -> bool {
+    let [path, other] = [path, other].map(|path| {
+        let folder = identity(folder_of(path));
+        identity(&folder.join(path.file_name().unwrap_or_default()))
+    });
+    path == other
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Makes sure that a file and what is written beside it can be written without a loss.
 fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: &[PathBuf]) -> Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     if !folder.is_dir() {
         let missing = std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
         return Err(Error::from(missing).in_file(path).cure(format!("mkdir -p {}", folder.display())));
@@ -101,17 +147,27 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
         if inputs.iter().any(|input| identity(input) == identity(&file)) {
             return Err(Error::usage("the output is one of the inputs").in_file(&file).cure("give it another name"));
         }
-        if file.exists() && existing == Existing::Keep {
+        if io::is_stream(&file) {
+            continue;
+        }
+        if file.symlink_metadata().is_ok() && existing == Existing::Keep {
             let exists = std::io::Error::new(std::io::ErrorKind::AlreadyExists, "the file exists");
             return Err(Error::from(exists).in_file(&file).cure("give it another name, or add --overwrite"));
         }
+        io::probe(&file)?;
     }
     Ok(())
 }
 
-/// The file that is written to a target, and those that come with it.
-pub(super) fn files_of<F>(path: &Path, formats: &[Format<F>]) -> Vec<PathBuf> {
-    find(path, formats).map_or_else(|_| vec![path.to_path_buf()], |format| with_companions(path, format))
+/// The files that come with a target, and then itself.
+pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &'static [Format<F>]) -> Vec<Target<F>> {
+    let format = formats.iter().find(|format| format.extension == target.extension);
+    let companions = format.map_or(&[][..], |format| format.companions);
+    let beside = companions.iter().map(|&extension| {
+        let path = target.path.with_extension(extension);
+        Target { path, kind: target.kind, extension }
+    });
+    beside.chain([target.clone()]).collect()
 }
 
 fn with_companions<F>(path: &Path, format: &Format<F>) -> Vec<PathBuf> {
@@ -121,7 +177,11 @@ fn with_companions<F>(path: &Path, format: &Format<F>) -> Vec<PathBuf> {
 
 fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    formats.iter().find(|format| format.extension.eq_ignore_ascii_case(extension)).ok_or_else(|| {
+    let named = |format: &&Format<F>| format.extension.eq_ignore_ascii_case(extension);
+    // `/dev/stdout` names no format.
+    let is_nameless = extension.is_empty() && io::is_stream(path);
+    let default = || formats.iter().find(|format| is_nameless && format.companions.is_empty());
+    formats.iter().find(named).or_else(default).ok_or_else(|| {
         let known: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension)).collect();
         let found = match extension {
             "" => "the output has no extension to tell its format by".to_owned(),
@@ -131,16 +191,11 @@ fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
     })
 }
 
-/// Says what was written.
-pub(super) fn tell<F>(targets: &[Target<F>], talk: &Talk) {
-    targets.iter().for_each(|target| tell_file(&target.path, talk));
-}
-
-/// The same of one file.
-pub(super) fn tell_file(file: &Path, talk: &Talk) {
+/// Says that a file was written.
+fn tell(file: &Path, talk: &Talk) {
     let path = file.display();
     match std::fs::metadata(file) {
-        Ok(data) => talk.line(format_args!("written     {path} ({} kB)", data.len().div_ceil(1000))),
-        Err(_) => talk.line(format_args!("written     {path}")),
+        Ok(data) if data.is_file() => talk.line(format_args!("written     {path} ({} kB)", data.len().div_ceil(1000))),
+        _ => talk.line(format_args!("written     {path}")),
     }
 }

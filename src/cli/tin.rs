@@ -16,17 +16,17 @@ const FORMATS: &[Format<()>] = &[
 /// Builds a TIN and writes it as a mesh.
 pub(super) fn run(args: &TinArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
-    let targets = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
-    let gathered = gather::surface(&mut plan, talk)?;
+    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
     let surface = gathered.surface.as_ref();
-    for target in &targets {
-        let written = open::write_mesh(&target.path, surface).map_err(|e| e.in_file(&target.path))?;
+    for target in &outputs.targets {
+        let written = open::write_mesh(target.within(&outputs.set), surface)?;
         if let Some(([x, y, z], beside)) = written.origin {
             let (mesh, beside) = (target.path.display(), beside.display());
             talk.note(format_args!("{mesh}: coordinates are relative to {x} {y} {z}, as {beside} says"));
         }
     }
     gathered.made.tell(surface, talk);
-    outputs::tell(&targets, talk);
+    outputs.commit(talk)?;
     Ok(Exit::Done)
 }

@@ -1,8 +1,6 @@
 //! Contours to a file.
 
-use std::path::Path;
-
-use super::{geojson, shapefile};
+use super::{Destination, geojson, shapefile};
 use crate::crs::Crs;
 use crate::data::{Bounds, ContourLine};
 use crate::error::{Error, Result};
@@ -36,11 +34,17 @@ impl ContourSummary {
 ///
 /// # Errors
 /// If the extension is another, or a file cannot be written.
-pub fn write(target: &Path, lines: &mut dyn Iterator<Item = ContourLine>, crs: Option<&Crs>) -> Result<ContourSummary> {
-    let extension = target.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+pub fn write<'a>(
+    target: impl Into<Destination<'a>>,
+    lines: &mut dyn Iterator<Item = ContourLine>,
+    crs: Option<&Crs>,
+) -> Result<ContourSummary> {
+    let target = target.into();
+    let path = target.format_path();
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     match extension.as_deref() {
         Some("shp") => shapefile::write_contours(target, lines, crs),
         Some("geojson" | "json") => geojson::write_contours(target, lines, crs),
-        _ => Err(Error::usage("contours are written as .shp, .geojson or .json").in_file(target)),
+        _ => Err(Error::usage("contours are written as .shp, .geojson or .json").in_file(target.path())),
     }
 }

@@ -6,10 +6,10 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use super::Output;
 use super::contours::ContourSummary;
 use super::layer::no_such_field;
 use super::shapefile::parse_number;
+use super::{Destination, Output};
 use crate::crs::{Crs, CrsKind};
 use crate::data::{ContourLine, Layer, Shape};
 use crate::error::{Error, Result};
@@ -279,14 +279,15 @@ fn twice_area(ring: &[[f64; 3]]) -> f64 {
 ///
 /// # Errors
 /// If the file cannot be written; the old one, if any, is then untouched.
-pub fn write_contours(
-    target: &Path,
+pub fn write_contours<'a>(
+    target: impl Into<Destination<'a>>,
     lines: &mut dyn Iterator<Item = ContourLine>,
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
-    let mut output = Output::create(target)?;
-    let summary = write(&mut output, lines, crs).map_err(|e| Error::from(e).in_file(target))?;
-    output.commit()?;
+    let target = target.into();
+    let mut output = Output::create(target.path())?;
+    let summary = write(&mut output, lines, crs).map_err(|e| Error::from(e).in_file(target.path()))?;
+    target.put(output)?;
     Ok(summary)
 }
 

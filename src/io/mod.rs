@@ -22,7 +22,7 @@
 //!   which.
 //! - Counts and offsets in a file are never trusted: what they claim is held against the bytes that are
 //!   there before anything is allocated. A decoder from another crate that panics gives an error.
-//! - A file that is written appears whole or not at all, see [`Output`]. The same data gives the same
+//! - A file that is written appears whole or not at all, see [`Output`]; several together, see [`OutputSet`]. The same data gives the same
 //!   bytes, whatever the number of threads.
 //!
 //! # What it does not do
@@ -52,4 +52,4 @@ pub mod triangle;
 mod world_file;
 
 pub(crate) use contain::contain;
-pub use output::Output;
+pub use output::{Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe};

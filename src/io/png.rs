@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use ::png::{BitDepth, ColorType, Compression, Encoder};
 use rayon::prelude::*;
 
-use super::{Output, world_file};
+use super::{Destination, Output, world_file};
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Kind, Result};
 
@@ -29,19 +29,19 @@ pub fn world_file_of(target: &Path) -> PathBuf {
 /// # Errors
 /// If the raster has no cells or more than 2^31 - 1 in a row or column, the source fails, or a file
 /// cannot be written.
-pub fn write_gray(target: impl AsRef<Path>, source: &dyn BlockSource) -> Result<()> {
-    let target = target.as_ref();
-    write(target, source).map_err(|e| e.in_file(target))
+pub fn write_gray<'a>(target: impl Into<Destination<'a>>, source: &dyn BlockSource) -> Result<()> {
+    let target = target.into();
+    write(target, source).map_err(|e| e.in_file(target.path()))
 }
 
-fn write(target: &Path, source: &dyn BlockSource) -> Result<()> {
+fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
     let frame = source.frame();
     let Frame { width, height, .. } = frame;
     let side = |cells: usize| i32::try_from(cells).ok().filter(|&cells| cells > 0).map(i32::unsigned_abs);
     let (Some(columns), Some(rows)) = (side(width), side(height)) else {
         return Err(Error::usage(format!("a picture of {width} x {height} cells, expected 1 to {} a side", i32::MAX)));
     };
-    let mut out = Output::create(target)?;
+    let mut out = Output::create(target.path())?;
     let mut encoder = Encoder::new(&mut out, columns, rows);
     encoder.set_color(ColorType::GrayscaleAlpha);
     encoder.set_depth(BitDepth::Eight);
@@ -58,10 +58,9 @@ fn write(target: &Path, source: &dyn BlockSource) -> Result<()> {
     }
     stream.finish().map_err(from_png)?;
     writer.finish().map_err(from_png)?;
-    let mut beside = Output::create(world_file_of(target))?;
+    let mut beside = Output::create(world_file_of(target.path()))?;
     beside.write_all(world_file::text(&frame).as_bytes())?;
-    out.commit()?;
-    beside.commit()
+    target.put_all([beside], out, [])
 }
 
 fn from_png(error: ::png::EncodingError) -> Error {

@@ -4,6 +4,8 @@
 mod program;
 
 mod crossings;
+#[cfg(unix)]
+mod outputs;
 mod results;
 mod usage;
 

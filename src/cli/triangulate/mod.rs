@@ -4,7 +4,7 @@ mod assemble;
 mod build;
 mod eaten;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use self::build::{Built, Place};
 use self::eaten::Outside;
@@ -14,8 +14,8 @@ use super::talk::Talk;
 use super::{Exit, inputs, open};
 use crate::data::Triangles;
 use crate::error::{Error, Result};
-use crate::io::contain;
 use crate::io::triangle::{LineGraph, Triangulated};
+use crate::io::{Destination, OutputSet, contain};
 use crate::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
 use crate::triangulation::refine::{Domain, Quality, Region, Shortfall};
 use crate::triangulation::{OnCrossing, Refused};
@@ -61,7 +61,7 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     // A .poly may have its vertices beside it.
     let mut read = vec![path.clone()];
     read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
-    let targets = outputs::resolve(&args.output, formats, &read)?;
+    let mut outputs = outputs::resolve(&args.output, formats, &read)?;
     let graph = open::line_graph(path)?;
     graph.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
     if !args.region_areas
@@ -89,11 +89,11 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
             .in_file(path)
             .cure("close the outer boundary with segments, or add --convex to keep the hull"));
     }
-    let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&targets, formats, family));
-    write(&meshes, &files, &triangulated)?;
+    let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
+    write(&outputs.set, &meshes, &files, &triangulated)?;
     tell(&graph, args, &built, &triangulated, talk);
-    outputs::tell(&files, talk);
-    outputs::tell(&meshes, talk);
+    outputs.targets = files.into_iter().chain(meshes).collect();
+    outputs.commit(talk)?;
     Ok(Exit::Done)
 }
 
@@ -221,11 +221,10 @@ fn tell_places(built: &Built, graph: &LineGraph, path: &Path, talk: &Talk) {
 }
 
 /// All files of a family that are written, with what comes with them; each once.
-fn files(targets: &[Target<Family>], formats: &[Format<Family>], family: Family) -> Vec<Target<Family>> {
+fn files(targets: &[Target<Family>], formats: &'static [Format<Family>], family: Family) -> Vec<Target<Family>> {
     let mut files: Vec<Target<Family>> = Vec::new();
     for target in targets.iter().filter(|target| target.kind == family) {
-        for path in outputs::files_of(&target.path, formats) {
-            let file = Target { path, kind: family };
+        for file in outputs::files_of(target, formats) {
             if !files.contains(&file) {
                 files.push(file);
             }
@@ -234,16 +233,21 @@ fn files(targets: &[Target<Family>], formats: &[Format<Family>], family: Family)
     files
 }
 
-/// Writes the meshes one by one, the files of Triangle all or none.
-fn write(meshes: &[Target<Family>], files: &[Target<Family>], triangulated: &Triangulated) -> Result<()> {
+/// Adds all files to the outputs.
+fn write(
+    outputs: &OutputSet,
+    meshes: &[Target<Family>],
+    files: &[Target<Family>],
+    triangulated: &Triangulated,
+) -> Result<()> {
     if !meshes.is_empty() {
         let mesh = open::flat_mesh(triangulated)?;
         for target in meshes {
-            open::write_mesh(&target.path, &mesh).map_err(|e| e.in_file(&target.path))?;
+            open::write_mesh(target.within(outputs), &mesh)?;
         }
     }
-    let paths: Vec<PathBuf> = files.iter().map(|file| file.path.clone()).collect();
-    open::write_triangulated(&paths, triangulated)
+    let files: Vec<Destination> = files.iter().map(|file| file.within(outputs)).collect();
+    open::write_triangulated(&files, triangulated)
 }
 
 /// Says what went in and what came out.

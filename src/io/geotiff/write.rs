@@ -1,6 +1,5 @@
 use std::io::{Seek, SeekFrom, Write};
 use std::ops::Range;
-use std::path::Path;
 
 use rayon::prelude::*;
 
@@ -10,7 +9,7 @@ use super::{MAX_BLOCKS, tags};
 use crate::crs::GeoKeys;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Result};
-use crate::io::Output;
+use crate::io::{Destination, Output};
 
 /// What the cells of a raster hold, and how they are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -77,10 +76,17 @@ pub struct RasterSummary {
 ///
 /// # Errors
 /// If the raster has no cells or too many, the source fails, or the file cannot be written.
-pub fn write(target: impl AsRef<Path>, source: &dyn BlockSource, options: WriteOptions<'_>) -> Result<RasterSummary> {
-    let target = target.as_ref();
-    let tiles = Tiling::new(source.frame()).map_err(|e| e.in_file(target))?;
-    write_tiles(target, source, options, &tiles, tiles.offsets(options.cells)).map_err(|e| e.in_file(target))
+pub fn write<'a>(
+    target: impl Into<Destination<'a>>,
+    source: &dyn BlockSource,
+    options: WriteOptions<'_>,
+) -> Result<RasterSummary> {
+    let target = target.into();
+    let write = || {
+        let tiles = Tiling::new(source.frame())?;
+        write_tiles(target, source, options, &tiles, tiles.offsets(options.cells))
+    };
+    write().map_err(|e| e.in_file(target.path()))
 }
 
 /// How a raster is cut into tiles.
@@ -123,14 +129,14 @@ impl Tiling {
 }
 
 fn write_tiles(
-    target: &Path,
+    target: Destination,
     source: &dyn BlockSource,
     options: WriteOptions<'_>,
     tiles: &Tiling,
     offsets: Offsets,
 ) -> Result<RasterSummary> {
     let mut out = Writer {
-        out: Output::create(target)?,
+        out: Output::create_seekable(target.path())?,
         at: 0,
         places: vec![0; tiles.count],
         lengths: vec![0; tiles.count],
@@ -168,7 +174,7 @@ fn write_tiles(
     if summary.valid == 0 {
         (summary.min, summary.max) = (f64::NAN, f64::NAN);
     }
-    out.out.commit()?;
+    target.put(out.out)?;
     Ok(summary)
 }
 
@@ -257,7 +263,7 @@ mod tests {
         let target = folder.path().join("slope.tif");
         let frame = Frame::north_up(1000.0, 2000.0, 0.5, 600, 300);
         let tiles = Tiling::new(frame).unwrap();
-        write_tiles(&target, &Slope(frame), WriteOptions::default(), &tiles, offsets).unwrap();
+        write_tiles((&target).into(), &Slope(frame), WriteOptions::default(), &tiles, offsets).unwrap();
         let reader = crate::io::geotiff::open(&target).unwrap();
         (reader.read_grid().unwrap(), reader.info().is_big_tiff)
     }

@@ -42,7 +42,7 @@ use listing::Listing;
 
 use crate::data::{Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
-use crate::io::triangle;
+use crate::io::{Destination, triangle};
 
 /// A mesh format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,8 +92,9 @@ pub struct MeshSummary {
 /// # Errors
 /// If the extension names no mesh format, the surface is too large for the format, or the file cannot
 /// be written.
-pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
-    let format = Format::of(target).ok_or_else(|| unknown(target))?;
+pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> Result<MeshSummary> {
+    let target = target.into();
+    let format = Format::of(&target.format_path()).ok_or_else(|| unknown(target.path()))?;
     let mesh = Listing::new(surface);
     let origin = match format {
         Format::Ply => ply::write(target, &mesh, surface.crs()).map(|()| None),
@@ -107,7 +108,7 @@ pub fn write(target: &Path, surface: &dyn Surface) -> Result<MeshSummary> {
         vertices: mesh.vertex_count,
         faces: mesh.face_count,
         constrained_edges: mesh.constrained_edges,
-        origin: origin.map_err(|e| e.in_file(target))?,
+        origin: origin.map_err(|e| e.in_file(target.path()))?,
     })
 }
 

@@ -1,7 +1,6 @@
 //! Wavefront OBJ: vertices and faces as text.
 
 use std::io::Write;
-use std::path::Path;
 
 use super::listing::Listing;
 use super::text::write_lines;
@@ -9,12 +8,12 @@ use super::{crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
-use crate::io::Output;
+use crate::io::{Destination, Output};
 
 /// Writes `v x y z` and `f a b c`, numbered from 1. The decimals are the fewest that give the same
 /// double back.
-pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
-    let mut output = Output::create(target)?;
+pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
+    let mut output = Output::create(target.path())?;
     writeln!(output, "# breakline")?;
     for line in crs_text::comments(crs) {
         writeln!(output, "# {line}")?;
@@ -25,7 +24,7 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
         let [a, b, c] = face.map(|v| u64::from(v) + 1);
         writeln!(text, "f {a} {b} {c}")
     })?;
-    output.commit()
+    target.put(output)
 }
 
 /// Reads `v` and `f` lines (with texture and normal numbers, and numbers from the end), and comments

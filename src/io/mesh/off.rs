@@ -5,7 +5,6 @@
 //! numbers of a line (colors, normals) is passed over.
 
 use std::io::Write;
-use std::path::Path;
 
 use super::listing::Listing;
 use super::text::write_lines;
@@ -13,13 +12,13 @@ use super::{crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
-use crate::io::Output;
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows, shown};
+use crate::io::{Destination, Output};
 
 /// Writes vertices, faces and the coordinate system. The number of edges, which no reader uses, is 0.
-pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
-    let mut output = Output::create(target)?;
+pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
+    let mut output = Output::create(target.path())?;
     writeln!(output, "OFF")?;
     for line in crs_text::comments(crs) {
         writeln!(output, "# {line}")?;
@@ -30,7 +29,7 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
         writeln!(text, "{x} {y} {z}")
     })?;
     write_lines(&mut output, mesh.faces(), |text, [a, b, c]| writeln!(text, "3 {a} {b} {c}"))?;
-    output.commit()
+    target.put(output)
 }
 
 /// Reads plain OFF and its kinds with colors and normals.

@@ -1,18 +1,18 @@
 //! Binary STL: triangles in 32-bit floats, from a local origin.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::listing::Listing;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
-use crate::io::Output;
+use crate::io::{Destination, Output};
 
 /// Writes the triangles, and their origin as three numbers in `TARGET.origin.txt`.
 ///
 /// The origin is the smallest corner of the data in whole units: a float then keeps the millimetre
 /// over 8 km, where map coordinates would lose the metre.
-pub(super) fn write(target: &Path, mesh: &Listing) -> Result<([f64; 3], PathBuf)> {
+pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], PathBuf)> {
     let count = u32::try_from(mesh.face_count)
         .map_err(|_| Error::limit(format!("{} triangles; an STL file counts to {}", mesh.face_count, u32::MAX)))?;
     let mut bounds = Bounds::default();
@@ -25,7 +25,7 @@ pub(super) fn write(target: &Path, mesh: &Listing) -> Result<([f64; 3], PathBuf)
     let title = format!("breakline; add the origin {x} {y} {z}");
     let length = title.len().min(header.len());
     header[..length].copy_from_slice(&title.as_bytes()[..length]);
-    let mut output = Output::create(target)?;
+    let mut output = Output::create(target.path())?;
     output.write_all(&header)?;
     output.write_all(&count.to_le_bytes())?;
     for corners in mesh.triangles() {
@@ -38,13 +38,12 @@ pub(super) fn write(target: &Path, mesh: &Listing) -> Result<([f64; 3], PathBuf)
         output.write_all(&facet)?;
     }
 
-    let mut beside = target.as_os_str().to_owned();
+    let mut beside = target.path().as_os_str().to_owned();
     beside.push(".origin.txt");
     let beside = PathBuf::from(beside);
     let mut note = Output::create(&beside)?;
     writeln!(note, "{x} {y} {z}")?;
-    note.commit()?;
-    output.commit()?;
+    target.put_all([note], output, [])?;
     Ok((origin, beside))
 }
 

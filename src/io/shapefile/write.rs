@@ -1,14 +1,14 @@
 //! Writing of shapefiles.
 
-use std::io::{ErrorKind, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::{FILE_CODE, HEADER};
 use crate::crs::Crs;
 use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind};
 use crate::error::{Error, Result};
-use crate::io::Output;
 use crate::io::contours::ContourSummary;
+use crate::io::{Destination, Output};
 
 /// Many programs read no file of the set beyond this many bytes.
 const MAX_BYTES: u64 = i32::MAX as u64;
@@ -45,13 +45,14 @@ pub struct Column<'a> {
 /// # Errors
 /// If a file cannot be written, or would be larger than 2 GiB. The old files, if any, are then
 /// untouched.
-pub fn write_contours(
-    target: &Path,
+pub fn write_contours<'a>(
+    target: impl Into<Destination<'a>>,
     lines: &mut dyn Iterator<Item = ContourLine>,
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
+    let target = target.into();
     let fields = [field("ID", ID_WIDTH, 0)?, field("ELEV", NUMBER_WIDTH, NUMBER_DECIMALS)?];
-    let mut set = FileSet::create(target, 13, &fields)?;
+    let mut set = FileSet::create(target.path(), 13, &fields)?;
     let mut summary = ContourSummary::default();
     let mut record = Vec::new();
     for line in lines {
@@ -64,7 +65,7 @@ pub fn write_contours(
         poly(&mut record, 13, &[line.points.len()], vertices.clone());
         set.write(&record, vertices, &[id(summary.lines), real(line.level)])?;
     }
-    set.commit(crs)?;
+    set.finish(target, crs)?;
     Ok(summary)
 }
 
@@ -74,8 +75,9 @@ pub fn write_contours(
 /// # Errors
 /// If the layer mixes kinds or holds triangles, a column's length or name does not fit, a file
 /// cannot be written or would be larger than 2 GiB.
-pub fn write_layer(target: &Path, layer: &Layer, columns: &[Column<'_>]) -> Result<()> {
-    let code = type_code(&layer.shapes).map_err(|e| e.in_file(target))?;
+pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, columns: &[Column<'_>]) -> Result<()> {
+    let target = target.into();
+    let code = type_code(&layer.shapes).map_err(|e| e.in_file(target.path()))?;
     for column in columns {
         if column.values.len() != layer.shapes.len() {
             return Err(Error::usage(format!(
@@ -90,7 +92,7 @@ pub fn write_layer(target: &Path, layer: &Layer, columns: &[Column<'_>]) -> Resu
         [] => vec![field("ID", ID_WIDTH, 0)?],
         _ => columns.iter().map(|c| field(c.name, NUMBER_WIDTH, NUMBER_DECIMALS)).collect::<Result<_>>()?,
     };
-    let mut set = FileSet::create(target, code, &fields)?;
+    let mut set = FileSet::create(target.path(), code, &fields)?;
     let mut record = Vec::new();
     for (i, shape) in layer.shapes.iter().enumerate() {
         record.clear();
@@ -101,7 +103,7 @@ pub fn write_layer(target: &Path, layer: &Layer, columns: &[Column<'_>]) -> Resu
         };
         set.write(&record, shape.vertices().copied(), &cells)?;
     }
-    set.commit(layer.crs.as_ref())
+    set.finish(target, layer.crs.as_ref())
 }
 
 fn type_code(shapes: &[Shape]) -> Result<i32> {
@@ -249,9 +251,9 @@ struct FileSet {
 impl FileSet {
     fn create(target: &Path, code: i32, fields: &[[u8; 32]]) -> Result<Self> {
         let mut set = FileSet {
-            shp: Output::create(target)?,
-            shx: Output::create(target.with_extension("shx"))?,
-            dbf: Output::create(target.with_extension("dbf"))?,
+            shp: Output::create_seekable(target)?,
+            shx: Output::create_seekable(target.with_extension("shx"))?,
+            dbf: Output::create_seekable(target.with_extension("dbf"))?,
             code,
             fields: fields.to_vec(),
             shp_bytes: HEADER,
@@ -304,10 +306,9 @@ impl FileSet {
         Ok(())
     }
 
-    /// Completes the files and lets them appear: first those that the `.shp` needs, last the
-    /// `.shp`. What an older set left behind and would now lie is removed.
-    fn commit(mut self, crs: Option<&Crs>) -> Result<()> {
-        let target = self.shp.target().to_path_buf();
+    /// Completes the files and hands them over. What an older set left behind and would now lie is removed with that.
+    fn finish(mut self, destination: Destination, crs: Option<&Crs>) -> Result<()> {
+        let target = destination.path();
         let prj = crs.map(Crs::to_prj).filter(|text| !text.is_empty());
         let prj = prj.map(|text| text_file(&target.with_extension("prj"), &text)).transpose()?;
         let cpg = text_file(&target.with_extension("cpg"), "UTF-8")?;
@@ -321,20 +322,9 @@ impl FileSet {
         rewrite(&mut self.dbf, &dbf_header)?;
 
         // Spatial indexes of the old shapes, and their coordinate system where the new have none.
-        for stale in ["qix", "sbn", "sbx"].into_iter().chain(prj.is_none().then_some("prj")) {
-            let path = target.with_extension(stale);
-            match std::fs::remove_file(&path) {
-                Err(e) if e.kind() != ErrorKind::NotFound => return Err(failed(e, &path)),
-                _ => {}
-            }
-        }
-        if let Some(prj) = prj {
-            prj.commit()?;
-        }
-        cpg.commit()?;
-        self.dbf.commit()?;
-        self.shx.commit()?;
-        self.shp.commit()
+        let stale = ["qix", "sbn", "sbx"].into_iter().chain(prj.is_none().then_some("prj"));
+        let stale = stale.map(|extension| target.with_extension(extension));
+        destination.put_all(prj.into_iter().chain([cpg, self.dbf, self.shx]), self.shp, stale)
     }
 
     /// The header of a `.shp` or `.shx` of this many bytes.

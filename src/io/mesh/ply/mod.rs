@@ -8,7 +8,6 @@ mod body;
 mod header;
 
 use std::io::Write;
-use std::path::Path;
 
 use body::Body;
 use header::{Element, Header, Property};
@@ -18,7 +17,7 @@ use super::{crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};
-use crate::io::Output;
+use crate::io::{Destination, Output};
 
 /// The kinds of a face's edges, by their numbers in the file: from the first corner to the second, and so on around.
 const KINDS: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
@@ -26,12 +25,12 @@ const EDGES: [&str; 3] = ["edge1", "edge2", "edge3"];
 const PIECE: &str = "piece";
 
 /// Writes vertices, faces, the kinds of their edges where there are lines, and the coordinate system.
-pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
+pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let vertex_count = mesh.vertex_count;
     if i32::try_from(vertex_count).is_err() {
         return Err(Error::limit(format!("{vertex_count} vertices; a PLY file with int numbers has {}", i32::MAX)));
     }
-    let mut output = Output::create(target)?;
+    let mut output = Output::create(target.path())?;
     write!(output, "ply\nformat binary_little_endian 1.0\ncomment breakline\n")?;
     for line in crs_text::comments(crs) {
         writeln!(output, "comment {line}")?;
@@ -66,7 +65,7 @@ pub(super) fn write(target: &Path, mesh: &Listing, crs: Option<&Crs>) -> Result<
     } else {
         mesh.faces().try_for_each(|face| output.write_all(&corners(face)))?;
     }
-    output.commit()
+    target.put(output)
 }
 
 /// Reads the elements `vertex`, `face` and, of files from before the faces had kinds of edges, `constrained_edge`;

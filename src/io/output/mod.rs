@@ -1,0 +1,168 @@
+//! Files that appear whole or not at all, alone or as a set.
+
+mod place;
+mod set;
+mod temporary;
+
+use std::fs::File;
+use std::io::{self, BufWriter, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+
+use place::Place;
+use temporary::Temporary;
+
+pub use set::{Destination, OutputSet};
+pub use temporary::{Abandoned, abandon_outputs};
+
+/// A file that appears whole or not at all: it is written beside its target and renamed by
+/// [`commit`](Output::commit). Dropped before that, it leaves nothing behind.
+///
+/// What stands at the target is replaced; its mode stays, and a symbolic link is followed. A pipe or a device is no
+/// file to rename to: it is written as the bytes come.
+#[derive(Debug)]
+#[must_use = "nothing is at the target before `commit`"]
+pub struct Output {
+    file: BufWriter<File>,
+    target: PathBuf,
+    sink: Sink,
+}
+
+/// Where the bytes of an [`Output`] go in the end.
+#[derive(Debug)]
+enum Sink {
+    /// Renamed to this path.
+    Renamed(Temporary, PathBuf),
+    /// They are there already.
+    Stream,
+    /// Copied to a stream, which could not be written out of order.
+    Copied(File),
+}
+
+/// An output whose bytes are on the disk, or in their stream.
+struct Flushed {
+    renamed: Option<(Temporary, PathBuf)>,
+    target: PathBuf,
+}
+
+impl Output {
+    /// Opens a hidden file in the folder of `target`; a pipe or a device itself, which waits for a reader.
+    ///
+    /// # Errors
+    /// If the folder does not exist or cannot be written to, a folder is in the way, or the file that is there is
+    /// read-only.
+    pub fn create(target: impl AsRef<Path>) -> Result<Self> {
+        let target = target.as_ref();
+        Self::open(target, false).map_err(|e| e.in_file(target))
+    }
+
+    /// Like [`create`](Output::create), for formats whose first bytes are known last. What goes to a pipe or a
+    /// device is collected in a temporary file, and copied by `commit`.
+    ///
+    /// # Errors
+    /// As [`create`](Output::create).
+    pub fn create_seekable(target: impl AsRef<Path>) -> Result<Self> {
+        let target = target.as_ref();
+        Self::open(target, true).map_err(|e| e.in_file(target))
+    }
+
+    fn open(target: &Path, is_seekable: bool) -> Result<Self> {
+        let (file, sink) = match Place::of(target)? {
+            Place::File(path) => {
+                let (file, temporary) = temporary_for(&path)?;
+                (file, Sink::Renamed(temporary, path))
+            }
+            Place::Stream if is_seekable => (tempfile::tempfile()?, Sink::Copied(place::open_stream(target)?)),
+            Place::Stream => (place::open_stream(target)?, Sink::Stream),
+        };
+        Ok(Output { file: BufWriter::with_capacity(1 << 18, file), target: target.to_path_buf(), sink })
+    }
+
+    /// Flushes and renames to the target, replacing what was there.
+    ///
+    /// # Errors
+    /// If the last bytes cannot be written or the rename fails.
+    pub fn commit(self) -> Result<()> {
+        let set = OutputSet::default();
+        set.add(self);
+        set.commit()
+    }
+
+    /// The file's final name.
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Puts all bytes on the disk: a full one is noticed now, before anything is replaced.
+    fn flush_to_disk(self) -> Result<Flushed> {
+        let Output { file, target, sink } = self;
+        let flush = || -> Result<Option<(Temporary, PathBuf)>> {
+            let mut file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+            match sink {
+                Sink::Renamed(temporary, path) => {
+                    file.sync_all()?;
+                    Ok(Some((temporary, path)))
+                }
+                Sink::Stream => Ok(None),
+                Sink::Copied(mut stream) => {
+                    file.rewind()?;
+                    io::copy(&mut file, &mut stream)?;
+                    Ok(None)
+                }
+            }
+        };
+        match flush() {
+            Ok(renamed) => Ok(Flushed { renamed, target }),
+            Err(error) => Err(error.in_file(&target)),
+        }
+    }
+}
+
+/// Makes sure that an output could be written, without leaving a trace. A pipe or a device is not opened.
+///
+/// # Errors
+/// As [`Output::create`].
+pub fn probe(target: &Path) -> Result<()> {
+    let probe = || match Place::of(target)? {
+        Place::File(path) => temporary_for(&path).map(drop),
+        Place::Stream => Ok(()),
+    };
+    probe().map_err(|e: Error| e.in_file(target))
+}
+
+/// Returns true if a target is a pipe or a device, which is never replaced.
+pub fn is_stream(target: &Path) -> bool {
+    matches!(Place::of(target), Ok(Place::Stream))
+}
+
+fn temporary_for(path: &Path) -> Result<(File, Temporary)> {
+    let replaced = place::replaceable(path)?;
+    let (file, temporary) = Temporary::create(path)?;
+    if let Some(old) = replaced {
+        place::take_over(&file, &old)?;
+    }
+    Ok((file, temporary))
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    /// `PERF:` meshes are written in rows of some bytes: with the loop that comes with the trait each takes three times as long.
+    #[inline]
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.file.write_all(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Output {
+    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}

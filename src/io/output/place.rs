@@ -1,0 +1,98 @@
+//! What stands at the path of an output.
+
+use std::fs::{File, Metadata};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+
+/// What a path leads to.
+pub(super) enum Place {
+    /// A file at this path, there or to be; symbolic links are followed.
+    File(PathBuf),
+    /// A pipe or a device.
+    Stream,
+}
+
+/// As many links in a row as Linux follows.
+const MAX_LINKS: usize = 40;
+
+impl Place {
+    pub(super) fn of(path: &Path) -> Result<Self> {
+        let mut path = path.to_path_buf();
+        for _ in 0..MAX_LINKS {
+            if open_file(&path).is_some() {
+                return Ok(Place::Stream);
+            }
+            match std::fs::symlink_metadata(&path) {
+                Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Place::File(path)),
+                Err(error) => return Err(error.into()),
+                Ok(data) if data.is_symlink() => path = path.with_file_name("").join(std::fs::read_link(&path)?),
+                Ok(data) if data.is_dir() => return Err(folder_in_the_way()),
+                Ok(data) if data.is_file() => return Ok(Place::File(path)),
+                Ok(_) => return Ok(Place::Stream),
+            }
+        }
+        Err(Error::usage("symbolic links lead in a circle"))
+    }
+}
+
+/// The number in `/proc/self/fd/1` and its like: what `/dev/stdout` links to, whatever that is in turn.
+fn open_file(path: &Path) -> Option<u32> {
+    let is_listed = path.parent().is_some_and(|folder| {
+        folder == Path::new("/dev/fd") || folder.starts_with("/proc") && folder.file_name().is_some_and(|n| n == "fd")
+    });
+    path.file_name().filter(|_| is_listed)?.to_str()?.parse().ok()
+}
+
+/// Opens a pipe or a device for writing; where that is the standard output, the one that the program has.
+pub(super) fn open_stream(path: &Path) -> Result<File> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd;
+        let linked = std::fs::read_link(path).ok();
+        // Opened anew, a file would be written from its start, and a socket not at all.
+        if linked.as_deref().or(Some(path)).and_then(open_file) == Some(1) {
+            return Ok(std::io::stdout().as_fd().try_clone_to_owned()?.into());
+        }
+    }
+    Ok(File::options().write(true).open(path)?)
+}
+
+/// The file that a rename would replace, if any.
+///
+/// # Errors
+/// If it may not be replaced: a rename asks for the folder's permission only.
+pub(super) fn replaceable(path: &Path) -> Result<Option<Metadata>> {
+    let old = match std::fs::metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        old => old?,
+    };
+    if old.is_dir() {
+        return Err(folder_in_the_way());
+    }
+    if old.permissions().readonly() {
+        let error = std::io::Error::new(ErrorKind::PermissionDenied, "the file is read-only, and is not replaced");
+        return Err(Error::from(error).cure("give it another name, or allow writing with chmod u+w"));
+    }
+    // The system knows of more than modes.
+    File::options().write(true).open(path)?;
+    Ok(Some(old))
+}
+
+/// Gives a new file the mode of the one that it replaces, and its owner if that is possible.
+pub(super) fn take_over(new: &File, old: &Metadata) -> Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{MetadataExt, fchown};
+        // First: a change of owner takes away bits of the mode.
+        let _ = fchown(new, Some(old.uid()), Some(old.gid()));
+    }
+    Ok(new.set_permissions(old.permissions())?)
+}
+
+#[cold]
+pub(super) fn folder_in_the_way() -> Error {
+    let error = std::io::Error::new(ErrorKind::IsADirectory, "a folder is in the way");
+    Error::from(error).cure("give the output another name, or move the folder")
+}

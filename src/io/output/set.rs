@@ -1,0 +1,283 @@
+use std::cell::RefCell;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::temporary::{Renames, Temporary};
+use super::{Flushed, Output, place};
+use crate::error::{Error, Result};
+
+/// Outputs that appear together or not at all.
+///
+/// ```
+/// # fn main() -> breakline::Result<()> {
+/// # let folder = tempfile::tempdir()?;
+/// # let (ply, obj) = (folder.path().join("a.ply"), folder.path().join("a.obj"));
+/// use breakline::data::Mesh;
+/// use breakline::io::{OutputSet, mesh};
+///
+/// let surface = Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]], &[], None)?;
+/// let set = OutputSet::default();
+/// mesh::write(set.at(&ply), &surface)?;
+/// mesh::write(set.at(&obj), &surface)?;
+/// assert!(!ply.exists() && !obj.exists());
+/// set.commit()?;
+/// assert!(ply.exists() && obj.exists());
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Default)]
+#[must_use = "nothing is at the targets before `commit`"]
+pub struct OutputSet {
+    staged: RefCell<Staged>,
+}
+
+#[derive(Debug, Default)]
+struct Staged {
+    companions: Vec<Output>,
+    outputs: Vec<Output>,
+    stale: Vec<PathBuf>,
+}
+
+impl OutputSet {
+    /// A path of this set, for a writer.
+    pub fn at<'a>(&'a self, path: &'a Path) -> Destination<'a> {
+        Destination { path, extension: None, set: Some(self) }
+    }
+
+    /// Adds an output that is complete.
+    pub fn add(&self, output: Output) {
+        self.staged.borrow_mut().outputs.push(output);
+    }
+
+    /// Flushes all outputs to the disk, then renames them to their targets: those that others need first.
+    ///
+    /// # Errors
+    /// If the last bytes cannot be written or a rename fails. What was at the targets is then there again. Bytes that
+    /// went to a pipe or a device are gone.
+    pub fn commit(self) -> Result<()> {
+        let Staged { companions, outputs, stale } = self.staged.into_inner();
+        let all = companions.into_iter().chain(outputs);
+        let flushed: Vec<Flushed> = all.map(Output::flush_to_disk).collect::<Result<_>>()?;
+        // Ends before `flushed`, whose remains are removed with the same lock.
+        let mut renames = Renames::begin();
+        let mut moves = Vec::new();
+        match replace_all(&flushed, &stale, &mut moves, &mut renames) {
+            Ok(()) => {
+                moves.iter().for_each(Move::forget);
+                Ok(())
+            }
+            Err(error) => Err(moves.iter().rev().fold(error, |error, done| match done.undo() {
+                Ok(()) => error,
+                Err(kept) => error.cure(kept),
+            })),
+        }
+    }
+}
+
+/// Where a writer puts its files: at a path, at once when they are complete; or, by [`OutputSet::at`], with the others
+/// of a set.
+#[derive(Debug, Clone, Copy)]
+pub struct Destination<'a> {
+    path: &'a Path,
+    extension: Option<&'a str>,
+    set: Option<&'a OutputSet>,
+}
+
+impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Destination<'a> {
+    fn from(path: &'a P) -> Self {
+        Destination { path: path.as_ref(), extension: None, set: None }
+    }
+}
+
+impl<'a> Destination<'a> {
+    /// The path of the main file.
+    pub fn path(self) -> &'a Path {
+        self.path
+    }
+
+    /// The same in the format of an extension, for paths whose own names none.
+    #[must_use]
+    pub fn in_format(self, extension: &'a str) -> Self {
+        Destination { extension: Some(extension), ..self }
+    }
+
+    /// A path whose extension names the format.
+    pub(crate) fn format_path(self) -> PathBuf {
+        match self.extension {
+            Some(extension) => self.path.with_extension(extension),
+            None => self.path.to_path_buf(),
+        }
+    }
+
+    /// Takes an output that is complete.
+    ///
+    /// # Errors
+    /// As [`OutputSet::commit`].
+    pub fn put(self, output: Output) -> Result<()> {
+        self.put_all([], output, [])
+    }
+
+    /// Takes an output with files that it needs, and removes files that would be wrong beside it.
+    ///
+    /// # Errors
+    /// As [`OutputSet::commit`].
+    pub(crate) fn put_all(
+        self,
+        companions: impl IntoIterator<Item = Output>,
+        output: Output,
+        stale: impl IntoIterator<Item = PathBuf>,
+    ) -> Result<()> {
+        let own = OutputSet::default();
+        let mut staged = self.set.unwrap_or(&own).staged.borrow_mut();
+        staged.companions.extend(companions);
+        staged.outputs.push(output);
+        staged.stale.extend(stale);
+        drop(staged);
+        own.commit()
+    }
+}
+
+/// What a step of a commit did to a path.
+struct Move<'a> {
+    target: &'a Path,
+    /// Where the file is that was there.
+    before: Option<PathBuf>,
+}
+
+impl Move<'_> {
+    fn forget(&self) {
+        if let Some(before) = &self.before {
+            let _ = std::fs::remove_file(before);
+        }
+    }
+
+    /// # Errors
+    /// If that is impossible; says where the old file is.
+    fn undo(&self) -> std::result::Result<(), String> {
+        let Some(before) = &self.before else {
+            let _ = std::fs::remove_file(self.target);
+            return Ok(());
+        };
+        std::fs::rename(before, self.target)
+            .map_err(|_| format!("{} was not restored: it is kept as {}", self.target.display(), before.display()))?;
+        // Nothing is done by a rename between two names of one file.
+        self.forget();
+        Ok(())
+    }
+}
+
+fn replace_all<'a>(
+    flushed: &'a [Flushed],
+    stale: &'a [PathBuf],
+    moves: &mut Vec<Move<'a>>,
+    renames: &mut Renames,
+) -> Result<()> {
+    let files = || flushed.iter().filter_map(|file| Some((file, file.renamed.as_ref()?)));
+    // One hidden name for each, from those of the set's own files.
+    if let Some((_, (first, _))) = files().next() {
+        for (i, path) in stale.iter().enumerate() {
+            if path.is_dir() {
+                return Err(place::folder_in_the_way().in_file(path));
+            }
+            let before = beside(path, &first.backup().with_extension(i.to_string()));
+            match std::fs::rename(path, &before) {
+                Ok(()) => moves.push(Move { target: path, before: Some(before) }),
+                Err(error) if error.kind() == ErrorKind::NotFound => {}
+                Err(error) => return Err(Error::from(error).in_file(path)),
+            }
+        }
+    }
+    for (file, (temporary, path)) in files() {
+        let before = set_aside(temporary, path).map_err(|e| e.in_file(&file.target))?;
+        let renamed = renames.rename(temporary, path);
+        if renamed.is_ok() || before.is_some() {
+            moves.push(Move { target: path, before });
+        }
+        renamed.map_err(|e| Error::from(e).in_file(&file.target))?;
+    }
+    Ok(())
+}
+
+/// Gives the file at a path a second name, if there is one; where that cannot be, another name.
+fn set_aside(temporary: &Temporary, path: &Path) -> Result<Option<PathBuf>> {
+    match std::fs::symlink_metadata(path) {
+        Ok(data) if data.is_dir() => return Err(place::folder_in_the_way()),
+        Ok(_) => {}
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(error.into()),
+    }
+    let before = temporary.backup();
+    std::fs::hard_link(path, &before).or_else(|_| std::fs::rename(path, &before))?;
+    Ok(Some(before))
+}
+
+/// A name in the folder of `path`.
+fn beside(path: &Path, name: &Path) -> PathBuf {
+    path.with_file_name(name.file_name().unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn staged(set: &OutputSet, path: &Path, text: &str) {
+        let mut output = Output::create(path).unwrap();
+        output.write_all(text.as_bytes()).unwrap();
+        set.at(path).put(output).unwrap();
+    }
+
+    fn listed(folder: &Path) -> Vec<(String, String)> {
+        let text = |path: &Path| std::fs::read_to_string(path).unwrap_or_else(|_| "/".to_owned());
+        let mut all: Vec<_> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap())
+            .map(|entry| (entry.file_name().into_string().unwrap(), text(&entry.path())))
+            .collect();
+        all.sort();
+        all
+    }
+
+    #[test]
+    fn a_set_appears_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b, c] = ["a", "b", "c"].map(|name| folder.path().join(name));
+        std::fs::write(&a, "old").unwrap();
+        std::fs::write(&c, "stale").unwrap();
+        let set = OutputSet::default();
+        staged(&set, &a, "new");
+        let output = Output::create(&b).unwrap();
+        set.at(&b).put_all([], output, [c, folder.path().join("nothing")]).unwrap();
+        set.commit().unwrap();
+        assert_eq!(listed(folder.path()), [("a", "new"), ("b", "")].map(|(n, t)| (n.to_owned(), t.to_owned())));
+    }
+
+    #[test]
+    fn a_rename_that_fails_restores_what_was_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b, c, stale] = ["a", "b", "c", "s"].map(|name| folder.path().join(name));
+        std::fs::write(&a, "old").unwrap();
+        std::fs::write(&stale, "kept").unwrap();
+        let set = OutputSet::default();
+        staged(&set, &a, "new");
+        staged(&set, &b, "new");
+        let output = Output::create(&c).unwrap();
+        set.at(&c).put_all([], output, [stale]).unwrap();
+        // Comes after the check.
+        std::fs::create_dir(&c).unwrap();
+        let error = set.commit().unwrap_err();
+        assert!(error.to_string().ends_with("c: a folder is in the way"), "{error}");
+        let expected = [("a", "old"), ("c", "/"), ("s", "kept")].map(|(n, t)| (n.to_owned(), t.to_owned()));
+        assert_eq!(listed(folder.path()), expected);
+    }
+
+    #[test]
+    fn what_is_dropped_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let set = OutputSet::default();
+        staged(&set, &folder.path().join("a"), "new");
+        assert_eq!(listed(folder.path()).len(), 1);
+        drop(set);
+        assert_eq!(listed(folder.path()), []);
+    }
+}

@@ -1,0 +1,195 @@
+//! Outputs appear together or not at all, whatever stands at their places.
+
+use std::io::Write;
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::*;
+
+fn program(folder: &TempDir, args: &[&str]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
+    command.current_dir(folder.path()).args(args).stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+}
+
+fn make_fifo(folder: &TempDir, name: &str) {
+    assert!(Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap().success());
+}
+
+fn mode(path: &Path) -> u32 {
+    std::fs::metadata(path).unwrap().permissions().mode() & 0o7777
+}
+
+fn set_mode(path: &Path, mode: u32) {
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)).unwrap();
+}
+
+#[track_caller]
+fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_so() {
+        assert!(start.elapsed() < Duration::from_secs(60), "{what} has not come");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn send(signal: &str, child: &Child) {
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+}
+
+#[test]
+fn a_folder_in_the_way_is_known_before_the_work_and_nothing_is_left() {
+    let folder =
+        folder_with(&[("broken.xyz", "no numbers at all\n"), ("c.prj/x", ""), ("b.node/x", ""), ("t.ply/x", "")]);
+    std::fs::write(folder.path().join("p.node"), "broken").unwrap();
+    let before = files_of(folder.path());
+    for (args, name) in [
+        (["contour", "broken.xyz", "-o", "c.shp"], "c.prj"),
+        (["triangulate", "p.node", "-o", "b.edge"], "b.node"),
+        (["tin", "broken.xyz", "-o", "t.ply"], "t.ply"),
+    ] {
+        run_in(&folder, &[&args[..], &["--overwrite"]].concat()).fails(1, &[name, "a folder is in the way", "hint: "]);
+        assert_eq!(files_of(folder.path()), before);
+    }
+}
+
+#[test]
+fn a_folder_that_comes_in_the_way_during_the_work_leaves_what_was_there() {
+    let folder = folder_with(&[("c.geojson", "mine"), ("c.prj", "mine"), ("c.qix", "mine")]);
+    let args = ["contour", "-", "-o", "c.geojson", "-o", "c.shp", "--overwrite"];
+    let mut child = program(&folder, &args).stdin(Stdio::piped()).spawn().unwrap();
+    // Waits for points; should it not have come so far, the folder is found by the first check.
+    std::thread::sleep(Duration::from_millis(300));
+    std::fs::create_dir(folder.path().join("c.shp")).unwrap();
+    child.stdin.take().unwrap().write_all(SLOPE.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("c.shp: a folder is in the way"), "{said}");
+    assert_eq!(files_of(folder.path()), ["c.geojson", "c.prj", "c.qix", "c.shp"]);
+    for name in ["c.geojson", "c.prj", "c.qix"] {
+        assert_eq!(bytes(&folder, name), b"mine");
+    }
+}
+
+#[test]
+fn a_full_disk_leaves_no_output_of_the_run() {
+    if !Path::new("/dev/full").exists() {
+        return eprintln!("skipped: there is no /dev/full");
+    }
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    symlink("/dev/full", folder.path().join("full.obj")).unwrap();
+    let run = run_in(&folder, &["tin", "a.xyz", "-o", "t.stl", "-o", "full.obj", "-o", "t.ply"]);
+    run.fails(1, &["error: full.obj: the disk is full", "hint: free some space"]);
+    assert_eq!(files_of(folder.path()), ["a.xyz", "full.obj"]);
+}
+
+#[test]
+fn a_folder_that_may_not_be_written_is_told_before_the_work() {
+    let folder = folder_with(&[("broken.xyz", "no numbers at all\n"), ("locked/x", "")]);
+    let locked = folder.path().join("locked");
+    set_mode(&locked, 0o555);
+    if std::fs::write(locked.join("y"), "").is_ok() {
+        return eprintln!("skipped: root may write everywhere");
+    }
+    run_in(&folder, &["tin", "broken.xyz", "-o", "locked/t.ply"]).fails(1, &["locked/t.ply: no permission"]);
+    set_mode(&locked, 0o755);
+}
+
+#[test]
+fn a_signal_leaves_no_temporary_file() {
+    for (signal, number) in [("-INT", 2), ("-TERM", 15), ("-HUP", 1)] {
+        let folder = folder_with(&[("a.xyz", SLOPE)]);
+        make_fifo(&folder, "wait.obj");
+        let mut child = program(&folder, &["tin", "a.xyz", "-o", "t.ply", "-o", "wait.obj"]).spawn().unwrap();
+        // With the first mesh written, it waits for a reader of the second.
+        wait_until("a temporary file", || {
+            let hidden = |entry: std::fs::DirEntry| entry.file_name().to_string_lossy().starts_with(".breakline-");
+            std::fs::read_dir(folder.path()).unwrap().any(|entry| hidden(entry.unwrap()))
+        });
+        send(signal, &child);
+        let status = child.wait().unwrap();
+        assert_eq!(status.signal(), Some(number), "{status}");
+        assert_eq!(files_of(folder.path()), ["a.xyz", "wait.obj"]);
+    }
+}
+
+#[test]
+fn a_signal_that_the_parent_ignored_is_ignored() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    make_fifo(&folder, "wait.obj");
+    let line =
+        format!("trap '' HUP; exec {} tin a.xyz -o wait.obj", assert_cmd::cargo::cargo_bin!("breakline").display());
+    let child =
+        Command::new("sh").args(["-c", &line]).current_dir(folder.path()).stderr(Stdio::null()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(200));
+    send("-HUP", &child);
+    // Ends once it is read.
+    let read = std::fs::read(folder.path().join("wait.obj")).unwrap();
+    assert!(!read.is_empty());
+    assert!({ child }.wait().unwrap().success());
+}
+
+#[test]
+fn pipes_and_devices_are_written_without_a_file() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    run_in(&folder, &["tin", "a.xyz", "-o", "t.obj"]).works(&[]);
+    run_in(&folder, &["dem", "t.obj", "-o", "d.tif"]).works(&[]);
+    // A GeoTIFF cannot be written from front to back.
+    for (verb, file, pipe) in [("tin", "t.obj", "pipe.obj"), ("dem", "d.tif", "pipe.tif")] {
+        make_fifo(&folder, pipe);
+        let read = {
+            let path = folder.path().join(pipe);
+            std::thread::spawn(move || std::fs::read(path).unwrap())
+        };
+        run_in(&folder, &[verb, "a.xyz", "-o", pipe]).works(&[&format!("written     {pipe}\n")]);
+        assert_eq!(read.join().unwrap(), bytes(&folder, file), "{pipe}");
+        std::fs::remove_file(folder.path().join(pipe)).unwrap();
+    }
+    symlink("/dev/stdout", folder.path().join("out.obj")).unwrap();
+    let run = run_in(&folder, &["tin", "a.xyz", "-o", "out.obj"]);
+    run.works(&[]);
+    assert_eq!(run.stdout.as_bytes(), bytes(&folder, "t.obj"));
+    // The first format of one file, where no name tells another.
+    let run = run_in(&folder, &["contour", "a.xyz", "-o", "/dev/stdout"]);
+    run.works(&[]);
+    assert!(run.stdout.starts_with("{\"type\":\"FeatureCollection\""), "{}", run.stdout);
+    run_in(&folder, &["dem", "a.xyz", "-o", "/dev/null"]).works(&[]);
+    assert_eq!(files_of(folder.path()), ["a.xyz", "d.tif", "out.obj", "t.obj"]);
+}
+
+#[test]
+fn what_is_replaced_keeps_its_mode_and_its_links() {
+    let folder = folder_with(&[("a.xyz", SLOPE), ("t.ply", "old"), ("deep/real.obj", "old"), ("locked.off", "old")]);
+    let path = |name: &str| folder.path().join(name);
+    set_mode(&path("t.ply"), 0o640);
+    set_mode(&path("locked.off"), 0o444);
+    symlink("deep/real.obj", path("t.obj")).unwrap();
+    // One that leads nowhere yet.
+    symlink("deep/new.stl", path("t.stl")).unwrap();
+    let run = run_in(&folder, &["tin", "a.xyz", "-o", "t.stl"]);
+    run.fails(1, &["t.stl: the file exists"]);
+    let run = run_in(&folder, &["tin", "a.xyz", "-o", "t.ply", "-o", "locked.off", "--overwrite"]);
+    run.fails(1, &["locked.off: the file is read-only", "hint: ", "chmod u+w"]);
+    assert_eq!((bytes(&folder, "t.ply"), bytes(&folder, "locked.off")), (b"old".to_vec(), b"old".to_vec()));
+
+    let run = run_in(&folder, &["tin", "a.xyz", "-o", "t.ply", "-o", "t.obj", "-o", "t.stl", "--overwrite"]);
+    run.works(&[]);
+    assert_eq!(mode(&path("t.ply")), 0o640);
+    assert!(bytes(&folder, "t.ply").starts_with(b"ply"));
+    for (link, file) in [("t.obj", "deep/real.obj"), ("t.stl", "deep/new.stl")] {
+        assert!(path(link).symlink_metadata().unwrap().is_symlink());
+        assert!(bytes(&folder, file).len() > 10);
+    }
+    assert_eq!(files_of(&path("deep")), ["new.stl", "real.obj"]);
+}
+
+#[test]
+fn one_file_by_two_names_is_named_twice() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    run_in(&folder, &["tin", "a.xyz", "-o", "t.ply", "-o", "./t.ply"]).fails(2, &["the output is named twice"]);
+    assert_eq!(files_of(folder.path()), ["a.xyz"]);
+}
