@@ -1,5 +1,7 @@
 //! The phases of an arrangement: pairs that cross, sites, passes, chains.
 
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -8,6 +10,7 @@ use crate::num::Sign;
 
 use super::boxes::{Box2, BoxTree};
 use super::pixel::Grid;
+use super::sweep;
 use super::{Arrangement, Crossing, FEW, Place, PlaceOf, Segment, lexicographic, starts};
 
 /// A segment that is led through a site.
@@ -29,6 +32,8 @@ pub(super) struct Builder<'a> {
     segments: &'a [Segment],
     /// The area of a box over which many of the segments come to lie, if they are spread evenly.
     large: f64,
+    /// Whether many boxes overlap though the segments do not cross.
+    is_crowded: bool,
     added: Vec<Place>,
     /// The segments whose crossing was rounded to an added site, each once, site after site; and where those of each
     /// end.
@@ -56,6 +61,7 @@ impl<'a> Builder<'a> {
             snapped,
             segments,
             large,
+            is_crowded: false,
             added: Vec::new(),
             crossed: Vec::new(),
             crossed_ends: Vec::new(),
@@ -92,25 +98,52 @@ impl<'a> Builder<'a> {
     }
 
     /// Phase 1: the pairs of segments that cross in their interiors.
-    fn crossing_pairs<K: Kernel>(&self) -> Vec<[u32; 2]> {
+    fn crossing_pairs<K: Kernel>(&mut self) -> Vec<[u32; 2]> {
         if self.segments.len() <= FEW {
             return self.crossing_pairs_of_few::<K>();
         }
-        let tree = self.tree(0..self.segments.len() as u32);
-        let of_leaf = |(at, &i): (usize, &u32)| {
-            let mut found = Vec::new();
-            let s = self.segments[i as usize];
-            tree.visit_from(at + 1, self.along(i), &mut |j| {
-                if cross::<K>(s, self.segments[j as usize]) {
-                    found.push(u64::from(i.min(j)) << 32 | u64::from(i.max(j)));
-                }
-            });
-            found
-        };
-        let mut pairs: Vec<u64> =
-            tree.order().par_iter().enumerate().with_min_len(FEW).flat_map_iter(of_leaf).collect();
+        let number = |[i, j]: [u32; 2]| u64::from(i) << 32 | u64::from(j);
+        let mut pairs = self.crossing_pairs_by_boxes::<K>(number).unwrap_or_else(|| {
+            self.is_crowded = true;
+            sweep::crossing_pairs::<K>(self.segments).into_iter().map(number).collect()
+        });
         pairs.par_sort_unstable(); // as one number: half the time of two
         pairs.into_iter().map(|pair| [(pair >> 32) as u32, pair as u32]).collect()
+    }
+
+    /// The same as numbers, in no order; `None` as soon as many boxes have overlapped in vain.
+    ///
+    /// `PERF:` of segments that are short, or cross most of what they come near, half the time of the sweep, on one
+    /// thread.
+    fn crossing_pairs_by_boxes<K: Kernel>(&self, number: impl Fn([u32; 2]) -> u64 + Sync) -> Option<Vec<u64>> {
+        /// So many in vain, for each segment and each pair found, take about as long as the sweep.
+        const PATIENCE: usize = 64;
+        const CHUNK: usize = 64;
+        let tree = self.tree(0..self.segments.len() as u32);
+        let (asked, allowed) = (AtomicUsize::new(0), AtomicUsize::new(PATIENCE * self.segments.len()));
+        let is_in_vain = || asked.load(Relaxed) > allowed.load(Relaxed);
+        let of_chunk = |(chunk, leaves): (usize, &[u32])| {
+            let (mut found, mut count) = (Vec::new(), 0);
+            for (at, &i) in (chunk * CHUNK + 1..).zip(leaves) {
+                if is_in_vain() {
+                    break;
+                }
+                let s = self.segments[i as usize];
+                let before = (found.len(), count);
+                tree.visit_from(at, self.along(i), &mut |j| {
+                    count += 1;
+                    if cross::<K>(s, self.segments[j as usize]) {
+                        found.push(number([i.min(j), i.max(j)]));
+                    }
+                });
+                asked.fetch_add(count - before.1, Relaxed);
+                allowed.fetch_add(PATIENCE * (found.len() - before.0), Relaxed);
+            }
+            found
+        };
+        let chunks = tree.order().par_chunks(CHUNK).enumerate().with_min_len(FEW / CHUNK);
+        let pairs = chunks.flat_map_iter(of_chunk).collect();
+        (!is_in_vain()).then_some(pairs)
     }
 
     /// The same: each with those that begin before it ends, from left to right.
@@ -194,12 +227,9 @@ impl<'a> Builder<'a> {
         let mut known = 0;
         while !fresh.is_empty() {
             fresh.iter().for_each(|&i| is_led[i as usize] = true);
-            let newest = self.tree(fresh.iter().copied());
             self.pass::<K>(&fresh, &hot, &mut passes);
             // Places that lie on a segment that may bend are kept on it.
-            let cold = (0..self.places as u32).into_par_iter().with_min_len(4096);
-            let on = |&site: &u32| !is_hot[site as usize] && self.is_on_one::<K>(site, &newest, &fresh);
-            let heated: Vec<u32> = cold.filter(on).collect();
+            let heated = self.places_on::<K>(&fresh, |site| !is_hot[site as usize]);
             heated.iter().for_each(|&site| is_hot[site as usize] = true);
             led.append(&mut fresh);
             hot.push(self.pixels(heated));
@@ -241,7 +271,7 @@ impl<'a> Builder<'a> {
     fn along(&self, segment: u32) -> impl Fn(&Box2) -> bool + use<'a> {
         let s = self.segments[segment as usize];
         let around = Box2::around(s);
-        let has_sides = self.grid.is_ordinary && around.area() >= self.large;
+        let has_sides = self.grid.is_ordinary && (self.is_crowded || around.area() >= self.large);
         move |boxed| around.overlaps(boxed) & !(has_sides && boxed.is_beside(s))
     }
 
@@ -282,6 +312,34 @@ impl<'a> Builder<'a> {
         let Some(added) = (site as usize).checked_sub(self.places) else { return &[] };
         let from = if added == 0 { 0 } else { self.crossed_ends[added - 1] as usize };
         &self.crossed[from..self.crossed_ends[added] as usize]
+    }
+
+    /// Those of the places that lie on some segments exactly, in order.
+    fn places_on<K: Kernel>(&self, segments: &[u32], is_asked: impl Fn(u32) -> bool + Sync) -> Vec<u32> {
+        let places = (0..self.places as u32).into_par_iter().with_min_len(4096);
+        if !self.is_crowded {
+            let tree = self.tree(segments.iter().copied());
+            return places.filter(|&site| is_asked(site) && self.is_on_one::<K>(site, &tree, segments)).collect();
+        }
+        // A place is in many boxes, but on few segments: each of these is asked for its places.
+        let places: Vec<u32> = places.filter(|&site| is_asked(site)).collect();
+        let boxes: Vec<Box2> = places.iter().map(|&site| Box2::around([self.site(site); 2])).collect();
+        let tree = BoxTree::new(&boxes);
+        let on_segment = |&segment: &u32| {
+            let mut found = Vec::new();
+            let [a, b] = self.segments[segment as usize];
+            tree.visit(self.along(segment), |member| {
+                let site = places[member as usize];
+                if K::sign(&Orientation2([a, b, self.site(site)])) == Sign::Zero {
+                    found.push(site);
+                }
+            });
+            found
+        };
+        let mut on: Vec<u32> = segments.par_iter().with_min_len(FEW).flat_map_iter(on_segment).collect();
+        on.par_sort_unstable();
+        on.dedup();
+        on
     }
 
     /// Whether a place lies on a segment of the tree exactly.
@@ -355,7 +413,7 @@ impl<'a> Builder<'a> {
 
 /// Whether two segments cross in their interiors.
 #[inline]
-fn cross<K: Kernel>([a, b]: Segment, [c, d]: Segment) -> bool {
+pub(super) fn cross<K: Kernel>([a, b]: Segment, [c, d]: Segment) -> bool {
     let apart = |p, q, r, s| K::sign(&Orientation2([p, q, r])) * K::sign(&Orientation2([p, q, s])) == Sign::Negative;
     apart(a, b, c, d) && apart(c, d, a, b)
 }

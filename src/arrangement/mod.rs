@@ -29,7 +29,9 @@
 
 mod boxes;
 mod builder;
+mod order;
 mod pixel;
+mod sweep;
 
 use std::ops::Range;
 
@@ -81,8 +83,8 @@ impl Arrangement {
     /// multiples of `step`, a power of two or zero, and so will be those that are added.
     ///
     /// # Complexity
-    /// O(n log n + k) in practice for n segments and places and k pairs of segments whose boxes overlap; quadratic at
-    /// the worst, for long lines side by side across the axes.
+    /// O((n + k) log n) for n segments and k pairs of them that cross, to find these; to lead segments through sites, about
+    /// as much in practice.
     pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
         Self::arrange(places, &place, segments, 0, step)
     }

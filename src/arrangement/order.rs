@@ -1,0 +1,152 @@
+//! A list in order, in which a place is found by questions: a skip list (Pugh 1990).
+
+/// On each level every fourth of those below.
+const LEVELS: usize = 12;
+
+/// Some of the numbers below a limit, in an order that is kept by whoever inserts and exchanges them.
+#[derive(Debug, Clone)]
+pub(super) struct Order {
+    /// Of each node the first of its links, which stand level by level; the last node is the head, where the list begins
+    /// and ends.
+    starts: Vec<u32>,
+    /// The nodes before and behind.
+    links: Vec<[u32; 2]>,
+    /// What each node holds, and the node that holds each.
+    held: Vec<u32>,
+    nodes: Vec<u32>,
+}
+
+impl Order {
+    /// An empty list for numbers below a limit.
+    pub(super) fn of(limit: usize) -> Self {
+        let head = limit as u32;
+        let mut starts = Vec::with_capacity(limit + 2);
+        let mut sum = 0;
+        for node in 0..head {
+            starts.push(sum);
+            sum += levels(node) as u32;
+        }
+        starts.extend([sum, sum + LEVELS as u32]);
+        let links = vec![[head; 2]; sum as usize + LEVELS];
+        let numbers: Vec<u32> = (0..head).collect();
+        Order { starts, links, held: numbers.clone(), nodes: numbers }
+    }
+
+    fn head(&self) -> u32 {
+        self.held.len() as u32
+    }
+
+    fn links(&mut self, node: u32, level: usize) -> &mut [u32; 2] {
+        &mut self.links[self.starts[node as usize] as usize + level]
+    }
+
+    fn next(&self, node: u32, level: usize) -> u32 {
+        self.links[self.starts[node as usize] as usize + level][1]
+    }
+
+    /// The place behind all for which a question is answered with yes, which are the first: the node before it on each
+    /// level.
+    pub(super) fn place(&self, is_before: impl Fn(u32) -> bool) -> [u32; LEVELS] {
+        let mut place = [self.head(); LEVELS];
+        let mut at = self.head();
+        let mut refused = self.head();
+        for level in (0..LEVELS).rev() {
+            loop {
+                let next = self.next(at, level);
+                // What was refused on the level above need not be asked again.
+                if next == refused || next == self.head() || !is_before(self.held[next as usize]) {
+                    refused = next;
+                    break;
+                }
+                at = next;
+            }
+            place[level] = at;
+        }
+        place
+    }
+
+    /// Inserts a number, once, at a place.
+    pub(super) fn insert(&mut self, number: u32, place: &[u32; LEVELS]) {
+        let node = number; // which nobody else ever had before
+        for (level, &before) in place.iter().enumerate().take(levels(node)) {
+            let behind = self.next(before, level);
+            *self.links(node, level) = [before, behind];
+            self.links(before, level)[1] = node;
+            self.links(behind, level)[0] = node;
+        }
+    }
+
+    /// Removes a number.
+    pub(super) fn remove(&mut self, number: u32) {
+        let node = self.nodes[number as usize];
+        for level in 0..levels(node) {
+            let [before, behind] = *self.links(node, level);
+            self.links(before, level)[1] = behind;
+            self.links(behind, level)[0] = before;
+        }
+    }
+
+    /// Exchanges the places of two numbers.
+    pub(super) fn exchange(&mut self, p: u32, q: u32) {
+        self.nodes.swap(p as usize, q as usize);
+        for number in [p, q] {
+            self.held[self.nodes[number as usize] as usize] = number;
+        }
+    }
+
+    /// The number before.
+    pub(super) fn below(&self, number: u32) -> Option<u32> {
+        self.beside(number, 0)
+    }
+
+    /// The number behind.
+    pub(super) fn above(&self, number: u32) -> Option<u32> {
+        self.beside(number, 1)
+    }
+
+    fn beside(&self, number: u32, side: usize) -> Option<u32> {
+        let node = self.nodes[number as usize];
+        let beside = self.links[self.starts[node as usize] as usize][side];
+        self.held.get(beside as usize).copied() // the head holds nothing
+    }
+}
+
+/// On how many levels a node is: pseudo-random.
+fn levels(node: u32) -> usize {
+    let mixed = node.wrapping_add(1).wrapping_mul(0x9E37_79B9);
+    1 + ((mixed ^ mixed >> 15).wrapping_mul(0x85EB_CA6B).leading_zeros() as usize / 2).min(LEVELS - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_like_any() {
+        let mut order = Order::of(1000);
+        let mut naive: Vec<u32> = Vec::new();
+        let mut state = 1u32;
+        let mut below = |n: usize| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as usize % n
+        };
+        for number in 0..1000 {
+            let at = below(naive.len() + 1);
+            let first = naive[..at].to_vec();
+            order.insert(number, &order.place(|other| first.contains(&other)));
+            naive.insert(at, number);
+            if naive.len() > 2 {
+                let i = below(naive.len() - 1);
+                order.exchange(naive[i], naive[i + 1]);
+                naive.swap(i, i + 1);
+            }
+            if number % 3 == 0 {
+                order.remove(naive.remove(below(naive.len())));
+            }
+        }
+        for pair in naive.windows(2) {
+            assert_eq!((order.above(pair[0]), order.below(pair[1])), (Some(pair[1]), Some(pair[0])));
+        }
+        assert_eq!((order.below(naive[0]), order.above(naive[naive.len() - 1])), (None, None));
+    }
+}

@@ -1,0 +1,210 @@
+//! Which segments cross, by a sweep: where boxes tell too little, as of long segments side by side.
+//!
+//! A line sweeps over the plane, from left to right (and as if it were tilted: of places above each other, it meets the
+//! lowest first). The segments that it meets are kept in order, from the lowest up. Two segments that cross are
+//! neighbors just before; so neighbors are all that is looked at (Bentley and Ottmann 1979).
+//!
+//! *No crossings are compared with each other*, which would take numbers of many digits. The sweep stops at ends of
+//! segments only. A crossing is put off to the first stop that is not before it; there, neighbors that have crossed
+//! change places until none are left, in any order: each exchange undoes one inversion, and every pair of neighbors has
+//! been looked at.
+//!
+//! *Touching.* After a stop the order is that just behind it. So segments that cross in the place of the stop have
+//! changed places, those that end there are gone, and others begin between them. What runs along each other is in any
+//! order, and stays so.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::marker::PhantomData;
+
+use rayon::prelude::*;
+
+use crate::kernel::{CrossingSide, Kernel, Orientation2};
+use crate::num::Sign;
+
+use super::order::Order;
+use super::{Place, Segment, lexicographic};
+
+/// The pairs of segments that cross in their interiors, in no order.
+///
+/// # Complexity
+/// O((n + k) log n) for n segments and k crossings, on one thread.
+pub(super) fn crossing_pairs<K: Kernel>(segments: &[Segment]) -> Vec<[u32; 2]> {
+    let mut sweep = Sweep::<K>::over(segments);
+    let ends = sweep.ends();
+    for (stop, here) in (0..).zip(ends.chunk_by(|p, q| p.at == q.at)) {
+        sweep.exchange_until(stop);
+        here.iter().filter(|end| end.is_last).for_each(|end| sweep.remove(end.segment, stop));
+        sweep.exchange_until(stop);
+        here.iter().filter(|end| !end.is_last).for_each(|end| sweep.insert(end.segment, stop));
+    }
+    sweep.crossed
+}
+
+/// An end of a segment.
+#[derive(Clone, Copy)]
+struct End {
+    at: Place,
+    segment: u32,
+    is_last: bool,
+}
+
+struct Sweep<K> {
+    /// Each from its lexicographically smaller end to the larger.
+    segments: Vec<Segment>,
+    /// The places of all ends, in order.
+    stops: Vec<Place>,
+    /// The stop at which each segment ends.
+    lasts: Vec<u32>,
+    /// Those that are met, from the lowest up.
+    order: Order,
+    /// Neighbors that will have crossed: the stop, the lower one, the upper one.
+    due: BinaryHeap<Reverse<(u32, u32, u32)>>,
+    crossed: Vec<[u32; 2]>,
+    kernel: PhantomData<K>,
+}
+
+impl<K: Kernel> Sweep<K> {
+    fn over(segments: &[Segment]) -> Self {
+        let rightward = |&[a, b]: &Segment| if lexicographic(a, b).is_le() { [a, b] } else { [b, a] };
+        Sweep {
+            segments: segments.iter().map(rightward).collect(),
+            stops: Vec::new(),
+            lasts: vec![0; segments.len()],
+            order: Order::of(segments.len()),
+            due: BinaryHeap::new(),
+            crossed: Vec::new(),
+            kernel: PhantomData,
+        }
+    }
+
+    /// All ends in the order of the sweep; takes down the stops.
+    fn ends(&mut self) -> Vec<End> {
+        let lines = (0..).zip(&self.segments).filter(|(_, [a, b])| a != b);
+        let mut ends: Vec<End> = lines
+            .flat_map(|(segment, &[a, b])| [(a, false), (b, true)].map(|(at, is_last)| End { at, segment, is_last }))
+            .collect();
+        ends.par_sort_unstable_by(|p, q| lexicographic(p.at, q.at).then(p.segment.cmp(&q.segment)));
+        for here in ends.chunk_by(|p, q| p.at == q.at) {
+            for end in here.iter().filter(|end| end.is_last) {
+                self.lasts[end.segment as usize] = self.stops.len() as u32;
+            }
+            self.stops.push(here[0].at);
+        }
+        ends
+    }
+
+    /// Positive if a place is above a segment.
+    fn side(&self, segment: u32, place: Place) -> Sign {
+        let [a, b] = self.segments[segment as usize];
+        K::sign(&Orientation2([a, b, place]))
+    }
+
+    fn insert(&mut self, segment: u32, stop: u32) {
+        let end = self.segments[segment as usize][1];
+        let at = self.stops[stop as usize];
+        let is_below = |other| match self.side(other, at) {
+            Sign::Zero => self.side(other, end) == Sign::Positive, // both go on from here
+            side => side == Sign::Positive,
+        };
+        let below = self.order.place(is_below);
+        self.order.insert(segment, &below);
+        self.look_at(self.order.below(segment), Some(segment), stop);
+        self.look_at(Some(segment), self.order.above(segment), stop);
+    }
+
+    fn remove(&mut self, segment: u32, stop: u32) {
+        let (below, above) = (self.order.below(segment), self.order.above(segment));
+        self.order.remove(segment);
+        self.look_at(below, above, stop);
+    }
+
+    /// Exchanges neighbors that have crossed.
+    fn exchange_until(&mut self, stop: u32) {
+        while let Some(&Reverse((due, lower, upper))) = self.due.peek()
+            && due <= stop
+        {
+            self.due.pop();
+            if self.order.above(lower) == Some(upper) {
+                self.order.exchange(lower, upper);
+                self.crossed.push([lower.min(upper), lower.max(upper)]);
+                self.look_at(self.order.below(upper), Some(upper), stop);
+                self.look_at(Some(lower), self.order.above(lower), stop);
+            }
+        }
+    }
+
+    /// Puts down neighbors that cross beyond where they have become neighbors.
+    fn look_at(&mut self, lower: Option<u32>, upper: Option<u32>, stop: u32) {
+        let (Some(lower), Some(upper)) = (lower, upper) else { return };
+        let [a, b] = self.segments[lower as usize];
+        let [c, d] = self.segments[upper as usize];
+        let will_cross = self.side(lower, d) == Sign::Negative
+            && self.side(upper, b) == Sign::Positive
+            && self.side(lower, c) == Sign::Positive
+            && self.side(upper, a) == Sign::Negative;
+        if will_cross {
+            let last = self.lasts[lower as usize].min(self.lasts[upper as usize]);
+            let ahead = &self.stops[stop as usize..last as usize];
+            let due = stop + ahead.partition_point(|&place| is_beyond::<K>([a, b], [c, d], place)) as u32;
+            self.due.push(Reverse((due, lower, upper)));
+        }
+    }
+}
+
+/// Whether the crossing of two segments, the second of which begins above the first, comes after a place.
+fn is_beyond<K: Kernel>(ab: Segment, cd: Segment, place: Place) -> bool {
+    // Below `c d`, `a` is on its right: the turn of `c d a` is negative.
+    let side = |along: usize| K::sign(&CrossingSide { ab, cd, along, center: place[along], offset: 0.0 });
+    match side(0) {
+        Sign::Zero => side(1) == Sign::Negative,
+        side => side == Sign::Negative,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::builder::cross;
+    use super::*;
+    use crate::kernel::{Adaptive, Wide};
+
+    fn sorted(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
+        pairs.sort_unstable();
+        pairs
+    }
+
+    fn naive(segments: &[Segment]) -> Vec<[u32; 2]> {
+        let all = (0..segments.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+        let crossing = all.filter(|&[i, j]| cross::<Adaptive>(segments[i], segments[j]));
+        sorted(crossing.map(|pair| pair.map(|i| i as u32)).collect())
+    }
+
+    /// On small grids nearly all segments touch, overlap, or cross where others do.
+    #[test]
+    fn what_crosses_is_found_once() {
+        let mut state = 7u64;
+        let mut below = |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % n
+        };
+        for round in 0..600 {
+            let (side, count) = (2 + round % 9, 1 + below(40));
+            let mut place = || [below(side) as f64, below(side) as f64];
+            let mut segments: Vec<Segment> = (0..count).map(|_| [place(), place()]).collect();
+            segments.retain(|[a, b]| a != b);
+            let (found, wide) = (crossing_pairs::<Adaptive>(&segments), crossing_pairs::<Wide>(&segments));
+            assert_eq!(sorted(found), naive(&segments), "round {round}");
+            assert_eq!(sorted(wide), naive(&segments), "round {round}");
+        }
+    }
+
+    /// Lines through one place, and that place rounded.
+    #[test]
+    fn a_sheaf_crosses_pair_by_pair() {
+        let at = |angle: f64, r: f64| [0.1 + r * angle.cos(), 0.7 + r * angle.sin()];
+        let sheaf =
+            |i: u32| [f64::from(i) * 0.31, std::f64::consts::PI + f64::from(i) * 0.31].map(|angle| at(angle, 9.0));
+        let segments: Vec<Segment> = (0..10).map(sheaf).collect();
+        assert_eq!(crossing_pairs::<Adaptive>(&segments).len(), 45);
+    }
+}
