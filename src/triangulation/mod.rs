@@ -85,6 +85,7 @@ mod bulk;
 mod check;
 mod compact;
 mod constrained;
+mod corridor;
 mod crossed;
 mod delaunay;
 mod edit;

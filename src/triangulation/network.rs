@@ -14,7 +14,13 @@ use crate::tds::VertexId;
 
 use super::bulk::{Grain, Sites};
 use super::lines::{LineVertices, segments_of, undirected};
+use super::locate::Dice;
 use super::{ConstrainedDelaunay, Refused};
+
+/// So many triangles may be met, for each vertex and each piece, by pieces that are joined in order; the rest is joined
+/// in random order: then all of them meet O(n log^2 n) (Shewchuk and Brown 2015; Agarwal, Arge and Yi 2005), where in
+/// order each may meet all of those beside it.
+const PATIENCE: usize = 8;
 
 /// What becomes of lines that cross between their vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,7 +55,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// [`OnCrossing::Reject`], two segments that cross; by their positions.
     ///
     /// # Complexity
-    /// O(n log n), on all threads, and for each segment the square of the triangles that it crosses.
+    /// O((n + k) log n) for k crossings, on all threads, and expected O(n log^2 n) for the segments, on one.
     pub fn from_lines<L: AsRef<[u32]>>(
         geometry: G,
         points: &[G::Point],
@@ -123,8 +129,22 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
             self.lines.splits.clear();
             return Vec::new();
         }
-        pieces.retain(|&[a, b]| !self.join(a, b));
-        pieces
+        // Pieces next to each other are joined one after the other, until that has taken its time.
+        let enough = self.scratch.met + PATIENCE * (self.vertex_count() + pieces.len());
+        let mut crossing = Vec::new();
+        let mut dice = Dice::default();
+        for next in 0..pieces.len() {
+            if self.scratch.met > enough {
+                let left = pieces.len() - next;
+                pieces.swap(next, next + dice.below(left));
+            }
+            let [a, b] = pieces[next];
+            if !self.join(a, b) {
+                crossing.push([a, b]);
+            }
+        }
+        crossing.sort_unstable();
+        crossing
     }
 
     /// How the crossings of lines were rounded; `None` if none cross.

@@ -4,7 +4,7 @@
 //!    meets a vertex or a constraint.
 //! 2. At a vertex: the triangles crossed so far are taken out, the new edge is put in, and the polygons
 //!    on its two sides are triangulated again, each triangle with the vertex that makes the empty
-//!    circle (Anglada 1997), from a stack, not by recursion. Go on from the vertex.
+//!    circle (Anglada 1997); long ones in random order (Shewchuk and Brown 2015). Go on from the vertex.
 //! 3. At a constraint: it is lifted, the place of the crossing becomes a vertex, and four pieces are
 //!    put in.
 
@@ -27,15 +27,21 @@ pub(super) struct Scratch {
     right: Side,
     /// Parts of a side that are still to be triangulated.
     parts: Vec<Part>,
+    /// How a side is triangulated.
+    apexes: Vec<u32>,
+    /// How many triangles have been met by all traces.
+    pub(super) met: usize,
     /// Triangles whose edges may have to be flipped.
     pub(super) unsettled: Vec<CellId>,
 }
 
 /// One side of a segment: the border of what it crosses there, from its one end to the other.
 #[derive(Debug, Clone, Default)]
-struct Side {
-    chain: Vec<VertexId>,
-    /// Between each two of these.
+pub(super) struct Side {
+    pub(super) chain: Vec<VertexId>,
+    /// Of each of these, but for the ends, a vertex to which an edge led over the segment. None of these edges cross.
+    pub(super) across: Vec<VertexId>,
+    /// Between each two of the chain.
     edges: Vec<Edge>,
 }
 
@@ -56,12 +62,26 @@ impl Side {
     fn clear(&mut self, start: VertexId) {
         self.chain.clear();
         self.chain.push(start);
+        self.across.clear();
+        self.across.push(start);
         self.edges.clear();
     }
 
-    fn push(&mut self, vertex: VertexId, edge: Edge) {
+    fn push(&mut self, vertex: VertexId, across: VertexId, edge: Edge) {
         self.chain.push(vertex);
+        self.across.push(across);
         self.edges.push(edge);
+    }
+
+    /// The vertex that was pushed last.
+    fn last(&self) -> VertexId {
+        self.chain[self.chain.len() - 1]
+    }
+
+    fn reverse(&mut self) {
+        self.chain.reverse();
+        self.across.reverse();
+        self.edges.reverse();
     }
 
     /// Of the edges that have both sides on the border, which of them are the same.
@@ -77,6 +97,9 @@ impl Side {
         spikes
     }
 }
+
+/// From this length of its chain on, a side is triangulated in random order: it then takes less time.
+const LONG: usize = 32;
 
 /// The base of a triangle that [`fill`](ConstrainedDelaunay::fill) makes is opposite this corner.
 const BASE: usize = 2;
@@ -140,7 +163,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
             }
             match self.inner.trace(a, b, &mut self.scratch) {
                 Met::Vertex(v) => {
-                    self.inner.force_traced(a, v, &mut self.scratch, Triangulation::is_in_circle);
+                    self.inner.force_traced(a, v, &mut self.scratch, Triangulation::triangulate);
                     if v != b {
                         self.lines.split(a, b, v);
                         pieces.push((v, b));
@@ -180,12 +203,12 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     /// Whether a vertex is in the circle of a counter-clockwise triangle.
     #[inline(always)]
-    fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
+    pub(super) fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
         in_sphere(&self.geometry, triangle.map(|v| self.point(v)), self.point(p))
     }
 
     #[inline]
-    fn turn(&self, a: VertexId, b: VertexId, c: VertexId) -> Sign {
+    pub(super) fn turn(&self, a: VertexId, b: VertexId, c: VertexId) -> Sign {
         self.geometry.orientation([a, b, c].map(|v| self.point(v)))
     }
 
@@ -200,7 +223,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         scratch.corridor.clear();
         scratch.left.clear(a);
         scratch.right.clear(a);
-        self.trace_into(a, b, scratch)
+        let met = self.trace_into(a, b, scratch);
+        scratch.met += scratch.corridor.len();
+        met
     }
 
     fn trace_into(&self, a: VertexId, b: VertexId, Scratch { corridor, left, right, .. }: &mut Scratch) -> Met {
@@ -220,8 +245,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
             match self.turn(a, u, b) {
                 Sign::Zero if self.is_ahead(a, b, u) => return Met::Vertex(u),
                 Sign::Positive if w != VertexId::INFINITE && self.turn(a, w, b) == Sign::Negative => {
-                    right.push(u, edge(cell, cw(i)));
-                    left.push(w, edge(cell, ccw(i)));
+                    right.push(u, w, edge(cell, cw(i)));
+                    left.push(w, u, edge(cell, ccw(i)));
                     leaves = Some((cell, i));
                     break;
                 }
@@ -242,11 +267,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
             let p = tds.vertex(beyond, j);
             // `beyond` is (p, left, right) counter-clockwise: the one on p's side is left behind.
             let turn = self.turn(a, b, p);
+            let [on_left, on_right] = [left.last(), right.last()];
             if turn != Sign::Negative {
-                left.push(p, edge(beyond, cw(j)));
+                left.push(p, on_right, edge(beyond, cw(j)));
             }
             if turn != Sign::Positive {
-                right.push(p, edge(beyond, ccw(j)));
+                right.push(p, on_left, edge(beyond, ccw(j)));
             }
             i = match turn {
                 Sign::Zero => {
@@ -260,19 +286,20 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         }
     }
 
-    /// Makes the segment that was traced to a vertex a constrained edge. `is_closer` says whether a vertex goes before
-    /// the third one of a triangle as that of the same base.
+    /// Makes the segment that was traced to a vertex a constrained edge. `triangulate` says how a side is triangulated:
+    /// it adds the apexes of the side's parts, as positions in its chain, each part before its first and its second
+    /// half.
     pub(super) fn force_traced(
         &mut self,
         a: VertexId,
         v: VertexId,
         scratch: &mut Scratch,
-        is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+        triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
     ) {
         if scratch.corridor.is_empty() {
             self.wall_up(a, v); // the edge is there
         } else {
-            self.retriangulate(scratch, is_closer);
+            self.retriangulate(scratch, triangulate);
         }
     }
 
@@ -284,8 +311,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     /// the segment, so that no edge of the border can hide it from the base.
     fn retriangulate(
         &mut self,
-        Scratch { corridor, left, right, parts, .. }: &mut Scratch,
-        is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+        Scratch { corridor, left, right, parts, apexes, .. }: &mut Scratch,
+        triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
     ) {
         for &cell in corridor.iter() {
             *self.tds.cell_data_mut(cell) = Walls::taken_out();
@@ -295,9 +322,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         }
         // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end,
         // has it on its left. On the right it is the other way around.
-        right.chain.reverse();
-        right.edges.reverse();
-        let sides = [left, right].map(|side| self.fill(side, corridor, parts, &is_closer));
+        right.reverse();
+        let sides = [left, right].map(|side| {
+            apexes.clear();
+            triangulate(self, side, apexes);
+            self.fill(side, corridor, parts, apexes)
+        });
         if let [Some(left), Some(right)] = sides {
             self.tds.link(left, BASE, right, BASE);
             for cell in [left, right] {
@@ -308,23 +338,24 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         debug_assert!(corridor.is_empty(), "the corridor was not filled");
     }
 
-    /// Triangulates a side, over the base from its chain's first to its last vertex, with cells from `free`. Returns
-    /// the triangle on the base.
+    /// Puts the triangles of a side, given by their apexes, over the base from its chain's first to its last vertex,
+    /// with cells from `free`. Returns the triangle on the base.
     fn fill(
         &mut self,
         side: &mut Side,
         free: &mut Vec<CellId>,
         parts: &mut Vec<Part>,
-        is_closer: &impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+        apexes: &[u32],
     ) -> Option<CellId> {
         let mut on_base = None;
+        let mut apexes = apexes.iter();
         parts.push((0, side.chain.len() - 1, None));
         while let Some((first, last, above)) = parts.pop() {
-            let (Some(apex), Some(cell)) = (self.apex(&side.chain[first..=last], is_closer), free.pop()) else {
+            let (Some(&apex), Some(cell)) = (apexes.next(), free.pop()) else {
                 debug_assert!(false, "a polygon without a triangle on its base");
                 continue;
             };
-            let apex = first + apex;
+            let apex = apex as usize;
             self.tds.set_corners(cell, [first, last, apex].map(|k| side.chain[k]));
             match above {
                 Some((other, i)) => self.tds.link(cell, BASE, other, i),
@@ -354,8 +385,44 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         on_base
     }
 
+    /// Triangulates a side by the law of Delaunay.
+    fn triangulate(&self, side: &Side, apexes: &mut Vec<u32>) {
+        if side.chain.len() < LONG || self.triangulate_long(side, apexes).is_none() {
+            self.wrap(side, Self::is_in_circle, apexes);
+        }
+    }
+
+    /// Triangulates a side, given whether a vertex goes before the third one of a triangle as that of the same base.
+    ///
+    /// Time quadratic in the length of the chain at the worst.
+    pub(super) fn wrap(
+        &self,
+        side: &Side,
+        is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+        apexes: &mut Vec<u32>,
+    ) {
+        let (mut from, mut to) = (0, side.chain.len() - 1);
+        let mut open = Vec::new();
+        loop {
+            let Some(apex) = self.apex(&side.chain[from..=to], &is_closer) else { return };
+            let apex = from + apex;
+            apexes.push(apex as u32);
+            if to - apex > 1 {
+                open.push((apex, to));
+            }
+            (from, to) = match (apex - from > 1).then_some((from, apex)).or_else(|| open.pop()) {
+                Some(part) => part,
+                None => return,
+            };
+        }
+    }
+
     /// Which vertex of a chain makes a triangle with its first and last than which none is closer.
-    fn apex(&self, chain: &[VertexId], is_closer: &impl Fn(&Self, [VertexId; 3], VertexId) -> bool) -> Option<usize> {
+    pub(super) fn apex(
+        &self,
+        chain: &[VertexId],
+        is_closer: &impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
+    ) -> Option<usize> {
         if chain.len() == 3 {
             return Some(1);
         }

@@ -6,7 +6,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId, cw};
 
 use super::flip::Forced;
-use super::segment::{Met, Scratch};
+use super::segment::{Met, Scratch, Side};
 use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 
 /// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
@@ -133,7 +133,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         let mut from = a;
         while from != b {
             let Met::Vertex(v) = self.inner.trace(from, b, &mut self.scratch) else { break };
-            self.inner.force_traced(from, v, &mut self.scratch, Triangulation::is_within);
+            let triangulate = |t: &Triangulation<G, 3, V, Walls<C>>, side: &Side, apexes: &mut Vec<u32>| {
+                t.wrap(side, Triangulation::is_within, apexes);
+            };
+            self.inner.force_traced(from, v, &mut self.scratch, triangulate);
             from = v;
         }
         Ok(())

@@ -32,8 +32,8 @@ use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
 
 use super::Triangulation;
-pub(super) use walk::walk;
-use walk::{Dice, LOOKS, PATIENCE, Seems};
+pub(super) use walk::{Dice, walk};
+use walk::{LOOKS, PATIENCE, Seems};
 
 /// Where a point lies in a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,7 +12,7 @@ use super::Location;
 /// Marsaglia's xorshift: the walk turns corners in an order that no input can foresee, the same in
 /// every run.
 #[derive(Debug, Clone)]
-pub(super) struct Dice(u32);
+pub(in super::super) struct Dice(u32);
 
 impl Default for Dice {
     fn default() -> Self {
@@ -22,7 +22,7 @@ impl Default for Dice {
 
 impl Dice {
     #[inline(always)]
-    pub(super) fn below(&mut self, n: usize) -> usize {
+    pub(in super::super) fn below(&mut self, n: usize) -> usize {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 17;
         self.0 ^= self.0 << 5;

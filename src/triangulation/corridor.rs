@@ -1,0 +1,247 @@
+//! One side of a long corridor, triangulated in expected linear time (Shewchuk and Brown 2015).
+//!
+//! The *chain* is the border of what a segment crosses on one side, the *base* is the segment. Vertices are taken out of
+//! the chain in pseudo-random order until one is left, and put back in reverse order, each into the constrained Delaunay
+//! triangulation of the others. Nothing is to be located: a vertex comes back between the neighbors that it had when it
+//! went (Chew 1990).
+//!
+//! *The tree.* Vertices are told by their positions in the chain. The triangle `i < j < k` is the node `j` of a binary
+//! search tree: its parent is the triangle beyond `i k`, its children are those beyond `i j` and `j k`. To flip an edge
+//! is to rotate the tree.
+//!
+//! ```text
+//!         j
+//!       /   \
+//!      i --- k
+//!   ...         ...
+//! first ======= last
+//! ```
+//!
+//! *Who may go.* Without some of its vertices the chain may cross itself. The polygon then has several layers: it is
+//! glued of the quadrilaterals between two neighbors in the chain and the edges that led from them across the segment.
+//! These do not cross, so that no vertex lies inside of such a quadrilateral, and where two of them meet, their angles
+//! add up. One thing must not be: that a vertex comes back into an angle of a full turn or more. A vertex that has one
+//! is closer to the base than both of its neighbors; so at least half of all may go.
+
+use crate::geometry::Geometry;
+use crate::num::Sign;
+use crate::tds::VertexId;
+
+use super::locate::Dice;
+use super::segment::Side;
+use super::{Triangulation, Walls};
+
+/// No node.
+const NONE: u32 = u32::MAX;
+
+/// A side being triangulated.
+struct Tree<'a, G: Geometry<3>, V, C> {
+    triangulation: &'a Triangulation<G, 3, V, Walls<C>>,
+    side: &'a Side,
+    /// The triangle `i < j < k` of each node `j`, as `[i, k]`.
+    bounds: Vec<[u32; 2]>,
+    children: Vec<[u32; 2]>,
+    /// Nodes whose edge to their parent may have to be flipped.
+    unsettled: Vec<u32>,
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
+    /// Triangulates a side: the apexes of its parts, as positions, each part before its first and its second half.
+    /// `None`, and nothing is added, if predicates contradict each other.
+    ///
+    /// Expected time linear in the length of the chain.
+    pub(super) fn triangulate_long(&self, side: &Side, apexes: &mut Vec<u32>) -> Option<()> {
+        let count = side.chain.len();
+        let (gone, neighbors) = out_in_random_order(count, |u, [p, n]| self.may_go(side, u, p, n))?;
+        let mut tree = Tree {
+            triangulation: self,
+            side,
+            bounds: vec![[NONE; 2]; count],
+            children: vec![[NONE; 2]; count],
+            unsettled: Vec::new(),
+        };
+        for &u in gone.iter().rev() {
+            tree.insert(u, neighbors[u as usize])?;
+        }
+        tree.tell(apexes);
+        Some(())
+    }
+
+    /// Whether a vertex between two others has less than a full turn on the side of the segment, given its edge across.
+    fn may_go(&self, side: &Side, u: u32, p: u32, n: u32) -> bool {
+        let [v, first, last] = [u, p, n].map(|k| side.chain[k as usize]);
+        let across = side.across[u as usize];
+        // The angle is parted by the edge across. Its parts are less than half a turn if the neighbors lie on their
+        // own sides of that edge.
+        match (self.turn(v, across, first), self.turn(v, across, last)) {
+            (Sign::Zero, Sign::Zero) | (Sign::Positive, Sign::Negative) => false,
+            (Sign::Negative | Sign::Zero, Sign::Zero | Sign::Positive) => true,
+            _ => self.turn(v, last, first) == Sign::Positive,
+        }
+    }
+}
+
+/// Takes all positions but the ends of a chain out, in pseudo-random order, if `may_go` says of one and its neighbors
+/// that it may; returns the order, and of each position the neighbors that it had.
+fn out_in_random_order(count: usize, may_go: impl Fn(u32, [u32; 2]) -> bool) -> Option<(Vec<u32>, Vec<[u32; 2]>)> {
+    let mut neighbors: Vec<[u32; 2]> = (0..count as u32).map(|u| [u.wrapping_sub(1), u + 1]).collect();
+    let mut left: Vec<u32> = (1..count as u32 - 1).collect();
+    let mut gone = Vec::with_capacity(left.len());
+    let mut dice = Dice::default();
+    while !left.is_empty() {
+        let is_good = |&at: &usize| left.len() == 1 || may_go(left[at], neighbors[left[at] as usize]);
+        let mut tries = (0..16).map(|_| dice.below(left.len()));
+        let at = tries.find(is_good).or_else(|| (0..left.len()).find(is_good))?;
+        let u = left.swap_remove(at);
+        let [p, n] = neighbors[u as usize];
+        neighbors[p as usize][1] = n;
+        neighbors[n as usize][0] = p;
+        gone.push(u);
+    }
+    Some((gone, neighbors))
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
+    fn vertex(&self, u: u32) -> VertexId {
+        self.side.chain[u as usize]
+    }
+
+    fn turn(&self, [a, b, c]: [u32; 3]) -> Sign {
+        self.triangulation.turn(self.vertex(a), self.vertex(b), self.vertex(c))
+    }
+
+    fn is_end(&self, u: u32) -> bool {
+        u == 0 || u as usize == self.side.chain.len() - 1
+    }
+
+    /// The triangle beyond the outer edge of a node's: that of one of the edge's ends, and which of its children the
+    /// node is.
+    fn parent(&self, u: u32) -> Option<(u32, usize)> {
+        let [i, k] = self.bounds[u as usize];
+        if !self.is_end(i) && self.bounds[i as usize][1] == k {
+            Some((i, 1))
+        } else {
+            (!self.is_end(k)).then_some((k, 0))
+        }
+    }
+
+    /// Makes a node known to its parent.
+    fn link(&mut self, u: u32) {
+        if let Some((parent, child)) = self.parent(u) {
+            self.children[parent as usize][child] = u;
+        }
+    }
+
+    /// Inserts a vertex between its neighbors.
+    fn insert(&mut self, u: u32, [p, n]: [u32; 2]) -> Option<()> {
+        self.bounds[u as usize] = [p, n];
+        if self.is_end(p) && self.is_end(n) {
+            return Some(()); // the first triangle
+        }
+        if self.turn([p, n, u]) == Sign::Positive {
+            self.link(u); // an ear
+            self.unsettled.push(u);
+        } else {
+            self.cut(u)?;
+        }
+        self.settle();
+        Some(())
+    }
+
+    /// Inserts a vertex on the inner side of the edge between its neighbors: triangles are cut off by its two edges,
+    /// which are those from there up to the one that it lies in.
+    fn cut(&mut self, u: u32) -> Option<()> {
+        // Those met, outwards, and what hangs on them.
+        let (mut path, mut hanging) = (Vec::new(), Vec::new());
+        let mut from = (u, self.parent(u)?);
+        let [i, k, last] = loop {
+            let (below, (node, child)) = from;
+            path.push(node);
+            hanging.push(self.children[node as usize][1 - child]);
+            debug_assert!(below == u || self.children[node as usize][child] == below);
+            let [i, k] = self.bounds[node as usize];
+            if self.turn([i, k, u]) == Sign::Positive {
+                break [i, k, node];
+            }
+            from = (node, self.parent(node)?);
+        };
+        path.sort_unstable();
+        let middle = path.partition_point(|&node| node < u);
+        let (before, behind) = path.split_at(middle);
+        // On either side of the vertex, the polygon under its edge; the last triangle has a third part.
+        let (mut left, mut right) = (vec![u], Vec::with_capacity(behind.len() + 2));
+        left.extend((last > u).then_some(i));
+        left.extend(before);
+        right.extend(behind);
+        right.extend((last < u).then_some(k));
+        right.push(u);
+        self.bounds[u as usize] = [i, k];
+        self.bounds[last as usize] = if last < u { [i, u] } else { [u, k] };
+        self.wrap(&left)?;
+        self.wrap(&right)?;
+        self.children[u as usize] = [NONE; 2];
+        path.iter().for_each(|&node| self.children[node as usize] = [NONE; 2]);
+        let renewed = path.iter().chain(&hanging).chain([&u]).copied().filter(|&node| node != NONE);
+        for node in renewed {
+            self.link(node);
+            self.unsettled.push(node);
+        }
+        Some(())
+    }
+
+    /// Triangulates a small polygon that is seen from the edge between its last and first vertex; clockwise.
+    fn wrap(&mut self, polygon: &[u32]) -> Option<()> {
+        let chain: Vec<VertexId> = polygon.iter().map(|&u| self.vertex(u)).collect();
+        let mut parts = vec![(0, polygon.len() - 1)];
+        while let Some((first, last)) = parts.pop() {
+            if last - first < 2 {
+                continue;
+            }
+            let apex = first + self.triangulation.apex(&chain[first..=last], &Triangulation::is_in_circle)?;
+            let mut triangle = [first, apex, last].map(|k| polygon[k]);
+            triangle.sort_unstable();
+            self.bounds[triangle[1] as usize] = [triangle[0], triangle[2]];
+            parts.extend([(apex, last), (first, apex)]);
+        }
+        Some(())
+    }
+
+    /// Flips edges until no vertex sees another in its circle (Lawson 1977).
+    fn settle(&mut self) {
+        while let Some(u) = self.unsettled.pop() {
+            let Some((parent, child)) = self.parent(u) else { continue };
+            let [i, k] = self.bounds[u as usize];
+            let outer = self.bounds[parent as usize];
+            let triangle = [i, k, u].map(|corner| self.vertex(corner));
+            let opposite = outer[1 - child];
+            if !self.triangulation.is_in_circle(triangle, self.vertex(opposite)) {
+                continue;
+            }
+            let above = self.parent(parent);
+            let between = self.children[u as usize][1 - child];
+            self.bounds[u as usize] = outer;
+            self.bounds[parent as usize][child] = u;
+            self.children[parent as usize][child] = between;
+            self.children[u as usize][1 - child] = parent;
+            if let Some((above, place)) = above {
+                self.children[above as usize][place] = u;
+            }
+            let around = [u, self.children[u as usize][child]].into_iter().chain(self.children[parent as usize]);
+            self.unsettled.extend(around.filter(|&node| node != NONE));
+        }
+    }
+
+    /// Adds all nodes, each before its children.
+    fn tell(&self, apexes: &mut Vec<u32>) {
+        let mut root = 1;
+        while let Some((parent, _)) = self.parent(root) {
+            root = parent;
+        }
+        let mut open = vec![root];
+        while let Some(node) = open.pop() {
+            apexes.push(node);
+            let [left, right] = self.children[node as usize];
+            open.extend([right, left].into_iter().filter(|&child| child != NONE));
+        }
+    }
+}
