@@ -105,7 +105,7 @@ fn one_system(path: &Path, crs: Option<&Crs>, wish: &Wish, talk: &Talk) -> Resul
 }
 
 fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) -> Result<Gathered> {
-    let mut files = point_files::open_all(&plan.files, talk)?;
+    let mut files = point_files::open_all(&plan.files, plan.read, talk)?;
     let breaklines = layers(&plan.breaklines, talk)?;
     let boundary = layers(&plan.boundary, talk)?;
 
@@ -152,7 +152,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) ->
     let mut reach = Reach::new(plan, &rim);
     let (tin, report) = loop {
         let mut selection = Selection::new(plan.classes.clone(), reach.window());
-        point_files::read_all(&mut files, point_roads, &roads, &mut selection, talk)?;
+        point_files::read_all(&mut files, point_roads, plan.read, &roads, &mut selection, talk)?;
         let (points, report) = selection.finish();
         roads.warn(talk);
         tell_classes(&report, &plan.classes, talk);
@@ -197,6 +197,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) ->
         return Err(no_triangle(tin.report(), &rim, &units));
     }
     made.files = plan.files.len();
+    made.columns = point_files::columns_line(&files);
     made.points = Some(report);
     made.tin = Some(tin.report().clone());
     made.duplicates = plan.duplicates;

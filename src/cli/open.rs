@@ -9,6 +9,7 @@ use crate::error::{Error, Kind, Result};
 use crate::io::contours::{self, ContourSummary};
 use crate::io::geotiff::{self, CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
 use crate::io::mesh::{self, MeshSummary};
+use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, gdal, layer, png, points, proj, raster};
 use crate::terrain::{self, Dem, GridSurface, Levels, SurfaceFlaw};
@@ -67,12 +68,12 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 
 /// Points of any format; of a vector layer, with the heights of an attribute where the name ends in
 /// `:FIELD`.
-pub(super) fn points(path: &Path) -> Result<Box<dyn PointSource + Send>> {
+pub(super) fn points(path: &Path, options: Options) -> Result<Box<dyn PointSource + Send>> {
     let of_layer = || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path)?)?)) };
     match content(path) {
         Content::Layer => of_layer(),
         Content::Points | Content::Raster | Content::Mesh => {
-            points::open(path).or_else(|error| match gdal_may_help(&error) {
+            points::open_with(path, options).or_else(|error| match gdal_may_help(&error) {
                 // What GDAL says of a file that it does not know either is less exact.
                 true => of_layer().map_err(|_| error),
                 false => Err(error),

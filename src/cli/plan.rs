@@ -8,6 +8,7 @@ use super::open::{self, Content, content};
 use super::systems::{self, Degrees, Wish};
 use super::talk::Talk;
 use crate::error::{Error, Result};
+use crate::io::points::Options;
 use crate::terrain::{Classes, CrossingRule, DuplicateRule};
 use crate::triangulation::OnCrossing;
 
@@ -35,6 +36,7 @@ pub(super) enum From {
 #[derive(Debug)]
 pub(super) struct PointPlan {
     pub(super) files: Vec<PathBuf>,
+    pub(super) read: Options,
     pub(super) classes: Classes,
     pub(super) breaklines: Vec<PathBuf>,
     pub(super) boundary: Vec<PathBuf>,
@@ -121,6 +123,7 @@ impl PointPlan {
         };
         PointPlan {
             files,
+            read: args.read.options(),
             classes,
             breaklines: args.breaklines.clone(),
             boundary: args.boundary.clone(),
@@ -163,6 +166,8 @@ fn refuse_building_options(args: &SurfaceArgs, path: &Path) -> Result<()> {
         (args.crossing_tolerance.is_some(), "--crossing-tolerance"),
         (args.crossing_report.is_some(), "--crossing-report"),
         (args.t_srs.is_some(), "--t-srs"),
+        (args.read.columns.is_some(), "--columns"),
+        (args.read.parse.is_some(), "--parse"),
     ];
     match given.iter().find(|(is_given, _)| *is_given) {
         Some((_, option)) => {

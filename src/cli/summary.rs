@@ -13,6 +13,8 @@ use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 pub(super) struct Made {
     pub(super) files: usize,
     pub(super) points: Option<SelectionReport>,
+    /// The columns that were taken of text.
+    pub(super) columns: Option<String>,
     /// Lines read (parts and rings count one each).
     pub(super) breaklines: usize,
     pub(super) tin: Option<TinReport>,
@@ -24,6 +26,9 @@ impl Made {
     pub(super) fn tell(&self, surface: &dyn Surface, talk: &Talk) {
         if let Some(points) = &self.points {
             talk.line(format_args!("points      {}", points_line(points, self.files)));
+        }
+        if let Some(columns) = &self.columns {
+            talk.line(format_args!("columns     {columns}"));
         }
         if let Some(tin) = &self.tin {
             self.tell_tin(tin, talk);

@@ -112,6 +112,12 @@ pub(super) fn number(value: f64) -> String {
     }
 }
 
+/// `1 point`, `2 points`
+pub(super) fn counted(count: u64, noun: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{ending}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,7 +7,7 @@
 //!
 //! | what | record | stream |
 //! |---|---|---|
-//! | points | [`PointBatch`] (columns), [`PointInfo`], [`Lattice`] | [`PointSource`] |
+//! | points | [`PointBatch`] (columns), [`PointInfo`], [`Columns`], [`Lattice`] | [`PointSource`] |
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], with its place: [`Frame`] | [`BlockSource`], asked by [`Window`] |
@@ -39,7 +39,7 @@ pub use grid::{BlockSource, Grid};
 pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{not_finite, orientation};
-pub use points::{PointBatch, PointFlags, PointInfo, PointSource};
+pub use points::{Columns, PointBatch, PointFlags, PointInfo, PointSource};
 pub use shape::{Layer, Shape, ShapeKind};
 pub use surface::{EdgeKind, Face, Surface};
 pub(crate) use surface::{corners, faces};

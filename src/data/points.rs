@@ -1,3 +1,5 @@
+use std::fmt;
+
 use super::{Bounds, Lattice};
 use crate::crs::Crs;
 use crate::error::Result;
@@ -63,6 +65,27 @@ impl PointBatch {
     }
 }
 
+/// Which columns of a table are taken for the coordinates, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Columns {
+    /// Eastings, or longitudes.
+    pub x: usize,
+    /// Northings, or latitudes.
+    pub y: usize,
+    /// Heights.
+    pub z: usize,
+    /// Classification codes, if there are any.
+    pub class: Option<usize>,
+}
+
+/// As "x 3, y 2, z 4".
+impl fmt::Display for Columns {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "x {}, y {}, z {}", self.x, self.y, self.z)?;
+        self.class.map_or(Ok(()), |class| write!(f, ", class {class}"))
+    }
+}
+
 /// What a file says of its points before they are read. None of it is to be trusted for
 /// allocation.
 #[derive(Debug, Clone, Default)]
@@ -77,6 +100,8 @@ pub struct PointInfo {
     pub crs: Option<Crs>,
     /// Whether the points carry classes.
     pub has_classes: bool,
+    /// The columns that are taken, for text.
+    pub columns: Option<Columns>,
     /// The lattice of the coordinates, for formats that have one.
     pub lattice: Option<Lattice>,
     /// What a user should be told: a disagreement, a guess, something ignored.

@@ -11,7 +11,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::{las, text};
-use crate::data::{Layer, PointBatch, PointInfo, PointSource, Shape};
+use crate::data::{Columns, Layer, PointBatch, PointInfo, PointSource, Shape};
 use crate::error::{Error, Result};
 
 /// Points in a batch.
@@ -20,38 +20,57 @@ const BATCH: usize = 1 << 16;
 /// Bytes that are enough to tell what a file is.
 const HEAD: usize = 1024;
 
+/// How points are read, where a file leaves that open.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// The columns of text; without them a header or the first three are taken.
+    pub columns: Option<Columns>,
+}
+
 /// Opens a file of points; `-` is the standard input (LAS, LAZ or text).
 ///
 /// # Errors
 /// If the file cannot be read or holds no points that can be read; the message says what it is
 /// instead.
 pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn PointSource + Send>> {
+    open_with(path, Options::default())
+}
+
+/// Like [`open`], but reads as the options say.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn PointSource + Send>> {
     let path = path.as_ref();
     if path.as_os_str() == "-" {
-        return open_stream(io::stdin(), Path::new("standard input"));
+        return open_stream(io::stdin(), Path::new("standard input"), options);
     }
     let named = |error: io::Error| Error::from(error).in_file(path);
     let mut file = File::open(path).map_err(named)?;
     if !file.metadata().map_err(named)?.is_file() {
-        return open_stream(file, path);
+        return open_stream(file, path, options);
     }
     let head = head(&mut file).map_err(named)?;
     match Kind::of(&head, path) {
         Kind::Las => Ok(Box::new(las::open(path)?)),
         Kind::Shapefile => shapefile(path),
-        Kind::Text => Ok(Box::new(text::open(path)?)),
+        Kind::Text => Ok(Box::new(text::open(path, options.columns)?)),
         Kind::Other(other) => Err(other.refuse(path)),
     }
 }
 
 /// The same for what can be read only once.
-fn open_stream(mut stream: impl Read + Send + 'static, name: &Path) -> Result<Box<dyn PointSource + Send>> {
+fn open_stream(
+    mut stream: impl Read + Send + 'static,
+    name: &Path,
+    options: Options,
+) -> Result<Box<dyn PointSource + Send>> {
     let head = head(&mut stream).map_err(|error| Error::from(error).in_file(name))?;
     let kind = Kind::of(&head, name);
     let whole = io::Cursor::new(head).chain(stream);
     match kind {
         Kind::Las => Ok(Box::new(las::from_stream(whole, name)?)),
-        Kind::Text => Ok(Box::new(text::from_stream(whole, name)?)),
+        Kind::Text => Ok(Box::new(text::from_stream(whole, name, options.columns)?)),
         Kind::Shapefile => Err(Error::unsupported("a shapefile cannot be read from a stream")
             .in_file(name)
             .cure("give its path: it is a set of files")),
@@ -84,6 +103,8 @@ enum Other {
 const WITH_GDAL: &str = "build with the feature `gdal` to read it: cargo build --release --features gdal";
 const AS_RASTER: &str = "this is a raster: points are expected here";
 
+const TRIANGULATE: &str = "`breakline triangulate` reads it and writes its triangulation, to .ele, .ply or .obj";
+
 /// First bytes of files that are often given for points.
 const KNOWN: &[(&[u8], &str, &str)] = &[
     (b"II*\0", "a TIFF file", AS_RASTER),
@@ -105,6 +126,13 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
     (b"{", "a JSON file", WITH_GDAL),
 ];
 
+/// Text that is no list of points, by extension.
+const NAMED: &[(&str, &str, &str)] = &[
+    ("dxf", "a DXF drawing", WITH_GDAL),
+    ("node", "a .node file of Triangle", TRIANGULATE),
+    ("poly", "a .poly file of Triangle", TRIANGULATE),
+];
+
 impl Kind {
     fn of(head: &[u8], path: &Path) -> Self {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
@@ -119,8 +147,8 @@ impl Kind {
         if let Some(&(_, name, cure)) = KNOWN.iter().find(|(magic, ..)| head.starts_with(magic)) {
             return Kind::Other(Other::Known(name, cure));
         }
-        if is("dxf") {
-            return Kind::Other(Other::Known("a DXF drawing", WITH_GDAL));
+        if let Some(&(_, name, cure)) = NAMED.iter().find(|(known, ..)| is(known)) {
+            return Kind::Other(Other::Known(name, cure));
         }
         // UTF-16 has zeros too; the reader of text refuses it by name.
         let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
@@ -252,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_stream_is_known_by_its_first_bytes() {
-        let open = |bytes: &'static [u8]| open_stream(bytes, Path::new("stream"));
+        let open = |bytes: &'static [u8]| open_stream(bytes, Path::new("stream"), Options::default());
         let mut source = open(b"1 2 3\n4 5 6\n").unwrap();
         let mut batch = PointBatch::default();
         source.read(&mut batch).unwrap();

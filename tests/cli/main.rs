@@ -3,6 +3,7 @@
 #[path = "../common/program.rs"]
 mod program;
 
+mod columns;
 mod crossings;
 #[cfg(unix)]
 mod outputs;

@@ -1,6 +1,7 @@
 //! What is typed. What it means is worked out elsewhere (`super::plan`, `super::outputs`, ...).
 
 mod parse;
+mod reading;
 mod surface;
 mod switches;
 mod verbs;
@@ -10,6 +11,7 @@ use std::num::NonZeroUsize;
 use clap::{Args, Parser, Subcommand};
 
 pub(super) use parse::{Corners, EdgeLength, join_corners};
+pub(super) use reading::ReadArgs;
 pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
 pub(super) use switches::expand_switches;
 pub(super) use verbs::{

@@ -2,8 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::OnCrossingArg;
 use super::parse::{Corners, EdgeLength, not_negative};
+use super::{OnCrossingArg, ReadArgs};
 
 /// What the surface is made of.
 #[derive(Debug, Clone, Args)]
@@ -17,6 +17,9 @@ pub(in crate::cli) struct SurfaceArgs {
     /// The order of the files makes no difference, except to `--duplicates first` and `last`.
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub(in crate::cli) read: ReadArgs,
 
     /// Breaklines that hold in the surface (repeatable)
     ///

@@ -2,8 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::SurfaceArgs;
 use super::parse::{Corners, altitude, finite, positive, smallest_angle};
+use super::{ReadArgs, SurfaceArgs};
 
 /// Where the result goes.
 #[derive(Debug, Clone, Args)]
@@ -59,6 +59,9 @@ pub(in crate::cli) struct InfoArgs {
     /// Print a JSON array, one object a file, with exact numbers
     #[arg(long)]
     pub(in crate::cli) json: bool,
+
+    #[command(flatten)]
+    pub(in crate::cli) read: ReadArgs,
 }
 
 /// Build a TIN of points and breaklines

@@ -4,8 +4,8 @@ use std::path::Path;
 use serde_json::{Map, json};
 
 use super::Sheet;
-use super::sheet::counted;
 use crate::cli::open;
+use crate::cli::units::counted;
 use crate::data::{Bounds, Shape, ShapeKind};
 use crate::error::Result;
 

@@ -15,16 +15,18 @@ use super::open::{self, Content};
 use super::talk::Talk;
 use super::{Exit, inputs, print};
 use crate::error::Result;
+use crate::io::points::Options;
 
 /// Tells what is in files. A file that cannot be read does not keep the others from being told.
 pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
     let mut files = inputs::expand(&args.files, talk)?;
     drop_parts(&mut files, talk);
+    let options = args.read.options();
     let mut exit = Exit::Done;
     let mut objects = Vec::new();
     for (i, path) in files.iter().enumerate() {
         let name = path.display().to_string();
-        let sheet = match sheet(path, talk) {
+        let sheet = match sheet(path, options, talk) {
             Ok(sheet) => sheet,
             Err(error) => {
                 talk.error(&error.in_file(path));
@@ -61,9 +63,9 @@ fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
     });
 }
 
-fn sheet(path: &Path, talk: &Talk) -> Result<Sheet> {
+fn sheet(path: &Path, options: Options, talk: &Talk) -> Result<Sheet> {
     match open::content(path) {
-        Content::Points => points::sheet(path, talk),
+        Content::Points => points::sheet(path, options, talk),
         Content::Layer => layer::sheet(path),
         Content::Raster => raster::sheet(path),
         Content::Mesh => mesh::sheet(path),

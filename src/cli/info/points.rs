@@ -3,11 +3,12 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::Sheet;
-use super::sheet::counted;
 use crate::cli::open;
 use crate::cli::talk::Talk;
-use crate::data::{Bounds, Lattice, PointBatch, PointFlags, PointInfo};
+use crate::cli::units::counted;
+use crate::data::{Bounds, Columns, Lattice, PointBatch, PointFlags, PointInfo};
 use crate::error::Result;
+use crate::io::points::Options;
 
 /// The flags of a point, by name.
 const FLAGS: [(&str, u8); 4] = [
@@ -44,8 +45,8 @@ impl Census {
     }
 }
 
-pub(super) fn sheet(path: &Path, talk: &Talk) -> Result<Sheet> {
-    let mut source = open::points(path)?;
+pub(super) fn sheet(path: &Path, options: Options, talk: &Talk) -> Result<Sheet> {
+    let mut source = open::points(path, options)?;
     let info = source.info().clone();
     let mut census = Census {
         count: 0,
@@ -75,6 +76,10 @@ fn tell(info: &PointInfo, census: &Census) -> Sheet {
     let mut sheet = Sheet::with_warnings(info.warnings.clone());
     sheet.silent("kind", "points");
     sheet.plain("format", info.format.as_str());
+    if let Some(columns) = info.columns {
+        let Columns { x, y, z, class } = columns;
+        sheet.row("columns", columns.to_string(), json!({ "x": x, "y": y, "z": z, "class": class }));
+    }
     sheet.row("count", counted(census.count, "point"), census.count);
     sheet.silent("stated_count", info.count);
     sheet.bounds(census.bounds);

@@ -107,12 +107,6 @@ impl Sheet {
     }
 }
 
-/// `1 point`, `2 points`
-pub(super) fn counted(count: u64, noun: &str) -> String {
-    let ending = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{ending}")
-}
-
 /// Numbers that JSON can hold; null where there is none.
 fn finite(values: [f64; 3]) -> [Option<f64>; 3] {
     values.map(|value| Some(value).filter(|value| value.is_finite()))

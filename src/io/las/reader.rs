@@ -49,6 +49,7 @@ impl LasReader {
             }
         };
         let info = PointInfo {
+            columns: None,
             format: header.format(),
             count: Some(header.count),
             bounds: header.bounds,

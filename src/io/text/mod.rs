@@ -1,8 +1,9 @@
 //! Points as text: XYZ, CSV and their relatives.
 //!
 //! One point in a line. Fields are separated by semicolons, tabs, commas or blanks; which, is told
-//! by the first point. Without a header line the first three columns are x, y and z. With one,
-//! columns are found by name, in any case and order:
+//! by the first point. Which columns are taken is what [`Columns`] say, if they are given; else what a header line
+//! says; else the first three are x, y and z. (If the first then counts up by one in each line and three numbers
+//! follow, it is perhaps the number of a point: that is refused.) Columns are found by name, in any case and order:
 //!
 //! | column | names |
 //! |---|---|
@@ -17,11 +18,18 @@
 //! points that `.pts` files begin with. UTF-8 and its relatives, with or without a byte order
 //! mark; any line ends. What is not a point is an error with its line: no line is dropped silently.
 
+mod columns;
+mod numbering;
+mod separator;
+
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use crate::data::{PointBatch, PointInfo, PointSource};
+use self::columns::{Layout, Point};
+use self::numbering::Numbering;
+use self::separator::Separator;
+use crate::data::{Columns, PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result};
 
 /// Points in a batch.
@@ -30,18 +38,15 @@ const BATCH: usize = 1 << 16;
 /// Bytes in a line; text for people has shorter ones, and a binary file may have none at all.
 const LONGEST_LINE: u64 = 1 << 16;
 
-const X_NAMES: &[&str] = &["x", "easting", "east", "e", "lon", "long", "longitude"];
-const Y_NAMES: &[&str] = &["y", "northing", "north", "n", "lat", "latitude"];
-const Z_NAMES: &[&str] = &["z", "elevation", "elev", "height", "h", "altitude", "alt"];
-const CLASS_NAMES: &[&str] = &["class", "classification"];
-
 /// Reads points from text; made by [`open`].
 pub struct TextReader {
     lines: Lines,
-    columns: Columns,
+    layout: Layout,
     info: PointInfo,
     /// The first point was read to find out about the columns, and waits here.
     first: Option<Point>,
+    /// As long as the first column may be the number of the point.
+    numbering: Option<Numbering>,
     read: u64,
     is_done: bool,
     warnings: Vec<String>,
@@ -53,43 +58,50 @@ impl std::fmt::Debug for TextReader {
     }
 }
 
-/// Opens a file of points as text; `-` is the standard input.
+/// Opens a file of points as text; `-` is the standard input. Without `columns`, a header or the first three columns
+/// are taken.
 ///
 /// # Errors
 /// If the file cannot be read, or its first lines are neither a header nor a point.
-pub fn open(path: impl AsRef<Path>) -> Result<TextReader> {
+pub fn open(path: impl AsRef<Path>, columns: Option<Columns>) -> Result<TextReader> {
     let path = path.as_ref();
     if path.as_os_str() == "-" {
-        return from_stream(io::stdin(), "standard input");
+        return from_stream(io::stdin(), "standard input", columns);
     }
     let file = File::open(path).map_err(|error| Error::from(error).in_file(path))?;
-    from_stream(file, path)
+    from_stream(file, path, columns)
 }
 
 /// Reads a stream; `name` is for messages.
 ///
 /// # Errors
 /// As [`open`].
-pub fn from_stream(stream: impl Read + Send + 'static, name: impl AsRef<Path>) -> Result<TextReader> {
+pub fn from_stream(
+    stream: impl Read + Send + 'static,
+    name: impl AsRef<Path>,
+    columns: Option<Columns>,
+) -> Result<TextReader> {
     let mut lines = Lines {
         source: BufReader::with_capacity(1 << 17, Box::new(stream)),
         name: name.as_ref().to_path_buf(),
         line: Vec::new(),
         number: 0,
     };
-    let start = start(&mut lines).map_err(|error| lines.place(error))?;
+    let start = start(&mut lines, columns).map_err(|error| lines.place(error))?;
     let header = if start.has_header { ", with header" } else { "" };
     let info = PointInfo {
-        format: format!("text, separated by {}{header}", start.columns.separator.name()),
+        format: format!("text, separated by {}{header}", start.layout.separator.name()),
         count: start.count,
-        has_classes: start.columns.class.is_some(),
+        columns: Some(start.layout.columns),
+        has_classes: start.layout.columns.class.is_some(),
         ..PointInfo::default()
     };
     Ok(TextReader {
         lines,
-        columns: start.columns,
+        layout: start.layout,
         info,
         first: start.first,
+        numbering: start.numbering,
         read: 0,
         is_done: false,
         warnings: Vec::new(),
@@ -116,6 +128,12 @@ impl PointSource for TextReader {
                 }
             }
         }
+        // One batch is enough to tell numbers from coordinates.
+        if self.numbering.take().is_some_and(|numbering| numbering.is_likely()) {
+            self.is_done = true;
+            batch.clear();
+            return Err(numbering::refuse().in_file(&self.lines.name));
+        }
         self.read += batch.len() as u64;
         Ok(())
     }
@@ -129,7 +147,9 @@ impl TextReader {
     fn next_point(&mut self) -> Result<Option<Point>> {
         while self.lines.next()? {
             if let Line::Data(line) = Line::new(&self.lines.line) {
-                return self.columns.point(line).map(Some);
+                let separator = self.layout.separator;
+                self.numbering = self.numbering.take().and_then(|numbering| numbering.next(separator, line));
+                return self.layout.point(line).map(Some);
             }
         }
         Ok(None)
@@ -145,22 +165,25 @@ impl TextReader {
 
 /// What the first lines say.
 struct Start {
-    columns: Columns,
+    layout: Layout,
     has_header: bool,
     count: Option<u64>,
     first: Option<Point>,
+    numbering: Option<Numbering>,
 }
 
-fn start(lines: &mut Lines) -> Result<Start> {
-    // Columns that a comment names.
-    let mut named: Option<Columns> = None;
+fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
+    // What a header names, or was asked for.
+    let asked = columns.map(|columns| Layout { columns, ..Layout::FIRST });
+    let mut named: Option<Layout> = None;
+    let mut is_header_passed = false;
     let mut count = None;
     while lines.next()? {
         let line = match Line::new(&lines.line) {
             Line::Blank => continue,
             Line::Comment(text) => {
-                let columns = Separator::guess(text).and_then(|separator| Columns::named(text, separator).ok());
-                named = columns.or(named);
+                let layout = Separator::guess(text).and_then(|separator| Layout::named(text, separator).ok());
+                named = layout.or(named);
                 continue;
             }
             Line::Data(line) => line,
@@ -172,19 +195,29 @@ fn start(lines: &mut Lines) -> Result<Start> {
         let separator = Separator::guess(line).ok_or_else(|| not_a_point(line))?;
         if separator.fields(line).all(|field| separator.number(field).is_none()) {
             // Its points may be separated by something else than its names.
-            named = Some(Columns::named(line, separator)?);
+            named = match asked {
+                None => Some(Layout::named(line, separator)?),
+                Some(_) if is_header_passed => return Err(not_a_point(line)),
+                Some(_) => None,
+            };
+            is_header_passed = true;
             continue;
         }
-        let has_header = named.is_some();
-        let columns = Columns { separator, ..named.unwrap_or(Columns::FIRST) };
-        let first = columns.point(line).map_err(|error| match has_header {
-            true => error,
-            false => error.cure("correct the line, or put a header before it that names the columns: x y z"),
+        let known = asked.or(named);
+        let layout = Layout { separator, ..known.unwrap_or(Layout::FIRST) };
+        let first = layout.point(line).map_err(|error| match known {
+            Some(_) => error,
+            None => error.cure(
+                "correct the line, name the columns with --columns, or put a header before it that names them: x y z",
+            ),
         })?;
-        return Ok(Start { columns, has_header, count, first: Some(first) });
+        let numbering = if known.is_none() { Numbering::start(separator, line) } else { None };
+        let has_header = is_header_passed || named.is_some();
+        return Ok(Start { layout, has_header, count, first: Some(first), numbering });
     }
-    let has_header = named.is_some();
-    Ok(Start { columns: named.unwrap_or(Columns::FIRST), has_header, count, first: None })
+    let has_header = is_header_passed || named.is_some();
+    let layout = asked.or(named).unwrap_or(Layout::FIRST);
+    Ok(Start { layout, has_header, count, first: None, numbering: None })
 }
 
 /// Whether the line is one whole number.
@@ -262,168 +295,6 @@ impl<'a> Line<'a> {
     }
 }
 
-/// What stands between two fields.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Separator {
-    Semicolon,
-    Tab,
-    Comma,
-    Blanks,
-}
-
-impl Separator {
-    /// The first one that makes three numbers of the line, or else three fields.
-    fn guess(line: &[u8]) -> Option<Self> {
-        let all = [Self::Semicolon, Self::Tab, Self::Comma, Self::Blanks];
-        let has_numbers =
-            |separator: &Self| separator.fields(line).filter_map(|field| separator.number(field)).take(3).count() == 3;
-        let has_fields = |separator: &Self| separator.fields(line).take(3).count() == 3;
-        all.into_iter().find(has_numbers).or_else(|| all.into_iter().find(has_fields))
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Semicolon => "semicolons",
-            Self::Tab => "tabs",
-            Self::Comma => "commas",
-            Self::Blanks => "blanks",
-        }
-    }
-
-    fn ends_field(self, byte: u8) -> bool {
-        match self {
-            Self::Semicolon => byte == b';',
-            Self::Tab => byte == b'\t',
-            Self::Comma => byte == b',',
-            Self::Blanks => byte == b' ' || byte == b'\t',
-        }
-    }
-
-    /// The fields of a line, without quotes and the blanks around them.
-    fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
-        let mut rest = Some(if self == Self::Blanks { line.trim_ascii() } else { line });
-        std::iter::from_fn(move || {
-            let line = rest?;
-            let length = self.field_length(line);
-            rest = line.get(length + 1..);
-            if self == Self::Blanks {
-                rest = rest.map(|rest| rest.trim_ascii_start());
-            }
-            let field = line[..length].trim_ascii();
-            Some(field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field).trim_ascii())
-        })
-    }
-
-    /// Bytes before the next separator that is not in quotes.
-    fn field_length(self, line: &[u8]) -> usize {
-        let mut in_quotes = false;
-        line.iter()
-            .position(|&byte| {
-                in_quotes ^= byte == b'"';
-                !in_quotes && self.ends_field(byte)
-            })
-            .unwrap_or(line.len())
-    }
-
-    /// A number, with a decimal comma where the comma has no other use.
-    fn number(self, field: &[u8]) -> Option<f64> {
-        let text = std::str::from_utf8(field).ok()?;
-        let value: f64 = match self {
-            Self::Semicolon | Self::Tab | Self::Blanks if field.contains(&b',') && !field.contains(&b'.') => {
-                text.replacen(',', ".", 1).parse().ok()?
-            }
-            _ => text.parse().ok()?,
-        };
-        value.is_finite().then_some(value)
-    }
-}
-
-/// Which field is what, from 0 on.
-#[derive(Debug, Clone, Copy)]
-struct Columns {
-    separator: Separator,
-    x: usize,
-    y: usize,
-    z: usize,
-    class: Option<usize>,
-}
-
-impl Columns {
-    /// What there is without a header.
-    const FIRST: Self = Columns { separator: Separator::Blanks, x: 0, y: 1, z: 2, class: None };
-
-    /// Finds the columns by their names.
-    fn named(header: &[u8], separator: Separator) -> Result<Self> {
-        let names: Vec<String> = separator.fields(header).map(bare_name).collect();
-        let find = |known: &[&str]| known.iter().find_map(|known| names.iter().position(|name| name == known));
-        let need = |axis: &str, known: &[&str]| {
-            find(known).ok_or_else(|| {
-                Error::format(format!("no column for {axis} in the header {}", quote(header)))
-                    .cure(format!("call it one of {}", known.join(", ")))
-            })
-        };
-        Ok(Columns {
-            separator,
-            x: need("x", X_NAMES)?,
-            y: need("y", Y_NAMES)?,
-            z: need("z", Z_NAMES)?,
-            class: find(CLASS_NAMES),
-        })
-    }
-
-    fn point(&self, line: &[u8]) -> Result<Point> {
-        let mut found: [&[u8]; 4] = [b""; 4];
-        let wanted = [Some(self.x), Some(self.y), Some(self.z), self.class];
-        let last = wanted.into_iter().flatten().fold(0, usize::max);
-        let mut count = 0;
-        for (i, field) in self.separator.fields(line).enumerate().take(last + 1) {
-            count = i + 1;
-            for (place, _) in found.iter_mut().zip(wanted).filter(|(_, column)| *column == Some(i)) {
-                *place = field;
-            }
-        }
-        if count <= last {
-            return Err(Error::format(format!(
-                "{count} {} separated by {}, expected at least {}: {}",
-                if count == 1 { "field" } else { "fields" },
-                self.separator.name(),
-                last + 1,
-                quote(line)
-            ))
-            .cure(CURE));
-        }
-        Ok(Point {
-            x: self.coordinate("x", found[0], line)?,
-            y: self.coordinate("y", found[1], line)?,
-            z: self.coordinate("z", found[2], line)?,
-            class: self.class.map(|_| self.class_code(found[3], line)).transpose()?,
-        })
-    }
-
-    fn coordinate(&self, axis: &str, field: &[u8], line: &[u8]) -> Result<f64> {
-        self.separator.number(field).ok_or_else(|| {
-            Error::format(format!("{axis} is {}, expected a finite number: {}", quote(field), quote(line))).cure(CURE)
-        })
-    }
-
-    fn class_code(&self, field: &[u8], line: &[u8]) -> Result<u8> {
-        let code = self.separator.number(field).filter(|code| code.fract() == 0.0 && (0.0..=255.0).contains(code));
-        code.map(|code| code as u8).ok_or_else(|| {
-            Error::format(format!("class is {}, expected a whole number from 0 to 255: {}", quote(field), quote(line)))
-                .cure(CURE)
-        })
-    }
-}
-
-const CURE: &str = "correct the line, or make it a comment with # at its beginning";
-
-/// A name in lower case, without what stands in brackets.
-fn bare_name(field: &[u8]) -> String {
-    let text = String::from_utf8_lossy(field).to_lowercase();
-    let end = text.find(['(', '[']).unwrap_or(text.len());
-    text[..end].trim().to_owned()
-}
-
 /// Text for a message: on one line, and not too long.
 fn quote(text: &[u8]) -> String {
     const MOST: usize = 60;
@@ -433,28 +304,12 @@ fn quote(text: &[u8]) -> String {
     format!("\"{}{dots}\"", String::from_utf8_lossy(shown).escape_debug())
 }
 
-struct Point {
-    x: f64,
-    y: f64,
-    z: f64,
-    class: Option<u8>,
-}
-
-impl Point {
-    fn push(&self, batch: &mut PointBatch) {
-        batch.x.push(self.x);
-        batch.y.push(self.y);
-        batch.z.push(self.z);
-        batch.class.extend(self.class);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<(TextReader, PointBatch)> {
-        let mut reader = from_stream(io::Cursor::new(text.as_bytes().to_vec()), "points.txt")?;
+        let mut reader = from_stream(io::Cursor::new(text.as_bytes().to_vec()), "points.txt", None)?;
         let (mut all, mut batch) = (PointBatch::default(), PointBatch::default());
         loop {
             reader.read(&mut batch)?;
@@ -545,7 +400,7 @@ mod tests {
     fn points_before_a_bad_line_are_handed_out() {
         let mut text = "1 2 3\n".repeat(BATCH + 10);
         text.push_str("end\n");
-        let mut reader = from_stream(io::Cursor::new(text.into_bytes()), "points.txt").unwrap();
+        let mut reader = from_stream(io::Cursor::new(text.into_bytes()), "points.txt", None).unwrap();
         let mut batch = PointBatch::default();
         reader.read(&mut batch).unwrap();
         assert_eq!(batch.len(), BATCH);
@@ -557,9 +412,9 @@ mod tests {
 
     #[test]
     fn a_file_without_lines_is_refused_early() {
-        let error = from_stream(io::repeat(b'1'), "endless").map(|_| ()).unwrap_err();
+        let error = from_stream(io::repeat(b'1'), "endless", None).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains("a line of more than 65536 bytes"), "{error}");
-        let error = from_stream(io::Cursor::new(b"\xff\xfe1\0 \0".to_vec()), "wide").map(|_| ()).unwrap_err();
+        let error = from_stream(io::Cursor::new(b"\xff\xfe1\0 \0".to_vec()), "wide", None).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains("UTF-16"), "{error}");
     }
 }

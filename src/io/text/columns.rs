@@ -1,0 +1,112 @@
+//! Which field of a line is what, and the point that it gives.
+
+use super::quote;
+use super::separator::Separator;
+use crate::data::{Columns, PointBatch};
+use crate::error::{Error, Result};
+
+const X_NAMES: &[&str] = &["x", "easting", "east", "e", "lon", "long", "longitude"];
+const Y_NAMES: &[&str] = &["y", "northing", "north", "n", "lat", "latitude"];
+const Z_NAMES: &[&str] = &["z", "elevation", "elev", "height", "h", "altitude", "alt"];
+const CLASS_NAMES: &[&str] = &["class", "classification"];
+
+const CURE: &str = "correct the line, or make it a comment with # at its beginning";
+
+/// How a line is divided, and which of its fields are taken.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout {
+    pub(super) separator: Separator,
+    pub(super) columns: Columns,
+}
+
+pub(super) struct Point {
+    x: f64,
+    y: f64,
+    z: f64,
+    class: Option<u8>,
+}
+
+impl Point {
+    pub(super) fn push(&self, batch: &mut PointBatch) {
+        batch.x.push(self.x);
+        batch.y.push(self.y);
+        batch.z.push(self.z);
+        batch.class.extend(self.class);
+    }
+}
+
+impl Layout {
+    /// What there is without a header.
+    pub(super) const FIRST: Self =
+        Layout { separator: Separator::Blanks, columns: Columns { x: 1, y: 2, z: 3, class: None } };
+
+    /// Finds the columns by their names.
+    pub(super) fn named(header: &[u8], separator: Separator) -> Result<Self> {
+        let names: Vec<String> = separator.fields(header).map(bare_name).collect();
+        let find =
+            |known: &[&str]| known.iter().find_map(|known| names.iter().position(|name| name == known)).map(|i| i + 1);
+        let need = |axis: &str, known: &[&str]| {
+            find(known).ok_or_else(|| {
+                Error::format(format!("no column for {axis} in the header {}", quote(header)))
+                    .cure(format!("call it one of {}, or name the columns with --columns", known.join(", ")))
+            })
+        };
+        let columns = Columns {
+            x: need("x", X_NAMES)?,
+            y: need("y", Y_NAMES)?,
+            z: need("z", Z_NAMES)?,
+            class: find(CLASS_NAMES),
+        };
+        Ok(Layout { separator, columns })
+    }
+
+    pub(super) fn point(&self, line: &[u8]) -> Result<Point> {
+        let mut found: [&[u8]; 4] = [b""; 4];
+        let Columns { x, y, z, class } = self.columns;
+        let wanted = [Some(x), Some(y), Some(z), class];
+        let last = wanted.into_iter().flatten().fold(0, usize::max);
+        let mut count = 0;
+        for (number, field) in (1..=last).zip(self.separator.fields(line)) {
+            count = number;
+            for (place, _) in found.iter_mut().zip(wanted).filter(|(_, column)| *column == Some(number)) {
+                *place = field;
+            }
+        }
+        if count < last {
+            return Err(Error::format(format!(
+                "{count} {} separated by {}, expected at least {last}: {}",
+                if count == 1 { "field" } else { "fields" },
+                self.separator.name(),
+                quote(line)
+            ))
+            .cure(CURE));
+        }
+        Ok(Point {
+            x: self.coordinate("x", found[0], line)?,
+            y: self.coordinate("y", found[1], line)?,
+            z: self.coordinate("z", found[2], line)?,
+            class: class.map(|_| self.class_code(found[3], line)).transpose()?,
+        })
+    }
+
+    fn coordinate(&self, axis: &str, field: &[u8], line: &[u8]) -> Result<f64> {
+        self.separator.number(field).ok_or_else(|| {
+            Error::format(format!("{axis} is {}, expected a finite number: {}", quote(field), quote(line))).cure(CURE)
+        })
+    }
+
+    fn class_code(&self, field: &[u8], line: &[u8]) -> Result<u8> {
+        let code = self.separator.number(field).filter(|code| code.fract() == 0.0 && (0.0..=255.0).contains(code));
+        code.map(|code| code as u8).ok_or_else(|| {
+            Error::format(format!("class is {}, expected a whole number from 0 to 255: {}", quote(field), quote(line)))
+                .cure(CURE)
+        })
+    }
+}
+
+/// A name in lower case, without what stands in brackets.
+fn bare_name(field: &[u8]) -> String {
+    let text = String::from_utf8_lossy(field).to_lowercase();
+    let end = text.find(['(', '[']).unwrap_or(text.len());
+    text[..end].trim().to_owned()
+}

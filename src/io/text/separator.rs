@@ -1,0 +1,77 @@
+//! What stands between the fields of a line.
+
+/// What stands between two fields.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Separator {
+    Semicolon,
+    Tab,
+    Comma,
+    Blanks,
+}
+
+impl Separator {
+    /// The first one that makes three numbers of the line, or else three fields.
+    pub(super) fn guess(line: &[u8]) -> Option<Self> {
+        let all = [Self::Semicolon, Self::Tab, Self::Comma, Self::Blanks];
+        let has_numbers =
+            |separator: &Self| separator.fields(line).filter_map(|field| separator.number(field)).take(3).count() == 3;
+        let has_fields = |separator: &Self| separator.fields(line).take(3).count() == 3;
+        all.into_iter().find(has_numbers).or_else(|| all.into_iter().find(has_fields))
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Semicolon => "semicolons",
+            Self::Tab => "tabs",
+            Self::Comma => "commas",
+            Self::Blanks => "blanks",
+        }
+    }
+
+    fn ends_field(self, byte: u8) -> bool {
+        match self {
+            Self::Semicolon => byte == b';',
+            Self::Tab => byte == b'\t',
+            Self::Comma => byte == b',',
+            Self::Blanks => byte == b' ' || byte == b'\t',
+        }
+    }
+
+    /// The fields of a line, without quotes and the blanks around them.
+    pub(super) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+        let mut rest = Some(if self == Self::Blanks { line.trim_ascii() } else { line });
+        std::iter::from_fn(move || {
+            let line = rest?;
+            let length = self.field_length(line);
+            rest = line.get(length + 1..);
+            if self == Self::Blanks {
+                rest = rest.map(|rest| rest.trim_ascii_start());
+            }
+            let field = line[..length].trim_ascii();
+            Some(field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field).trim_ascii())
+        })
+    }
+
+    /// Bytes before the next separator that is not in quotes.
+    fn field_length(self, line: &[u8]) -> usize {
+        let mut in_quotes = false;
+        line.iter()
+            .position(|&byte| {
+                in_quotes ^= byte == b'"';
+                !in_quotes && self.ends_field(byte)
+            })
+            .unwrap_or(line.len())
+    }
+
+    /// A number, with a decimal comma where the comma has no other use.
+    pub(super) fn number(self, field: &[u8]) -> Option<f64> {
+        let text = std::str::from_utf8(field).ok()?;
+        let value: f64 = match self {
+            Self::Semicolon | Self::Tab | Self::Blanks if field.contains(&b',') && !field.contains(&b'.') => {
+                text.replacen(',', ".", 1).parse().ok()?
+            }
+            _ => text.parse().ok()?,
+        };
+        value.is_finite().then_some(value)
+    }
+}
