@@ -5,11 +5,12 @@ use std::time::Instant;
 
 use super::args::{Corners, EdgeLength};
 use super::crossings::{self, LineNames};
+use super::extents;
 use super::inputs;
 use super::lines::{self, Rings};
 use super::open;
 use super::plan::{From, PointPlan, SurfacePlan};
-use super::point_files;
+use super::point_files::PointFiles;
 use super::relabeled::Relabeled;
 use super::roads::Roads;
 use super::summary::{Made, seconds};
@@ -105,17 +106,18 @@ fn one_system(path: &Path, crs: Option<&Crs>, wish: &Wish, talk: &Talk) -> Resul
 }
 
 fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) -> Result<Gathered> {
-    let mut files = point_files::open_all(&plan.files, plan.read, talk)?;
+    let mut files = PointFiles::open(&plan.files, plan.read, talk)?;
     let breaklines = layers(&plan.breaklines, talk)?;
     let boundary = layers(&plan.boundary, talk)?;
 
-    let mut stated: Vec<Stated> = files.iter().map(|file| file.stated.clone()).collect();
-    stated.extend(breaklines.iter().chain(&boundary).map(|(path, layer)| Stated {
-        path: path.clone(),
-        crs: layer.crs.clone(),
-        role: Role::Lines,
-    }));
-    let Systems { from, crs } = systems::reconcile(&stated, wish, talk)?;
+    let mut stated = files.stated(&plan.classes)?;
+    stated.extend(
+        breaklines
+            .iter()
+            .chain(&boundary)
+            .map(|(path, layer)| Some(Stated { path: path.clone(), crs: layer.crs.clone(), role: Role::Lines })),
+    );
+    let Systems { from, crs } = systems::reconcile_some(&stated, wish, talk)?;
     let roads = Roads::new(&from, crs.as_ref(), talk)?;
     let (point_roads, layer_roads) = roads.by_file.split_at(files.len());
     let (line_roads, boundary_roads) = layer_roads.split_at(breaklines.len());
@@ -152,7 +154,8 @@ fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) ->
     let mut reach = Reach::new(plan, &rim);
     let (tin, report) = loop {
         let mut selection = Selection::new(plan.classes.clone(), reach.window());
-        point_files::read_all(&mut files, point_roads, plan.read, &roads, &mut selection, talk)?;
+        let extents = files.read(point_roads, &roads, &mut selection, talk)?;
+        extents::tell_apart(&plan.files, &extents, &units, talk);
         let (points, report) = selection.finish();
         roads.warn(talk);
         tell_classes(&report, &plan.classes, talk);
@@ -160,7 +163,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) ->
             return Err(nothing_left(&report, &plan.files));
         }
         if plan.bounds.is_none() && boundary.is_empty() {
-            tell_beyond(&points, line_extent, &rim, &units, talk);
+            extents::tell_beyond(&points, line_extent, rim.buffer, &units, talk);
         }
         let mut builder = builder.clone();
         builder.window = reach.window().map(|read| Window { read, all: report.extent });
@@ -197,7 +200,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) ->
         return Err(no_triangle(tin.report(), &rim, &units));
     }
     made.files = plan.files.len();
-    made.columns = point_files::columns_line(&files);
+    made.columns = files.columns_line();
     made.points = Some(report);
     made.tin = Some(tin.report().clone());
     made.duplicates = plan.duplicates;
@@ -294,24 +297,7 @@ fn tell_classes(report: &SelectionReport, wanted: &Classes, talk: &Talk) {
             talk.note(format_args!("{} points of files without classes are used too", report.without_class));
         }
     } else if !report.by_class.is_empty() {
-        talk.note("no point is of class 2 (ground): all classes are used");
-    }
-}
-
-/// Lines of a whole district over points of one tile: the extent is then not what one expects.
-fn tell_beyond(points: &[[f64; 3]], lines: Bounds, rim: &Rim, units: &Units, talk: &Talk) {
-    let mut extent = Bounds::default();
-    points.iter().for_each(|&point| extent.add(point));
-    if extent.is_empty() || lines.is_empty() {
-        return;
-    }
-    let reach = (0..2).flat_map(|i| [extent.min[i] - lines.min[i], lines.max[i] - extent.max[i]]);
-    let furthest = reach.fold(0.0, f64::max);
-    if furthest > rim.buffer {
-        talk.note(format_args!(
-            "breaklines reach {} beyond the points: the surface there rests on them alone (--bounds clips it)",
-            units.length(furthest)
-        ));
+        talk.warning("no point is of class 2 (ground): all classes are used (--class chooses)");
     }
 }
 

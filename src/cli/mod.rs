@@ -11,6 +11,7 @@ mod contour;
 mod crossings;
 mod dem;
 mod demo;
+mod extents;
 mod gather;
 mod hillshade;
 mod info;

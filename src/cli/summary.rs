@@ -75,26 +75,32 @@ impl Made {
                 0 => String::new(),
                 n => format!(", {n} crossings between vertices"),
             };
-            let (lines, edges) = (self.breaklines, tin.constrained_edges);
-            talk.line(format_args!("breaklines  {lines} in, {edges} edges out{crossings}"));
+            let (lines, edges, vertices) = (self.breaklines, tin.constrained_edges, tin.breakline_vertices);
+            talk.line(format_args!("breaklines  {lines} in, {edges} edges out, {vertices} vertices{crossings}"));
         }
-        talk.line(format_args!("vertices    {}", tin.vertices));
+        let parts = [
+            (tin.vertices_beyond_max_edge, "left out with triangles at the rim"),
+            (tin.vertices_clipped, "clipped"),
+            (tin.vertices_cut, "added by the clip"),
+        ];
+        talk.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
     }
 
     fn left_out(&self) -> String {
         let Some(tin) = &self.tin else { return String::new() };
-        let mut parts = Vec::new();
-        if tin.faces_beyond_max_edge > 0 {
-            parts.push(format!("{} with long edges at the rim left out", tin.faces_beyond_max_edge));
-        }
-        if tin.faces_clipped > 0 {
-            parts.push(format!("{} clipped", tin.faces_clipped));
-        }
-        if tin.faces_cut > 0 {
-            parts.push(format!("{} cut", tin.faces_cut));
-        }
-        if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
+        listed(&[
+            (tin.faces_beyond_max_edge, "with long edges at the rim left out"),
+            (tin.faces_clipped, "clipped"),
+            (tin.faces_cut, "cut"),
+        ])
     }
+}
+
+/// ` (5 clipped, 2 added)`, without what there is none of.
+fn listed(parts: &[(usize, &str)]) -> String {
+    let parts: Vec<String> =
+        parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+    if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
 }
 
 /// Where something is, and in which coordinate system.

@@ -82,6 +82,18 @@ pub(super) fn reconcile(files: &[Stated], wish: &Wish, talk: &Talk) -> Result<Sy
     Ok(systems)
 }
 
+/// The same where some files are not asked; they are not reprojected.
+///
+/// # Errors
+/// As [`reconcile`].
+pub(super) fn reconcile_some(files: &[Option<Stated>], wish: &Wish, talk: &Talk) -> Result<Systems> {
+    let asked: Vec<Stated> = files.iter().flatten().cloned().collect();
+    let Systems { from, crs } = reconcile(&asked, wish, talk)?;
+    let mut from = from.into_iter();
+    let from = files.iter().map(|file| file.as_ref().and_then(|_| from.next().flatten())).collect();
+    Ok(Systems { from, crs })
+}
+
 fn assigned(files: &[Stated], wish: &Wish, talk: &Talk) -> Vec<Stated> {
     let Some(assign) = &wish.assign else { return files.to_vec() };
     files

@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use super::{EdgeKind, LinkFlaw, Surface, Triangles};
 use crate::crs::Crs;
 use crate::error::{Error, Result};
@@ -95,8 +97,8 @@ impl Mesh {
             (neighbors, flaws) if flaws.is_empty() => neighbors,
             (_, flaws) => return Err(folded(flaws[0])),
         };
-        let (kinds, strays) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
-        if let Some(flaw) = strays.first() {
+        let (kinds, unmet) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
+        if let Some(flaw) = unmet.first() {
             return Err(Error::format(flaw.to_string()));
         }
         Ok(Mesh { vertices, faces, neighbors, kinds, pieces, crs })
@@ -120,8 +122,9 @@ impl Mesh {
         }
         let edges = EdgeTable::new(vertices.len(), &faces);
         let (neighbors, mut flaws) = edges.neighbors(&faces);
-        let (kinds, strays) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
-        flaws.extend(strays);
+        flaws.extend(strays(&vertices, &faces));
+        let (kinds, unmet) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
+        flaws.extend(unmet);
         for (face, mut stated) in (0u32..).zip(stated.into_iter().flatten()).take(faces.len()) {
             if is_turned {
                 stated.swap(1, 2);
@@ -166,6 +169,17 @@ fn check_values(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
         return Err(Error::format(format!("face {i} names one vertex twice: {a} {b} {c}")));
     }
     Ok(())
+}
+
+/// Vertices that are nowhere, and that no face has.
+fn strays(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<LinkFlaw> {
+    let is_nowhere = |&vertex: &u32| !vertices[vertex as usize].iter().all(|c| c.is_finite());
+    let nowhere: Vec<u32> = (0..vertices.len() as u32).filter(is_nowhere).collect();
+    if nowhere.is_empty() {
+        return Vec::new();
+    }
+    let used: HashSet<u32> = faces.iter().flatten().copied().collect();
+    nowhere.into_iter().filter(|vertex| !used.contains(vertex)).map(LinkFlaw::StrayVertex).collect()
 }
 
 /// Says that a vertex is nowhere.

@@ -30,6 +30,8 @@ pub enum LinkFlaw {
         /// The vertices of the edge.
         edge: [u32; 2],
     },
+    /// A vertex has a coordinate that is not finite, and no face has it as a corner.
+    StrayVertex(u32),
     /// A constraint between these vertices is no edge of a face.
     NoEdge([u32; 2]),
     /// The file names another neighbor than the face that has the same edge.
@@ -51,6 +53,9 @@ impl std::fmt::Display for LinkFlaw {
         match *self {
             LinkFlaw::Folded { faces: [one, other], edge: [a, b] } => {
                 write!(f, "faces {one} and {other}: both run the same way along their edge {a} {b}")
+            }
+            LinkFlaw::StrayVertex(vertex) => {
+                write!(f, "vertex {vertex}: a coordinate is not finite (no face uses it, but no reader can take it)")
             }
             LinkFlaw::NoEdge([a, b]) => write!(f, "the constrained edge {a} {b} is no edge of a face"),
             LinkFlaw::Neighbor { face, corner, stated, found } => {

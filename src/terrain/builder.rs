@@ -8,6 +8,7 @@ use crate::triangulation::{ConstrainedDelaunay, LineId, LineVertices, OnCrossing
 
 use super::clip::Clip;
 use super::crossings::{Pass, refuse, settle_heights};
+use super::tin::Count;
 use super::window::uncertain;
 use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin, Window};
 
@@ -88,8 +89,14 @@ pub struct TinReport {
     /// Triangles within the bounds that may be others once all points are read; see [`TinBuilder::window`]. If there
     /// are none, the surface is that of all points, in every triangle and every height.
     pub uncertain: usize,
+    /// Vertices that are not part of the surface since all of their triangles were left out by `max_edge`.
+    pub vertices_beyond_max_edge: usize,
     /// Triangles left out by the boundary or the bounds.
     pub faces_clipped: usize,
+    /// Vertices that are not part of the surface since all that was left of their triangles was clipped.
+    pub vertices_clipped: usize,
+    /// Vertices that were added where the boundary or the bounds cut triangles.
+    pub vertices_cut: usize,
     /// Triangles that the boundary or the bounds cut: what is left of them is part of the surface in pieces.
     pub faces_cut: usize,
 }
@@ -200,17 +207,26 @@ impl TinBuilder {
         report.constrained_edges = if report.breaklines == 0 { 0 } else { triangulation.constrained_edges().count() };
 
         let mut tin = Tin::new(triangulation, self.crs.take());
+        let all = tin.triangulation.vertex_count();
         if let Some(limit) = self.max_edge {
             report.faces_beyond_max_edge = tin.peel(limit);
         }
         let clip = Clip { polygons: std::mem::take(&mut self.boundaries), bounds: self.bounds };
+        // Counted only where it cannot be told from what comes out.
+        let mut left = None;
         if !clip.is_everything() {
+            left = Some(if report.faces_beyond_max_edge > 0 { tin.count().old_vertices } else { all });
             (report.faces_clipped, report.faces_cut) = clip.apply(&mut tin)?;
         }
         if let (Some(bounds), Some(window)) = (&self.bounds, &self.window) {
             report.uncertain = uncertain(&tin.triangulation, bounds, window, self.max_edge, tin.replaced());
         }
-        (report.vertices, report.triangles, report.extent) = tin.count();
+        let Count { old_vertices, vertices, faces, extent } = tin.count();
+        let left = left.unwrap_or(old_vertices);
+        report.vertices_beyond_max_edge = all - left;
+        report.vertices_clipped = left - old_vertices;
+        report.vertices_cut = vertices - old_vertices;
+        (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
         tin.report = report;
         Ok(tin)
     }

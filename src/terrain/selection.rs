@@ -56,6 +56,10 @@ pub struct Selection {
     has_ground: bool,
     read: u64,
     read_before_source: u64,
+    /// The points of each class, and of none, before the current source.
+    before_source: Option<Box<[u64; 257]>>,
+    /// The classes of the points of each source before the current one.
+    sources: Vec<Vec<Option<u8>>>,
     withheld: u64,
     /// One for every class.
     by_class: [Tally; 256],
@@ -103,6 +107,8 @@ impl Selection {
             has_ground: false,
             read: 0,
             read_before_source: 0,
+            before_source: None,
+            sources: Vec::new(),
             withheld: 0,
             by_class: [Tally::default(); 256],
             without_class: Tally::default(),
@@ -112,7 +118,31 @@ impl Selection {
 
     /// Says that what follows comes from another file: errors count points from here.
     pub fn next_source(&mut self) {
+        let classes = self.classes_of_source();
+        self.sources.extend(classes);
+        self.before_source = Some(Box::new(self.tallies()));
         self.read_before_source = self.read;
+    }
+
+    /// The points seen so far of each class, and of none.
+    fn tallies(&self) -> [u64; 257] {
+        std::array::from_fn(|i| self.by_class.get(i).unwrap_or(&self.without_class).all())
+    }
+
+    /// The classes of the points of the current source, if one was announced.
+    fn classes_of_source(&self) -> Option<Vec<Option<u8>>> {
+        let before = self.before_source.as_deref()?;
+        let now = self.tallies();
+        Some((0..now.len()).filter(|&i| now[i] > before[i]).map(|i| u8::try_from(i).ok()).collect())
+    }
+
+    /// The sources, in the order of [`next_source`](Self::next_source), of which no point is used, be it in the window
+    /// or outside of it: they have none, or only of classes that are not used.
+    pub fn unused_sources(&self) -> Vec<usize> {
+        let current = self.classes_of_source();
+        let is_unused = |classes: &[Option<u8>]| classes.iter().all(|&class| self.fate(class) == Use::No);
+        let sources = self.sources.iter().chain(&current).enumerate();
+        sources.filter(|(_, classes)| is_unused(classes)).map(|(source, _)| source).collect()
     }
 
     /// Takes the points of a whole source that are to be used.
@@ -297,6 +327,27 @@ mod tests {
         assert_eq!(report.classes, Some(vec![2]));
         assert_eq!(report.other_class, 4);
         assert_eq!(report.by_class, BTreeMap::from([(1, 3), (2, 1), (5, 1)]));
+    }
+
+    #[test]
+    fn sources_of_which_no_point_is_used_are_known() {
+        let batches =
+            [batch(&[(1, 1.0)]), classless(&[3.0]), batch(&[]), batch(&[(5, 4.0), (2, 99.0)]), batch(&[(7, 5.0)])];
+        let mut window = Bounds::default();
+        window.add([0.0, 0.0, 0.0]);
+        window.add([10.0, 10.0, 0.0]);
+        let unused = |classes: Classes, batches: &[PointBatch]| {
+            let mut selection = Selection::new(classes, Some(window));
+            for batch in batches {
+                selection.next_source();
+                selection.add(batch).unwrap();
+            }
+            selection.unused_sources()
+        };
+        assert_eq!(unused(Classes::GroundOrAll, &batches), [0, 2, 4]);
+        assert_eq!(unused(Classes::GroundOrAll, &batches[..3]), [2]);
+        assert_eq!(unused(Classes::Only(vec![1]), &batches), [2, 3, 4]);
+        assert!(unused(Classes::GroundOrAll, &[]).is_empty());
     }
 
     #[test]

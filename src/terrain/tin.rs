@@ -107,21 +107,33 @@ impl Tin {
         self.cut.as_ref().map(Cut::replaced).unwrap_or_default()
     }
 
-    /// Vertices and faces of the surface, and the box around it.
-    pub(super) fn count(&self) -> (usize, usize, Bounds) {
+    /// What the surface consists of.
+    pub(super) fn count(&self) -> Count {
         let mut used = vec![false; self.vertex_count()];
         let mut faces = 0;
         for corners in (0..self.face_count() as u32).filter_map(|face| self.face(face)) {
             faces += 1;
             corners.iter().for_each(|&v| used[v as usize] = true);
         }
-        let (mut vertices, mut extent) = (0, Bounds::default());
-        for (vertex, _) in (0u32..).zip(used).filter(|&(_, is_used)| is_used) {
-            vertices += 1;
-            extent.add(self.position(vertex));
+        let mut count = Count { old_vertices: 0, vertices: 0, faces, extent: Bounds::default() };
+        let old = self.triangulation.tds().vertex_slots();
+        for vertex in (0..used.len()).filter(|&vertex| used[vertex]) {
+            count.vertices += 1;
+            count.old_vertices += usize::from(vertex < old);
+            count.extent.add(self.position(vertex as u32));
         }
-        (vertices, faces, extent)
+        count
     }
+}
+
+/// What a surface consists of.
+pub(super) struct Count {
+    /// Vertices of the triangulation.
+    pub(super) old_vertices: usize,
+    /// These and those of the cut.
+    pub(super) vertices: usize,
+    pub(super) faces: usize,
+    pub(super) extent: Bounds,
 }
 
 /// Where a triangle is thinner than this part of its longest side, rounding hides where across it a place lies: such

@@ -5,6 +5,8 @@ mod program;
 
 mod columns;
 mod crossings;
+mod inputs;
+mod lidar;
 #[cfg(unix)]
 mod outputs;
 mod results;

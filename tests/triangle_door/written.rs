@@ -268,8 +268,14 @@ fn points_that_span_no_area_have_no_triangle() {
         ("none.node", "0 2 0 0\n"),
     ]);
     for (input, count) in [("line.node", 4.0), ("line.poly", 4.0), ("one.node", 1.0), ("none.node", 0.0)] {
-        let outputs = "-o out.ele -o out.poly -o out.neigh -o out.edge -o out.off -o out.ply";
+        let outputs = "-o out.ele -o out.poly -o out.neigh -o out.edge";
         run(&folder, &format!("triangulate {input} {outputs} --overwrite")).ends(0, &["there is no triangle"]);
+        // A mesh of none is of no use to anyone.
+        for mesh in ["none.ply", "none.obj", "none.off"] {
+            run(&folder, &format!("triangulate {input} -o {mesh} -o {mesh}.ele"))
+                .ends(1, &[&format!("error: {mesh}: "), "no triangle to write", "hint: "]);
+            assert!(!folder.path().join(mesh).exists() && !folder.path().join(format!("{mesh}.ele")).exists());
+        }
         assert_eq!(table(&folder, "out.node")[0][0], count);
         assert_eq!(table(&folder, "out.ele"), [[0.0, 3.0, 0.0]]);
         run(&folder, "check out.ele").ends(0, &["0 triangles"]);

@@ -89,6 +89,13 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
             .in_file(path)
             .cure("close the outer boundary with segments, or add --convex to keep the hull"));
     }
+    if built.faces.is_empty()
+        && let Some(mesh) = outputs.targets.iter().find(|target| target.kind == Family::Mesh)
+    {
+        return Err(Error::format("all vertices are on one line or at one place: there is no triangle to write")
+            .in_file(&mesh.path)
+            .cure("add a vertex beside the line; .node, .poly and .ele hold vertices without triangles, too"));
+    }
     let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
     write(&outputs.set, &meshes, &files, &triangulated)?;
     tell(&graph, args, &built, &triangulated, talk);

@@ -21,7 +21,7 @@ use crate::io::contain::contain;
 /// The values of the part of a piece that lies in a window: row by row, NaN where there is none.
 pub(super) fn values(layout: &Layout, nodata: &Nodata, bytes: &Bytes, piece: &Piece, part: Window) -> Result<Vec<f64>> {
     let Stored::At { offset, length } = piece.stored else {
-        return Ok(vec![f64::NAN; part.width * part.height]);
+        return Ok(vec![nodata.of_missing_blocks(); part.width * part.height]);
     };
     let place = |e: Error| e.at(format!("block {} (rows from {})", piece.block, piece.first_row));
     let mut file = header(layout, piece, length);

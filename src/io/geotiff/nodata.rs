@@ -25,6 +25,11 @@ impl Nodata {
         Some(Nodata { value: Some(value), whole })
     }
 
+    /// What cells have whose block was left out of the file: no value, or 0 where none stands for that, as in GDAL.
+    pub(super) fn of_missing_blocks(&self) -> f64 {
+        if self.value.is_some() { f64::NAN } else { 0.0 }
+    }
+
     /// The value as an integer type, if it is one of its values.
     pub(super) fn integer<T: TryFrom<i128>>(&self) -> Option<T> {
         self.whole.and_then(|whole| T::try_from(whole).ok())

@@ -173,7 +173,7 @@ fn read_header(path: &Path) -> Result<GeoTiffReader> {
     let missing = layout.missing_blocks();
     if missing > 0 && nodata.value.is_none() {
         let all = layout.block_count();
-        warnings.push(format!("{missing} of {all} blocks are not in the file and have no values"));
+        warnings.push(format!("{missing} of {all} blocks are not in the file: their cells are 0, as in GDAL"));
     }
     let overviews = further_images(&bytes, &directory, &mut warnings);
     let info = GeoTiffInfo {
@@ -347,7 +347,7 @@ impl GeoTiffReader {
         let pieces = self.pieces(window)?;
         let mut out = Vec::new();
         out.try_reserve_exact(cells).map_err(|_| Error::limit(format!("no memory for {width} x {height} cells")))?;
-        out.resize(cells, f64::NAN);
+        out.resize(cells, self.nodata.of_missing_blocks());
         /// Bytes of decoded blocks that may wait to be copied.
         const WAITING: u64 = 1 << 28;
         let batch = (WAITING / self.layout.piece_bytes().max(1)).clamp(1, 4 * rayon::current_num_threads() as u64);

@@ -1,0 +1,138 @@
+//! Inputs that are odd together, and sums that add up.
+
+use super::lidar::{las, tile};
+use super::{SLOPE, fixture, folder_with, geojson, run_in};
+
+#[test]
+fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {
+    let folder = folder_with(&[("text.xyz", SLOPE)]);
+    let write = |name: &str, class: u8, epsg: Option<u16>| {
+        std::fs::write(folder.path().join(name), las(&tile([0.0, 0.0], class), epsg)).unwrap();
+    };
+    write("ground.las", 2, None);
+    write("utm.las", 2, Some(25832));
+    write("trees.las", 5, Some(25833));
+    std::fs::write(folder.path().join("none.las"), las(&[], Some(3005))).unwrap();
+    let silent = "warning: trees.las: no point of it is used: it has none of class 2";
+    let tin = |files: &[&str], said: &[&str]| {
+        let run = run_in(&folder, &[&["tin", "-o", "t.ply", "--overwrite"], files].concat());
+        run.works(said);
+        run.stderr
+    };
+    for order in [["ground.las", "trees.las"], ["trees.las", "ground.las"]] {
+        tin(&order, &[silent, "CRS         not known", "32 read from 2 files, 16 used"]);
+    }
+    // Two systems are none if one of them is nobody's.
+    tin(&["utm.las", "trees.las", "none.las"], &[silent, "warning: none.las: no point of it is used", "EPSG:25832"]);
+    let run = run_in(&folder, &["tin", "utm.las", "trees.las", "--class", "2,5", "-o", "u.ply"]);
+    run.fails(1, &["two coordinate systems"]);
+    // Where no file has ground, all give points.
+    let said = tin(&["trees.las", "text.xyz"], &["warning: no point is of class 2 (ground): all classes", "25833"]);
+    assert!(!said.contains("no point of it is used"), "{said}");
+    let said = tin(&["trees.las"], &["warning: no point is of class 2"]);
+    assert!(!said.contains("no point of it is used"), "{said}");
+    assert!(!tin(&["utm.las", "ground.las"], &[]).contains("warning: "));
+}
+
+#[test]
+fn what_lies_on_two_continents_is_told() {
+    let far = "688000 5261000 1\n688004 5261000 2\n688000 5261004 3\n688004 5261004 4\n";
+    let near = "40 0 1\n44 0 2\n40 4 3\n44 4 4\n";
+    let lines = geojson(25832, "LineString", "[[688001,5261001,1],[688002,5261003,2]]");
+    let folder = folder_with(&[("a.xyz", SLOPE), ("far.xyz", far), ("near.xyz", near), ("far.geojson", &lines)]);
+    let tin = |args: &[&str]| run_in(&folder, &[&["tin", "-o", "t.ply", "--overwrite"], args].concat());
+    tin(&["far.xyz", "near.xyz", "a.xyz"])
+        .works(&["warning: near.xyz and far.xyz are 687956 units apart, with nothing between them"]);
+    assert!(!tin(&["near.xyz", "a.xyz"]).stderr.contains("warning: "));
+    tin(&["a.xyz", "--breaklines", "far.geojson"])
+        .works(&["warning: the breaklines lie 5260998 m away from the points: are they in the same"]);
+}
+
+/// The first number behind some words in a text.
+fn number_before(text: &str, what: &str) -> i64 {
+    let Some(at) = text.find(what) else { return 0 };
+    let digits: String = text[..at].trim_end().chars().rev().take_while(char::is_ascii_digit).collect();
+    digits.chars().rev().collect::<String>().parse().unwrap_or_else(|_| panic!("no number before {what} in {text}"))
+}
+
+#[test]
+fn sums_of_vertices_add_up() {
+    let apart: String = (0..260).map(|i| format!("{} {} 1\n", 1000 * (i % 20 + 1), 1000 * (i / 20 + 1))).collect();
+    let folder = folder_with(&[("a.xyz", &format!("{SLOPE}{apart}"))]);
+    let run = run_in(&folder, &["tin", "a.xyz", "-o", "a.ply"]);
+    run.works(&["276 used", "\nvertices    16 (260 left out with triangles at the rim)\n"]);
+    let (points, lines, ring) = (fixture("valley.laz"), fixture("breaklines.shp"), fixture("boundary.shp"));
+    for more in [
+        &["--max-edge", "none"][..],
+        &["--max-edge", "3"],
+        &["--max-edge", "3", "--boundary", &ring],
+        &["--max-edge", "none", "--bounds", "688100,5261050,688200,5261150"],
+    ] {
+        let args = [&["tin", &points, "--breaklines", &lines, "-o", "b.ply", "--overwrite"], more].concat();
+        let run = run_in(&folder, &args);
+        run.works(&[]);
+        let said = |what: &str| number_before(&run.stderr, what);
+        let vertices = run.stderr.split("\nvertices    ").nth(1).unwrap();
+        let count: i64 = vertices.split([' ', '\n']).next().unwrap().parse().unwrap();
+        let sum = said(" used;") - said(" at the place of another point") - said(" at a breakline's vertex")
+            + said(" vertices, ").max(said(" vertices\n"))
+            + said(" crossings between vertices")
+            - said(" left out with triangles at the rim")
+            - number_before(vertices.lines().next().unwrap(), " clipped")
+            + said(" added by the clip");
+        assert_eq!(sum, count, "{more:?}\n{}", run.stderr);
+    }
+}
+
+#[test]
+fn a_vertex_that_is_nowhere_is_a_flaw_also_without_a_face() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
+                  element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let folder = folder_with(&[("m.ply", &format!("{header}0 0 1\n1 0 1\n0 1 1\nnan 5 1\n3 0 1 2\n"))]);
+    run_in(&folder, &["dem", "m.ply", "-o", "d.tif"]).fails(1, &["m.ply: vertex 3 is at NaN 5 1"]);
+    let run = run_in(&folder, &["check", "m.ply"]);
+    assert_eq!(run.code, 1, "{}", run.stdout);
+    assert!(
+        run.stdout.contains("vertex 3: a coordinate is not finite") && run.stdout.contains("1 flaw"),
+        "{}",
+        run.stdout
+    );
+}
+
+#[test]
+fn tiles_that_a_tiff_leaves_out_are_0_unless_something_stands_for_none() {
+    let tiff = |nodata: Option<&[u8; 4]>| {
+        let mut entries: Vec<(u16, u16, u32, [u8; 4])> = Vec::new();
+        for (tag, value) in [(256, 32), (257, 16), (258, 8), (259, 1), (262, 1), (277, 1), (322, 16), (323, 16)] {
+            entries.push((tag, 4, 1, u32::to_le_bytes(value)));
+        }
+        let count = entries.len() as u32 + 2 + u32::from(nodata.is_some());
+        let tables = 8 + 2 + 12 * count + 4;
+        entries.push((324, 4, 2, tables.to_le_bytes()));
+        entries.push((325, 4, 2, (tables + 8).to_le_bytes()));
+        entries.extend(nodata.map(|text| (42113, 2, 4, *text)));
+        let mut file = b"II*\0\x08\0\0\0".to_vec();
+        file.extend((count as u16).to_le_bytes());
+        for (tag, kind, length, value) in entries {
+            file.extend(tag.to_le_bytes());
+            file.extend(kind.to_le_bytes());
+            file.extend(length.to_le_bytes());
+            file.extend(value);
+        }
+        file.extend([0; 4]);
+        // The first tile is there, the second is not.
+        for value in [tables + 16, 0, 256, 0] {
+            file.extend(value.to_le_bytes());
+        }
+        file.extend([7; 256]);
+        file
+    };
+    let folder = folder_with(&[]);
+    for (name, nodata, min) in [("plain.tif", None, 0.0), ("nodata.tif", Some(b"255\0"), 7.0)] {
+        std::fs::write(folder.path().join(name), tiff(nodata)).unwrap();
+        let run = run_in(&folder, &["info", "--json", name]);
+        let files: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        assert_eq!((files[0]["min"].as_f64(), files[0]["max"].as_f64()), (Some(min), Some(7.0)), "{}", run.stdout);
+        assert_eq!(run.stderr.contains("1 of 2 blocks are not in the file: their cells are 0"), nodata.is_none());
+    }
+}
