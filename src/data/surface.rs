@@ -92,6 +92,20 @@ pub trait Surface: Sync {
             Some(Face { number, corners, edges: [0, 1, 2].map(|i| self.edge_kind(number, i)) })
         }));
     }
+
+    /// Appends the faces with these numbers, in order, that are wanted for their lowest and highest corner, each with
+    /// the heights of its corners.
+    ///
+    /// `is_wanted` may be asked for several faces at once, with the lowest and the highest corner of them all, so it
+    /// must hold of every range that holds a wanted one.
+    ///
+    /// `PERF:` a raster asks once for the four faces between four cells: most of them are skipped at once.
+    fn heights_in(&self, numbers: Range<u32>, is_wanted: &dyn Fn(f64, f64) -> bool, faces: &mut Vec<(u32, [f64; 3])>) {
+        faces.extend(numbers.filter_map(|number| {
+            let [a, b, c] = self.face(number)?.map(|v| self.position(v)[2]);
+            is_wanted(a.min(b).min(c), a.max(b).max(c)).then_some((number, [a, b, c]))
+        }));
+    }
 }
 
 /// Faces that are asked for at a time: they stay in a core's cache.

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use crate::crs::Crs;
 use crate::data::{EdgeKind, Grid, Surface};
 use crate::error::{Error, Result};
@@ -29,6 +31,17 @@ enum Quad {
     /// All but this one.
     Without(usize),
     Nothing,
+}
+
+impl Quad {
+    fn of(corners: [f64; 4]) -> Self {
+        let mut missing = (0..4).filter(|&i| !corners[i].is_finite());
+        match (missing.next(), missing.next()) {
+            (None, _) => Quad::Whole,
+            (Some(i), None) => Quad::Without(i),
+            _ => Quad::Nothing,
+        }
+    }
 }
 
 impl<'a> GridSurface<'a> {
@@ -78,12 +91,37 @@ impl<'a> GridSurface<'a> {
     }
 
     fn quad(&self, [column, row]: [usize; 2]) -> Quad {
-        let missing = |i: usize| !self.grid.value(column + self.corners[i][0], row + self.corners[i][1]).is_finite();
-        let mut found = (0..4).filter(|&i| missing(i));
-        match (found.next(), found.next()) {
-            (None, _) => Quad::Whole,
-            (Some(i), None) => Quad::Without(i),
-            _ => Quad::Nothing,
+        Quad::of(self.corners.map(|[right, down]| self.grid.value(column + right, row + down)))
+    }
+
+    /// Does [`heights_in`](Surface::heights_in) for the faces between four cells, numbered from `first`.
+    #[inline]
+    fn heights_between(
+        &self,
+        cells: [[f64; 2]; 2],
+        first: u32,
+        numbers: &Range<u32>,
+        is_wanted: &dyn Fn(f64, f64) -> bool,
+        faces: &mut Vec<(u32, [f64; 3])>,
+    ) {
+        let corners = self.corners.map(|[right, down]| cells[down][right]);
+        let mut add = |which: usize, [a, b, c]: [f64; 3]| {
+            let face = first + which as u32;
+            if numbers.contains(&face) && is_wanted(a.min(b).min(c), a.max(b).max(c)) {
+                faces.push((face, [a, b, c]));
+            }
+        };
+        match Quad::of(corners) {
+            Quad::Whole => {
+                let [a, b, c, d] = corners;
+                let center = center(cells);
+                let (low, high) = (a.min(b).min(c.min(d)).min(center), a.max(b).max(c.max(d)).max(center));
+                if is_wanted(low, high) {
+                    (0..4).for_each(|i| add(i, [corners[i], corners[(i + 1) % 4], center]));
+                }
+            }
+            Quad::Without(i) => add(0, [1, 2, 3].map(|step| corners[(i + step) % 4])),
+            Quad::Nothing => {}
         }
     }
 
@@ -108,6 +146,13 @@ impl<'a> GridSurface<'a> {
     }
 }
 
+/// The height amid four cells.
+fn center(cells: [[f64; 2]; 2]) -> f64 {
+    let [[a, b], [c, d]] = cells.map(|row| row.map(|height| 0.25 * height));
+    // By diagonals: the sum is the same however the raster is turned.
+    (a + d) + (b + c)
+}
+
 /// Column and row of what is numbered row by row. All numbers fit in 32 bits, which divide faster.
 fn place(number: u32, width: usize) -> [usize; 2] {
     // Asked only for what exists, so that the width is not 0.
@@ -130,9 +175,7 @@ impl Surface for GridSurface<'_> {
         }
         let [column, row] = place(vertex - cells, self.quads[0]);
         let [x, y] = frame.to_map(column as f64 + 1.0, row as f64 + 1.0);
-        let quarter = |right: usize, down: usize| 0.25 * self.grid.value(column + right, row + down);
-        // By diagonals: the sum is the same however the raster is turned.
-        [x, y, (quarter(0, 0) + quarter(1, 1)) + (quarter(0, 1) + quarter(1, 0))]
+        [x, y, center([0, 1].map(|down| [0, 1].map(|right| self.grid.value(column + right, row + down))))]
     }
 
     fn face_count(&self) -> usize {
@@ -182,7 +225,55 @@ impl Surface for GridSurface<'_> {
         if self.neighbor(face, i).is_some() { EdgeKind::Plain } else { EdgeKind::Rim }
     }
 
+    fn heights_in(&self, numbers: Range<u32>, is_wanted: &dyn Fn(f64, f64) -> bool, faces: &mut Vec<(u32, [f64; 3])>) {
+        let [across, width] = [self.quads[0] as u32, self.grid.frame.width as u32];
+        let end = numbers.end.div_ceil(4);
+        let mut quad = numbers.start / 4;
+        while quad < end {
+            // A row of quads, or what is asked for of it.
+            let (column, row) = (quad % across, quad / across);
+            let count = (across - column).min(end - quad);
+            let upper = &self.grid.values[(row * width + column) as usize..][..=count as usize];
+            let lower = &self.grid.values[((row + 1) * width + column) as usize..][..=count as usize];
+            for (upper, lower) in upper.windows(2).zip(lower.windows(2)) {
+                let cells = [[upper[0], upper[1]], [lower[0], lower[1]]];
+                self.heights_between(cells, 4 * quad, &numbers, is_wanted, faces);
+                quad += 1;
+            }
+        }
+    }
+
     fn crs(&self) -> Option<&Crs> {
         self.grid.crs.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of all faces of a range, those whose heights a range has to do with.
+    #[test]
+    fn heights_are_those_of_the_faces() {
+        let cell = |i: u32| match i.wrapping_mul(2_654_435_769) >> 29 {
+            0 => f64::NAN,
+            height => f64::from(height),
+        };
+        for transform in [[0.0, 1.0, 0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0, 0.0, -1.0]] {
+            let frame = crate::data::Frame { width: 7, height: 9, transform };
+            let grid = Grid { frame, crs: None, values: (0..63).map(cell).collect() };
+            let surface = GridSurface::new(&grid).unwrap();
+            let count = surface.face_count() as u32;
+            for (start, end) in [(0, count), (1, count - 1), (5, 6), (22, 75), (24, 24), (30, 31)] {
+                for level in [0.0, 1.0, 2.25, 5.0, 7.0, 8.0] {
+                    let is_wanted = |low: f64, high: f64| low < level && level <= high;
+                    let mut found = Vec::new();
+                    surface.heights_in(start..end, &is_wanted, &mut found);
+                    let faces = (start..end).filter_map(|face| Some((face, surface.triangle(face)?.map(|p| p[2]))));
+                    let expected = faces.filter(|(_, [a, b, c])| is_wanted(a.min(*b).min(*c), a.max(*b).max(*c)));
+                    assert_eq!(found, expected.collect::<Vec<_>>(), "{start}..{end} at {level}");
+                }
+            }
+        }
     }
 }

@@ -1,9 +1,10 @@
 //! Contours of a raster: the surface over its cells.
 
+use super::common::shared;
 use super::surface::Faces;
-use super::{draw, signed_area};
+use super::{bits, draw, judge, signed_area};
 use breakline::data::{ContourLine, Frame, Grid, Surface};
-use breakline::terrain::GridSurface;
+use breakline::terrain::{GridSurface, Levels, contours};
 use proptest::prelude::*;
 
 const X: f64 = f64::NAN;
@@ -67,6 +68,88 @@ proptest! {
             prop_assert_eq!(&drawn[0], other);
         }
     }
+}
+
+/// Cells of a raster whose contours lie on the judge's lattice: heights amid four cells are whole numbers too.
+const OF_THE_JUDGE: [f64; 6] = [100.0, 4.0, 0.0, 200.0, 0.0, -4.0];
+
+/// Holds a raster against the judge, at levels between its heights, on them and beyond.
+fn judged(width: usize, values: &[f64]) {
+    let grid = raster(width, values, OF_THE_JUDGE);
+    let surface = GridSurface::new(&grid).unwrap();
+    let faces = copied(&surface);
+    for half_level in -1..=9 {
+        let lines = draw(&surface, &[f64::from(half_level) / 2.0]);
+        assert_eq!(judge::pieces_of(&lines), judge::pieces(&faces, half_level.into()));
+        judge::check_lines(&faces, half_level.into(), &lines);
+    }
+}
+
+#[test]
+fn all_rasters_of_six_cells() {
+    for number in 0..3_usize.pow(6) {
+        let cells: Vec<f64> = (0..6).map(|i| [0.0, 4.0, X][number / 3_usize.pow(i) % 3]).collect();
+        judged(2, &cells);
+        judged(3, &cells);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
+
+    /// Flat ground, holes and saddles at every level.
+    #[test]
+    fn rasters_against_the_judge(
+        cells in prop::collection::vec(prop_oneof![3 => Just(0.0), 3 => Just(4.0), 1 => Just(X)], 42),
+    ) {
+        judged(6, &cells);
+    }
+}
+
+/// More than one stretch of faces: the same lines as of the faces one by one, with any number of threads.
+#[test]
+fn a_raster_is_its_faces() {
+    let height = |i: u32| match i.wrapping_mul(2_654_435_769) >> 20 {
+        hole if hole < 40 => X,
+        flat if (i / 150) % 7 < 3 => f64::from(flat % 2),
+        rough => f64::from(rough % 9) / 4.0,
+    };
+    let grid = raster(150, &(0..150 * 90).map(height).collect::<Vec<_>>(), NORTH_UP);
+    let surface = GridSurface::new(&grid).unwrap();
+    let levels = [0.0, 0.25, 0.6, 1.0, 1.5, 2.0];
+    let lines = bits(&draw(&surface, &levels));
+    assert_eq!(lines, bits(&draw(&copied(&surface), &levels)));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    assert_eq!(lines, pool.install(|| bits(&draw(&surface, &levels))));
+}
+
+/// The lines of revision 3b6a284, bit by bit, by their number and a sum over all bits.
+#[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
+fn lines_of_real_rasters_stay() {
+    let sum = |lines: &[ContourLine]| {
+        let all = bits(lines).into_iter().flat_map(|(level, points)| points.into_iter().flatten().chain([level]));
+        all.fold(0_u64, |sum, bits| (sum.rotate_left(5) ^ bits).wrapping_mul(0x517c_c1b7_2722_0a95))
+    };
+    let drawn = [
+        ("dem/lidar_sinks/dem.tif", 0.5),
+        ("dem/zh_dem_25.tif", 10.0),
+        ("dem/qgis_3d/dtm_with_holes.tif", 10.0),
+        ("dem/hintereisferner/hef_srtm.tif", 100.0),
+    ]
+    .map(|(file, interval)| {
+        let grid = breakline::io::raster::open(shared(file)).unwrap().read_grid().unwrap();
+        let surface = GridSurface::new(&grid).unwrap();
+        let lines: Vec<_> = contours(&surface, &Levels::every(interval, 0.0).unwrap()).unwrap().collect();
+        (lines.len(), sum(&lines))
+    });
+    let expected = [
+        (310, 2_935_360_354_142_851_916),
+        (276, 16_581_145_096_892_220_449),
+        (53, 7_132_536_982_392_338_645),
+        (373, 5_507_965_940_822_481_662),
+    ];
+    assert_eq!(drawn, expected);
 }
 
 #[test]

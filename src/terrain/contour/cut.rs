@@ -85,10 +85,12 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
         Some((other, j))
     }
 
-    /// The pieces along the edges of a face of which it is the high side.
-    pub(super) fn pieces_along(&self, face: Face) -> impl Iterator<Item = Piece> {
-        let along = (0..3).filter(move |&i| self.high_side(&face, i.into()).is_some_and(|high| high.id == face.id));
-        along.map(move |i| Piece::Along(face.id, i))
+    /// The piece along the edge that lies on the level, of a face that lies below it otherwise.
+    pub(super) fn shore(&self, id: u32) -> Option<Piece> {
+        let face = self.face(id)?;
+        let i = (0..3).find(|&i| face.has_level_edge(i))?;
+        let (high, j) = self.across(&face, i)?;
+        (high.side[j] != Less).then_some(Piece::Along(high.id, j as u8))
     }
 
     /// Of the two faces at the edge opposite corner `i` the one that belongs to the high ground, if

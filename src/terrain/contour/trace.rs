@@ -1,6 +1,6 @@
 use super::cut::{Cut, Face, Node, Piece, Way};
 use crate::data::Surface;
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 /// Pieces of one level, joined as far as the links between faces lead.
 pub(super) enum Trace {
@@ -30,12 +30,12 @@ pub(super) struct LooseEnd {
 pub(super) struct Done {
     across: Vec<u64>,
     /// Few: they need an edge on the level.
-    along: HashSet<(u32, u8)>,
+    along: FxHashSet<(u32, u8)>,
 }
 
 impl Done {
     pub(super) fn new(face_count: usize) -> Self {
-        Done { across: vec![0; face_count.div_ceil(64)], along: HashSet::new() }
+        Done { across: vec![0; face_count.div_ceil(64)], along: FxHashSet::default() }
     }
 
     /// Adds a piece; false if it was there.

@@ -1,0 +1,129 @@
+//! Where a surface crosses levels: the pieces of contour, by all cores, a stretch of faces each.
+
+use super::cut::{Cut, Piece};
+use super::index::LevelIndex;
+use crate::data::Surface;
+use rayon::prelude::*;
+use std::cell::Cell;
+use std::ops::Range;
+
+/// Faces of a stretch.
+const STRETCH: u32 = 1 << 15;
+
+/// Stretches whose results wait together to be counted.
+const WAITING: usize = 64;
+
+/// Returns the lowest and the highest height of the faces; infinite, and the lowest above, if there is no face.
+pub(super) fn height_range<S: Surface + ?Sized>(surface: &S) -> [f64; 2] {
+    let of_stretch = |numbers: Range<u32>| {
+        let range = Cell::new([f64::INFINITY, f64::NEG_INFINITY]);
+        let widen = |low, high| {
+            range.set(joined(range.get(), [low, high]));
+            false
+        };
+        surface.heights_in(numbers, &widen, &mut Vec::new());
+        range.get()
+    };
+    stretches(surface).into_par_iter().map(of_stretch).reduce(|| [f64::INFINITY, f64::NEG_INFINITY], joined)
+}
+
+fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// Returns about how many pieces each level has: those along edges count where they may be.
+pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec<usize> {
+    let mut counts = vec![0; index.levels().len()];
+    for waiting in stretches(surface).chunks(WAITING) {
+        let of_stretch = |numbers: &Range<u32>| {
+            let mut crossed = Vec::new();
+            faces_at(surface, index, 0..index.levels().len(), numbers.clone(), |_, heights, levels| {
+                let Crossed { across, along } = Crossed::of(heights, levels, index);
+                crossed.push(across.start..across.end + usize::from(along));
+            });
+            crossed
+        };
+        let crossed: Vec<Vec<Range<usize>>> = waiting.par_iter().map(of_stretch).collect();
+        for levels in crossed.into_iter().flatten() {
+            counts[levels].iter_mut().for_each(|count| *count += 1);
+        }
+    }
+    counts
+}
+
+/// Returns each piece of some levels with its level, in the order of the faces.
+pub(super) fn pieces<S: Surface + ?Sized>(
+    surface: &S,
+    index: &LevelIndex,
+    band: Range<usize>,
+) -> Vec<Vec<(usize, Piece)>> {
+    let of_stretch = |numbers: Range<u32>| {
+        let mut pieces = Vec::new();
+        faces_at(surface, index, band.clone(), numbers, |face, heights, levels| {
+            let Crossed { across, along } = Crossed::of(heights, levels, index);
+            let highest = across.end;
+            pieces.extend(across.map(|level| (level, Piece::Across(face))));
+            if along {
+                let cut = Cut { surface, level: index.levels()[highest] };
+                pieces.extend(cut.shore(face).map(|piece| (highest, piece)));
+            }
+        });
+        pieces
+    };
+    stretches(surface).into_par_iter().map(of_stretch).collect()
+}
+
+/// The levels of a face.
+struct Crossed {
+    /// Those that it crosses.
+    across: Range<usize>,
+    /// Whether the level after these is that of an edge, with the face below.
+    along: bool,
+}
+
+impl Crossed {
+    /// `levels` are those from the lowest corner to the highest, both included.
+    fn of(heights: [f64; 3], levels: Range<usize>, index: &LevelIndex) -> Self {
+        let [a, b, c] = heights;
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let all = &index.levels()[levels.clone()];
+        let from = levels.start + usize::from(all.first() == Some(&low));
+        let is_at_top = all.last() == Some(&high);
+        let along = is_at_top && heights.into_iter().filter(|&h| h == high).count() == 2;
+        Crossed { across: from..levels.end - usize::from(is_at_top), along }
+    }
+}
+
+/// Calls `found` with each face of a stretch that is not level and has a level of the band between its corners, the
+/// heights of these, and the levels from the lowest to the highest of them.
+fn faces_at<S: Surface + ?Sized>(
+    surface: &S,
+    index: &LevelIndex,
+    band: Range<usize>,
+    numbers: Range<u32>,
+    mut found: impl FnMut(u32, [f64; 3], Range<usize>),
+) {
+    let levels = index.levels();
+    let first_at = |low: f64| index.first_from(low).max(band.start);
+    let is_wanted = |low: f64, high: f64| {
+        low < high && {
+            let first = first_at(low);
+            first < band.end && levels[first] <= high
+        }
+    };
+    let mut faces = Vec::new();
+    surface.heights_in(numbers, &is_wanted, &mut faces);
+    for (face, [a, b, c]) in faces {
+        let first = first_at(a.min(b).min(c));
+        let high = a.max(b).max(c);
+        let count = levels[first..band.end].iter().take_while(|&&level| level <= high).count();
+        found(face, [a, b, c], first..first + count);
+    }
+}
+
+fn stretches<S: Surface + ?Sized>(surface: &S) -> Vec<Range<u32>> {
+    // As many faces as numbers have room for.
+    let count = u32::try_from(surface.face_count()).unwrap_or(u32::MAX);
+    let starts = (0..count).step_by(STRETCH as usize);
+    starts.map(|start| start..start.saturating_add(STRETCH).min(count)).collect()
+}
