@@ -11,6 +11,8 @@
 //!          |                   -------V------- breakline
 //!          | line                     |
 //! ```
+//!
+//! Where the side itself goes that way, to another vertex, it shares what that one gets.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -33,10 +35,21 @@ pub(super) struct Arranged<'a> {
     pub(super) chains: Vec<Vec<u32>>,
 }
 
-/// A side that gets a vertex of its own.
+/// A side that gets a vertex of its own, beside a site.
 struct Step {
     edge: usize,
     vertex: u32,
+    /// Whether the vertex is on the left of the side, from the smaller to the larger of its ends.
+    is_left: bool,
+    /// What a line passes from the site to the vertex, both left out.
+    between: Vec<u32>,
+}
+
+/// The new vertices, by the sites that they are beside.
+type Steps = FxHashMap<u32, Vec<Step>>;
+
+fn bits(p: &[f64; 3]) -> [u64; 2] {
+    [p[0].to_bits(), p[1].to_bits()]
 }
 
 impl Arranged<'_> {
@@ -53,8 +66,8 @@ impl Arranged<'_> {
         let mut shared: Vec<(u32, Vec<usize>)> = edges_at.into_iter().collect();
         shared.retain(|(site, edges)| edges.len() > usize::from(self.corner(*site).is_none()));
         shared.sort_unstable();
-        let mut taken: FxHashSet<[u64; 2]> = self.points.iter().map(|p| [p[0].to_bits(), p[1].to_bits()]).collect();
-        let mut steps: FxHashMap<u32, Vec<Step>> = FxHashMap::default();
+        let mut taken: FxHashSet<[u64; 2]> = self.points.iter().map(bits).collect();
+        let mut steps: Steps = FxHashMap::default();
         for (site, edges) in shared {
             let here = self.steps_at(site, &edges, first_edge, &mut taken);
             if !here.is_empty() {
@@ -64,15 +77,17 @@ impl Arranged<'_> {
         if steps.is_empty() {
             return;
         }
+        let steps = followed(steps);
         for line in 0..first_edge {
             self.chains[line] = self.through_steps(&self.chains[line], &steps, first_edge);
         }
         for (site, here) in steps {
-            for Step { edge, vertex } in here {
+            for Step { edge, vertex, .. } in here {
                 let chain = &mut self.chains[first_edge + edge];
                 chain.iter_mut().filter(|at| **at == site).for_each(|at| *at = vertex);
             }
         }
+        self.chains[first_edge..].iter_mut().for_each(Vec::dedup);
     }
 
     fn corner(&self, site: u32) -> Option<VertexId> {
@@ -127,13 +142,14 @@ impl Arranged<'_> {
                 }
                 let z = self.height_on(edge, site);
                 let is_level = tds.is_infinite(beyond) || (z - height).abs() <= self.tolerance(beyond);
-                let moved = if is_level { None } else { self.beside(site, [u, v], distance + 1, taken) };
+                let chain = first_edge + edge;
+                let moved = if is_level { None } else { self.beside(site, [u, v], chain, distance + 1, taken) };
                 let (vertex, height, distance) = match moved {
                     Some(vertex) => (vertex, z, distance + 1),
                     None => (vertex, height, distance),
                 };
                 if vertex != site {
-                    steps.push(Step { edge, vertex });
+                    steps.push(Step { edge, vertex, is_left: v < u, between: Vec::new() });
                 }
                 ahead.push((beyond, vertex, height, distance));
             }
@@ -153,11 +169,13 @@ impl Arranged<'_> {
         self.unit[0].max(self.unit[1]) * slope + 1e-12 * highest
     }
 
-    /// A new point some units from another one, to the right of the direction from one vertex to another.
+    /// A new point some units from another one, to the right of the direction from one vertex to another; or, if the
+    /// chain of the edge between them goes that way, the next point on it.
     fn beside(
         &mut self,
         site: u32,
         [from, to]: [VertexId; 2],
+        chain: usize,
         distance: u32,
         taken: &mut FxHashSet<[u64; 2]>,
     ) -> Option<u32> {
@@ -165,17 +183,33 @@ impl Arranged<'_> {
         let [p, q] = [from, to].map(|vertex| *self.base.point(vertex));
         let right = [q[1] - p[1], p[0] - q[0]];
         let longer = right[0].abs().max(right[1].abs());
-        let [dx, dy] = [0, 1].map(|k| (right[k] / longer * f64::from(distance)).round() * self.unit[k]);
-        let moved = [x + dx + 0.0, y + dy + 0.0, f64::NAN];
-        let is_new = self.base.geometry().admits(&moved) && taken.insert([moved[0].to_bits(), moved[1].to_bits()]);
+        let [i, j] = right.map(|side| (side / longer * f64::from(distance)).round());
+        let is_that_way = |other: &u32| {
+            let [u, v, _] = self.points[*other as usize];
+            let [u, v] = [(u - x) / self.unit[0], (v - y) / self.unit[1]];
+            u * j == v * i && u * i + v * j > 0.0
+        };
+        if let Some(next) = self.beside_on(chain, site).into_iter().flatten().find(is_that_way) {
+            return Some(next);
+        }
+        let moved = [x + i * self.unit[0] + 0.0, y + j * self.unit[1] + 0.0, f64::NAN];
+        let is_new = self.base.geometry().admits(&moved) && taken.insert(bits(&moved));
         is_new.then(|| {
             self.points.push(moved);
             self.points.len() as u32 - 1
         })
     }
 
+    /// The points before and after a site on a chain.
+    fn beside_on(&self, chain: usize, site: u32) -> [Option<u32>; 2] {
+        let chain = &self.chains[chain];
+        let at = chain.iter().position(|&other| other == site);
+        let next_to = |at: Option<usize>| at.and_then(|at| chain.get(at)).copied();
+        [next_to(at.and_then(|at| at.checked_sub(1))), next_to(at.map(|at| at + 1))]
+    }
+
     /// A line's chain with the vertices that it passes on its way to and from steps.
-    fn through_steps(&self, chain: &[u32], steps: &FxHashMap<u32, Vec<Step>>, first_edge: usize) -> Vec<u32> {
+    fn through_steps(&self, chain: &[u32], steps: &Steps, first_edge: usize) -> Vec<u32> {
         let mut through = Vec::with_capacity(chain.len());
         for (at, &site) in chain.iter().enumerate() {
             let none = Vec::new();
@@ -184,10 +218,9 @@ impl Arranged<'_> {
             let passed = |beside: u32| {
                 let mut passed: Vec<u32> = Vec::new();
                 for step in here.iter().filter(|step| self.is_beyond(step, site, beside, first_edge)) {
-                    if passed.last() != Some(&step.vertex) {
-                        passed.push(step.vertex);
-                    }
+                    passed.extend(step.between.iter().chain([&step.vertex]));
                 }
+                passed.dedup();
                 passed
             };
             if let Some(&before) = at.checked_sub(1).and_then(|before| chain.get(before)) {
@@ -203,26 +236,42 @@ impl Arranged<'_> {
 
     /// Whether a point lies on that side of an edge at a site on which the step's vertex does.
     fn is_beyond(&self, step: &Step, site: u32, beside: u32, first_edge: usize) -> bool {
-        let chain = &self.chains[first_edge + step.edge];
-        let Some(at) = chain.iter().position(|&other| other == site) else { return false };
-        let (Some(&before), Some(&after)) = (at.checked_sub(1).and_then(|at| chain.get(at)), chain.get(at + 1)) else {
-            return false;
-        };
+        let [Some(before), Some(after)] = self.beside_on(first_edge + step.edge, site) else { return false };
         let side = |p: u32, q: u32, r: u32| {
             let [p, q, r] = [p, q, r].map(|site| self.points[site as usize]);
             self.base.geometry().orientation([&p, &q, &r])
         };
-        // On the left of the way from one neighbor to the next, or not; on it counts as neither.
-        let is_left = |r: u32| {
-            let sides = [side(before, site, r), side(site, after, r)];
-            match side(before, site, after) {
-                Sign::Negative => sides.contains(&Sign::Positive),
-                _ => sides == [Sign::Positive; 2],
-            }
+        let sides = [side(before, site, beside), side(site, after, beside)];
+        let is_left = match side(before, site, after) {
+            Sign::Negative => sides.contains(&Sign::Positive),
+            _ => sides == [Sign::Positive; 2],
         };
         let is_along = beside == before || beside == after;
-        !is_along && is_left(beside) == is_left(step.vertex)
+        !is_along && is_left == step.is_left
     }
+}
+
+/// Steps whose vertex is a site of the same edge lead on to the vertex that the edge gets there.
+fn followed(mut steps: Steps) -> Steps {
+    let on = |steps: &Steps, site: u32, edge: usize| {
+        steps.get(&site)?.iter().find(|step| step.edge == edge).map(|step| step.vertex)
+    };
+    let mut sites: Vec<u32> = steps.keys().copied().collect();
+    sites.sort_unstable();
+    for site in sites {
+        for at in 0..steps[&site].len() {
+            let Step { edge, mut vertex, .. } = steps[&site][at];
+            let mut between = Vec::new();
+            while let Some(next) = on(&steps, vertex, edge).filter(|next| *next != site && !between.contains(next)) {
+                between.push(vertex);
+                vertex = next;
+            }
+            if let Some(step) = steps.get_mut(&site).and_then(|here| here.get_mut(at)) {
+                (step.vertex, step.between) = (vertex, between);
+            }
+        }
+    }
+    steps
 }
 
 /// Whether an edge of a triangulation is a constraint.
