@@ -18,7 +18,8 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
     let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
     let surface = gathered.surface.as_ref();
-    let frame = raster::frame(&args.frame, gathered.made.extent(surface), surface.crs(), talk)?;
+    let frame = raster::frame(&args.frame, &gathered, talk)?;
+    raster::announce(&outputs, |()| 4, &frame, (surface.crs(), Some(surface)), talk)?;
     let dem = open::dem(surface, frame)?;
     let mut written = None;
     for target in &outputs.targets {
@@ -26,7 +27,6 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
         written = Some(open::write_heights(target.within(&outputs.set), &watched)?);
     }
     gathered.made.tell(surface, talk);
-    talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
     if written.as_ref().is_some_and(|cells| cells.valid == 0) {
         talk.warning("no cell has a height");
     }

@@ -8,6 +8,7 @@ use super::crossings::{self, LineNames};
 use super::extents;
 use super::inputs;
 use super::lines::{self, Rings};
+use super::memory;
 use super::open;
 use super::plan::{From, PointPlan, SurfacePlan};
 use super::point_files::PointFiles;
@@ -165,6 +166,7 @@ fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) ->
         if plan.bounds.is_none() && boundary.is_empty() {
             extents::tell_beyond(&points, line_extent, rim.buffer, &units, talk);
         }
+        memory::require_for_points(points.len())?;
         let mut builder = builder.clone();
         builder.window = reach.window().map(|read| Window { read, all: report.extent });
         builder.add_owned_points(points);

@@ -28,20 +28,29 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
     match gather::ground(&mut plan, &outputs.set, talk)? {
         Ground::Surface(gathered) => {
             let surface = gathered.surface.as_ref();
-            let frame = raster::frame(&args.frame, gathered.made.extent(surface), surface.crs(), talk)?;
+            let frame = raster::frame(&args.frame, &gathered, talk)?;
+            raster::announce(&outputs, cell_bytes, &frame, (surface.crs(), Some(surface)), talk)?;
             shade(open::dem(surface, frame)?.as_ref(), args, &outputs, talk)?;
             gathered.made.tell(surface, talk);
-            talk.line(format_args!("raster      {}", raster::describe(&frame, surface.crs())));
         }
         Ground::Raster(grid) => {
             refuse_frame(&args.frame)?;
+            raster::announce(&outputs, cell_bytes, &grid.frame, (grid.crs.as_ref(), None), talk)?;
             shade(&grid, args, &outputs, talk)?;
-            talk.line(format_args!("raster      {}", raster::describe(&grid.frame, grid.crs.as_ref())));
             tell_place(raster::extent_of(&grid), grid.crs.as_ref(), talk);
         }
     }
     outputs.commit(talk)?;
     Ok(Exit::Done)
+}
+
+/// What a cell takes before compression.
+fn cell_bytes(format: &ShadeFormat) -> u64 {
+    match format {
+        ShadeFormat::GeoTiff => 1,
+        // Gray and alpha.
+        ShadeFormat::Png => 2,
+    }
 }
 
 fn shade(heights: &dyn BlockSource, args: &HillshadeArgs, outputs: &Outputs<ShadeFormat>, talk: &Talk) -> Result<()> {

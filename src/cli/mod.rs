@@ -17,6 +17,7 @@ mod hillshade;
 mod info;
 mod inputs;
 mod lines;
+mod memory;
 mod open;
 mod outputs;
 mod overlaps;

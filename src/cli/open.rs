@@ -14,6 +14,7 @@ use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, gdal, layer, png, points, proj, raster};
 use crate::terrain::{self, Dem, GridSurface, Levels, SurfaceFlaw};
 
+use super::memory;
 use super::overlaps::overlaps;
 
 /// What a file holds.
@@ -181,9 +182,19 @@ impl Raster {
 /// A raster, whole, and what is to be told about it.
 pub(super) fn raster(path: &Path) -> Result<(Grid, Vec<String>)> {
     match Raster::open(path)? {
-        Raster::GeoTiff(reader) => Ok((reader.read_grid()?, reader.info().warnings.clone())),
-        Raster::Gdal(raster) => Ok((raster.read_grid()?, raster.warnings().to_vec())),
+        Raster::GeoTiff(reader) => {
+            require_memory(reader.frame()).map_err(|e| e.in_file(path))?;
+            Ok((reader.read_grid()?, reader.info().warnings.clone()))
+        }
+        Raster::Gdal(raster) => {
+            require_memory(raster.frame()).map_err(|e| e.in_file(path))?;
+            Ok((raster.read_grid()?, raster.warnings().to_vec()))
+        }
     }
+}
+
+fn require_memory(frame: Frame) -> Result<()> {
+    memory::require_for_cells(frame.width as u64 * frame.height as u64)
 }
 
 /// Where a raster is, without reading its cells.
@@ -196,6 +207,7 @@ pub(super) fn raster_place(path: &Path) -> Result<(Frame, Option<Crs>)> {
 
 /// A mesh that is a surface.
 pub(super) fn mesh(path: &Path) -> Result<Mesh> {
+    memory::require_for_mesh(path)?;
     mesh::read(path)
 }
 
@@ -291,11 +303,12 @@ pub(super) fn contours_of_surface(
     surface: &dyn Surface,
     levels: &Levels,
 ) -> Result<ContourSummary> {
-    contours::write(target, &mut terrain::contours(surface, levels)?, surface.crs())
+    let mut lines = terrain::contours(surface, levels)?;
+    contours::foresee(target, lines.piece_count() as u64)?;
+    contours::write(target, &mut lines, surface.crs())
 }
 
 /// Draws contours between the centers of cells.
 pub(super) fn contours_of_grid(target: Destination, grid: &Grid, levels: &Levels) -> Result<ContourSummary> {
-    let surface = GridSurface::new(grid)?;
-    contours::write(target, &mut terrain::contours(&surface, levels)?, surface.crs())
+    contours_of_surface(target, &GridSurface::new(grid)?, levels)
 }

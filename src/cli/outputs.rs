@@ -43,6 +43,13 @@ pub(super) struct Outputs<F> {
 }
 
 impl<F> Outputs<F> {
+    /// The least space that is left on a disk that is written to, in bytes, and the file to be written there; where the
+    /// system tells.
+    pub(super) fn free_space(&self) -> Option<(u64, &Path)> {
+        let files = self.targets.iter().map(|target| target.path.as_path()).filter(|path| !io::is_stream(path));
+        files.filter_map(|path| Some((free_in(folder_of(path))?, path))).min_by_key(|(free, _)| *free)
+    }
+
     /// Lets all files appear, and says which.
     ///
     /// # Errors
@@ -121,6 +128,17 @@ pub(super) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<O
         require_free(report, find(report, REPORTS)?, existing, &plan.inputs)?;
     }
     Ok(Outputs { targets: Vec::new(), set: OutputSet::default(), report: report.map(Path::to_path_buf) })
+}
+
+#[cfg(unix)]
+fn free_in(folder: &Path) -> Option<u64> {
+    let disk = rustix::fs::statvfs(folder).ok()?;
+    disk.f_bavail.checked_mul(disk.f_frsize)
+}
+
+#[cfg(not(unix))]
+fn free_in(_folder: &Path) -> Option<u64> {
+    None
 }
 
 /// Returns true for two names of one file, there or to be.

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::open;
 use super::roads::Roads;
 use super::systems::{Role, Stated};
 use super::talk::Talk;
 use super::units::counted;
+use super::{memory, open};
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, PointBatch, PointSource};
 use crate::error::{Error, Result};
@@ -18,6 +18,9 @@ const GROUND: u8 = 2;
 
 /// More files than this are opened a second time rather than kept open.
 const FILES_KEPT_OPEN: usize = 100;
+
+/// Memory is asked about whenever so many points more are to be used.
+const ASK_EVERY: usize = 1 << 20;
 
 /// A file of points.
 struct PointFile {
@@ -143,6 +146,10 @@ impl PointFiles {
         talk: &Talk,
     ) -> Result<Vec<Bounds>> {
         let length = self.files.iter().map(|file| file.count).sum::<Option<u64>>();
+        if let Some(excess) = length.and_then(memory::excess_of) {
+            talk.warning(format_args!("memory may not suffice: if all points are used they take {excess}"));
+        }
+        let mut asked = 0;
         let bar = talk.bar("reading points", length);
         let mut batch = PointBatch::default();
         let mut extents = Vec::new();
@@ -160,6 +167,10 @@ impl PointFiles {
                 }
                 roads.take_batch(*road, &mut batch).map_err(|e| e.in_file(path))?;
                 selection.add(&batch).map_err(|e| e.in_file(path))?;
+                if selection.certain() >= asked + ASK_EVERY {
+                    asked = selection.certain();
+                    memory::require_for_points(asked)?;
+                }
                 count += batch.len() as u64;
                 bar.inc(batch.len() as u64);
                 if self.files.len() > 1 {

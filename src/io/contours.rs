@@ -29,6 +29,16 @@ impl ContourSummary {
     }
 }
 
+/// Returns an error if lines of so many vertices in all are too large for the format of `target`.
+///
+/// # Errors
+/// With the size that they would have at least.
+pub fn foresee<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
+    let target = target.into();
+    let is_shapefile = target.format_path().extension().is_some_and(|e| e.eq_ignore_ascii_case("shp"));
+    if is_shapefile { shapefile::foresee(vertices).map_err(|e| e.in_file(target.path())) } else { Ok(()) }
+}
+
 /// Writes contours in the format that the extension of `target` names: `.shp`, `.geojson` or
 /// `.json`.
 ///

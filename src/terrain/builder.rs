@@ -239,7 +239,10 @@ impl TinBuilder {
         all.append(&mut self.line_points);
         let order = spatial_order(all.len(), |i| [all[i][0], all[i][1]]).map_err(|e| Error::limit(e.to_string()))?;
         let place = |i: u32| [all[i as usize][0], all[i as usize][1]];
-        let mut vertices = Vec::with_capacity(all.len());
+        let mut vertices = Vec::new();
+        if vertices.try_reserve_exact(all.len()).is_err() {
+            return Err(Error::limit(format!("there is no memory for {} vertices", all.len())));
+        }
         let mut line_vertices = vec![VertexId::INFINITE; all.len() - lines_from];
         let mut disputed = Vec::new();
         let mut heights = Vec::new();

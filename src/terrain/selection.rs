@@ -145,6 +145,11 @@ impl Selection {
         sources.filter(|(_, classes)| is_unused(classes)).map(|(source, _)| source).collect()
     }
 
+    /// Points that are kept whatever comes: all, but for those of other classes as long as there is no ground point.
+    pub fn certain(&self) -> usize {
+        self.kept.len() - self.spare.iter().map(Range::len).sum::<usize>()
+    }
+
     /// Takes the points of a whole source that are to be used.
     ///
     /// # Errors
@@ -165,8 +170,13 @@ impl Selection {
     ///
     /// # Errors
     /// If a point that is not withheld has a coordinate that is not finite; the error names its
-    /// number in its file, counted from 1.
+    /// number in its file, counted from 1. If there is no memory for them.
     pub fn add(&mut self, batch: &PointBatch) -> Result<()> {
+        if self.kept.try_reserve(batch.len()).is_err() {
+            let count = self.kept.len() + batch.len();
+            return Err(Error::limit(format!("there is no memory for {count} points"))
+                .cure("use fewer points: a part of the area, a class, or tiles one by one"));
+        }
         for i in 0..batch.len() {
             self.read += 1;
             if batch.flags.get(i).is_some_and(|flags| flags.is_withheld()) {

@@ -9,10 +9,14 @@ use super::{ReadArgs, SurfaceArgs};
 #[derive(Debug, Clone, Args)]
 pub(in crate::cli) struct OutputArgs {
     /// File to write, format by extension (repeatable)
+    ///
+    /// All files of a run appear at its end, or none. Pipes and devices, such as `/dev/stdout`, are written directly.
     #[arg(short, long, required = true, value_name = "OUT")]
     pub(in crate::cli) output: Vec<PathBuf>,
 
     /// Replace files that exist
+    ///
+    /// They keep their mode; a symbolic link is followed, a read-only file refused.
     #[arg(long)]
     pub(in crate::cli) overwrite: bool,
 }

@@ -13,6 +13,9 @@ use crate::io::{Destination, Output};
 /// Many programs read no file of the set beyond this many bytes.
 const MAX_BYTES: u64 = i32::MAX as u64;
 
+/// The cure for shapefiles that would be larger.
+const TOO_LARGE: &str = "write GeoJSON, or less: a larger interval, a part of the area";
+
 /// A height that is not there; below [`record::NO_DATA`](super::record::NO_DATA).
 const NO_HEIGHT: f64 = -1e40;
 
@@ -104,6 +107,19 @@ pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, column
         set.write(&record, shape.vertices().copied(), &cells)?;
     }
     set.finish(target, layer.crs.as_ref())
+}
+
+/// Returns an error if lines with heights and so many vertices in all are too large for a shapefile.
+///
+/// # Errors
+/// With the size that they would have at least.
+pub fn foresee(vertices: u64) -> Result<()> {
+    let bytes = vertices.saturating_mul(24);
+    if bytes <= MAX_BYTES {
+        return Ok(());
+    }
+    let size = bytes as f64 / 1e9;
+    Err(Error::limit(format!("{vertices} vertices take {size:.1} GB; a shapefile holds 2 GB")).cure(TOO_LARGE))
 }
 
 fn type_code(shapes: &[Shape]) -> Result<i32> {
@@ -280,7 +296,7 @@ impl FileSet {
             if bytes > MAX_BYTES {
                 return Err(Error::limit(format!("record {} would take it over 2 GiB", self.records + 1))
                     .in_file(output.target())
-                    .cure("write GeoJSON, or less: a larger interval, a part of the area"));
+                    .cure(TOO_LARGE));
             }
         }
         self.records += 1;

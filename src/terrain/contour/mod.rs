@@ -132,6 +132,12 @@ impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
 }
 
 impl<S: Surface + ?Sized> Contours<'_, S> {
+    /// The pieces of all lines, counted before any is drawn. A line has a vertex for each, and one more if it is open;
+    /// the few that are shorter than a rounding have none.
+    pub fn piece_count(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
     /// Draws the next levels, at least one, and at most [`BAND`] pieces if they are more.
     fn draw_band(&mut self) -> Vec<ContourLine> {
         let first = self.next_level;
