@@ -60,14 +60,16 @@ pub(super) fn run(args: &DemoArgs, how: &TalkArgs, talk: &Talk) -> Result<Exit> 
     for command in COMMANDS {
         let words: Vec<OsString> = command.iter().map(|word| in_folder(word, folder)).collect();
         let typed: Vec<String> = words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
-        talk.line(format_args!("\n$ breakline {}", typed.join(" ")));
+        talk.line("");
+        talk.line(format_args!("$ breakline {}", typed.join(" ")));
         let exit = super::run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)));
 
         if exit != Exit::Done {
             return Ok(exit);
         }
     }
-    talk.line(format_args!("\nAll results are in {}.", folder.display()));
+    talk.line("");
+    talk.line(format_args!("All results are in {}.", folder.display()));
     Ok(Exit::Done)
 }
 

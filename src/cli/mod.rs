@@ -11,6 +11,7 @@ mod contour;
 mod crossings;
 mod dem;
 mod demo;
+mod escape;
 mod extents;
 mod gather;
 mod hillshade;
@@ -111,7 +112,7 @@ fn dispatch(verb: &Verb, how: &TalkArgs, talk: &Talk) -> Result<Exit> {
 
 /// Writes data to stdout. A reader that went away (`| head`) wants no more of it.
 fn print(text: &str) -> Result<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
+    match std::io::stdout().write_all(escape::lines(text).as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }

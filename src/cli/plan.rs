@@ -168,6 +168,7 @@ fn refuse_building_options(args: &SurfaceArgs, path: &Path) -> Result<()> {
         (args.t_srs.is_some(), "--t-srs"),
         (args.read.columns.is_some(), "--columns"),
         (args.read.parse.is_some(), "--parse"),
+        (args.read.partial, "--partial"),
     ];
     match given.iter().find(|(is_given, _)| *is_given) {
         Some((_, option)) => {

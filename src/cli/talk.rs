@@ -9,6 +9,7 @@ use std::time::Duration;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::TalkArgs;
+use super::escape;
 use crate::error::Error;
 
 /// How much is said.
@@ -109,10 +110,10 @@ impl Talk {
         }
     }
 
-    /// A closed stderr is no reason to stop.
+    /// Prints one line. A closed stderr is no reason to stop.
     fn print(&self, text: &str) {
         self.bars.suspend(|| {
-            let _ = writeln!(std::io::stderr(), "{text}");
+            let _ = writeln!(std::io::stderr(), "{}", escape::line(text));
         });
     }
 }

@@ -25,6 +25,8 @@ const HEAD: usize = 1024;
 pub struct Options {
     /// The columns of text; without them a header or the first three are taken.
     pub columns: Option<Columns>,
+    /// What becomes of LAS and LAZ files that were cut.
+    pub cut: las::Cut,
 }
 
 /// Opens a file of points; `-` is the standard input (LAS, LAZ or text).
@@ -52,7 +54,7 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     }
     let head = head(&mut file).map_err(named)?;
     match Kind::of(&head, path) {
-        Kind::Las => Ok(Box::new(las::open(path)?)),
+        Kind::Las => Ok(Box::new(las::open_with(path, options.cut)?)),
         Kind::Shapefile => shapefile(path),
         Kind::Text => Ok(Box::new(text::open(path, options.columns)?)),
         Kind::Other(other) => Err(other.refuse(path)),
@@ -69,7 +71,7 @@ fn open_stream(
     let kind = Kind::of(&head, name);
     let whole = io::Cursor::new(head).chain(stream);
     match kind {
-        Kind::Las => Ok(Box::new(las::from_stream(whole, name)?)),
+        Kind::Las => Ok(Box::new(las::from_stream_with(whole, name, options.cut)?)),
         Kind::Text => Ok(Box::new(text::from_stream(whole, name, options.columns)?)),
         Kind::Shapefile => Err(Error::unsupported("a shapefile cannot be read from a stream")
             .in_file(name)

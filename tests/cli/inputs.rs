@@ -48,6 +48,26 @@ fn what_lies_on_two_continents_is_told() {
         .works(&["warning: the breaklines lie 5260998 m away from the points: are they in the same"]);
 }
 
+#[test]
+fn half_a_file_is_an_error_unless_that_is_wanted() {
+    let folder = folder_with(&[]);
+    let whole = las(&tile([0.0, 0.0], 2), None);
+    std::fs::write(folder.path().join("cut.las"), &whole[..whole.len() - 30]).unwrap();
+    let laz = std::fs::read(fixture("valley.laz")).unwrap();
+    std::fs::write(folder.path().join("cut.laz"), &laz[..laz.len() / 10 * 9]).unwrap();
+    for name in ["cut.las", "cut.laz"] {
+        for verb in [&["tin", name, "-o", "t.ply"][..], &["info", name]] {
+            run_in(&folder, verb).fails(1, &[name, "the file ", "hint: ", "--partial"]);
+        }
+        run_in(&folder, &["info", "--partial", name]).works(&["warning: cut.la", " the file "]);
+    }
+    assert!(!folder.path().join("t.ply").exists());
+    run_in(&folder, &["tin", "cut.las", "--partial", "-o", "t.ply"])
+        .works(&["states 16 points, but the file holds 14 and 10 bytes of another", "14 read, 14 used"]);
+    run_in(&folder, &["tin", "cut.laz", "--partial", "-o", "u.ply"])
+        .works(&["states 62776 points, but the file holds 50000", "50000 read"]);
+}
+
 /// The first number behind some words in a text.
 fn number_before(text: &str, what: &str) -> i64 {
     let Some(at) = text.find(what) else { return 0 };
@@ -135,4 +155,34 @@ fn tiles_that_a_tiff_leaves_out_are_0_unless_something_stands_for_none() {
         assert_eq!((files[0]["min"].as_f64(), files[0]["max"].as_f64()), (Some(min), Some(7.0)), "{}", run.stdout);
         assert_eq!(run.stderr.contains("1 of 2 blocks are not in the file: their cells are 0"), nodata.is_none());
     }
+}
+
+/// Titles of windows, colors, C1 and a text that runs backwards are not for the terminal.
+#[test]
+fn escape_sequences_in_files_do_not_reach_the_terminal() {
+    let evil = "x\u{1b}]0;owned\u{7}\u{1b}[31m\u{9b}2J\u{202e}gnp.\u{2066}\r";
+    let lines = geojson(25832, "LineString", "[[0,0,1],[2,2,1]]");
+    let (name, other) = (format!("{evil}.xyz"), format!("{evil}.geojson"));
+    let folder = folder_with(&[(&name, SLOPE), (&other, &lines)]);
+    let wkt = format!(
+        "PROJCS[\"{evil}\",GEOGCS[\"{evil}\",DATUM[\"d\",SPHEROID[\"s\",6378137,298.25]],PRIMEM[\"g\",0],\
+         UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Mercator_1SP\"],UNIT[\"metre\",1]]"
+    );
+    let runs = [
+        run_in(&folder, &["info", &name, &other, "none\u{1b}[2J.xyz"]),
+        run_in(&folder, &["info", &name, &other]),
+        run_in(&folder, &["info", "--json", &name, &other]),
+        run_in(&folder, &["-v", "tin", &name, "--breaklines", &other, "--a-srs", &wkt, "-o", "\u{9b}t.ply"]),
+        run_in(&folder, &["info", "\u{9b}t.ply"]),
+        run_in(&folder, &["check", "\u{9b}t.ply"]),
+    ];
+    for run in &runs {
+        let all = format!("{}{}", run.stdout, run.stderr);
+        let hidden = |c: &char| (c.is_control() && *c != '\n') || "\u{202e}\u{2066}".contains(*c);
+        assert_eq!(all.chars().find(hidden), None, "{all:?}");
+    }
+    assert!(runs[1].stdout.contains(r"x\u{1b}]0;owned\u{7}\u{1b}[31m\u{9b}2J\u{202e}gnp."), "{}", runs[1].stdout);
+    assert!(runs[4].stdout.contains(r"x\u{1b}]0;owned"), "{}{}", runs[3].stderr, runs[4].stdout);
+    let files: serde_json::Value = serde_json::from_str(&runs[2].stdout).unwrap();
+    assert_eq!(files[0]["file"], name.as_str());
 }

@@ -3,6 +3,7 @@
 use clap::Args;
 
 use crate::data::Columns;
+use crate::io::las::Cut;
 use crate::io::points::Options;
 
 /// How points are read.
@@ -22,12 +23,19 @@ pub(in crate::cli) struct ReadArgs {
     /// x, y, z and c (class) are taken; s and the letters of all other fields are skipped.
     #[arg(long, value_name = "sxyz", value_parser = las_tools)]
     pub(in crate::cli) parse: Option<Columns>,
+
+    /// Take what is left of LAS and LAZ files that were cut
+    ///
+    /// Else it is an error if a file has fewer points than its header states. A warning says how many there are.
+    #[arg(long)]
+    pub(in crate::cli) partial: bool,
 }
 
 impl ReadArgs {
     /// What readers are to be told.
     pub(in crate::cli) fn options(&self) -> Options {
-        Options { columns: self.columns.or(self.parse) }
+        let cut = if self.partial { Cut::Accept } else { Cut::Refuse };
+        Options { columns: self.columns.or(self.parse), cut }
     }
 }
 

@@ -13,7 +13,7 @@ use self::sheet::Sheet;
 use super::args::InfoArgs;
 use super::open::{self, Content};
 use super::talk::Talk;
-use super::{Exit, inputs, print};
+use super::{Exit, escape, inputs, print};
 use crate::error::Result;
 use crate::io::points::Options;
 
@@ -43,7 +43,7 @@ pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
         }
     }
     if args.json {
-        print(&format!("{:#}\n", serde_json::Value::Array(objects)))?;
+        print(&escape::json(&format!("{:#}\n", serde_json::Value::Array(objects))))?;
     }
     Ok(exit)
 }

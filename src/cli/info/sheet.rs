@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
+use crate::cli::escape;
 use crate::cli::units::neat;
 use crate::crs::{Crs, CrsKind};
 use crate::data::Bounds;
@@ -85,11 +86,11 @@ impl Sheet {
 
     /// For people; warnings are said elsewhere.
     pub(super) fn to_text(&self, name: &str) -> String {
-        let mut text = format!("{name}\n");
+        let mut text = format!("{}\n", escape::line(name));
         for row in &self.rows {
             if let Some(words) = &row.text {
                 // Writing to a string cannot fail.
-                let _ = writeln!(text, "  {:<10} {words}", row.key.replace('_', " "));
+                let _ = writeln!(text, "  {:<10} {}", row.key.replace('_', " "), escape::line(words));
             }
         }
         text

@@ -18,11 +18,20 @@ use crate::data::Window;
 use crate::error::{Error, Kind, Result};
 use crate::io::contain::contain;
 
-/// The values of the part of a piece that lies in a window: row by row, NaN where there is none.
-pub(super) fn values(layout: &Layout, nodata: &Nodata, bytes: &Bytes, piece: &Piece, part: Window) -> Result<Vec<f64>> {
-    let Stored::At { offset, length } = piece.stored else {
-        return Ok(vec![nodata.of_missing_blocks(); part.width * part.height]);
-    };
+/// Cells whose values are handed out at once: as stored samples they take an eighth of the room.
+const BAND_CELLS: usize = 1 << 20;
+
+/// Hands out the values of the part of a piece that lies in a window, in bands of whole rows: row by row, NaN where there
+/// is none. Nothing of a block that is not in the file.
+pub(super) fn values(
+    layout: &Layout,
+    nodata: &Nodata,
+    bytes: &Bytes,
+    piece: &Piece,
+    part: Window,
+    take: &mut dyn FnMut(Window, Vec<f64>),
+) -> Result<()> {
+    let Stored::At { offset, length } = piece.stored else { return Ok(()) };
     let place = |e: Error| e.at(format!("block {} (rows from {})", piece.block, piece.first_row));
     let mut file = header(layout, piece, length);
     bytes.append(offset, length, &mut file).map_err(place)?;
@@ -32,7 +41,16 @@ pub(super) fn values(layout: &Layout, nodata: &Nodata, bytes: &Bytes, piece: &Pi
     }
     // The decoders beneath are well tested, but not proven: a panic in one of them is a damaged
     // block, not the end of the program.
-    contain(|| Ok(pick(&decode(file)?, layout, nodata, piece, part)))
+    let decode_and_pick = || {
+        let decoded = decode(file)?;
+        let rows = (BAND_CELLS / part.width.max(1)).max(1);
+        for row in (part.row..part.row + part.height).step_by(rows) {
+            let band = Window { row, height: rows.min(part.row + part.height - row), ..part };
+            take(band, pick(&decoded, layout, nodata, piece, band));
+        }
+        Ok(())
+    };
+    contain(decode_and_pick)
         .unwrap_or_else(|| Err(Error::format("the decoder gave up")))
         .map_err(|e| place(in_compression(e, layout.compression)))
 }

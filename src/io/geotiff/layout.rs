@@ -248,6 +248,11 @@ impl Layout {
         self.row_bytes() * self.piece_height as u64
     }
 
+    /// Cells of one piece.
+    pub(super) fn piece_cells(&self) -> u64 {
+        self.block[0] as u64 * self.piece_height as u64
+    }
+
     /// Columns of blocks.
     pub(super) fn across(&self) -> usize {
         self.across

@@ -348,21 +348,31 @@ impl GeoTiffReader {
         let mut out = Vec::new();
         out.try_reserve_exact(cells).map_err(|_| Error::limit(format!("no memory for {width} x {height} cells")))?;
         out.resize(cells, self.nodata.of_missing_blocks());
-        /// Bytes of decoded blocks that may wait to be copied.
+        let mut copy = |part: Window, values: Vec<f64>| {
+            for (line, source) in values.chunks_exact(part.width).enumerate() {
+                let start = (part.row + line - row) * width + part.column - column;
+                out[start..start + part.width].copy_from_slice(source);
+            }
+        };
+        let values = |piece: &Piece, take: &mut dyn FnMut(Window, Vec<f64>)| {
+            block::values(&self.layout, &self.nodata, &self.bytes, piece, overlap(piece, window), take)
+        };
+        /// Bytes of values that may wait to be copied.
         const WAITING: u64 = 1 << 28;
-        let batch = (WAITING / self.layout.piece_bytes().max(1)).clamp(1, 4 * rayon::current_num_threads() as u64);
+        let piece_bytes = self.layout.piece_bytes().max(8 * self.layout.piece_cells()).max(1);
+        let batch = (WAITING / piece_bytes).min(4 * rayon::current_num_threads() as u64);
+        if batch < 2 {
+            // Of huge blocks, no more than one is decoded, and none of it waits.
+            pieces.iter().try_for_each(|piece| values(piece, &mut copy))?;
+            return Ok(out);
+        }
         for batch in pieces.chunks(batch as usize) {
             let decode = |piece: &Piece| {
-                let part = overlap(piece, window);
-                block::values(&self.layout, &self.nodata, &self.bytes, piece, part).map(|values| (part, values))
+                let mut bands = Vec::new();
+                values(piece, &mut |part, values| bands.push((part, values))).map(|()| bands)
             };
             let decoded: Vec<_> = batch.par_iter().map(decode).collect::<Result<_>>()?;
-            for (part, values) in decoded {
-                for (line, source) in values.chunks_exact(part.width).enumerate() {
-                    let start = (part.row + line - row) * width + part.column - column;
-                    out[start..start + part.width].copy_from_slice(source);
-                }
-            }
+            decoded.into_iter().flatten().for_each(|(part, values)| copy(part, values));
         }
         Ok(out)
     }

@@ -18,14 +18,16 @@
 //! | number of variable length records too large, record longer than its place | warning |
 //! | coordinate system empty or not understood | warning, and no coordinate system |
 //! | extent that is no box | warning, and no extent |
-//! | count larger than the file holds, file cut within a record | whole records, and a warning |
+//! | count larger than the file holds, file cut within a record | error; with [`Cut::Accept`] whole records, and a warning |
 //! | count 0 in front of points | no point, and a warning |
 //! | LAZ: chunk table missing or damaged, chunks of one size | all points, by one thread, and a warning |
 //! | LAZ: the same, formats 6 to 10 | all points of whole chunks, and a warning |
 //! | LAZ: the same, formats 0 to 5, chunks of many sizes | error |
-//! | LAZ: file cut | points up to the cut (formats 6 to 10: whole chunks), and a warning |
+//! | LAZ: file cut | error; with [`Cut::Accept`] points up to the cut (formats 6 to 10: whole chunks), and a warning |
+//! | LAZ: more points than so few bytes hold | error |
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
 
+mod cut;
 mod header;
 mod input;
 mod laz;
@@ -38,5 +40,6 @@ mod reference;
 #[cfg(test)]
 mod tests;
 
+pub use cut::Cut;
 pub use header::{Header, RecordInfo};
-pub use reader::{LasReader, from_stream, open};
+pub use reader::{LasReader, from_stream, from_stream_with, open, open_with};

@@ -2,6 +2,7 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
+use super::cut::Cut;
 use super::header::Header;
 use super::input::Input;
 use super::record::RecordLayout;
@@ -18,12 +19,13 @@ pub(super) struct Plain {
     input: Input,
     layout: RecordLayout,
     left: u64,
+    cut: Cut,
     buffer: Vec<u8>,
 }
 
 impl Plain {
     /// Finds out how many records there are, whatever the header says.
-    pub(super) fn new(mut input: Input, header: &Header, warnings: &mut Vec<String>) -> Result<Self> {
+    pub(super) fn new(mut input: Input, header: &Header, cut: Cut, warnings: &mut Vec<String>) -> Result<Self> {
         let layout = RecordLayout::new(header);
         let start = header.layout.points_start;
         let bytes = header.layout.points_end - start;
@@ -33,10 +35,11 @@ impl Plain {
                 0 => String::new(),
                 rest => format!(" and {rest} bytes of another"),
             };
-            warnings.push(format!(
+            let text = format!(
                 "the header states {} points, but the file holds {room}{torn}: it was cut, or its header is wrong",
                 header.count
-            ));
+            );
+            cut.tell(text, header.layout.points_end, warnings)?;
         } else if header.count == 0 && room > 0 {
             warnings.push(format!(
                 "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file was perhaps never \
@@ -44,7 +47,7 @@ impl Plain {
             ));
         }
         input.file.seek(SeekFrom::Start(start))?;
-        Ok(Plain { input, layout, left: room.min(header.count), buffer: Vec::new() })
+        Ok(Plain { input, layout, left: room.min(header.count), cut, buffer: Vec::new() })
     }
 
     pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
@@ -57,8 +60,9 @@ impl Plain {
         self.layout.append(&self.buffer[..whole * stride], batch);
         self.left -= whole as u64;
         if whole < count {
-            warnings.push(format!("the file became shorter while it was read: {} points are missing", self.left));
-            self.left = 0;
+            let missing = std::mem::take(&mut self.left);
+            let text = format!("the file became shorter while it was read: {missing} points are missing");
+            self.cut.tell(text, self.input.length, warnings)?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use super::cut::Cut;
 use super::header::Header;
 use super::input::Input;
 use super::laz::Laz;
@@ -29,12 +30,12 @@ enum Points {
 }
 
 impl LasReader {
-    pub(super) fn new(input: Input) -> Result<Self> {
+    pub(super) fn new(input: Input, cut: Cut) -> Result<Self> {
         let name = input.name.clone();
-        Self::start(input).map_err(|error| error.in_file(name))
+        Self::start(input, cut).map_err(|error| error.in_file(name))
     }
 
-    fn start(mut input: Input) -> Result<Self> {
+    fn start(mut input: Input, cut: Cut) -> Result<Self> {
         let name = input.name.clone();
         let mut warnings = Vec::new();
         let bytes = input.bytes(0, LONGEST_HEADER)?;
@@ -42,9 +43,9 @@ impl LasReader {
         let payloads = records::read(&input, &mut header, &mut warnings)?;
         let crs = reference::choose(&payloads, header.says_wkt, &mut warnings);
         let points = match header.is_compressed {
-            false => Points::Plain(Plain::new(input, &header, &mut warnings)?),
+            false => Points::Plain(Plain::new(input, &header, cut, &mut warnings)?),
             true => {
-                let laz = Laz::new(input, &header, payloads.laszip.as_deref(), &mut warnings)?;
+                let laz = Laz::new(input, &header, payloads.laszip.as_deref(), cut, &mut warnings)?;
                 Points::Compressed(Box::new(laz))
             }
         };
@@ -96,9 +97,17 @@ impl PointSource for LasReader {
 /// read from any place (a pipe, the standard input) is first copied to a temporary file.
 ///
 /// # Errors
-/// If the file cannot be read, or its header is damaged beyond what the [module](super) lists.
+/// If the file cannot be read, was cut, or its header is damaged beyond what the [module](super) lists.
 pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
-    LasReader::new(Input::open(path.as_ref())?)
+    open_with(path, Cut::default())
+}
+
+/// Like [`open`], but does with a file that was cut what `cut` says.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(path: impl AsRef<Path>, cut: Cut) -> Result<LasReader> {
+    LasReader::new(Input::open(path.as_ref())?, cut)
 }
 
 /// Reads a stream, by way of a temporary file; `name` is for messages.
@@ -106,5 +115,13 @@ pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
 /// # Errors
 /// As [`open`].
 pub fn from_stream(stream: impl Read, name: impl AsRef<Path>) -> Result<LasReader> {
-    LasReader::new(Input::spool(stream, name.as_ref())?)
+    from_stream_with(stream, name, Cut::default())
+}
+
+/// Like [`from_stream`], but does with a file that was cut what `cut` says.
+///
+/// # Errors
+/// As [`open`].
+pub fn from_stream_with(stream: impl Read, name: impl AsRef<Path>, cut: Cut) -> Result<LasReader> {
+    LasReader::new(Input::spool(stream, name.as_ref())?, cut)
 }

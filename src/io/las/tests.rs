@@ -5,10 +5,10 @@ use std::io::Cursor;
 use las::point::{Classification, Format};
 use las::{Builder, Color, Point, Transform, Vector, Version, Vlr, Writer};
 
-use super::{LasReader, from_stream};
+use super::{Cut, LasReader, from_stream, from_stream_with};
 use crate::crs::{Crs, GeoKeys};
 use crate::data::{Lattice, PointBatch, PointFlags, PointSource};
-use crate::error::Result;
+use crate::error::{Kind, Result};
 
 const SCALE: [f64; 3] = [0.01, 0.001, 0.1];
 const OFFSET: [f64; 3] = [500_000.0, -5_300_000.0, 12.5];
@@ -106,7 +106,19 @@ fn coordinates(i: usize) -> [f64; 3] {
 }
 
 fn read(bytes: &[u8]) -> Result<(LasReader, PointBatch)> {
-    let mut reader = from_stream(bytes, "test")?;
+    read_with(bytes, Cut::Refuse)
+}
+
+/// Fails unless a file that was cut is refused; reads what there is.
+fn read_cut(bytes: &[u8]) -> (LasReader, PointBatch) {
+    let error = read(bytes).unwrap_err();
+    assert!(error.to_string().starts_with(&format!("test: byte {}: the ", bytes.len())), "{error}");
+    assert!(error.cure_text().unwrap().contains("--partial"));
+    read_with(bytes, Cut::Accept).unwrap()
+}
+
+fn read_with(bytes: &[u8], cut: Cut) -> Result<(LasReader, PointBatch)> {
+    let mut reader = from_stream_with(bytes, "test", cut)?;
     let (mut all, mut batch) = (PointBatch::default(), PointBatch::default());
     loop {
         reader.read(&mut batch)?;
@@ -209,13 +221,13 @@ fn without_a_chunk_table_points_are_found_all_the_same() {
 #[test]
 fn a_cut_laz_file_gives_the_points_before_the_cut() {
     let whole = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), 3) }.write();
-    let (reader, all) = read(&whole[..whole.len() / 2]).unwrap();
+    let (reader, all) = read_cut(&whole[..whole.len() / 2]);
     assert!((40_000..80_000).contains(&all.len()), "{}", all.len());
     check_points(&all, all.len(), false);
     assert!(reader.warnings()[0].contains("of 120000 are read"), "{:?}", reader.warnings());
 
     let whole = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), 8) }.write();
-    let (reader, all) = read(&whole[..whole.len() / 2]).unwrap();
+    let (reader, all) = read_cut(&whole[..whole.len() / 2]);
     check_points(&all, 50_000, true);
     assert!(reader.info().warnings.iter().any(|w| w.contains("holds 50000 in whole chunks")));
 }
@@ -250,10 +262,25 @@ fn a_damaged_chunk_is_an_error_and_those_before_it_are_good() {
 #[test]
 fn a_cut_las_file_gives_its_whole_records() {
     let whole = Spec { points: 300_000, ..Spec::new((1, 2), 0) }.write();
-    let (reader, all) = read(&whole[..whole.len() - 25]).unwrap();
+    let (reader, all) = read_cut(&whole[..whole.len() - 25]);
     check_points(&all, 299_998, false);
     let warning = &reader.info().warnings[0];
     assert!(warning.contains("states 300000 points, but the file holds 299998 and 15 bytes of another"), "{warning}");
+}
+
+#[test]
+fn more_points_than_bytes_can_hold_are_refused_at_once() {
+    for (minor, format) in [(2, 3), (4, 3), (4, 6)] {
+        let mut bytes = Spec { is_compressed: true, ..Spec::new((1, minor), format) }.write();
+        let (count, room) = if minor == 4 { (247, 8) } else { (107, 4) };
+        let claimed = u64::from(u32::MAX) + u64::from(minor == 4);
+        bytes[count..count + room].copy_from_slice(&claimed.to_le_bytes()[..room]);
+        for cut in [Cut::Refuse, Cut::Accept] {
+            let error = read_with(&bytes, cut).unwrap_err();
+            assert_eq!(error.kind(), Kind::Limit, "{error}");
+            assert!(error.to_string().contains(&format!("{claimed} points in ")), "{error}");
+        }
+    }
 }
 
 #[test]
@@ -266,7 +293,9 @@ fn records_after_the_points_are_not_points() {
     // A count that would reach into them.
     bytes[247..255].copy_from_slice(&1010_u64.to_le_bytes());
     bytes[107..111].fill(0);
-    let (reader, all) = read(&bytes).unwrap();
+    let error = read(&bytes).unwrap_err();
+    assert!(error.to_string().contains("states 1010 points, but the file holds 1000"), "{error}");
+    let (reader, all) = read_with(&bytes, Cut::Accept).unwrap();
     check_points(&all, 1000, true);
     assert!(reader.info().warnings[0].contains("states 1010 points, but the file holds 1000"));
 }

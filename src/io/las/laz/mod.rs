@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use self::compression::{ChunkSize, Compression, Order};
 use self::stream::Stream;
 use self::table::Chunk;
+use super::cut::Cut;
 use super::header::Header;
 use super::input::Input;
 use super::record::RecordLayout;
@@ -31,6 +32,12 @@ const POINTS_PER_THREAD: u64 = 1 << 18;
 /// Points in a chunk that is decoded at once. LASzip writes 50 000; COPC some 100 000.
 const LARGEST_CHUNK: u64 = 1 << 23;
 
+/// Most points in a byte. Real ones take a byte or more each, those of a flat and regular grid some tenths of it.
+const POINTS_PER_BYTE: u64 = 16;
+
+/// So many points are read however few bytes they take: all at one place, say.
+const ALWAYS_TAKEN: u64 = 1 << 24;
+
 /// Reads the points of a LAZ file.
 #[derive(Debug)]
 pub(super) enum Laz {
@@ -45,16 +52,18 @@ impl Laz {
         mut input: Input,
         header: &Header,
         payload: Option<&[u8]>,
+        cut: Cut,
         warnings: &mut Vec<String>,
     ) -> Result<Self> {
         let compression = Compression::check(payload, header)?;
+        check_count(header)?;
         let is_streamed = match compression.chunks {
             ChunkSize::Whole => true,
             ChunkSize::Fixed(size) => compression.order == Order::Pointwise && size > LARGEST_CHUNK,
             ChunkSize::Variable => false,
         };
         if is_streamed {
-            return Ok(Laz::Stream(Stream::new(input, compression, header)?));
+            return Ok(Laz::Stream(Stream::new(input, compression, header, cut)?));
         }
         let chunks = match table::read(&mut input, &compression, header) {
             Ok(chunks) => chunks,
@@ -73,16 +82,17 @@ impl Laz {
             }
             Err(reason) => {
                 warnings.push(format!("{reason}; the points are decoded one after the other"));
-                return Ok(Laz::Stream(Stream::new(input, compression, header)?));
+                return Ok(Laz::Stream(Stream::new(input, compression, header, cut)?));
             }
         };
         let found = chunks.last().map_or(0, |chunk| chunk.first + chunk.points);
         if found < header.count {
-            warnings.push(format!(
+            let text = format!(
                 "the header states {} points, but the file holds {found} in whole chunks: it was cut, or its header \
                  is wrong",
                 header.count
-            ));
+            );
+            cut.tell(text, input.length, warnings)?;
         }
         if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > LARGEST_CHUNK) {
             return Err(Error::limit(format!(
@@ -109,6 +119,20 @@ impl Laz {
             Laz::Stream(stream) => stream.read(batch, warnings),
         }
     }
+}
+
+/// Refuses points that cost next to nothing: of zeros, say, a decoder makes a thousand points a byte.
+fn check_count(header: &Header) -> Result<()> {
+    let bytes = header.layout.points_end - header.layout.points_start;
+    if header.count <= ALWAYS_TAKEN.max(bytes.saturating_mul(POINTS_PER_BYTE)) {
+        return Ok(());
+    }
+    Err(Error::limit(format!(
+        "{} points in {bytes} bytes; at most {POINTS_PER_BYTE} points in a byte are read",
+        header.count
+    ))
+    .at(format!("byte {}", header.layout.points_start))
+    .cure("the header is damaged, or the file was made to keep programs busy: get it again from its producer"))
 }
 
 /// Decodes some chunks ahead, and hands out one after the other.

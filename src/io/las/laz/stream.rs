@@ -11,6 +11,7 @@ use super::table::POINTER;
 use crate::data::PointBatch;
 use crate::error::{Error, Result};
 use crate::io::contain::contain;
+use crate::io::las::cut::Cut;
 use crate::io::las::header::Header;
 use crate::io::las::input::Input;
 use crate::io::las::record::RecordLayout;
@@ -28,6 +29,8 @@ pub(in crate::io::las) struct Stream {
     in_chunk: u64,
     done: u64,
     total: u64,
+    cut: Cut,
+    length: u64,
     block: Vec<u8>,
 }
 
@@ -45,7 +48,8 @@ enum Stop {
 }
 
 impl Stream {
-    pub(super) fn new(input: Input, compression: Compression, header: &Header) -> Result<Self> {
+    pub(super) fn new(input: Input, compression: Compression, header: &Header, cut: Cut) -> Result<Self> {
+        let length = input.length;
         let start = header.layout.points_start;
         let (start, chunk_size) = match compression.chunks {
             ChunkSize::Whole => (start, u64::MAX),
@@ -58,7 +62,18 @@ impl Stream {
         decoder.set_fields_from(&compression.items).map_err(|error| Error::format(error.to_string()))?;
         let layout = RecordLayout::new(header);
         let block = vec![0; BLOCK * layout.stride];
-        Ok(Stream { decoder, compression, layout, chunk_size, in_chunk: 0, done: 0, total: header.count, block })
+        Ok(Stream {
+            decoder,
+            compression,
+            layout,
+            chunk_size,
+            in_chunk: 0,
+            done: 0,
+            total: header.count,
+            cut,
+            length,
+            block,
+        })
     }
 
     pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
@@ -73,11 +88,9 @@ impl Stream {
             match result {
                 Some(Ok(())) => {}
                 Some(Err(Stop::End)) => {
-                    warnings.push(format!(
-                        "the file ends within its compressed points: {} of {} are read",
-                        self.done, self.total
-                    ));
-                    self.total = self.done;
+                    let total = std::mem::replace(&mut self.total, self.done);
+                    let text = format!("the file ends within its compressed points: {} of {total} are read", self.done);
+                    self.cut.tell(text, self.length, warnings)?;
                 }
                 Some(Err(Stop::Failed(error))) => {
                     return Err(Error::from(error).at(format!("point {}", self.done)));
