@@ -11,10 +11,18 @@ pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
     let (gathered, flaws) = match &plan.from {
-        From::Mesh(path) => gather::mesh_with_flaws(path, &plan.wish, talk)?,
+        From::Mesh(path) => {
+            if !open::keeps_lines(path) {
+                talk.note(format_args!(
+                    "{}: the format does not tell breaklines from other edges: the Delaunay law is not checked",
+                    path.display()
+                ));
+            }
+            gather::mesh_with_flaws(path, &plan.wish, talk)?
+        }
         From::Points(_) | From::Raster(_) => {
             let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
-            let flaws = open::flaws(gathered.surface.as_ref(), &[]);
+            let flaws = open::flaws(gathered.surface.as_ref());
             (gathered, flaws)
         }
     };

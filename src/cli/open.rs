@@ -1,5 +1,6 @@
 //! The one place where the command line meets readers, writers and verbs of the library.
 
+use std::fmt::Display;
 use std::io::Read;
 use std::path::Path;
 
@@ -212,9 +213,15 @@ pub(super) fn mesh(path: &Path) -> Result<Mesh> {
 }
 
 /// The triangles of a mesh, whether they are a surface or not, linked as far as they can be; and what is wrong with
-/// them, one line each.
+/// them, one line each. Whether they are Delaunay is asked of formats that keep lines.
 pub(super) fn mesh_with_flaws(path: &Path) -> Result<(Mesh, Vec<String>)> {
-    flaws_of(mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
+    let find = if keeps_lines(path) { terrain::surface_flaws } else { terrain::shape_flaws };
+    flaws_by(find, mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
+}
+
+/// Whether a mesh of this name can tell which edges are constrained.
+pub(super) fn keeps_lines(path: &Path) -> bool {
+    mesh::Format::of(path).is_some_and(mesh::Format::keeps_lines)
 }
 
 /// The same, with only what is wrong with the links.
@@ -222,11 +229,15 @@ pub(super) fn linked_mesh(path: &Path) -> Result<(Mesh, Vec<LinkFlaw>)> {
     Mesh::link(mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
 }
 
-/// The same for triangles at hand.
-pub(super) fn flaws_of(triangles: Triangles) -> Result<(Mesh, Vec<String>)> {
+/// The first that is wrong with triangles at hand.
+pub(super) fn first_flaw(triangles: Triangles) -> Result<Option<String>> {
+    Ok(flaws_by(terrain::surface_flaws, triangles)?.1.into_iter().next())
+}
+
+fn flaws_by(find: fn(&dyn Surface) -> Vec<SurfaceFlaw>, triangles: Triangles) -> Result<(Mesh, Vec<String>)> {
     let (mesh, links) = Mesh::link(triangles)?;
-    let mut texts: Vec<String> = links.iter().map(ToString::to_string).collect();
-    texts.extend(flaws(&mesh, &links));
+    let mut texts: Vec<String> = links.iter().map(|flaw| located(flaw, &flaw.vertices(&mesh), &mesh)).collect();
+    texts.extend(flaws_beside(&links, &find(&mesh), &mesh));
     Ok((mesh, texts))
 }
 
@@ -263,16 +274,26 @@ pub(super) fn dem<'a>(surface: &'a dyn Surface, frame: Frame) -> Result<Box<dyn 
     Ok(Box::new(Dem::new(surface, frame)?))
 }
 
-/// What is wrong with a surface, knowing what is wrong with its links; one line each.
-pub(super) fn flaws(surface: &dyn Surface, links: &[LinkFlaw]) -> Vec<String> {
-    let found = terrain::surface_flaws(surface);
-    let mut texts: Vec<String> = found.iter().map(ToString::to_string).collect();
-    // Whether faces overlap can be told of those that are linked and turn the right way.
+/// What is wrong with a surface, one line each.
+pub(super) fn flaws(surface: &dyn Surface) -> Vec<String> {
+    flaws_beside(&[], &terrain::surface_flaws(surface), surface)
+}
+
+/// What was found, and overlaps, where these can be told: of faces that are linked and turn the right way.
+fn flaws_beside(links: &[LinkFlaw], found: &[SurfaceFlaw], surface: &dyn Surface) -> Vec<String> {
+    let mut texts: Vec<String> = found.iter().map(|flaw| located(flaw, &flaw.vertices(surface), surface)).collect();
     let is_folded = links.iter().any(|flaw| matches!(flaw, LinkFlaw::Folded { .. }));
     if !is_folded && found.iter().all(|flaw| matches!(flaw, SurfaceFlaw::NotDelaunay(..))) {
-        texts.extend(overlaps(surface).iter().map(ToString::to_string));
+        texts.extend(overlaps(surface).iter().map(|flaw| located(flaw, &flaw.vertices(surface), surface)));
     }
     texts
+}
+
+/// A flaw, and where in plan the vertices are at which it shows.
+fn located(flaw: &impl Display, vertices: &[u32], surface: &dyn Surface) -> String {
+    let places = vertices.iter().filter(|&&v| (v as usize) < surface.vertex_count()).map(|&v| surface.position(v));
+    let places: Vec<String> = places.map(|[x, y, _]| format!("({x} {y})")).collect();
+    if places.is_empty() { flaw.to_string() } else { format!("{flaw}, at {}", places.join(" ")) }
 }
 
 /// Writes heights as GeoTIFF.

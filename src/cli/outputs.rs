@@ -209,6 +209,16 @@ fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
     })
 }
 
+/// Says that a file cannot tell edges on lines from others, if there are any.
+pub(super) fn tell_lost(file: &Path, edges: usize, cure: &str, talk: &Talk) {
+    if edges > 0 {
+        let path = file.display();
+        talk.note(format_args!(
+            "{path}: {edges} edges on breaklines or clip lines are edges like all others here; {cure}"
+        ));
+    }
+}
+
 /// Says that a file was written.
 fn tell(file: &Path, talk: &Talk) {
     let path = file.display();

@@ -22,6 +22,14 @@ pub(super) enum Overlap {
     Covered { times: i64, near: [f64; 2] },
 }
 
+impl Overlap {
+    /// The vertices at which it shows, if any.
+    pub(super) fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
+        let Overlap::Border { face, corner } = *self else { return Vec::new() };
+        surface.face(face).into_iter().flat_map(|corners| [corners[ccw(corner)], corners[cw(corner)]]).collect()
+    }
+}
+
 impl std::fmt::Display for Overlap {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

@@ -21,6 +21,7 @@ pub(super) fn run(args: &TinArgs, talk: &Talk) -> Result<Exit> {
     let surface = gathered.surface.as_ref();
     for target in &outputs.targets {
         let written = open::write_mesh(target.within(&outputs.set), surface)?;
+        outputs::tell_lost(&target.path, written.lost_edges, ".ply keeps them", talk);
         if let Some(([x, y, z], beside)) = written.origin {
             let (mesh, beside) = (target.path.display(), beside.display());
             talk.note(format_args!("{mesh}: coordinates are relative to {x} {y} {z}, as {beside} says"));

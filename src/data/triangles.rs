@@ -1,3 +1,4 @@
+use super::Surface;
 use crate::crs::Crs;
 
 /// Triangles as a file lists them, whether they are a surface or not.
@@ -45,6 +46,19 @@ pub enum LinkFlaw {
         /// What the edges say.
         found: Option<u32>,
     },
+}
+
+impl LinkFlaw {
+    /// The vertices at which it shows: the ends of an edge. Those of a constraint that is none may not exist.
+    pub fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
+        match *self {
+            LinkFlaw::Folded { edge, .. } | LinkFlaw::NoEdge(edge) => edge.to_vec(),
+            LinkFlaw::Neighbor { face, corner, .. } => {
+                let corners = surface.face(face).into_iter();
+                corners.flat_map(|corners| [1, 2].map(|k| corners[(corner + k) % 3])).collect()
+            }
+        }
+    }
 }
 
 impl std::fmt::Display for LinkFlaw {

@@ -9,7 +9,7 @@
 //! | any surface | contours | [`contours()`], at [`Levels`] |
 //! | a DEM | contours | [`GridSurface`], which is a surface |
 //! | a DEM | shaded relief | [`Hillshade`] |
-//! | any surface | to know that it is sound | [`surface_flaws`]; of a TIN, [`Tin::check`] |
+//! | any surface | to know that it is sound | [`surface_flaws`], [`shape_flaws`]; of a TIN, [`Tin::check`] |
 //!
 //! A surface is whatever implements [`Surface`](crate::data::Surface): a [`Tin`], a
 //! [`Mesh`](crate::data::Mesh) from a file, a [`GridSurface`]. What comes out is a source (of raster blocks, of
@@ -52,6 +52,6 @@ pub use hillshade::{Hillshade, Light};
 pub use levels::{Levels, MAX_LEVELS};
 pub use rasterize::Dem;
 pub use selection::{Classes, Selection, SelectionReport};
-pub use soundness::{SurfaceFlaw, surface_flaws};
+pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use tin::Tin;
 pub use window::Window;

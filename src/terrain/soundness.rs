@@ -32,16 +32,40 @@ impl std::fmt::Display for SurfaceFlaw {
     }
 }
 
-/// Checks any surface as far as faces and neighbors tell: finite vertices, mutual links, fans around the
-/// vertices, orientation, and the constrained Delaunay law across each inner unconstrained edge between whole
-/// triangles, which is not asked of pieces of cut ones. Ties count as Delaunay. Returns all flaws of the first kind that has any, as each check relies on those before.
+impl SurfaceFlaw {
+    /// The vertices at which it shows: one, the ends of an edge, or the corners of a face.
+    pub fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
+        let corners = |face| surface.face(face).into_iter();
+        match *self {
+            SurfaceFlaw::Vertex(v) | SurfaceFlaw::NotManifold(v) => vec![v],
+            SurfaceFlaw::Orientation(face) => corners(face).flatten().collect(),
+            SurfaceFlaw::NotMutual(face, i) | SurfaceFlaw::NotDelaunay(face, i) => {
+                corners(face).flat_map(|corners| edge(corners, i)).collect()
+            }
+        }
+    }
+}
+
+/// Checks any surface as far as faces and neighbors tell: [`shape_flaws`], and the constrained Delaunay law across each
+/// inner unconstrained edge between whole triangles, which is not asked of pieces of cut ones. Ties count as
+/// Delaunay. Returns all flaws of the first kind that has any, as each check relies on those before.
 ///
 /// # Complexity
 /// Linear.
 #[must_use]
 pub fn surface_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    let checks: [fn(&dyn Surface) -> Vec<SurfaceFlaw>; 5] =
-        [bad_vertices, bad_links, bad_orientations, bad_fans, bad_circles];
+    let flaws = shape_flaws(surface);
+    if flaws.is_empty() { bad_circles(surface) } else { flaws }
+}
+
+/// Checks finite vertices, mutual links, orientation and fans around the vertices: what holds of any surface, also where
+/// it is not known which edges are constrained. Returns all flaws of the first kind that has any.
+///
+/// # Complexity
+/// Linear.
+#[must_use]
+pub fn shape_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
+    let checks: [fn(&dyn Surface) -> Vec<SurfaceFlaw>; 4] = [bad_vertices, bad_links, bad_orientations, bad_fans];
     checks.iter().map(|check| check(surface)).find(|flaws| !flaws.is_empty()).unwrap_or_default()
 }
 

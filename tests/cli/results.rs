@@ -91,7 +91,9 @@ fn a_breakline_height_wins_and_lines_come_from_attributes_and_rings() {
     let text = String::from_utf8(bytes(&folder, "t.obj")).unwrap();
     assert!(text.contains("v 1 1 11.5\n") && text.contains("v 2 2 11.5\n"), "{text}");
     let run = run_in(&folder, &["tin", "a.xyz", "--breaklines", "ring.geojson", "-o", "r.obj"]);
-    run.works(&["1 in, 3 edges out"]);
+    let lost = "note: r.obj: 3 edges on breaklines or clip lines are edges like all others here; .ply keeps them";
+    run.works(&["1 in, 3 edges out", lost]);
+    run_in(&folder, &["check", "r.obj"]).works(&["the Delaunay law is not checked"]);
 }
 
 #[test]
@@ -266,12 +268,28 @@ fn contours_and_shades_come_from_tins_and_from_dems() {
 
 #[test]
 fn a_flaw_is_listed_and_ends_with_1() {
-    // The wrong diagonal of a kite.
+    // The wrong diagonal of a kite. An .obj could have a breakline there.
     let kite = "v 0 0 0\nv 4 -1 0\nv 8 0 0\nv 4 1 0\nf 1 2 3\nf 1 3 4\n";
-    let folder = folder_with(&[("kite.obj", kite), ("a.xyz", SLOPE)]);
-    let run = run_in(&folder, &["check", "kite.obj"]);
+    let same = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
+                element face 2\nproperty list uchar int vertex_indices\nend_header\n\
+                0 0 0 4 -1 0 8 0 0 4 1 0 3 0 1 2 3 0 2 3\n";
+    let turned = "v 0 0 0\nv 4.5 -1 0\nv 8 0 0\nf 1 2 3\nf 2 1 3\n";
+    let folder = folder_with(&[("kite.obj", kite), ("kite.ply", same), ("turned.obj", turned), ("a.xyz", SLOPE)]);
+    let run = run_in(&folder, &["check", "kite.ply"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
-    assert!(run.stdout.contains("circumscribed circle") && run.stdout.contains(" flaws\n"), "{}", run.stdout);
+    let flaw = "face 0, edge 1: the vertex beyond lies in the circumscribed circle, at (8 0) (0 0)\n";
+    assert_eq!(run.stdout, format!("{flaw}4 vertices, 2 triangles, 0 constrained edges: 1 flaws\n"));
+    let run = run_in(&folder, &["check", "kite.obj"]);
+    run.works(&[
+        "note: kite.obj: the format does not tell breaklines from other edges: the Delaunay law is not checked",
+    ]);
+    let run = run_in(&folder, &["check", "turned.obj"]);
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    assert!(
+        run.stdout.starts_with("face 1: no area in plan, or turned around, at (4.5 -1) (0 0) (8 0)\n"),
+        "{}",
+        run.stdout
+    );
     let run = run_in(&folder, &["check", "a.xyz"]);
     run.works(&[]);
     assert_eq!(run.stdout, "16 vertices, 18 triangles, 0 constrained edges: no flaw found\n");

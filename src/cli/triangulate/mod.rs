@@ -97,7 +97,7 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
             .cure("add a vertex beside the line; .node, .poly and .ele hold vertices without triangles, too"));
     }
     let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
-    write(&outputs.set, &meshes, &files, &triangulated)?;
+    write(&outputs.set, &meshes, &files, &triangulated, talk)?;
     tell(&graph, args, &built, &triangulated, talk);
     outputs.targets = files.into_iter().chain(meshes).collect();
     outputs.commit(talk)?;
@@ -206,7 +206,7 @@ fn refuse_flaws(built: &Built) -> Result<()> {
             .collect(),
         ..Triangles::default()
     };
-    match open::flaws_of(triangles)?.1.first() {
+    match open::first_flaw(triangles)? {
         None => Ok(()),
         Some(flaw) => Err(Error::limit(format!("plain floating point gave a wrong triangulation ({flaw})"))
             .cure("leave out --kernel fast")),
@@ -246,11 +246,13 @@ fn write(
     meshes: &[Target<Family>],
     files: &[Target<Family>],
     triangulated: &Triangulated,
+    talk: &Talk,
 ) -> Result<()> {
     if !meshes.is_empty() {
         let mesh = open::flat_mesh(triangulated)?;
         for target in meshes {
-            open::write_mesh(target.within(outputs), &mesh)?;
+            let written = open::write_mesh(target.within(outputs), &mesh)?;
+            outputs::tell_lost(&target.path, written.lost_edges, ".ply and .poly keep them", talk);
         }
     }
     let files: Vec<Destination> = files.iter().map(|file| file.within(outputs)).collect();

@@ -72,6 +72,11 @@ impl Format {
             _ => None,
         }
     }
+
+    /// Whether a file tells which edges lie on lines. Without that, the Delaunay law cannot be asked of it.
+    pub fn keeps_lines(self) -> bool {
+        matches!(self, Format::Ply | Format::Ele)
+    }
 }
 
 /// What was written.
@@ -81,8 +86,11 @@ pub struct MeshSummary {
     pub vertices: usize,
     /// Triangles.
     pub faces: usize,
-    /// Edges on breaklines and clip lines (also where the format cannot hold them).
+    /// Edges on breaklines and clip lines.
     pub constrained_edges: usize,
+    /// How many of these cannot be told from others in the file: all, unless the format [keeps
+    /// lines](Format::keeps_lines).
+    pub lost_edges: usize,
     /// What was subtracted from all coordinates, and the file beside the mesh that says so.
     pub origin: Option<([f64; 3], PathBuf)>,
 }
@@ -108,6 +116,7 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
         vertices: mesh.vertex_count,
         faces: mesh.face_count,
         constrained_edges: mesh.constrained_edges,
+        lost_edges: if format.keeps_lines() { 0 } else { mesh.constrained_edges },
         origin: origin.map_err(|e| e.in_file(target.path()))?,
     })
 }
