@@ -2,6 +2,7 @@ use super::args::CheckArgs;
 use super::outputs::{self, Existing};
 use super::plan::{From, SurfacePlan};
 use super::summary::SurfaceFacts;
+use super::systems::Degrees;
 use super::talk::Talk;
 use super::{Exit, gather, open, print};
 use crate::error::Result;
@@ -9,6 +10,8 @@ use crate::error::Result;
 /// Lists the flaws of a TIN, or of a mesh that may be none.
 pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+    // Nothing that is checked is a length.
+    plan.wish.degrees = Degrees::Allow;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
     let (gathered, flaws) = match &plan.from {
         From::Mesh(path) => {

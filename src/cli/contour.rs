@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::io::contours::ContourSummary;
 use crate::terrain::Levels;
 
-const FORMATS: &[Format<()>] = &[
+pub(super) const FORMATS: &[Format<()>] = &[
     Format { extension: "shp", kind: (), companions: &["shx", "dbf", "prj", "cpg"] },
     Format { extension: "geojson", kind: (), companions: &[] },
     Format { extension: "json", kind: (), companions: &[] },

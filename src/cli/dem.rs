@@ -7,7 +7,7 @@ use super::units::Units;
 use super::{Exit, gather, inputs, open};
 use crate::error::Result;
 
-const FORMATS: &[Format<()>] =
+pub(super) const FORMATS: &[Format<()>] =
     &[Format { extension: "tif", kind: (), companions: &[] }, Format { extension: "tiff", kind: (), companions: &[] }];
 
 /// Writes heights of a TIN as a raster.

@@ -13,10 +13,10 @@ use crate::data::BlockSource;
 use crate::error::{Error, Result};
 use crate::terrain::{Hillshade, Light};
 
-const FORMATS: &[Format<ShadeFormat>] = &[
+pub(super) const FORMATS: &[Format<ShadeFormat>] = &[
     Format { extension: "tif", kind: ShadeFormat::GeoTiff, companions: &[] },
     Format { extension: "tiff", kind: ShadeFormat::GeoTiff, companions: &[] },
-    Format { extension: "png", kind: ShadeFormat::Png, companions: &["pgw"] },
+    Format { extension: "png", kind: ShadeFormat::Png, companions: &["pgw", "png.aux.xml"] },
 ];
 
 /// Shades a TIN or a DEM.

@@ -7,6 +7,7 @@
 
 mod args;
 mod check;
+mod classes;
 mod contour;
 mod crossings;
 mod dem;
@@ -14,6 +15,7 @@ mod demo;
 mod escape;
 mod extents;
 mod gather;
+mod habits;
 mod hillshade;
 mod info;
 mod inputs;
@@ -42,7 +44,7 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use self::args::{Cli, TalkArgs, Verb, expand_switches, join_corners};
+use self::args::{Cli, TalkArgs, Verb};
 use self::talk::Talk;
 use crate::error::{Kind, Result};
 
@@ -65,7 +67,14 @@ impl From<Exit> for ExitCode {
 
 /// Runs the program with these arguments, the first of which is its name.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
-    let cli = match Cli::try_parse_from(join_corners(expand_switches(args))) {
+    let words = match habits::understood(args) {
+        Ok(words) => words,
+        Err(error) => {
+            Talk::new(&TalkArgs::default()).error(&error);
+            return Exit::Usage;
+        }
+    };
+    let cli = match Cli::try_parse_from(words) {
         Ok(cli) => cli,
         Err(error) => {
             // Help goes to stdout and is no failure; a closed pipe is none either.

@@ -9,7 +9,9 @@ use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointSource, 
 use crate::error::{Error, Kind, Result};
 use crate::io::contours::{self, ContourSummary};
 use crate::io::geotiff::{self, CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
+pub(super) use crate::io::mesh::Solid;
 use crate::io::mesh::{self, MeshSummary};
+use crate::io::png::Picture;
 use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, gdal, layer, png, points, proj, raster};
@@ -25,6 +27,10 @@ pub(super) enum Content {
     Layer,
     Raster,
     Mesh,
+    /// A picture: shades, but no heights.
+    Picture,
+    /// A file of Triangle's without triangles.
+    Plane,
 }
 
 /// What LAS, LAZ and COPC begin with.
@@ -49,6 +55,8 @@ pub(super) fn content(path: &Path) -> Content {
     let extension = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match extension.as_str() {
         "ply" | "obj" | "off" | "stl" | "ele" => Content::Mesh,
+        "png" => Content::Picture,
+        "node" | "poly" | "edge" | "neigh" => Content::Plane,
         "tif" | "tiff" | "vrt" | "img" | "hgt" | "dem" | "dt0" | "dt1" | "dt2" => Content::Raster,
         // Points as text, or a grid.
         "asc" if head.to_ascii_lowercase().starts_with(b"ncols") => Content::Raster,
@@ -74,7 +82,7 @@ pub(super) fn points(path: &Path, options: Options) -> Result<Box<dyn PointSourc
     let of_layer = || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path)?)?)) };
     match content(path) {
         Content::Layer => of_layer(),
-        Content::Points | Content::Raster | Content::Mesh => {
+        Content::Points | Content::Raster | Content::Mesh | Content::Picture | Content::Plane => {
             points::open_with(path, options).or_else(|error| match gdal_may_help(&error) {
                 // What GDAL says of a file that it does not know either is less exact.
                 true => of_layer().map_err(|_| error),
@@ -239,6 +247,21 @@ fn flaws_by(find: fn(&dyn Surface) -> Vec<SurfaceFlaw>, triangles: Triangles) ->
     let mut texts: Vec<String> = links.iter().map(|flaw| located(flaw, &flaw.vertices(&mesh), &mesh)).collect();
     texts.extend(flaws_beside(&links, &find(&mesh), &mesh));
     Ok((mesh, texts))
+}
+
+/// What an STL file holds; `None` if it is another mesh.
+pub(super) fn solid(path: &Path) -> Option<Result<Solid>> {
+    (mesh::Format::of(path) == Some(mesh::Format::Stl)).then(|| mesh::describe_stl(path))
+}
+
+/// What a picture is, and where it lies.
+pub(super) fn picture(path: &Path) -> Result<Picture> {
+    png::describe(path)
+}
+
+/// How many edges or neighborhoods a file of Triangle's lists.
+pub(super) fn listed(path: &Path) -> Result<usize> {
+    triangle::count(path)
 }
 
 /// What a `.node` or a `.poly` file holds.

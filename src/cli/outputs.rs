@@ -39,7 +39,6 @@ impl<F> Target<F> {
 pub(super) struct Outputs<F> {
     pub(super) targets: Vec<Target<F>>,
     pub(super) set: OutputSet,
-    report: Option<PathBuf>,
 }
 
 impl<F> Outputs<F> {
@@ -55,10 +54,7 @@ impl<F> Outputs<F> {
     /// # Errors
     /// If one cannot; then none does.
     pub(super) fn commit(self, talk: &Talk) -> Result<()> {
-        self.set.commit()?;
-        for path in self.report.iter().chain(self.targets.iter().map(|target| &target.path)) {
-            tell(path, talk);
-        }
+        self.set.commit()?.iter().for_each(|path| tell(path, talk));
         Ok(())
     }
 }
@@ -98,7 +94,7 @@ pub(super) fn resolve<F: Copy>(
         require_free(path, format, existing, inputs)?;
         targets.push(Target { path: path.clone(), kind: format.kind, extension: format.extension });
     }
-    Ok(Outputs { targets, set: OutputSet::default(), report: None })
+    Ok(Outputs { targets, set: OutputSet::default() })
 }
 
 /// The same for a verb that makes a surface, and reports its crossings where that is wished.
@@ -110,11 +106,12 @@ pub(super) fn resolve_with_report<F: Copy>(
     formats: &'static [Format<F>],
     plan: &SurfacePlan,
 ) -> Result<Outputs<F>> {
-    let Outputs { targets, set, .. } = resolve(args, formats, &plan.inputs)?;
-    let report = resolve_report(Existing::of(args.overwrite), plan)?.report;
-    match report.as_deref().filter(|report| targets.iter().any(|target| is_same(&target.path, report))) {
+    let outputs = resolve(args, formats, &plan.inputs)?;
+    resolve_report(Existing::of(args.overwrite), plan)?;
+    let is_target = |report: &&Path| outputs.targets.iter().any(|target| is_same(&target.path, report));
+    match plan.crossing_report().filter(is_target) {
         Some(report) => Err(Error::usage("the output is named twice").in_file(report)),
-        None => Ok(Outputs { targets, set, report }),
+        None => Ok(outputs),
     }
 }
 
@@ -123,11 +120,10 @@ pub(super) fn resolve_with_report<F: Copy>(
 /// # Errors
 /// As [`resolve`].
 pub(super) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<Outputs<()>> {
-    let report = plan.crossing_report();
-    if let Some(report) = report {
+    if let Some(report) = plan.crossing_report() {
         require_free(report, find(report, REPORTS)?, existing, &plan.inputs)?;
     }
-    Ok(Outputs { targets: Vec::new(), set: OutputSet::default(), report: report.map(Path::to_path_buf) })
+    Ok(Outputs { targets: Vec::new(), set: OutputSet::default() })
 }
 
 #[cfg(unix)]
@@ -177,6 +173,11 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
     Ok(())
 }
 
+/// The extensions of formats.
+pub(super) fn extensions<F>(formats: &[Format<F>]) -> Vec<&'static str> {
+    formats.iter().map(|format| format.extension).collect()
+}
+
 /// The files that come with a target, and then itself.
 pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &'static [Format<F>]) -> Vec<Target<F>> {
     let format = formats.iter().find(|format| format.extension == target.extension);
@@ -189,7 +190,15 @@ pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &'static [Format<F>
 }
 
 fn with_companions<F>(path: &Path, format: &Format<F>) -> Vec<PathBuf> {
-    let beside = format.companions.iter().map(|extension| path.with_extension(extension));
+    let beside = format.companions.iter().map(|companion| match companion.strip_prefix(format.extension) {
+        // What is put behind the whole name, whatever its case: `A.PNG.aux.xml`.
+        Some(behind) => {
+            let mut name = path.as_os_str().to_owned();
+            name.push(behind);
+            name.into()
+        }
+        None => path.with_extension(companion),
+    });
     std::iter::once(path.to_path_buf()).chain(beside).collect()
 }
 

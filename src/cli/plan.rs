@@ -144,6 +144,8 @@ fn refuse_other_kinds(wanted: &str, paths: &[PathBuf]) -> Result<()> {
         let what = match content(path) {
             Content::Raster => "a raster",
             Content::Mesh => "a mesh",
+            Content::Picture => "a picture",
+            Content::Plane => "a file of Triangle's",
             Content::Points if open::is_lidar(path) => "lidar points",
             Content::Points | Content::Layer => continue,
         };

@@ -123,7 +123,7 @@ fn placed(args: &FrameArgs, extent: Bounds, crs: Option<&Crs>, talk: &Talk) -> R
         {
             return Err(Error::unsupported(format!("the raster is in {theirs}, the surface in {ours}"))
                 .in_file(path)
-                .cure("build the surface of points with --t-srs and the raster's system"));
+                .cure("build the surface of points in the raster's system, or match another raster"));
         }
         return Frame::aligned_to(&frame, &extent);
     }

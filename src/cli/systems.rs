@@ -1,6 +1,6 @@
 //! Which coordinate system the input is in, and what has to be reprojected.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::talk::Talk;
 use super::units::Units;
@@ -24,6 +24,13 @@ pub(super) enum Degrees {
     Refuse,
     Allow,
 }
+
+/// What to do about coordinates that are in the wrong system. Without PROJ, `--t-srs` is no cure.
+const REPROJECT: &str = if cfg!(feature = "proj") {
+    "reproject with --t-srs EPSG:CODE"
+} else {
+    "reproject first (ogr2ogr, gdalwarp, pdal): this build is without PROJ"
+};
 
 /// A file and the system that it states.
 #[derive(Debug, Clone)]
@@ -141,7 +148,7 @@ fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Erro
         a.path.display(),
         b.path.display()
     ))
-    .cure("reproject with --t-srs CRS, or say with --a-srs CRS what all files are in")
+    .cure(format!("{REPROJECT}; or say with --a-srs CRS what all files are in"))
 }
 
 fn reproject(files: &[Stated], target: &Crs, talk: &Talk) -> Result<Systems> {
@@ -168,18 +175,24 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, talk: &Talk) -> Result<(
     match crs.kind {
         CrsKind::Geocentric => {
             let error = Error::unsupported(format!("{crs} is geocentric: its z axis is not up"));
-            return Err(in_file(error).cure("reproject to a projected system with --t-srs EPSG:CODE"));
+            return Err(in_file(error).cure(format!("{REPROJECT}, to a projected system")));
         }
         CrsKind::Geographic if degrees == Degrees::Refuse => {
             let unit = &crs.unit.name;
             let error = Error::unsupported(format!("{crs} is geographic: its unit, the {unit}, is no length"));
             let cure = match file {
                 Some(Stated { role: Role::Whole, .. }) => {
-                    "make it of points with --t-srs EPSG:CODE (a raster: gdalwarp)"
+                    "make it of points in a projected system (a raster: gdalwarp), or go on with --force-degrees"
+                        .to_owned()
                 }
-                _ => "reproject to a projected system with --t-srs EPSG:CODE",
+                // What the format takes for granted, where it is not what the file holds.
+                Some(file) if is_geojson(&file.path) => format!(
+                    "GeoJSON without a `crs` member is in degrees: say with --a-srs EPSG:CODE if it is not (of a local system: \
+                     --a-srs 'LOCAL_CS[\"local\",UNIT[\"metre\",1]]'); if it is, {REPROJECT}"
+                ),
+                _ => format!("{REPROJECT}, to a projected system, or go on with --force-degrees"),
             };
-            return Err(in_file(error).cure(format!("{cure}, or go on with --force-degrees")));
+            return Err(in_file(error).cure(cure));
         }
         _ => {}
     }
@@ -187,6 +200,10 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, talk: &Talk) -> Result<(
         talk.note(format_args!("the plan is in units of the {plan}, heights are in units of the {height}"));
     }
     Ok(())
+}
+
+fn is_geojson(path: &Path) -> bool {
+    path.extension().is_some_and(|e| ["geojson", "json"].iter().any(|known| e.eq_ignore_ascii_case(known)))
 }
 
 #[cfg(test)]
@@ -263,7 +280,7 @@ mod tests {
         };
         assert!(of(CrsKind::Geographic, Degrees::Refuse).unwrap_err().cure_text().unwrap().contains("--force-degrees"));
         assert!(of(CrsKind::Geographic, Degrees::Allow).is_ok());
-        assert!(of(CrsKind::Geocentric, Degrees::Allow).unwrap_err().cure_text().unwrap().contains("--t-srs"));
+        assert!(of(CrsKind::Geocentric, Degrees::Allow).unwrap_err().cure_text().unwrap().contains("reproject"));
         assert!(of(CrsKind::Local, Degrees::Refuse).is_ok());
     }
 }

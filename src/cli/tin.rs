@@ -6,7 +6,7 @@ use super::talk::Talk;
 use super::{Exit, gather};
 use crate::error::Result;
 
-const FORMATS: &[Format<()>] = &[
+pub(super) const FORMATS: &[Format<()>] = &[
     Format { extension: "ply", kind: (), companions: &[] },
     Format { extension: "obj", kind: (), companions: &[] },
     Format { extension: "off", kind: (), companions: &[] },

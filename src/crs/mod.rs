@@ -193,6 +193,16 @@ impl Crs {
         vertical && self.kind == other.kind && (by_code || by_definition())
     }
 
+    /// The system, unless it is one of those by which GDAL says that there is none, in formats that need one: "Undefined
+    /// geographic SRS" and the like.
+    pub fn unless_undefined(self) -> Option<Self> {
+        let name = self.name.replace('_', " ").to_ascii_lowercase();
+        // Esri's words for a `.prj` begin with GCS.
+        let name = name.strip_prefix("gcs ").unwrap_or(&name);
+        let is_undefined = self.epsg.is_none() && name.starts_with("undefined ") && name.ends_with(" srs");
+        (!is_undefined).then_some(self)
+    }
+
     /// The unit of lengths in plan; `None` where coordinates are angles.
     pub fn length_unit(&self) -> Option<&Unit> {
         (self.kind != CrsKind::Geographic).then_some(&self.unit)
@@ -239,4 +249,26 @@ pub trait Transform: Send + Sync {
 
     /// What a user should be told of the operation: unknown accuracy, heights left as they are.
     fn warnings(&self) -> Vec<String>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Crs;
+
+    #[test]
+    fn what_gdal_writes_for_no_system_is_none() {
+        let geographic = |name: &str| {
+            format!(
+                "GEOGCS[\"{name}\",DATUM[\"D_unknown\",SPHEROID[\"unknown\",6378137.0,298.257223563]],\
+                 PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]"
+            )
+        };
+        let local = "ENGCRS[\"Undefined Cartesian SRS\",EDATUM[\"\"],CS[Cartesian,2],AXIS[\"x\",east],AXIS[\"y\",north],\
+                     LENGTHUNIT[\"metre\",1]]";
+        for undefined in [&geographic("Undefined geographic SRS"), &geographic("GCS_Undefined_geographic_SRS"), local] {
+            assert_eq!(Crs::from_wkt(undefined).unwrap().unless_undefined(), None, "{undefined}");
+        }
+        let named = Crs::from_wkt(&geographic("Some SRS")).unwrap();
+        assert_eq!(named.clone().unless_undefined(), Some(named));
+    }
 }

@@ -49,10 +49,11 @@ pub enum LinkFlaw {
 }
 
 impl LinkFlaw {
-    /// The vertices at which it shows: the ends of an edge. Those of a constraint that is none may not exist.
+    /// The vertices at which it shows: one, or the ends of an edge. Those of a constraint that is none may not exist.
     pub fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         match *self {
             LinkFlaw::Folded { edge, .. } | LinkFlaw::NoEdge(edge) => edge.to_vec(),
+            LinkFlaw::StrayVertex(vertex) => vec![vertex],
             LinkFlaw::Neighbor { face, corner, .. } => {
                 let corners = surface.face(face).into_iter();
                 corners.flat_map(|corners| [1, 2].map(|k| corners[(corner + k) % 3])).collect()

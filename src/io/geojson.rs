@@ -189,7 +189,10 @@ impl Reader {
                 Crs::from_epsg(WGS_84).map_err(|e| layer.warnings.push(format!("crs not used: {e}"))).ok()
             }
             None => {
-                layer.warnings.push("no crs member, and its coordinates are not longitude and latitude".to_owned());
+                layer.warnings.push(
+                    "no crs member, and its coordinates are not longitude and latitude (--a-srs says what they are in)"
+                        .to_owned(),
+                );
                 None
             }
         };

@@ -31,6 +31,7 @@
 //! feature `gdal`; reprojection needs the feature `proj`. Without them these functions are there and return
 //! an error that says so.
 
+mod auxiliary;
 mod contain;
 pub mod contours;
 mod decimal;

@@ -1,12 +1,14 @@
-//! Shaded relief as a PNG picture, with its place in a world file beside it.
+//! Shaded relief as a PNG picture, with its place in a world file and its coordinate system in an auxiliary file of GDAL
+//! beside it.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use ::png::{BitDepth, ColorType, Compression, Encoder};
+use ::png::{BitDepth, ColorType, Compression, Decoder, Encoder};
 use rayon::prelude::*;
 
-use super::{Destination, Output, world_file};
+use super::{Destination, Output, auxiliary, world_file};
+use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Kind, Result};
 
@@ -21,7 +23,8 @@ pub fn world_file_of(target: &Path) -> PathBuf {
     target.with_extension("pgw")
 }
 
-/// Writes an 8-bit gray picture with transparency, and its world file (see [`world_file_of`]).
+/// Writes an 8-bit gray picture with transparency, its world file (see [`world_file_of`]) and, where the coordinate
+/// system is known, `relief.png.aux.xml` with it.
 ///
 /// Values are rounded and clamped to 0..255; NaN is transparent. Bands of rows are computed by all
 /// cores while the one before is packed, so memory is that of 512 rows, 10 bytes a cell.
@@ -60,7 +63,11 @@ fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
     writer.finish().map_err(from_png)?;
     let mut beside = Output::create(world_file_of(target.path()))?;
     beside.write_all(world_file::text(&frame).as_bytes())?;
-    target.put_all([beside], out, [])
+    let auxiliary = auxiliary::path_of(target.path());
+    let Some(crs) = source.crs() else { return target.put_all([beside], out, [auxiliary]) };
+    let mut system = Output::create(auxiliary)?;
+    system.write_all(auxiliary::text(crs).as_bytes())?;
+    target.put_all([beside, system], out, [])
 }
 
 fn from_png(error: ::png::EncodingError) -> Error {
@@ -95,4 +102,50 @@ fn band(source: &dyn BlockSource, frame: Frame, row: usize) -> Result<Vec<u8>> {
         }
     }
     Ok(out)
+}
+
+/// What a picture and the files beside it say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// "PNG, 8 bits, gray and alpha"
+    pub format: String,
+    /// The corners of its cells on the map (GDAL's order), if a world file is beside it.
+    pub transform: Option<[f64; 6]>,
+    /// Coordinate system, if an auxiliary file is beside it.
+    pub crs: Option<Crs>,
+}
+
+/// Reads what a picture is, to its last row, and where it lies.
+///
+/// # Errors
+/// If it is no PNG or damaged, or a file beside it is.
+pub fn describe(path: &Path) -> Result<Picture> {
+    let read = || {
+        let file = std::io::BufReader::new(std::fs::File::open(path)?);
+        let mut reader = Decoder::new(file).read_info().map_err(from_png_decoding)?;
+        let info = reader.info();
+        let size = [info.width, info.height];
+        let colors = match info.color_type {
+            ColorType::Grayscale => "gray",
+            ColorType::GrayscaleAlpha => "gray and alpha",
+            ColorType::Rgb => "colors",
+            ColorType::Rgba => "colors and alpha",
+            ColorType::Indexed => "a palette",
+        };
+        let format = format!("PNG, {} bits, {colors}", info.bit_depth as u8);
+        while reader.next_row().map_err(from_png_decoding)?.is_some() {}
+        Ok((size, format))
+    };
+    let (size, format) = read().map_err(|e: Error| e.in_file(path))?;
+    let transform = world_file::read_beside(path).transpose()?;
+    Ok(Picture { size, format, transform, crs: auxiliary::read_beside(path)? })
+}
+
+fn from_png_decoding(error: ::png::DecodingError) -> Error {
+    match error {
+        ::png::DecodingError::IoError(error) => error.into(),
+        other => Error::caused_by(Kind::Format, other),
+    }
 }

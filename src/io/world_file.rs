@@ -23,10 +23,12 @@ fn parse(text: &str) -> Option<[f64; 6]> {
     Some([x - (x_column + x_row) / 2.0, x_column, x_row, y - (y_column + y_row) / 2.0, y_column, y_row])
 }
 
-/// The transform in the world file beside a TIFF file; `None` if there is no world file.
+/// The transform in the world file beside a TIFF file or a picture; `None` if there is no world file.
 pub(crate) fn read_beside(path: &Path) -> Option<Result<[f64; 6]>> {
-    let names = ["tfw", "tifw", "tiffw", "wld", "TFW", "WLD"].map(|extension| path.with_extension(extension));
-    let beside = names.into_iter().find(|name| name.is_file())?;
+    let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let own: &[&str] = if is_png { &["pgw", "pngw", "PGW"] } else { &["tfw", "tifw", "tiffw", "TFW"] };
+    let names = own.iter().chain(&["wld", "WLD"]).map(|extension| path.with_extension(extension));
+    let beside = { names }.find(|name| name.is_file())?;
     // A world file has six lines; what is larger is something else.
     let is_small = beside.metadata().is_ok_and(|metadata| metadata.len() < 4096);
     let text = if is_small { std::fs::read_to_string(&beside) } else { Ok(String::new()) };

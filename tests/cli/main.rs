@@ -5,6 +5,7 @@ mod program;
 
 mod columns;
 mod crossings;
+mod habits;
 mod inputs;
 mod lidar;
 #[cfg(unix)]

@@ -161,15 +161,79 @@ fn info_goes_on_after_a_file_that_cannot_be_read() {
 fn degrees_and_geocentric_systems_are_refused_with_the_cure() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
     let run = run_in(&folder, &["tin", "a.xyz", "--a-srs", "EPSG:4326", "-o", "t.ply"]);
-    run.fails(1, &["a.xyz", "EPSG:4326", "degree", "hint: ", "--t-srs", "--force-degrees"]);
+    run.fails(1, &["a.xyz", "EPSG:4326", "degree", "hint: reproject ", "--force-degrees"]);
     let run = run_in(&folder, &["tin", "a.xyz", "--a-srs", "EPSG:4978", "--force-degrees", "-o", "t.ply"]);
-    run.fails(1, &["a.xyz", "EPSG:4978", "geocentric", "hint: ", "--t-srs"]);
+    run.fails(1, &["a.xyz", "EPSG:4978", "geocentric", "hint: reproject "]);
     // A surface that is there is not reprojected.
     let flags = ["--a-srs", "EPSG:4326", "--max-edge", "none", "--force-degrees"];
     run_in(&folder, &[&["tin", "a.xyz", "-o", "d.ply"], &flags[..]].concat()).works(&[]);
     let run = run_in(&folder, &["contour", "d.ply", "-o", "c.shp"]);
-    run.fails(1, &["d.ply", "EPSG:4326", "hint: make it of points with --t-srs", "--force-degrees"]);
+    run.fails(1, &["d.ply", "EPSG:4326", "hint: make it of points in a projected system", "--force-degrees"]);
     assert_eq!(files_of(folder.path()), ["a.xyz", "d.ply"]);
+    // Nothing that is checked is a length.
+    run_in(&folder, &["check", "d.ply"]).works(&[]);
+    run_in(&folder, &["check", "a.xyz", "--a-srs", "EPSG:4326", "--max-edge", "none"]).works(&[]);
+}
+
+#[test]
+fn local_coordinates_in_geojson_or_under_a_placeholder_have_a_cure() {
+    let local = geojson(0, "LineString", "[[0,0,1],[3,3,1]]").replace("\"crs\"", "\"other\"");
+    let folder = folder_with(&[("a.xyz", SLOPE), ("l.geojson", &local)]);
+    let args = ["tin", "a.xyz", "--breaklines", "l.geojson", "-o", "t.ply"];
+    let run = run_in(&folder, &args);
+    run.fails(1, &["l.geojson", "EPSG:4326", "hint: GeoJSON without a `crs` member", "--a-srs EPSG:CODE"]);
+    let site = "LOCAL_CS[\"local\",UNIT[\"metre\",1]]";
+    assert!(run.stderr.contains(site), "{}", run.stderr);
+    assert_eq!(run.stderr.contains("--t-srs"), cfg!(feature = "proj"), "{}", run.stderr);
+    run_in(&folder, &[&args[..], &["--a-srs", site]].concat()).works(&["local"]);
+
+    // What ogr2ogr writes where there is no system.
+    run_in(&folder, &["contour", "a.xyz", "-o", "c.shp"]).works(&[]);
+    let none = "GEOGCS[\"GCS_Undefined_geographic_SRS\",DATUM[\"D_unknown\",SPHEROID[\"unknown\",6378137.0,298.257223563]],\
+                PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]";
+    std::fs::write(folder.path().join("c.prj"), none).unwrap();
+    let run = run_in(&folder, &["tin", "a.xyz", "--breaklines", "c.shp", "-o", "u.ply"]);
+    run.works(&["note: no coordinate system is stated"]);
+}
+
+#[test]
+fn info_reads_whatever_the_program_writes() {
+    let poly = "4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n";
+    let folder = folder_with(&[("a.xyz", SLOPE), ("p.poly", poly)]);
+    let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
+    let all = "tin a.xyz --a-srs EPSG:25832 --crossing-report r.csv -o t.ply -o t.obj -o t.off -o t.stl";
+    run(all).works(&["written     r.csv", "written     t.stl", "written     t.stl.origin.txt"]);
+    run("contour a.xyz --a-srs EPSG:25832 -o c.shp -o c.geojson").works(&["c.shp", "c.shx", "c.dbf", "c.prj", "c.cpg"]);
+    run("hillshade a.xyz --a-srs EPSG:25832 -o s.png -o s.tif")
+        .works(&["written     s.pgw", "written     s.png.aux.xml"]);
+    run("triangulate p.poly -o q.ele -o q.edge -o q.neigh").works(&["written     q.neigh"]);
+    for (file, facts) in [
+        ("r.csv", &["r.csv"][..]),
+        ("t.ply", &["triangles  18", "EPSG:25832"]),
+        ("t.obj", &["triangles  18", "EPSG:25832"]),
+        ("t.off", &["triangles  18", "EPSG:25832"]),
+        ("t.stl", &["STL, binary", "triangles  18", "x 0 .. 3, y 0 .. 3, z 10 .. 13"]),
+        ("c.shp", &["lines: 2", "EPSG:25832"]),
+        ("c.geojson", &["lines: 2", "EPSG:25832"]),
+        ("s.png", &["PNG, 8 bits, gray and alpha", "3 x 3 cells", "x 0 .. 3, y 0 .. 3", "EPSG:25832"]),
+        ("s.tif", &["3 x 3 cells", "EPSG:25832"]),
+        ("q.node", &["vertices   4"]),
+        ("q.poly", &["segments   4", "vertices   4"]),
+        ("q.ele", &["triangles  2", "vertices   4"]),
+        ("q.edge", &["edges      5"]),
+        ("q.neigh", &["triangles  2"]),
+    ] {
+        let info = run(&format!("info {file}"));
+        assert_eq!(info.code, 0, "{file}: {}", info.stderr);
+        facts
+            .iter()
+            .for_each(|fact| assert!(info.stdout.contains(fact), "{file}: expected `{fact}` in {}", info.stdout));
+    }
+    // Parts go with their main files; without a system there is no auxiliary file, nor is an old one left.
+    let info = run("info s.png s.pgw s.png.aux.xml c.shp c.prj c.dbf t.stl t.stl.origin.txt");
+    assert_eq!((info.code, info.stdout.matches("  format ").count()), (0, 3), "{}{}", info.stdout, info.stderr);
+    run("hillshade a.xyz --overwrite -o s.png").works(&[]);
+    assert!(!files_of(folder.path()).contains(&"s.png.aux.xml".to_owned()));
 }
 
 #[test]
@@ -181,7 +245,7 @@ fn two_systems_are_an_error_that_names_both_and_the_files() {
     ]);
     let run =
         run_in(&folder, &["tin", "a.xyz", "--breaklines", "l.geojson", "--breaklines", "m.geojson", "-o", "t.ply"]);
-    run.fails(1, &["l.geojson", "EPSG:25832", "m.geojson", "EPSG:25833", "hint: ", "--t-srs", "--a-srs"]);
+    run.fails(1, &["l.geojson", "EPSG:25832", "m.geojson", "EPSG:25833", "hint: reproject ", "--a-srs"]);
 }
 
 #[test]

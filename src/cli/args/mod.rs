@@ -10,7 +10,7 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, Parser, Subcommand};
 
-pub(super) use parse::{Corners, EdgeLength, join_corners};
+pub(super) use parse::{Corners, EdgeLength, finite};
 pub(super) use reading::ReadArgs;
 pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
 pub(super) use switches::expand_switches;
@@ -46,7 +46,7 @@ Examples:
 `breakline VERB --help` tells defaults, interplay and an example of each verb.";
 
 /// How much is said, and how many cores work.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "General")]
 pub(super) struct TalkArgs {
     /// Print warnings and errors only

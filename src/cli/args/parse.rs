@@ -1,40 +1,8 @@
 //! Values of options that are more than a number or a name.
 
-use std::collections::VecDeque;
-use std::ffi::OsString;
 use std::str::FromStr;
 
 use crate::data::Bounds;
-
-/// Options whose four values may stand apart, as GDAL has them.
-const CORNER_OPTIONS: [&str; 2] = ["--te", "--bounds"];
-
-/// Joins `--te 1 2 3 4` to `--te 1,2,3,4`, and leaves all else as it is.
-///
-/// To the parser four values would be four that each may be a file, and a negative one an option.
-pub(in crate::cli) fn join_corners(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    let mut rest: VecDeque<OsString> = args.into_iter().collect();
-    let mut joined = Vec::with_capacity(rest.len());
-    while let Some(arg) = rest.pop_front() {
-        if arg == "--" {
-            joined.push(arg);
-            break;
-        }
-        let takes_corners = CORNER_OPTIONS.iter().any(|option| arg == *option);
-        joined.push(arg);
-        if takes_corners {
-            let numbers: Vec<&str> =
-                rest.iter().take(4).map_while(|a| a.to_str().filter(|text| finite(text).is_ok())).collect();
-            if numbers.len() == 4 {
-                let corners = numbers.join(",");
-                rest.drain(..4);
-                joined.push(corners.into());
-            }
-        }
-    }
-    joined.extend(rest);
-    joined
-}
 
 /// `xmin,ymin,xmax,ymax`, or with blanks between them
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,7 +61,7 @@ impl FromStr for EdgeLength {
 }
 
 /// A finite number.
-pub(super) fn finite(text: &str) -> Result<f64, String> {
+pub(in crate::cli) fn finite(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("`{}` is not a finite number", text.trim())),
@@ -142,26 +110,6 @@ mod tests {
         assert_eq!(" 1  2 3.5\t4".parse(), Ok(Corners { min: [1.0, 2.0], max: [3.5, 4.0] }));
         for wrong in ["", "1,2,3", "1,,2,3,4", "1,2,3,4,5", "3,2,1,4", "1,2,1,4", "1,2,inf,4", "1,2,nan,4", "a,b,c,d"] {
             assert!(wrong.parse::<Corners>().is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn four_values_in_a_row_are_one() {
-        let join = |line: &str| {
-            let joined = join_corners(line.split(' ').map(OsString::from));
-            joined.iter().map(|arg| arg.to_str().unwrap()).collect::<Vec<_>>().join(" ")
-        };
-        let cases = [
-            ("dem --te -10 -2.5 1e3 4 a.laz -o b.tif", "dem --te -10,-2.5,1e3,4 a.laz -o b.tif"),
-            ("dem a.laz --bounds 1 2 3 4 --te 5 6 7 8", "dem a.laz --bounds 1,2,3,4 --te 5,6,7,8"),
-            ("dem --te 1,2,3,4 5 6 7 8", "dem --te 1,2,3,4 5 6 7 8"),
-            ("dem --te 1 2 3 a.laz", "dem --te 1 2 3 a.laz"),
-            ("dem --te 1 2 3", "dem --te 1 2 3"),
-            ("dem --class 1 2 3 4 --te=1,2,3,4", "dem --class 1 2 3 4 --te=1,2,3,4"),
-            ("dem -- --te 1 2 3 4", "dem -- --te 1 2 3 4"),
-        ];
-        for (typed, expected) in cases {
-            assert_eq!(join(typed), expected);
         }
     }
 

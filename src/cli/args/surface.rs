@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::parse::{Corners, EdgeLength, not_negative};
 use super::{OnCrossingArg, ReadArgs};
+use crate::cli::classes;
 
 /// What the surface is made of.
 #[derive(Debug, Clone, Args)]
@@ -53,10 +54,10 @@ pub(in crate::cli) struct SurfaceArgs {
     #[arg(long, value_name = "LENGTH|none", allow_negative_numbers = true, help_heading = "Surface")]
     pub(in crate::cli) max_edge: Option<EdgeLength>,
 
-    /// Classes to use, as `2,8` [default: 2 if any point has it, else all]
+    /// Classes to use, as `2,8` or `ground` [default: 2 if any point has it, else all]
     ///
-    /// Points marked as withheld are never used, points of formats without classes always.
-    #[arg(long, value_name = "N,..", value_delimiter = ',', help_heading = "Surface")]
+    /// By number, or by name as LAS 1.4 has it: `ground,low-vegetation`. Points marked as withheld are never used, points of formats without classes always.
+    #[arg(long, value_name = "CLASS,..", value_parser = classes::parse, value_delimiter = ',', help_heading = "Surface")]
     pub(in crate::cli) class: Vec<u8>,
 
     /// Which height stands where points share a place

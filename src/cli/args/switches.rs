@@ -2,38 +2,51 @@
 
 use std::ffi::OsString;
 
-/// Writes the words for `triangulate` that are made of Triangle's switches `p`, `q`, `a`, `c` and `S` only, like
-/// `-pq30a0.5S9000`, as the options that they mean. `-p` says nothing that the name of the file does not.
-pub(in crate::cli) fn expand_switches(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    let mut is_verb = false;
+use crate::error::{Error, Result};
+
+/// Writes the words behind `triangulate` that are made of Triangle's switches `p`, `q`, `a`, `c`, `S`, `Q` and `V` only,
+/// like `-pq30a0.5S9000`, as the options that they mean. `-p` says nothing that the name of the file does not.
+///
+/// # Errors
+/// If a word holds other switches.
+pub(in crate::cli) fn expand_switches(words: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
     let mut is_over = false;
     let mut expanded = Vec::new();
-    for arg in args {
-        is_over |= arg == "--";
-        let options = if is_verb && !is_over { arg.to_str().and_then(options_of) } else { None };
-        is_verb |= arg == "triangulate";
-        match options {
-            Some(options) => expanded.extend(options.into_iter().map(OsString::from)),
-            None => expanded.push(arg),
+    for word in words {
+        is_over |= word == "--";
+        match word.to_str().filter(|text| !is_over && is_switches(text)) {
+            Some(text) => {
+                let options = options_of(&text[1..]).ok_or_else(|| {
+                    Error::usage(format!("`{text}`: of Triangle's switches, p, q, a, c, S, Q and V are understood"))
+                        .cure("-o NAME.edge writes edges, -o NAME.neigh neighbors; an option of this program has two dashes")
+                })?;
+                expanded.extend(options.into_iter().map(OsString::from));
+            }
+            None => expanded.push(word),
         }
     }
-    expanded
+    Ok(expanded)
 }
 
-/// What a word of switches means; `None` if it is something else.
-fn options_of(word: &str) -> Option<Vec<String>> {
-    let mut rest = word.strip_prefix('-').filter(|rest| !rest.is_empty())?;
+/// Whether a word begins with one dash and a letter, but for those that are options of this program: `-o`, `-v` and `-h`.
+fn is_switches(word: &str) -> bool {
+    let first = word.strip_prefix('-').and_then(|rest| rest.chars().next());
+    first.is_some_and(|first| first.is_ascii_alphabetic() && !matches!(first, 'o' | 'v' | 'h'))
+}
+
+/// What switches mean; `None` if one is something else.
+fn options_of(mut rest: &str) -> Option<Vec<String>> {
     let mut options = Vec::new();
     while let Some(switch) = rest.chars().next() {
-        let behind = &rest[switch.len_utf8()..];
-        let length = behind.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(behind.len());
-        let (number, after) = behind.split_at(length);
+        let (number, after) = split_number(&rest[switch.len_utf8()..]);
         match (switch, number) {
             ('p', "") => {}
             ('c', "") => options.push("--convex".to_owned()),
             ('q', "") => options.push("--min-angle=20".to_owned()),
             ('a', "") => options.push("--region-areas".to_owned()),
             ('S', "") => options.push("--max-added=0".to_owned()),
+            ('Q', "") => options.push("--quiet".to_owned()),
+            ('V', "") => options.push("--verbose".to_owned()),
             ('S', number) => options.push(format!("--max-added={number}")),
             ('q', number) => options.push(format!("--min-angle={number}")),
             ('a', number) => options.push(format!("--max-area={number}")),
@@ -44,6 +57,20 @@ fn options_of(word: &str) -> Option<Vec<String>> {
     Some(options)
 }
 
+/// The digits behind a switch, with an exponent if there is one, and what follows.
+fn split_number(text: &str) -> (&str, &str) {
+    let digits = |text: &str| text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let mut end = digits(text);
+    if let Some(exponent) = text[end..].strip_prefix(['e', 'E']).filter(|_| end > 0) {
+        let power = exponent.strip_prefix(['-', '+']).unwrap_or(exponent);
+        let length = power.find(|c: char| !c.is_ascii_digit()).unwrap_or(power.len());
+        if length > 0 {
+            end = text.len() - power.len() + length;
+        }
+    }
+    text.split_at(end)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,20 +78,23 @@ mod tests {
     #[test]
     fn words_of_switches_are_told_from_others() {
         let expand = |text: &str| {
-            let words = expand_switches(text.split(' ').map(OsString::from));
-            words.iter().map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")
+            let words = expand_switches(text.split(' ').map(OsString::from))?;
+            Ok::<_, Error>(words.iter().map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" "))
         };
         for (typed, meant) in [
-            ("b triangulate -pq30a0.5 x.poly", "b triangulate --min-angle=30 --max-area=0.5 x.poly"),
-            ("b triangulate -q x.poly -c -a", "b triangulate --min-angle=20 x.poly --convex --region-areas"),
-            ("b triangulate -p x.poly -o a.ele", "b triangulate x.poly -o a.ele"),
-            ("b triangulate -pq30S500 x.poly -S", "b triangulate --min-angle=30 --max-added=500 x.poly --max-added=0"),
-            ("b triangulate -s9 x.poly", "b triangulate -s9 x.poly"),
-            ("b triangulate -v -qv -z --convex -q1.", "b triangulate -v -qv -z --convex --min-angle=1."),
-            ("b triangulate - -- -q", "b triangulate - -- -q"),
-            ("b tin -q x.las", "b tin -q x.las"),
+            ("-pq30a0.5 x.poly", "--min-angle=30 --max-area=0.5 x.poly"),
+            ("-q x.poly -c -a", "--min-angle=20 x.poly --convex --region-areas"),
+            ("-p x.poly -o a.ele", "x.poly -o a.ele"),
+            ("-pq30S500 x.poly -S", "--min-angle=30 --max-added=500 x.poly --max-added=0"),
+            ("-a1e-7 -pa.5E+3q30 -a2e3", "--max-area=1e-7 --max-area=.5E+3 --min-angle=30 --max-area=2e3"),
+            ("-v -oa.ele --convex -q1. -QV", "-v -oa.ele --convex --min-angle=1. --quiet --verbose"),
+            ("- --max-area -3 -- -e", "- --max-area -3 -- -e"),
         ] {
-            assert_eq!(expand(typed), meant);
+            assert_eq!(expand(typed).unwrap(), meant);
+        }
+        for wrong in ["-s9", "-a1e", "-pe", "-tr", "-D"] {
+            let error = expand(wrong).unwrap_err();
+            assert!(error.to_string().starts_with(&format!("`{wrong}`: of Triangle's switches")), "{error}");
         }
     }
 }

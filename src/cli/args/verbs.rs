@@ -122,7 +122,7 @@ pub(in crate::cli) struct TriangulateArgs {
     ///
     /// Up to 20.7 degrees are always reached, up to about 33 nearly always; not where segments meet at
     /// small angles. Triangles that fall short are counted. `-q`, `-a`, `-S`, `-p` and `-c` are written as
-    /// for Triangle, alone or in one word: `-pq30a0.5`; they are not `--quiet` here.
+    /// for Triangle, alone or in one word: `-pq30a0.5`; they are not `--quiet` here, which is `-Q`.
     #[arg(long, value_name = "DEGREES", value_parser = smallest_angle, help_heading = "Quality")]
     pub(in crate::cli) min_angle: Option<f64>,
 
@@ -261,8 +261,8 @@ pub(in crate::cli) struct HillshadeArgs {
 ///
 /// Looks at a mesh from a file (.ply, .obj, .off, or .ele with its .node), or at the TIN of points and
 /// breaklines: links, manifold, orientation without overlaps, Delaunay between breaklines. The breaklines of an
-/// .ele are the segments of the .poly beside it. Flaws count vertices, faces and edges from 0. Exit code 1
-/// when there is any.
+/// .ele are the segments of the .poly beside it; .obj and .off do not tell them, and are not asked for the Delaunay
+/// law. Flaws count vertices, faces and edges from 0 and give their places. Exit code 1 when there is any.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:

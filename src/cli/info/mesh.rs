@@ -1,12 +1,18 @@
 use std::path::Path;
 
+use serde_json::json;
+
 use super::Sheet;
-use crate::cli::open;
+use crate::cli::open::{self, Solid};
 use crate::cli::summary::SurfaceFacts;
+use crate::cli::units::neat;
 use crate::data::Surface;
 use crate::error::Result;
 
 pub(super) fn sheet(path: &Path) -> Result<Sheet> {
+    if let Some(solid) = open::solid(path) {
+        return solid.map(|solid| of_solid(&solid));
+    }
     let (mesh, flaws) = open::linked_mesh(path)?;
     let facts = SurfaceFacts::of(&mesh);
     let no_surface = flaws.first().map(|flaw| format!("this is no surface: {flaw}; `breakline check` lists all flaws"));
@@ -23,4 +29,16 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     sheet.bounds(facts.extent);
     sheet.crs(mesh.crs());
     Ok(sheet)
+}
+
+/// STL has single triangles and no exact coordinates.
+fn of_solid(solid: &Solid) -> Sheet {
+    let mut sheet = Sheet::default();
+    sheet.silent("kind", "mesh");
+    sheet.plain("format", "STL, binary");
+    sheet.plain("triangles", solid.triangles);
+    let origin = solid.origin.map(neat);
+    sheet.row("origin", origin.join(" "), json!(solid.origin));
+    sheet.bounds(solid.bounds);
+    sheet
 }

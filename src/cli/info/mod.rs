@@ -2,6 +2,8 @@
 
 mod layer;
 mod mesh;
+mod picture;
+mod plane;
 mod points;
 mod raster;
 mod sheet;
@@ -48,16 +50,27 @@ pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
     Ok(exit)
 }
 
-/// `FOLDER/*` names the parts of shapefiles too; they are told with the `.shp`.
+/// Files that are told with another: extensions, after that of the other.
+const PARTS: [(&str, &[&str]); 3] = [
+    ("shp", &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"]),
+    ("png", &["pgw", "png.aux.xml"]),
+    ("stl", &["stl.origin.txt"]),
+];
+
+/// `FOLDER/*` names the parts of shapefiles and the like, too; they are told with the `.shp`.
 fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
-    const PARTS: [&str; 8] = ["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"];
-    let shapefiles: HashSet<PathBuf> =
-        files.iter().filter(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("shp"))).cloned().collect();
+    // Names are compared in lower case: `A.SHP` has `A.DBF`.
+    let lower = |path: &Path| path.to_string_lossy().to_lowercase();
+    let mut parts: HashSet<String> = HashSet::new();
+    for path in files.iter() {
+        let of_path = PARTS.iter().filter(|(main, _)| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(main)));
+        let extensions = of_path.flat_map(|(_, extensions)| extensions.iter());
+        parts.extend(extensions.map(|extension| lower(&path.with_extension(extension))));
+    }
     files.retain(|path| {
-        let is_part = path.extension().is_some_and(|e| PARTS.iter().any(|part| e.eq_ignore_ascii_case(part)))
-            && ["shp", "SHP"].iter().any(|e| shapefiles.contains(&path.with_extension(e)));
+        let is_part = parts.contains(&lower(path));
         if is_part {
-            talk.detail(format_args!("{} is part of a shapefile", path.display()));
+            talk.detail(format_args!("{} is part of another file", path.display()));
         }
         !is_part
     });
@@ -69,5 +82,7 @@ fn sheet(path: &Path, options: Options, talk: &Talk) -> Result<Sheet> {
         Content::Layer => layer::sheet(path),
         Content::Raster => raster::sheet(path),
         Content::Mesh => mesh::sheet(path),
+        Content::Picture => picture::sheet(path),
+        Content::Plane => plane::sheet(path),
     }
 }

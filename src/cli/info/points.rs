@@ -3,9 +3,9 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::Sheet;
-use crate::cli::open;
 use crate::cli::talk::Talk;
 use crate::cli::units::counted;
+use crate::cli::{classes, open};
 use crate::data::{Bounds, Columns, Lattice, PointBatch, PointFlags, PointInfo};
 use crate::error::Result;
 use crate::io::points::Options;
@@ -90,7 +90,7 @@ fn tell(info: &PointInfo, census: &Census) -> Sheet {
         sheet.row("offset", list(offset), json!(offset));
     }
     if info.has_classes {
-        let (text, value) = histogram(&census.classes, |class| format!("{class} ({})", class_name(class)));
+        let (text, value) = histogram(&census.classes, |class| format!("{class} ({})", classes::name(class)));
         sheet.row("classes", text, value);
     }
     if census.returns.iter().any(|&count| count > 0) {
@@ -115,34 +115,4 @@ fn histogram(counts: &[u64; 256], name: impl Fn(usize) -> String) -> (String, Va
     let words: Vec<String> = present().map(|(i, count)| format!("{}: {count}", name(i))).collect();
     let object: Map<String, Value> = present().map(|(i, &count)| (i.to_string(), json!(count))).collect();
     (words.join(", "), Value::Object(object))
-}
-
-/// What a class means in LAS 1.4.
-fn class_name(class: usize) -> &'static str {
-    const NAMES: [&str; 23] = [
-        "never classified",
-        "unclassified",
-        "ground",
-        "low vegetation",
-        "medium vegetation",
-        "high vegetation",
-        "building",
-        "low noise",
-        "key point",
-        "water",
-        "rail",
-        "road",
-        "overlap",
-        "wire guard",
-        "wire conductor",
-        "tower",
-        "wire connector",
-        "bridge deck",
-        "high noise",
-        "overhead structure",
-        "ignored ground",
-        "snow",
-        "temporal exclusion",
-    ];
-    NAMES.get(class).copied().unwrap_or(if class < 64 { "reserved" } else { "user-defined" })
 }

@@ -41,7 +41,7 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     Ok(sheet)
 }
 
-fn cell(frame: &Frame) -> String {
+pub(super) fn cell(frame: &Frame) -> String {
     let t = frame.transform;
     if frame.is_north_up() {
         format!("{} x {}, first corner at {} {}", neat(t[1]), neat(-t[5]), neat(t[0]), neat(t[3]))

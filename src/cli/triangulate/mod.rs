@@ -61,7 +61,7 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     // A .poly may have its vertices beside it.
     let mut read = vec![path.clone()];
     read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
-    let mut outputs = outputs::resolve(&args.output, formats, &read)?;
+    let outputs = outputs::resolve(&args.output, formats, &read)?;
     let graph = open::line_graph(path)?;
     graph.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
     if !args.region_areas
@@ -99,7 +99,6 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
     write(&outputs.set, &meshes, &files, &triangulated, talk)?;
     tell(&graph, args, &built, &triangulated, talk);
-    outputs.targets = files.into_iter().chain(meshes).collect();
     outputs.commit(talk)?;
     Ok(Exit::Done)
 }

@@ -131,7 +131,7 @@ fn no_such(wanted: &str, fields: &[String]) -> Error {
 fn crs(reference: &SpatialRef, warnings: &mut Vec<String>) -> Option<Crs> {
     let read = reference.to_wkt().map_err(|error| error.to_string());
     match read.and_then(|wkt| Crs::from_wkt(&wkt).map_err(|error| error.to_string())) {
-        Ok(crs) => Some(crs),
+        Ok(crs) => crs.unless_undefined(),
         Err(reason) => {
             warnings.push(format!("the coordinate system is not understood: {reason}"));
             None

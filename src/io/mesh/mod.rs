@@ -39,6 +39,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use listing::Listing;
+pub use stl::Solid;
 
 use crate::data::{Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
@@ -119,6 +120,14 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
         lost_edges: if format.keeps_lines() { 0 } else { mesh.constrained_edges },
         origin: origin.map_err(|e| e.in_file(target.path()))?,
     })
+}
+
+/// Reads what a binary STL file holds: it has no exact coordinates, and is not read as a surface.
+///
+/// # Errors
+/// If it is damaged or text, or the file with its origin is.
+pub fn describe_stl(path: &Path) -> Result<Solid> {
+    stl::describe(path).map_err(|e| e.in_file(path))
 }
 
 /// Reads a mesh that is a surface, own or foreign, of any format but STL. Polygons are divided into triangles.

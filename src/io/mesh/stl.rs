@@ -1,7 +1,7 @@
 //! Binary STL: triangles in 32-bit floats, from a local origin.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::listing::Listing;
 use crate::data::Bounds;
@@ -38,13 +38,69 @@ pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], Pa
         output.write_all(&facet)?;
     }
 
-    let mut beside = target.path().as_os_str().to_owned();
-    beside.push(".origin.txt");
-    let beside = PathBuf::from(beside);
+    let beside = origin_file(target.path());
     let mut note = Output::create(&beside)?;
     writeln!(note, "{x} {y} {z}")?;
     target.put_all([note], output, [])?;
     Ok((origin, beside))
+}
+
+/// What a binary STL file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Triangles.
+    pub triangles: usize,
+    /// The box around them, in the coordinates of the map.
+    pub bounds: Bounds,
+    /// What is to be added to the coordinates of the file, as the file beside it says; 0 if there is none.
+    pub origin: [f64; 3],
+}
+
+/// Bytes before the first facet: a title, and the count.
+const HEADER: usize = 84;
+const FACET: usize = 50;
+
+/// Reads what a binary STL file holds.
+pub(super) fn describe(path: &Path) -> Result<Solid> {
+    let bytes = std::fs::read(path)?;
+    let count = bytes.get(80..HEADER).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    let length = count.map(|count| HEADER as u64 + FACET as u64 * u64::from(count));
+    let (Some(count), Some(length)) = (count, length) else {
+        return Err(Error::format(format!("{} bytes, a binary STL file has 84 and more", bytes.len())));
+    };
+    if length != bytes.len() as u64 {
+        let text = if bytes.starts_with(b"solid") { " (STL as text is not read)" } else { "" };
+        return Err(Error::format(format!(
+            "{count} triangles need {length} bytes, the file has {}{text}",
+            bytes.len()
+        )));
+    }
+    let origin = read_origin(&origin_file(path))?.unwrap_or_default();
+    let mut bounds = Bounds::default();
+    for facet in bytes[HEADER..].chunks_exact(FACET) {
+        // Three numbers of the normal, then the corners.
+        let number = |i: usize| facet[4 * i..].first_chunk().map_or(f32::NAN, |bytes| f32::from_le_bytes(*bytes));
+        let corner = |k: usize| std::array::from_fn(|axis| f64::from(number(3 + 3 * k + axis)) + origin[axis]);
+        (0..3).for_each(|k| bounds.add(corner(k)));
+    }
+    Ok(Solid { triangles: count as usize, bounds, origin })
+}
+
+/// The name of the file with the origin: `ground.stl` has `ground.stl.origin.txt`.
+fn origin_file(target: &Path) -> PathBuf {
+    let mut name = target.as_os_str().to_owned();
+    name.push(".origin.txt");
+    name.into()
+}
+
+fn read_origin(path: &Path) -> Result<Option<[f64; 3]>> {
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let text = std::fs::read_to_string(path).map_err(|e| Error::from(e).in_file(path))?;
+    let numbers: Vec<f64> = text.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let origin = <[f64; 3]>::try_from(numbers).ok().filter(|origin| origin.iter().all(|c| c.is_finite()));
+    origin.map(Some).ok_or_else(|| Error::format("expected the three numbers of an origin").in_file(path))
 }
 
 fn local(p: [f64; 3], origin: [f64; 3]) -> [f64; 3] {

@@ -86,7 +86,7 @@ impl Output {
     pub fn commit(self) -> Result<()> {
         let set = OutputSet::default();
         set.add(self);
-        set.commit()
+        set.commit().map(drop)
     }
 
     /// The file's final name.

@@ -49,13 +49,15 @@ impl OutputSet {
         self.staged.borrow_mut().outputs.push(output);
     }
 
-    /// Flushes all outputs to the disk, then renames them to their targets: those that others need first.
+    /// Flushes all outputs to the disk, then renames them to their targets: those that others need first. Returns the
+    /// targets, these last.
     ///
     /// # Errors
     /// If the last bytes cannot be written or a rename fails. What was at the targets is then there again. Bytes that
     /// went to a pipe or a device are gone.
-    pub fn commit(self) -> Result<()> {
+    pub fn commit(self) -> Result<Vec<PathBuf>> {
         let Staged { companions, outputs, stale } = self.staged.into_inner();
+        let companion_count = companions.len();
         let all = companions.into_iter().chain(outputs);
         let flushed: Vec<Flushed> = all.map(Output::flush_to_disk).collect::<Result<_>>()?;
         // Ends before `flushed`, whose remains are removed with the same lock.
@@ -64,7 +66,10 @@ impl OutputSet {
         match replace_all(&flushed, &stale, &mut moves, &mut renames) {
             Ok(()) => {
                 moves.iter().for_each(Move::forget);
-                Ok(())
+                drop(renames);
+                let mut targets: Vec<PathBuf> = flushed.into_iter().map(|file| file.target).collect();
+                targets.rotate_left(companion_count);
+                Ok(targets)
             }
             Err(error) => Err(moves.iter().rev().fold(error, |error, done| match done.undo() {
                 Ok(()) => error,
@@ -133,7 +138,7 @@ impl<'a> Destination<'a> {
         staged.outputs.push(output);
         staged.stale.extend(stale);
         drop(staged);
-        own.commit()
+        own.commit().map(drop)
     }
 }
 

@@ -184,7 +184,8 @@ fn read_prj(path: &Path, warnings: &mut Vec<String>) -> Result<Option<Crs>> {
     if text.is_empty() {
         return Ok(None);
     }
-    Ok(Crs::from_wkt(text).map_err(|e| warnings.push(format!(".prj not used: {e}"))).ok())
+    let crs = Crs::from_wkt(text).map_err(|e| warnings.push(format!(".prj not used: {e}"))).ok();
+    Ok(crs.and_then(Crs::unless_undefined))
 }
 
 fn read_table(

@@ -221,6 +221,21 @@ fn read_rows<T>(path: &Path, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> 
     read(Rows::new(&bytes)).map_err(|e| e.in_file(path))
 }
 
+/// Counts the items of a list: edges, neighborhoods, triangles, vertices.
+///
+/// # Errors
+/// If the file does not begin with a count, or has fewer or more lines.
+pub fn count(path: &Path) -> Result<usize> {
+    read_rows(path, |mut rows| {
+        let (_, count) = counted(&mut rows, "items", "ITEMS ...")?;
+        for i in 0..count {
+            rows.expect(|| format!("item {} of {count}", i + 1), "NUMBER ...")?;
+        }
+        rows.end("the last item")?;
+        Ok(count)
+    })
+}
+
 /// The line that begins a list, and the count that it begins with.
 fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Result<(Row<'a>, usize)> {
     let what = format!("number of {items}");

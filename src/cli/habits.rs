@@ -1,0 +1,390 @@
+//! What users of GDAL and LAStools type by habit, in the words of this program. `docs/from-gdal.md` is the table for them.
+
+use std::collections::VecDeque;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory;
+
+use super::args::{Cli, expand_switches, finite};
+use super::{contour, dem, hillshade, outputs, tin};
+use crate::error::{Error, Result};
+
+/// A word, and what it means.
+struct Habit {
+    typed: &'static [&'static str],
+    /// For these verbs; for all but `triangulate` if there is none.
+    verbs: &'static [&'static str],
+    meaning: Meaning,
+}
+
+/// What a word means. Named are our options.
+#[derive(Clone, Copy)]
+enum Meaning {
+    /// An option, with as many values as ours has.
+    Same(&'static str),
+    /// An option with one number; two are the same if they are equal.
+    Square(&'static str),
+    /// An option with four numbers, which may stand apart.
+    Corners(&'static str),
+    /// An option with all numbers that follow.
+    List(&'static str),
+    /// What follows is an input; a number is the value of an option.
+    Input(Option<&'static str>),
+    /// The name of a format, which the extension of the output has to confirm.
+    Format,
+    /// `NAME=VALUE` of how a GeoTIFF is written.
+    Creation,
+    /// What is so anyway.
+    Nothing,
+    /// Cannot be done; what can.
+    Refused(&'static str),
+}
+
+use Meaning::{Corners, Creation, Format, Input, List, Nothing, Refused, Same, Square};
+
+const RASTERS: &[&str] = &["dem", "hillshade"];
+const CONTOUR: &[&str] = &["contour"];
+const SHADE: &[&str] = &["hillshade"];
+
+/// The first that fits counts.
+#[rustfmt::skip]
+const HABITS: &[Habit] = &[
+    Habit { typed: &["--resolution", "-tr", "--tr", "-step", "--step"], verbs: RASTERS, meaning: Square("--resolution") },
+    Habit { typed: &["--te", "-te"], verbs: RASTERS, meaning: Corners("--te") },
+    Habit { typed: &["--bounds"], verbs: &[], meaning: Corners("--bounds") },
+    Habit { typed: &["--te", "-te", "-spat", "-projwin"], verbs: &[],
+        meaning: Refused("--bounds XMIN,YMIN,XMAX,YMAX clips the surface; --te is the extent of a raster") },
+    Habit { typed: &["-tr", "--tr", "-step"], verbs: &[], meaning: Refused("--resolution is for rasters: `dem`, `hillshade`") },
+    Habit { typed: &["-ts", "-outsize"], verbs: &[], meaning: Refused("--resolution LENGTH is the size of a cell") },
+    Habit { typed: &["-a_srs", "--a_srs", "-s_srs", "--s_srs", "--s-srs", "-s-srs", "-a-srs"], verbs: &[], meaning: Same("--a-srs") },
+    Habit { typed: &["-t_srs", "--t_srs", "-t-srs"], verbs: &[], meaning: Same("--t-srs") },
+    Habit { typed: &["-of", "--of", "-f"], verbs: &[], meaning: Format },
+    Habit { typed: &["-co", "--co"], verbs: &[], meaning: Creation },
+    Habit { typed: &["-overwrite"], verbs: &[], meaning: Same("--overwrite") },
+    Habit { typed: &["-quiet"], verbs: &[], meaning: Same("--quiet") },
+    Habit { typed: &["-cutline", "--cutline"], verbs: &[], meaning: Same("--boundary") },
+    Habit { typed: &["-i"], verbs: CONTOUR, meaning: Input(Some("--interval")) },
+    Habit { typed: &["-i", "--input"], verbs: &[], meaning: Input(None) },
+    Habit { typed: &["-keep_class", "--keep_class", "-keep_classification"], verbs: &[], meaning: List("--class") },
+    Habit { typed: &["-drop_class", "--drop_class"], verbs: &[], meaning: Refused("--class N,.. names the classes to use") },
+    Habit { typed: &["-parse", "-iparse"], verbs: &[], meaning: Same("--parse") },
+    Habit { typed: &["-kill"], verbs: &[], meaning: Same("--max-edge") },
+    Habit { typed: &["-fl"], verbs: CONTOUR, meaning: List("--levels") },
+    Habit { typed: &["-off"], verbs: CONTOUR, meaning: Same("--base") },
+    Habit { typed: &["-3d"], verbs: CONTOUR, meaning: Nothing },
+    Habit { typed: &["-a"], verbs: CONTOUR, meaning: Refused("the heights are always in the field ELEV") },
+    Habit { typed: &["-az"], verbs: SHADE, meaning: Same("--azimuth") },
+    Habit { typed: &["-alt"], verbs: SHADE, meaning: Same("--altitude") },
+    Habit { typed: &["-z"], verbs: SHADE, meaning: Same("--z-factor") },
+    Habit { typed: &["-a_nodata", "-dstnodata", "-nodata"], verbs: &[], meaning: Refused("nodata is -9999 in heights, 0 in shades") },
+];
+
+/// Programs, and the verb that does what they do.
+const VERBS: &[(&str, &str)] = &[
+    ("las2tin", "tin"),
+    ("las2dem", "dem"),
+    ("blast2dem", "dem"),
+    ("las2iso", "contour"),
+    ("gdal_contour", "contour"),
+    ("lasinfo", "info"),
+    ("gdalinfo", "info"),
+    ("ogrinfo", "info"),
+];
+
+/// What `gdaldem` makes of a raster, and this program does not.
+const OF_RASTERS: &[&str] = &["slope", "aspect", "color-relief", "roughness", "TRI", "TPI"];
+
+/// Formats as GDAL calls them, with the extensions of those that are written.
+const FORMATS: &[(&str, &[&str])] =
+    &[("GTiff", &["tif", "tiff"]), ("PNG", &["png"]), ("ESRI Shapefile", &["shp"]), ("GeoJSON", &["geojson", "json"])];
+
+/// How a GeoTIFF is written whatever is asked for.
+const AS_WRITTEN: &[&str] = &[
+    "TILED=YES",
+    "COMPRESS=DEFLATE",
+    "PREDICTOR=3",
+    "BLOCKXSIZE=256",
+    "BLOCKYSIZE=256",
+    "SPARSE_OK=TRUE",
+    "SPARSE_OK=YES",
+    "BIGTIFF=IF_NEEDED",
+    "BIGTIFF=IF_SAFER",
+    "NUM_THREADS=ALL_CPUS",
+];
+
+/// Says in our words what was typed, as far as it is certain what is meant; all else is left as it is.
+///
+/// # Errors
+/// If a habit cannot be followed, with what to type instead.
+pub(super) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
+    let mut args: Vec<OsString> = args.into_iter().collect();
+    let Some(at) = verb_position(&args) else { return Ok(args) };
+    let rest = args.split_off(at + 1);
+    let verb = verb(&args[at])?;
+    args[at] = verb.clone().into();
+    if verb == "triangulate" {
+        args.extend(expand_switches(rest)?);
+        return Ok(args);
+    }
+    let (words, formats) = translated(&verb, rest)?;
+    let (words, targets) = with_output(&verb, words)?;
+    formats.iter().try_for_each(|format| confirm(format, &targets))?;
+    args.extend(words);
+    Ok(args)
+}
+
+/// Where the verb stands, if anywhere.
+fn verb_position(args: &[OsString]) -> Option<usize> {
+    let is_value = |i: usize| i > 0 && args[i - 1] == "--threads";
+    let is_verb = |&i: &usize| !is_value(i) && !args[i].to_string_lossy().starts_with('-');
+    (1..args.len()).find(is_verb)
+}
+
+fn verb(typed: &OsStr) -> Result<String> {
+    let word = typed.to_string_lossy();
+    let is_ours = Cli::command().find_subcommand(&*word).is_some() || word == "help";
+    if let Some((_, ours)) = VERBS.iter().find(|(theirs, _)| *theirs == word) {
+        return Ok((*ours).to_owned());
+    }
+    if !is_ours && OF_RASTERS.contains(&&*word) {
+        return Err(Error::usage(format!("`{word}` is no verb")).cure(format!(
+            "write heights with `breakline dem ... -o dem.tif`, then `gdaldem {word} dem.tif OUT.tif`"
+        )));
+    }
+    if !is_ours && (Path::new(typed).extension().is_some() || Path::new(typed).exists()) {
+        return Err(Error::usage(format!("`{word}` stands in the place of a verb"))
+            .cure(format!("`breakline info {word}` tells what is in it; `breakline --help` lists the verbs")));
+    }
+    Ok(word.into_owned())
+}
+
+/// The words behind the verb in ours, and the formats that were named.
+fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<String>)> {
+    let mut rest: VecDeque<OsString> = words.into();
+    let (mut ours, mut formats) = (Vec::with_capacity(rest.len()), Vec::new());
+    while let Some(word) = rest.pop_front() {
+        if word == "--" {
+            ours.push(word);
+            break;
+        }
+        let text = word.to_string_lossy().into_owned();
+        let attached = text.split_once('=').filter(|_| text.starts_with("--"));
+        let name = attached.map_or(text.as_str(), |(name, _)| name);
+        let fits =
+            |habit: &&Habit| habit.typed.contains(&name) && (habit.verbs.is_empty() || habit.verbs.contains(&verb));
+        let Some(Habit { meaning, .. }) = HABITS.iter().find(fits) else {
+            ours.push(word);
+            continue;
+        };
+        if let Some((_, value)) = attached {
+            rest.push_front(value.into());
+        }
+        let mut value = || rest.pop_front().unwrap_or_default().to_string_lossy().into_owned();
+        match *meaning {
+            Same(option) => ours.push(option.into()),
+            Square(option) => match &numbers(&mut rest, 2)[..] {
+                [x, y] if finite(x) != finite(y) => {
+                    return Err(Error::usage(format!("{name} {x} {y}: cells are square"))
+                        .cure(format!("{option} {x}, or {option} {y}")));
+                }
+                [x, ..] => ours.extend([option.into(), x.into()]),
+                [] => ours.push(option.into()),
+            },
+            Corners(option) => {
+                ours.push(option.into());
+                match &numbers(&mut rest, 4)[..] {
+                    corners @ [_, _, _, _] => ours.push(corners.join(",").into()),
+                    fewer => fewer.iter().rev().for_each(|number| rest.push_front(number.into())),
+                }
+            }
+            List(option) => {
+                ours.push(option.into());
+                let values = numbers(&mut rest, usize::MAX);
+                if !values.is_empty() {
+                    ours.push(values.join(",").into());
+                }
+            }
+            Input(option) => {
+                let is_number =
+                    |word: &OsString| word.to_str().is_some_and(|t| finite(t).is_ok()) && !Path::new(word).exists();
+                ours.extend(option.filter(|_| rest.front().is_some_and(is_number)).map(OsString::from));
+            }
+            Format => formats.push(value()),
+            Creation => {
+                let value = value();
+                if !AS_WRITTEN.iter().any(|known| known.eq_ignore_ascii_case(&value)) {
+                    return Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
+                        "leave it out: a GeoTIFF is tiled, DEFLATE with predictor 3, BigTIFF where it has to be; \
+                         `gdal_translate -co` makes others of it",
+                    ));
+                }
+            }
+            Nothing => {}
+            Refused(cure) => {
+                return Err(Error::usage(format!("{name} is no option of `breakline {verb}`")).cure(cure));
+            }
+        }
+    }
+    ours.extend(rest);
+    Ok((ours, formats))
+}
+
+/// Takes the numbers that come next, up to so many.
+fn numbers(rest: &mut VecDeque<OsString>, most: usize) -> Vec<String> {
+    let is_number = |word: &&OsString| word.to_str().is_some_and(|text| finite(text).is_ok());
+    let count = rest.iter().take(most).take_while(is_number).count();
+    rest.drain(..count).map(|word| word.to_string_lossy().into_owned()).collect()
+}
+
+/// The words, and the outputs among them. Where none is named, the last file is one if it is of a format that the verb
+/// writes and is not there, as in `gdal_contour IN OUT`.
+fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<PathBuf>)> {
+    let command = Cli::command();
+    let options: Vec<&clap::Arg> = command
+        .find_subcommand(verb)
+        .into_iter()
+        .flat_map(clap::Command::get_arguments)
+        .chain(command.get_arguments())
+        .collect();
+    let takes_value = |is_it: &dyn Fn(&clap::Arg) -> bool| {
+        options.iter().any(|option| is_it(option) && option.get_action().takes_values())
+    };
+    let (mut files, mut targets) = (Vec::new(), Vec::new());
+    let mut i = 0;
+    while i < words.len() && words[i] != "--" {
+        let text = words[i].to_string_lossy();
+        if text == "-o" || text == "--output" {
+            targets.extend(words.get(i + 1).map(PathBuf::from));
+        } else if let Some(target) = text.strip_prefix("--output=").or_else(|| text.strip_prefix("-o")) {
+            targets.push(target.into());
+        }
+        let is_followed = match text.strip_prefix("--") {
+            Some(long) => takes_value(&|option| option.get_long() == Some(long)),
+            None => {
+                text.len() == 2
+                    && text.starts_with('-')
+                    && takes_value(&|option| option.get_short() == text.chars().nth(1))
+            }
+        };
+        if !text.starts_with('-') || text == "-" {
+            files.push(i);
+        }
+        i += if is_followed { 2 } else { 1 };
+    }
+    if let (true, [_, .., last]) = (targets.is_empty(), &files[..]) {
+        let path = PathBuf::from(&words[*last]);
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if written(verb).contains(&extension.as_str()) {
+            if path.exists() {
+                let name = path.display();
+                return Err(Error::usage("no output is named")
+                    .cure(format!("if it is {name}, which exists: -o {name} --overwrite")));
+            }
+            words.insert(*last, "-o".into());
+            targets.push(path);
+        }
+    }
+    Ok((words, targets))
+}
+
+/// The extensions of what a verb writes.
+fn written(verb: &str) -> Vec<&'static str> {
+    match verb {
+        "tin" => outputs::extensions(tin::FORMATS),
+        "dem" => outputs::extensions(dem::FORMATS),
+        "contour" => outputs::extensions(contour::FORMATS),
+        "hillshade" => outputs::extensions(hillshade::FORMATS),
+        _ => Vec::new(),
+    }
+}
+
+/// Makes sure that the outputs are of a format.
+fn confirm(format: &str, targets: &[PathBuf]) -> Result<()> {
+    let known = FORMATS.iter().find(|(name, _)| name.eq_ignore_ascii_case(format));
+    let extensions = known.map_or(&[][..], |(_, extensions)| extensions);
+    let is_of = |target: &PathBuf| {
+        extensions.iter().any(|known| target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(known)))
+    };
+    if !targets.is_empty() && targets.iter().all(is_of) {
+        return Ok(());
+    }
+    Err(Error::usage(format!("-of {format}: the format is that of the extension of the output"))
+        .cure("leave -of out, and name the output with the extension, as -o dem.tif"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(line: &str) -> Result<String> {
+        let words = understood(line.split(' ').map(OsString::from))?;
+        Ok(words.iter().map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" "))
+    }
+
+    #[test]
+    fn what_is_certain_is_done() {
+        for (typed, expected) in [
+            ("b dem --te -10 -2.5 1e3 4 a.laz -o b.tif", "b dem --te -10,-2.5,1e3,4 a.laz -o b.tif"),
+            ("b dem a.laz --bounds 1 2 3 4 -te 5 6 7 8", "b dem a.laz --bounds 1,2,3,4 --te 5,6,7,8"),
+            ("b dem --te 1,2,3,4 5 6 7 8", "b dem --te 1,2,3,4 5 6 7 8"),
+            ("b dem --te 1 2 3 a.laz", "b dem --te 1 2 3 a.laz"),
+            ("b dem --te=1,2,3,4 --class 1 2 3 4", "b dem --te 1,2,3,4 --class 1 2 3 4"),
+            ("b dem -- --te 1 2 3 4", "b dem -- --te 1 2 3 4"),
+            ("b dem -tr 0.5 0.50 a.laz -o b.tif", "b dem --resolution 0.5 a.laz -o b.tif"),
+            ("b dem --tr=2 --resolution 0.5 0.5 a.laz", "b dem --resolution 2 --resolution 0.5 a.laz"),
+            (
+                "b --threads 2 las2dem -i a.laz -step 2 -keep_class 2 8 -o b.tif",
+                "b --threads 2 dem a.laz --resolution 2 --class 2,8 -o b.tif",
+            ),
+            (
+                "b dem -of gtiff -co TILED=YES -a_srs EPSG:25832 -overwrite a.laz -o b.TIF",
+                "b dem --a-srs EPSG:25832 --overwrite a.laz -o b.TIF",
+            ),
+            ("b dem a.laz --s-srs EPSG:1 b.tif", "b dem a.laz --a-srs EPSG:1 -o b.tif"),
+            ("b dem a.laz --class 2 b.tif -q", "b dem a.laz --class 2 -o b.tif -q"),
+            (
+                "b gdal_contour -i 10 -off 5 -3d nowhere.tif out.shp",
+                "b contour --interval 10 --base 5 nowhere.tif -o out.shp",
+            ),
+            ("b contour -fl 10 -2 -i in.tif -o c.shp", "b contour --levels 10,-2 in.tif -o c.shp"),
+            (
+                "b hillshade -az 300 -alt 30 -z 2 a.tif s.png",
+                "b hillshade --azimuth 300 --altitude 30 --z-factor 2 a.tif -o s.png",
+            ),
+            // Outputs of another verb, outputs that are named, inputs alone.
+            ("b tin a.xyz b.tif", "b tin a.xyz b.tif"),
+            ("b tin a.xyz b.ply -oc.ply", "b tin a.xyz b.ply -oc.ply"),
+            ("b contour a.shp", "b contour a.shp"),
+            ("b info a.laz b.tif", "b info a.laz b.tif"),
+            ("b triangulate -a1e-7 x.poly", "b triangulate --max-area=1e-7 x.poly"),
+            ("b tim", "b tim"),
+            ("b", "b"),
+        ] {
+            assert_eq!(words(typed).unwrap(), expected, "{typed}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_certain_is_answered_with_our_words() {
+        for (typed, message, cure) in [
+            ("b dem -tr 1 2 a.laz -o b.tif", "-tr 1 2: cells are square", "--resolution 1, or --resolution 2"),
+            ("b tin -te 1 2 3 4 a.laz", "-te is no option of `breakline tin`", "--bounds"),
+            ("b dem -of AAIGrid a.laz -o b.tif", "-of AAIGrid: the format is that", "-o dem.tif"),
+            ("b dem -of PNG a.laz -o b.tif", "-of PNG: the format is that", "-o dem.tif"),
+            (
+                "b dem -co COMPRESS=LZW a.laz -o b.tif",
+                "-co COMPRESS=LZW: there are no creation options",
+                "gdal_translate",
+            ),
+            ("b slope dem.tif", "`slope` is no verb", "gdaldem slope dem.tif"),
+            ("b a.laz -o b.tif", "`a.laz` stands in the place of a verb", "breakline info a.laz"),
+            ("b dem -drop_class 7 a.laz", "-drop_class is no option", "--class N"),
+            ("b triangulate -tr 1 1 x.poly", "`-tr`: of Triangle's switches", "two dashes"),
+        ] {
+            let error = words(typed).unwrap_err();
+            assert!(error.to_string().starts_with(message), "{error}");
+            assert!(error.cure_text().unwrap_or_default().contains(cure), "{error:?}");
+        }
+    }
+}
