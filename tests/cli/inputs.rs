@@ -186,3 +186,39 @@ fn escape_sequences_in_files_do_not_reach_the_terminal() {
     let files: serde_json::Value = serde_json::from_str(&runs[2].stdout).unwrap();
     assert_eq!(files[0]["file"], name.as_str());
 }
+
+/// A file of half a megabyte may be one block of half a gigabyte: its values are not held twice.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_huge_block_is_held_once() {
+    let (side, run_length) = (4096_u32, 128);
+    // PackBits: each pair of bytes repeats a zero 128 times.
+    let data = [0x81, 0].repeat((side * side / run_length) as usize);
+    let tags = [
+        (256, side),
+        (257, side),
+        (258, 8),
+        (259, 32773),
+        (262, 1),
+        (273, 8 + 2 + 12 * 9 + 4),
+        (277, 1),
+        (278, side),
+        (279, data.len() as u32),
+    ];
+    let mut file = b"II*\0\x08\0\0\0\x09\0".to_vec();
+    for (tag, value) in tags {
+        file.extend(u16::to_le_bytes(tag));
+        file.extend([4, 0, 1, 0, 0, 0]);
+        file.extend(value.to_le_bytes());
+    }
+    file.extend([0; 4]);
+    file.extend(data);
+    let folder = folder_with(&[]);
+    std::fs::write(folder.path().join("bomb.tif"), file).unwrap();
+    let run = run_in(&folder, &["contour", "bomb.tif", "--levels", "5", "-o", "c.geojson"]);
+    run.works(&["no contour crosses", "4096 x 4096 cells"]);
+    // 8 bytes a cell, and one as it is stored: 151 MB.
+    let peak = run.stderr.split("peak memory ").nth(1).unwrap().split('.').next().unwrap();
+    let peak: u32 = peak.trim_end().trim_end_matches(" MB").parse().unwrap();
+    assert!((134..230).contains(&peak), "{}", run.stderr);
+}

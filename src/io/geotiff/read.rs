@@ -358,7 +358,7 @@ impl GeoTiffReader {
             block::values(&self.layout, &self.nodata, &self.bytes, piece, overlap(piece, window), take)
         };
         /// Bytes of values that may wait to be copied.
-        const WAITING: u64 = 1 << 28;
+        const WAITING: u64 = 1 << 27;
         let piece_bytes = self.layout.piece_bytes().max(8 * self.layout.piece_cells()).max(1);
         let batch = (WAITING / piece_bytes).min(4 * rayon::current_num_threads() as u64);
         if batch < 2 {
