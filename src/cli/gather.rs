@@ -33,7 +33,7 @@ const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 
 /// What the verbs work on.
 pub(super) enum Ground {
-    Surface(Gathered),
+    Surface(Box<Gathered>),
     Raster(Grid),
 }
 
@@ -59,12 +59,14 @@ pub(super) struct Gathered {
 /// If anything cannot be read or is refused.
 pub(super) fn ground(plan: &mut SurfacePlan, outputs: &OutputSet, talk: &Talk) -> Result<Ground> {
     match &mut plan.from {
-        From::Points(points) => build(points, &plan.wish, outputs, talk).map(Ground::Surface),
+        From::Points(points) => {
+            build(points, &plan.wish, outputs, talk).map(|gathered| Ground::Surface(Box::new(gathered)))
+        }
         From::Mesh(path) => {
             let mesh = open::mesh(path)?;
             let crs = one_system(path, mesh.crs(), &plan.wish, talk)?;
             let surface = Box::new(Relabeled { surface: mesh, crs });
-            Ok(Ground::Surface(Gathered { surface, made: Made::default() }))
+            Ok(Ground::Surface(Box::new(Gathered { surface, made: Made::default() })))
         }
         From::Raster(path) => {
             let (mut grid, warnings) = open::raster(path)?;
@@ -96,7 +98,7 @@ pub(super) fn surface(plan: &mut SurfacePlan, outputs: &OutputSet, talk: &Talk) 
             .cure("`contour` and `hillshade` take rasters"));
     }
     match ground(plan, outputs, talk)? {
-        Ground::Surface(gathered) => Ok(gathered),
+        Ground::Surface(gathered) => Ok(*gathered),
         Ground::Raster(_) => Err(Error::usage("points or a .ply are needed")),
     }
 }
