@@ -164,9 +164,11 @@ fn is_beyond<K: Kernel>(ab: Segment, cd: Segment, place: Place) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
     use super::super::builder::cross;
     use super::*;
-    use crate::kernel::{Adaptive, Wide};
+    use crate::kernel::{Adaptive, Predicate, Range, Wide};
 
     fn sorted(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
         pairs.sort_unstable();
@@ -206,5 +208,32 @@ mod tests {
             |i: u32| [f64::from(i) * 0.31, std::f64::consts::PI + f64::from(i) * 0.31].map(|angle| at(angle, 9.0));
         let segments: Vec<Segment> = (0..10).map(sheaf).collect();
         assert_eq!(crossing_pairs::<Adaptive>(&segments).len(), 45);
+    }
+
+    static ASKED: AtomicUsize = AtomicUsize::new(0);
+
+    #[derive(Debug, Clone, Copy, Default)]
+    struct Counting;
+
+    impl Kernel for Counting {
+        const RANGE: Range = Adaptive::RANGE;
+
+        fn sign<P: Predicate>(predicate: &P) -> Sign {
+            ASKED.fetch_add(1, Relaxed);
+            Adaptive::sign(predicate)
+        }
+    }
+
+    /// Of 2 000 segments side by side all boxes overlap: two million pairs.
+    #[test]
+    fn side_by_side_few_are_compared() {
+        let side_by_side = |i: u32| [[0.1 * f64::from(i), 0.0], [0.1 * f64::from(i) + 1000.0, 1000.0]];
+        let mut segments: Vec<Segment> = (0..2000).map(side_by_side).collect();
+        assert!(crossing_pairs::<Counting>(&segments).is_empty());
+        assert!(ASKED.swap(0, Relaxed) < 60 * 2000);
+        // One over all of them.
+        segments.push([[-1.0, 499.0], [1300.0, 501.0]]);
+        assert_eq!(crossing_pairs::<Counting>(&segments).len(), 2000);
+        assert!(ASKED.swap(0, Relaxed) < 120 * 2000);
     }
 }

@@ -327,14 +327,46 @@ pub(crate) fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Resul
 
 /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the vertex opposite), if
 /// there is such an edge and dimension 2.
+///
+/// Time proportional to the degree of `a`; where that is high, to the smaller of both degrees.
 pub(crate) fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<Option<Edge>, T::Error> {
-    for cell in Star::new(complex, a, 2)? {
-        let (cell, i) = cell?;
-        if complex.vertex(cell, ccw(i))? == b {
-            return Ok(Some((cell, cw(i))));
+    let mut around_a = Star::new(complex, a, 2)?;
+    let is_edge = |(cell, i)| Ok((complex.vertex(cell, ccw(i))? == b).then_some((cell, cw(i))));
+    for cell in around_a.by_ref().take(HIGH_DEGREE) {
+        if let Some(edge) = is_edge(cell?)? {
+            return Ok(Some(edge));
+        }
+    }
+    if around_a.is_over {
+        return Ok(None);
+    }
+    for (at_a, at_b) in around_a.zip(Star::new(complex, b, 2)?) {
+        let (cell, i) = at_b?;
+        let from_b = (complex.vertex(cell, cw(i))? == a).then_some((cell, ccw(i)));
+        if let Some(edge) = is_edge(at_a?)?.or(from_b) {
+            return Ok(Some(edge));
         }
     }
     Ok(None)
+}
+
+/// Beyond this, the degree of a vertex is compared with that of another one.
+const HIGH_DEGREE: usize = 64;
+
+/// Whether the degree of a vertex is high, and higher than that of another one. Time proportional to the smaller degree.
+pub(crate) fn is_busier<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<bool, T::Error> {
+    let mut around_a = Star::new(complex, a, 2)?;
+    if around_a.by_ref().take(HIGH_DEGREE).count() < HIGH_DEGREE {
+        return Ok(false);
+    }
+    let mut around_b = Star::new(complex, b, 2)?.skip(HIGH_DEGREE);
+    while let Some(at_a) = around_a.next() {
+        at_a?;
+        if around_b.next().is_none() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// The face with these three vertices, in any order, one of which may be the infinite one.

@@ -106,10 +106,18 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
     }
 
     /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the
-    /// vertex opposite), if there is such an edge and dimension 2. Time proportional to the degree of `a`.
+    /// vertex opposite), if there is such an edge and dimension 2. Time proportional to the degree of `a`; where that is
+    /// high, to the smaller of both degrees.
     pub fn edge(&self, a: VertexId, b: VertexId) -> Option<(CellId, usize)> {
         let Ok(edge) = complex::edge(self, a, b);
         edge
+    }
+
+    /// Whether the degree of a vertex is high, and higher than that of another one. Time proportional to the smaller
+    /// degree.
+    pub(crate) fn is_busier(&self, a: VertexId, b: VertexId) -> bool {
+        let Ok(is_busier) = complex::is_busier(self, a, b);
+        is_busier
     }
 
     /// Whether two vertices, one of which may be the infinite one, are the ends of an edge. Time proportional to the

@@ -178,7 +178,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// is added at once.
     ///
     /// # Complexity
-    /// Quadratic in the number of triangles that one piece crosses (in practice a few), and a vertex
+    /// Expected linear in the number of triangles that one piece crosses, and a vertex
     /// insertion for each constraint that it crosses.
     pub(crate) fn insert_segment(&mut self, a: VertexId, b: VertexId) {
         if self.dimension() < 2 {

@@ -245,3 +245,101 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+    use super::super::segment::{Met, Scratch};
+    use super::super::{ConstrainedDelaunay, OnCrossing};
+    use super::*;
+    use crate::geometry::Plane;
+    use crate::kernel::{Adaptive, Kernel, Predicate, Range};
+
+    type Points = Vec<[f64; 2]>;
+    type Segments = Vec<[u32; 2]>;
+
+    fn build<K: Kernel>(points: &Points, segments: &Segments) -> ConstrainedDelaunay<Plane<K>> {
+        ConstrainedDelaunay::from_lines(Plane::default(), points, segments, OnCrossing::Split).unwrap().0
+    }
+
+    /// Compares both ways to triangulate the sides of the corridors between some vertices; returns how many there were.
+    fn compare(t: &ConstrainedDelaunay<Plane>, dice: &mut Dice, pairs: usize) -> usize {
+        let mut scratch = Scratch::default();
+        let vertices: Vec<VertexId> = t.tds().vertices().collect();
+        let mut compared = 0;
+        for _ in 0..pairs {
+            let [a, b] = [0; 2].map(|_| vertices[dice.below(vertices.len())]);
+            if a == b || !matches!(t.inner.trace(a, b, &mut scratch), Met::Vertex(_)) {
+                continue;
+            }
+            scratch.right.reverse();
+            for side in [&scratch.left, &scratch.right].into_iter().filter(|side| side.chain.len() > 3) {
+                let (mut naive, mut random) = (Vec::new(), Vec::new());
+                t.inner.wrap(side, Triangulation::is_in_circle, &mut naive);
+                assert_eq!(t.inner.triangulate_long(side, &mut random), Some(()));
+                assert_eq!(random, naive);
+                compared += 1;
+            }
+        }
+        compared
+    }
+
+    /// On grids, where circles are tied, with lines whose ends stand into the corridors.
+    #[test]
+    fn the_triangles_are_those_of_gift_wrapping() {
+        let mut dice = Dice::default();
+        let mut compared = 0;
+        for round in 0..80 {
+            let (width, height) = (12 + 6 * (round % 8), 2 + round % 9);
+            let mut place = || [dice.below(width) as f64, dice.below(height) as f64];
+            let points: Points = (0..10 * (1 + round)).map(|_| place()).collect();
+            let walls = (round % 4) as u32 * 10;
+            // From near to near: spikes.
+            let segments: Segments = (0..walls.min(points.len() as u32 / 2)).map(|i| [2 * i, 2 * i + 1]).collect();
+            let few: Segments = segments.into_iter().filter(|_| dice.below(3) == 0).collect();
+            compared += compare(&build(&points, &few), &mut dice, 60);
+        }
+        let comb = |i: u32| {
+            let (x, low) = (f64::from(i), 1.0 + dice.below(20) as f64);
+            [[x, low], [x + dice.below(40) as f64 - 20.0, low + 30.0]]
+        };
+        let mut points: Points = (0..300).flat_map(comb).collect();
+        let segments: Segments = (0..300).map(|i| [2 * i, 2 * i + 1]).collect();
+        points.extend([[-9.0, 0.0], [309.0, 0.5]]);
+        compared += compare(&build(&points, &segments), &mut dice, 2000);
+        assert!(compared > 1000, "{compared} sides");
+    }
+
+    static ASKED: AtomicU64 = AtomicU64::new(0);
+
+    #[derive(Debug, Clone, Copy, Default)]
+    struct Counting;
+
+    impl Kernel for Counting {
+        const RANGE: Range = Adaptive::RANGE;
+
+        fn sign<P: Predicate>(predicate: &P) -> Sign {
+            ASKED.fetch_add(1, Relaxed);
+            Adaptive::sign(predicate)
+        }
+    }
+
+    /// How many triangles are met, and predicates asked, by long segments side by side: 700 times as many for 1000
+    /// segments, if each met all of those beside it.
+    #[test]
+    fn bundles_take_time_near_linear() {
+        let counts = [500, 1000].map(|count: u32| {
+            let ends = |i: u32| [[0.1 * f64::from(i), 0.0], [0.1 * f64::from(i) + 1000.0, 1000.0]];
+            let points: Points = (0..count).flat_map(ends).collect();
+            let segments: Segments = (0..count).map(|i| [2 * i, 2 * i + 1]).collect();
+            ASKED.store(0, Relaxed);
+            let t = build::<Counting>(&points, &segments);
+            assert_eq!(t.constrained_edges().count(), count as usize);
+            [t.scratch.met as f64, ASKED.load(Relaxed) as f64]
+        });
+        for (few, many) in counts[0].into_iter().zip(counts[1]) {
+            assert!(many < 2.6 * few && many < 1e6, "{counts:?}");
+        }
+    }
+}

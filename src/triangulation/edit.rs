@@ -4,6 +4,7 @@
 //! therefore arranges the new set of lines, compares, and carries out the difference: what comes out is what building
 //! anew would have given, with other numbers.
 
+use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
@@ -14,7 +15,9 @@ use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
+use super::bulk::spatial_order;
 use super::lines::{segments_of, undirected};
+use super::locate::Dice;
 use super::network::points_added;
 use super::{ConstrainedDelaunay, LineId, Refused};
 
@@ -147,35 +150,46 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// The position, in all lines taken together, of the first point that is refused; nothing has changed then.
     ///
     /// # Complexity
-    /// All lines are arranged anew, O(n log n) for n segments of all of them, so that many lines are better added in
-    /// one call; the triangulation changes only where they do.
+    /// All lines are arranged anew, as by [`from_lines`](Self::from_lines), so that many lines are better added in one
+    /// call; the triangulation changes only where they do.
     pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, Refused> {
-        let points = || lines.iter().flat_map(|line| line.as_ref());
-        if let Some(bad) = points().position(|p| self.inner.admit(p).is_err()) {
+        let points: Vec<G::Point> = lines.iter().flat_map(|line| line.as_ref()).copied().collect();
+        if let Some(bad) = points.iter().position(|p| self.inner.admit(p).is_err()) {
             return Err(Refused::Coordinate(bad));
         }
+        let vertices = self.insert_lent(&points);
+        for (&vertex, &p) in vertices.iter().zip(&points) {
+            if self.claim(vertex) {
+                self.lent.insert(vertex);
+                self.replace_point(vertex, p);
+            }
+        }
         let mut ids = Vec::with_capacity(lines.len());
+        let mut rest = &vertices[..];
         for line in lines {
-            let mut vertices = Vec::with_capacity(line.as_ref().len());
-            for &p in line.as_ref() {
-                let before = self.vertex_count();
-                let vertex = self.insert_near(p, None);
-                if self.vertex_count() > before {
-                    self.lent.insert(vertex);
-                }
-                vertices.push(vertex);
-            }
-            for (&vertex, &p) in vertices.iter().zip(line.as_ref()) {
-                if self.claim(vertex) {
-                    self.lent.insert(vertex);
-                    self.replace_point(vertex, p);
-                }
-            }
+            let (here, others) = rest.split_at(line.as_ref().len());
+            rest = others;
             ids.push(LineId::new(self.lines.given.len()));
-            self.lines.given.push(Some(vertices[..].into()));
+            self.lines.given.push(Some(here.into()));
         }
         self.rearrange();
         Ok(ids)
+    }
+
+    /// Inserts points whose vertices, where they are new, go with the lines that need them; returns the vertices.
+    fn insert_lent(&mut self, points: &[G::Point]) -> Vec<VertexId> {
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        let mut near = None;
+        for i in order_of_insertion(&self.inner.geometry, points) {
+            let before = self.vertex_count();
+            let vertex = self.insert_near(points[i as usize], near);
+            if self.vertex_count() > before {
+                self.lent.insert(vertex);
+            }
+            vertices[i as usize] = vertex;
+            near = self.tds().cell_of(vertex);
+        }
+        vertices
     }
 
     /// Removes a line. Edges that other lines share stay constrained; vertices that were added for it, or came with it,
@@ -321,14 +335,17 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
 
         // Phase 4: new sites and pieces are put in.
         let added = points_added(&self.inner.geometry, arrangement, segments, |i| *self.point(given[i as usize]));
-        for (site, p) in sites[given.len()..].iter_mut().zip(added) {
+        let mut near = None;
+        for i in order_of_insertion(&self.inner.geometry, &added) {
+            let (site, p) = (&mut sites[given.len() + i as usize], added[i as usize]);
             match *site {
                 Some(vertex) => self.replace_point(vertex, p),
                 None => {
                     let count = self.vertex_count();
-                    let vertex = self.insert_near(p, None);
+                    let vertex = self.insert_near(p, near);
                     self.crossings.extend((self.vertex_count() > count).then_some(vertex));
                     *site = Some(vertex);
+                    near = self.tds().cell_of(vertex);
                 }
             }
         }
@@ -343,6 +360,28 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     pub(super) fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
         self.inner.geometry.plan(self.point(vertex))
     }
+}
+
+/// Returns the order in which points are inserted one by one: a few as they come; many in random
+/// rounds, each about twice as large as the one before and in spatial order. Then O(n log n) triangles are expected to
+/// come and go, wherever the points lie (Amenta, Choi and Rote 2003).
+fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::Point]) -> Vec<u32> {
+    const FEW: usize = 256;
+    if points.len() <= FEW {
+        return (0..points.len() as u32).collect();
+    }
+    let Ok(mut order) = spatial_order(points.len(), |i| geometry.coordinates(&points[i])) else {
+        return (0..points.len() as u32).collect(); // more than can be numbered
+    };
+    let mut dice = Dice::default();
+    let mut rounds = vec![0; points.len()];
+    // Of points on one site, which come in a row, the first stays the first.
+    for here in order.chunk_by(|&i, &j| geometry.compare(&points[i as usize], &points[j as usize]).is_eq()) {
+        let round = (1 << 16 | dice.below(1 << 16)).trailing_zeros();
+        here.iter().for_each(|&i| rounds[i as usize] = round);
+    }
+    order.sort_by_key(|&i| Reverse(rounds[i as usize]));
+    order
 }
 
 /// Equal places have equal keys: coordinates of vertices have one zero only.

@@ -23,8 +23,8 @@ use super::{ConstrainedDelaunay, Triangulation, Walls};
 pub(super) struct Scratch {
     /// Triangles that the segment crosses, in order.
     corridor: Vec<CellId>,
-    left: Side,
-    right: Side,
+    pub(super) left: Side,
+    pub(super) right: Side,
     /// Parts of a side that are still to be triangulated.
     parts: Vec<Part>,
     /// How a side is triangulated.
@@ -78,7 +78,7 @@ impl Side {
         self.chain[self.chain.len() - 1]
     }
 
-    fn reverse(&mut self) {
+    pub(super) fn reverse(&mut self) {
         self.chain.reverse();
         self.across.reverse();
         self.edges.reverse();
@@ -161,6 +161,8 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
                 pieces.extend([(between, b), (a, between)]);
                 continue;
             }
+            // At an end where many edges meet, it takes long to find the way.
+            let [a, b] = if self.tds().is_busier(a, b) { [b, a] } else { [a, b] };
             match self.inner.trace(a, b, &mut self.scratch) {
                 Met::Vertex(v) => {
                     self.inner.force_traced(a, v, &mut self.scratch, Triangulation::triangulate);
