@@ -25,7 +25,7 @@ pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
         }
         From::Points(_) | From::Raster(_) => {
             let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
-            let flaws = open::flaws(gathered.surface.as_ref());
+            let flaws = open::flaws(gathered.surface.as_ref(), talk);
             (gathered, flaws)
         }
     };

@@ -36,8 +36,8 @@ pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
     for target in &outputs.targets {
         let (path, target) = (&target.path, target.within(&outputs.set));
         let written = match &ground {
-            Ground::Surface(gathered) => open::contours_of_surface(target, gathered.surface.as_ref(), &levels),
-            Ground::Raster(grid) => open::contours_of_grid(target, grid, &levels),
+            Ground::Surface(gathered) => open::contours_of_surface(target, gathered.surface.as_ref(), &levels, talk),
+            Ground::Raster(grid) => open::contours_of_grid(target, grid, &levels, talk),
         };
         drawn = written?;
         drawn.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));

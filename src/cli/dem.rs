@@ -1,7 +1,8 @@
 use super::args::DemArgs;
 use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
-use super::raster::{self, Watched};
+use super::progress::Watched;
+use super::raster;
 use super::talk::Talk;
 use super::units::Units;
 use super::{Exit, gather, inputs, open};
@@ -23,7 +24,7 @@ pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let dem = open::dem(surface, frame)?;
     let mut written = None;
     for target in &outputs.targets {
-        let watched = Watched::new(dem.as_ref(), "writing cells", talk);
+        let watched = Watched::cells(dem.as_ref(), "writing cells", talk);
         written = Some(open::write_heights(target.within(&outputs.set), &watched)?);
     }
     gathered.made.tell(surface, talk);

@@ -12,6 +12,7 @@ use super::memory;
 use super::open;
 use super::plan::{From, PointPlan, SurfacePlan};
 use super::point_files::PointFiles;
+use super::progress::Size;
 use super::relabeled::Relabeled;
 use super::roads::Roads;
 use super::summary::{Made, seconds};
@@ -63,13 +64,13 @@ pub(super) fn ground(plan: &mut SurfacePlan, outputs: &OutputSet, talk: &Talk) -
             build(points, &plan.wish, outputs, talk).map(|gathered| Ground::Surface(Box::new(gathered)))
         }
         From::Mesh(path) => {
-            let mesh = open::mesh(path)?;
+            let mesh = open::mesh(path, talk)?;
             let crs = one_system(path, mesh.crs(), &plan.wish, talk)?;
             let surface = Box::new(Relabeled { surface: mesh, crs });
             Ok(Ground::Surface(Box::new(Gathered { surface, made: Made::default() })))
         }
         From::Raster(path) => {
-            let (mut grid, warnings) = open::raster(path)?;
+            let (mut grid, warnings) = open::raster(path, talk)?;
             warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
             grid.crs = one_system(path, grid.crs.as_ref(), &plan.wish, talk)?;
             Ok(Ground::Raster(grid))
@@ -82,7 +83,7 @@ pub(super) fn ground(plan: &mut SurfacePlan, outputs: &OutputSet, talk: &Talk) -
 /// # Errors
 /// If it cannot be read.
 pub(super) fn mesh_with_flaws(path: &Path, wish: &Wish, talk: &Talk) -> Result<(Gathered, Vec<String>)> {
-    let (mesh, flaws) = open::mesh_with_flaws(path)?;
+    let (mesh, flaws) = open::mesh_with_flaws(path, talk)?;
     let crs = one_system(path, mesh.crs(), wish, talk)?;
     Ok((Gathered { surface: Box::new(Relabeled { surface: mesh, crs }), made: Made::default() }, flaws))
 }
@@ -172,10 +173,10 @@ fn build(plan: &mut PointPlan, wish: &Wish, outputs: &OutputSet, talk: &Talk) ->
         let mut builder = builder.clone();
         builder.window = reach.window().map(|read| Window { read, all: report.extent });
         builder.add_owned_points(points);
-        let bar = talk.spinner("triangulating");
+        let progress = talk.progress("triangulating", Size::Uncounted);
         let start = Instant::now();
         let tin = builder.build_named(&|line| names.tell(line));
-        bar.finish_and_clear();
+        drop(progress);
         talk.detail(format_args!("triangulated in {}", seconds(start.elapsed())));
         match tin {
             Ok(tin) if tin.report().uncertain == 0 => break (tin, report),

@@ -3,7 +3,8 @@ use super::gather::Ground;
 use super::open::{self, ShadeFormat};
 use super::outputs::{self, Format, Outputs};
 use super::plan::SurfacePlan;
-use super::raster::{self, Watched};
+use super::progress::Watched;
+use super::raster;
 use super::summary::tell_place;
 use super::talk::Talk;
 use super::units::number;
@@ -56,7 +57,7 @@ fn cell_bytes(format: &ShadeFormat) -> u64 {
 fn shade(heights: &dyn BlockSource, args: &HillshadeArgs, outputs: &Outputs<ShadeFormat>, talk: &Talk) -> Result<()> {
     let shade = Hillshade::new(heights, light(args, heights.crs(), talk))?;
     for target in &outputs.targets {
-        let watched = Watched::new(&shade, "shading cells", talk);
+        let watched = Watched::cells(&shade, "shading cells", talk);
         open::write_shade(target.within(&outputs.set), target.kind, &watched)?;
     }
     Ok(())

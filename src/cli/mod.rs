@@ -26,6 +26,7 @@ mod outputs;
 mod overlaps;
 mod plan;
 mod point_files;
+mod progress;
 mod raster;
 mod relabeled;
 mod rings;

@@ -19,6 +19,8 @@ use crate::terrain::{self, Dem, GridSurface, Levels, SurfaceFlaw};
 
 use super::memory;
 use super::overlaps::overlaps;
+use super::progress::{Size, Watched};
+use super::talk::Talk;
 
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -189,7 +191,8 @@ impl Raster {
 }
 
 /// A raster, whole, and what is to be told about it.
-pub(super) fn raster(path: &Path) -> Result<(Grid, Vec<String>)> {
+pub(super) fn raster(path: &Path, talk: &Talk) -> Result<(Grid, Vec<String>)> {
+    let _reading = talk.progress("reading cells", Size::Uncounted);
     match Raster::open(path)? {
         Raster::GeoTiff(reader) => {
             require_memory(reader.frame()).map_err(|e| e.in_file(path))?;
@@ -215,16 +218,20 @@ pub(super) fn raster_place(path: &Path) -> Result<(Frame, Option<Crs>)> {
 }
 
 /// A mesh that is a surface.
-pub(super) fn mesh(path: &Path) -> Result<Mesh> {
+pub(super) fn mesh(path: &Path, talk: &Talk) -> Result<Mesh> {
     memory::require_for_mesh(path)?;
+    let _reading = talk.progress("reading triangles", Size::Uncounted);
     mesh::read(path)
 }
 
 /// The triangles of a mesh, whether they are a surface or not, linked as far as they can be; and what is wrong with
 /// them, one line each. Whether they are Delaunay is asked of formats that keep lines.
-pub(super) fn mesh_with_flaws(path: &Path) -> Result<(Mesh, Vec<String>)> {
+pub(super) fn mesh_with_flaws(path: &Path, talk: &Talk) -> Result<(Mesh, Vec<String>)> {
     let find = if keeps_lines(path) { terrain::surface_flaws } else { terrain::shape_flaws };
-    flaws_by(find, mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
+    let reading = talk.progress("reading triangles", Size::Uncounted);
+    let triangles = mesh::read_triangles(path)?;
+    drop(reading);
+    flaws_by(find, triangles, talk).map_err(|e| e.in_file(path))
 }
 
 /// Whether a mesh of this name can tell which edges are constrained.
@@ -238,14 +245,20 @@ pub(super) fn linked_mesh(path: &Path) -> Result<(Mesh, Vec<LinkFlaw>)> {
 }
 
 /// The first that is wrong with triangles at hand.
-pub(super) fn first_flaw(triangles: Triangles) -> Result<Option<String>> {
-    Ok(flaws_by(terrain::surface_flaws, triangles)?.1.into_iter().next())
+pub(super) fn first_flaw(triangles: Triangles, talk: &Talk) -> Result<Option<String>> {
+    Ok(flaws_by(terrain::surface_flaws, triangles, talk)?.1.into_iter().next())
 }
 
-fn flaws_by(find: fn(&dyn Surface) -> Vec<SurfaceFlaw>, triangles: Triangles) -> Result<(Mesh, Vec<String>)> {
+fn flaws_by(
+    find: fn(&dyn Surface) -> Vec<SurfaceFlaw>,
+    triangles: Triangles,
+    talk: &Talk,
+) -> Result<(Mesh, Vec<String>)> {
     let (mesh, links) = Mesh::link(triangles)?;
     let mut texts: Vec<String> = links.iter().map(|flaw| located(flaw, &flaw.vertices(&mesh), &mesh)).collect();
-    texts.extend(flaws_beside(&links, &find(&mesh), &mesh));
+    let watched = checked(&mesh, talk);
+    texts.extend(flaws_beside(&links, &find(&watched), &watched));
+    drop(watched);
     Ok((mesh, texts))
 }
 
@@ -288,8 +301,9 @@ pub(super) fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
 }
 
 /// Writes a mesh, format by extension.
-pub(super) fn write_mesh(target: Destination, surface: &dyn Surface) -> Result<MeshSummary> {
-    mesh::write(target, surface)
+pub(super) fn write_mesh(target: Destination, surface: &dyn Surface, talk: &Talk) -> Result<MeshSummary> {
+    // Numbered, then listed.
+    mesh::write(target, &Watched::faces(surface, 2, "writing faces", talk))
 }
 
 /// Heights of a surface at the centers of cells.
@@ -298,8 +312,14 @@ pub(super) fn dem<'a>(surface: &'a dyn Surface, frame: Frame) -> Result<Box<dyn 
 }
 
 /// What is wrong with a surface, one line each.
-pub(super) fn flaws(surface: &dyn Surface) -> Vec<String> {
-    flaws_beside(&[], &terrain::surface_flaws(surface), surface)
+pub(super) fn flaws(surface: &dyn Surface, talk: &Talk) -> Vec<String> {
+    let watched = checked(surface, talk);
+    flaws_beside(&[], &terrain::surface_flaws(&watched), &watched)
+}
+
+/// The surface, for a check that asks for its faces once for each of five laws, and for overlaps.
+fn checked<'a>(surface: &'a dyn Surface, talk: &Talk) -> Watched<'a, dyn Surface + 'a> {
+    Watched::faces(surface, 6, "checking faces", talk)
 }
 
 /// What was found, and overlaps, where these can be told: of faces that are linked and turn the right way.
@@ -346,13 +366,33 @@ pub(super) fn contours_of_surface(
     target: Destination,
     surface: &dyn Surface,
     levels: &Levels,
+    talk: &Talk,
 ) -> Result<ContourSummary> {
-    let mut lines = terrain::contours(surface, levels)?;
-    contours::foresee(target, lines.piece_count() as u64)?;
-    contours::write(target, &mut lines, surface.crs())
+    write_contours(target, surface, levels, talk)
 }
 
 /// Draws contours between the centers of cells.
-pub(super) fn contours_of_grid(target: Destination, grid: &Grid, levels: &Levels) -> Result<ContourSummary> {
-    contours_of_surface(target, &GridSurface::new(grid)?, levels)
+pub(super) fn contours_of_grid(
+    target: Destination,
+    grid: &Grid,
+    levels: &Levels,
+    talk: &Talk,
+) -> Result<ContourSummary> {
+    write_contours(target, &GridSurface::new(grid)?, levels, talk)
+}
+
+fn write_contours<S: Surface + ?Sized>(
+    target: Destination,
+    surface: &S,
+    levels: &Levels,
+    talk: &Talk,
+) -> Result<ContourSummary> {
+    let looking = talk.progress("looking for contours", Size::Uncounted);
+    let lines = terrain::contours(surface, levels)?;
+    drop(looking);
+    let count = lines.piece_count() as u64;
+    contours::foresee(target, count)?;
+    let drawing = talk.progress("drawing pieces of contours", Size::Items(count));
+    let mut lines = lines.inspect(|line| drawing.add(line.points.len().saturating_sub(1) as u64));
+    contours::write(target, &mut lines, surface.crs())
 }

@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use crate::data::Surface;
+use crate::data::{self, Surface};
 use crate::geometry::Plane;
 use crate::kernel::Wide;
 use crate::tds::{CellId, VertexId, ccw, cw};
@@ -47,8 +47,7 @@ impl std::fmt::Display for Overlap {
 /// # Complexity
 /// O(n log n) in the edges without a neighbor.
 pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
-    let faces = (0..surface.face_count() as u32).filter_map(|face| Some((face, surface.face(face)?)));
-    let sides = faces.flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
+    let sides = data::corners(surface).flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
     let border: Vec<(u32, [u32; 3], usize)> =
         sides.filter(|&(face, _, i)| surface.neighbor(face, i).is_none()).collect();
     let place = |vertex: u32| {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::progress::Size;
 use super::roads::Roads;
 use super::systems::{Role, Stated};
 use super::talk::Talk;
@@ -150,7 +151,7 @@ impl PointFiles {
             talk.warning(format_args!("memory may not suffice: if all points are used they take {excess}"));
         }
         let mut asked = 0;
-        let bar = talk.bar("reading points", length);
+        let progress = talk.progress("reading points", length.map_or(Size::Unknown, Size::Items));
         let mut batch = PointBatch::default();
         let mut extents = Vec::new();
         for (i, road) in (0..self.files.len()).zip(by_file) {
@@ -172,7 +173,7 @@ impl PointFiles {
                     memory::require_for_points(asked)?;
                 }
                 count += batch.len() as u64;
-                bar.inc(batch.len() as u64);
+                progress.add(batch.len() as u64);
                 if self.files.len() > 1 {
                     (0..batch.len()).for_each(|i| extent.add([batch.x[i], batch.y[i], batch.z[i]]));
                 }
@@ -181,7 +182,7 @@ impl PointFiles {
             talk.detail(format_args!("{}: {count} points read", path.display()));
             source.warnings().iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
         }
-        bar.finish_and_clear();
+        drop(progress);
         if self.files.len() > 1 {
             let why = match selection.report().classes {
                 Some(classes) => {

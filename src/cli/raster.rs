@@ -1,6 +1,4 @@
-//! Size and place of a raster, the room for it, and the bar that shows how much of it is done.
-
-use indicatif::ProgressBar;
+//! Size and place of a raster, and the room for it.
 
 use super::args::FrameArgs;
 use super::gather::Gathered;
@@ -9,7 +7,7 @@ use super::outputs::Outputs;
 use super::talk::Talk;
 use super::units::{Units, bytes, neat, number};
 use crate::crs::Crs;
-use crate::data::{self, BlockSource, Bounds, Frame, Grid, Surface, Window};
+use crate::data::{self, Bounds, Frame, Grid, Surface};
 use crate::error::{Error, Result};
 
 /// Cells are this large unless something else is said.
@@ -63,7 +61,7 @@ fn cell_count(frame: &Frame) -> f64 {
 
 /// How many cells the surface covers, about; those outside of the frame count, too.
 fn cells_on(surface: &dyn Surface, frame: &Frame) -> f64 {
-    let doubled = data::corners(surface).map(|corners| {
+    let doubled = data::corners(surface).map(|(_, corners)| {
         let [[ax, ay, _], [bx, by, _], [cx, cy, _]] = corners.map(|vertex| surface.position(vertex));
         (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     });
@@ -157,42 +155,6 @@ pub(super) fn extent_of(grid: &Grid) -> Bounds {
     let [x, y, _] = bounds.min;
     grid.values.iter().filter(|z| !z.is_nan()).for_each(|&z| bounds.add([x, y, z]));
     bounds
-}
-
-/// A source of blocks that tells a progress bar what it has filled.
-pub(super) struct Watched<'a> {
-    pub(super) source: &'a dyn BlockSource,
-    pub(super) bar: ProgressBar,
-}
-
-impl<'a> Watched<'a> {
-    pub(super) fn new(source: &'a dyn BlockSource, what: &'static str, talk: &Talk) -> Self {
-        let frame = source.frame();
-        let cells = frame.width as u64 * frame.height as u64;
-        Watched { source, bar: talk.bar(what, Some(cells)) }
-    }
-}
-
-impl Drop for Watched<'_> {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-impl BlockSource for Watched<'_> {
-    fn frame(&self) -> Frame {
-        self.source.frame()
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        self.source.crs()
-    }
-
-    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
-        self.source.fill(window, out)?;
-        self.bar.inc(window.width as u64 * window.height as u64);
-        Ok(())
-    }
 }
 
 /// `400 x 300 cells of 1 m`

@@ -4,12 +4,12 @@ use std::collections::HashSet;
 use std::fmt::Display;
 use std::io::Write;
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
 
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressDrawTarget};
 
 use super::args::TalkArgs;
 use super::escape;
+use super::progress::{Progress, Size};
 use crate::error::Error;
 
 /// How much is said.
@@ -77,30 +77,9 @@ impl Talk {
         }
     }
 
-    /// A bar for work of known or unknown size, seen on a terminal only.
-    pub(super) fn bar(&self, what: &'static str, length: Option<u64>) -> ProgressBar {
-        match length {
-            Some(length) => {
-                let template = "{msg} [{bar:30}] {human_pos} of {human_len}, {eta} left";
-                self.show(ProgressBar::new(length), what, template)
-            }
-            None => self.show(ProgressBar::no_length(), what, "{msg} {spinner} {human_pos}"),
-        }
-    }
-
-    /// The same for work that is not counted.
-    pub(super) fn spinner(&self, what: &'static str) -> ProgressBar {
-        self.show(ProgressBar::no_length(), what, "{msg} {spinner} {elapsed}")
-    }
-
-    fn show(&self, bar: ProgressBar, what: &'static str, template: &str) -> ProgressBar {
-        let bar = self.bars.add(bar);
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        bar.set_message(what);
-        bar.enable_steady_tick(Duration::from_millis(200));
-        bar
+    /// Shows work on a terminal until what is returned is dropped.
+    pub(super) fn progress(&self, what: &'static str, size: Size) -> Progress {
+        Progress::new(&self.bars, what, size)
     }
 
     fn once(&self, text: String) {

@@ -20,7 +20,7 @@ pub(super) fn run(args: &TinArgs, talk: &Talk) -> Result<Exit> {
     let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
     let surface = gathered.surface.as_ref();
     for target in &outputs.targets {
-        let written = open::write_mesh(target.within(&outputs.set), surface)?;
+        let written = open::write_mesh(target.within(&outputs.set), surface, talk)?;
         outputs::tell_lost(&target.path, written.lost_edges, ".ply keeps them", talk);
         if let Some(([x, y, z], beside)) = written.origin {
             let (mesh, beside) = (target.path.display(), beside.display());

@@ -78,11 +78,11 @@ pub trait Surface: Sync {
         Some(self.face(face)?.map(|v| self.position(v)))
     }
 
-    /// Appends the corners of the faces with these numbers, in order, unused ones left out.
+    /// Appends the faces with these numbers, in order, each with its corners, unused ones left out.
     ///
     /// `PERF:` this and [`faces_in`](Self::faces_in) are compiled for each kind of surface: one virtual call for many faces.
-    fn corners_in(&self, numbers: Range<u32>, corners: &mut Vec<[u32; 3]>) {
-        corners.extend(numbers.filter_map(|face| self.face(face)));
+    fn corners_in(&self, numbers: Range<u32>, faces: &mut Vec<(u32, [u32; 3])>) {
+        faces.extend(numbers.filter_map(|face| Some((face, self.face(face)?))));
     }
 
     /// Appends the faces with these numbers, in order, unused ones left out.
@@ -111,10 +111,10 @@ pub trait Surface: Sync {
 /// Faces that are asked for at a time: they stay in a core's cache.
 const BATCH: u32 = 1 << 11;
 
-/// The corners of all faces of a surface, in order of the faces' numbers.
+/// All faces of a surface with their corners, in order of their numbers.
 ///
 /// `PERF:` by `for_each` and the like, a loop over each batch; `next` asks each time whether the batch is over.
-pub(crate) fn corners<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = [u32; 3]> + '_ {
+pub(crate) fn corners<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
     batches(surface, S::corners_in)
 }
 

@@ -382,7 +382,7 @@ mod tests {
         let surface: &dyn Surface = &tin;
         let numbers: Vec<u32> = (0..surface.face_count() as u32).filter(|&face| surface.face(face).is_some()).collect();
         assert!(numbers.len() > 4000 && numbers.len() < surface.face_count());
-        assert!(data::corners(surface).eq(numbers.iter().map(|&face| surface.face(face).unwrap())));
+        assert!(data::corners(surface).eq(numbers.iter().map(|&face| (face, surface.face(face).unwrap()))));
         assert!(data::faces(surface).map(|face| face.number).eq(numbers.iter().copied()));
         let mut sides = 0;
         for face in data::faces(surface) {

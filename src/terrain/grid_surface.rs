@@ -35,10 +35,12 @@ enum Quad {
 
 impl Quad {
     fn of(corners: [f64; 4]) -> Self {
-        let mut missing = (0..4).filter(|&i| !corners[i].is_finite());
-        match (missing.next(), missing.next()) {
-            (None, _) => Quad::Whole,
-            (Some(i), None) => Quad::Without(i),
+        match corners.map(f64::is_finite) {
+            [true, true, true, true] => Quad::Whole,
+            [false, true, true, true] => Quad::Without(0),
+            [true, false, true, true] => Quad::Without(1),
+            [true, true, false, true] => Quad::Without(2),
+            [true, true, true, false] => Quad::Without(3),
             _ => Quad::Nothing,
         }
     }
@@ -104,24 +106,29 @@ impl<'a> GridSurface<'a> {
         is_wanted: &dyn Fn(f64, f64) -> bool,
         faces: &mut Vec<(u32, [f64; 3])>,
     ) {
-        let corners = self.corners.map(|[right, down]| cells[down][right]);
+        let corner = |i: usize| {
+            let [right, down] = self.corners[i % 4];
+            cells[down][right]
+        };
         let mut add = |which: usize, [a, b, c]: [f64; 3]| {
             let face = first + which as u32;
             if numbers.contains(&face) && is_wanted(a.min(b).min(c), a.max(b).max(c)) {
                 faces.push((face, [a, b, c]));
             }
         };
-        match Quad::of(corners) {
-            Quad::Whole => {
-                let [a, b, c, d] = corners;
-                let center = center(cells);
-                let (low, high) = (a.min(b).min(c.min(d)).min(center), a.max(b).max(c.max(d)).max(center));
-                if is_wanted(low, high) {
-                    (0..4).for_each(|i| add(i, [corners[i], corners[(i + 1) % 4], center]));
-                }
+        let [[a, b], [c, d]] = cells;
+        if [a, b, c, d].map(f64::is_finite) == [true; 4] {
+            let center = center(cells);
+            // `PERF:` of numbers, two instructions fewer than `f64::min`.
+            let lower = |a: f64, b: f64| if a < b { a } else { b };
+            let higher = |a: f64, b: f64| if a > b { a } else { b };
+            let low = lower(lower(lower(a, b), lower(c, d)), center);
+            let high = higher(higher(higher(a, b), higher(c, d)), center);
+            if is_wanted(low, high) {
+                (0..4).for_each(|i| add(i, [corner(i), corner(i + 1), center]));
             }
-            Quad::Without(i) => add(0, [1, 2, 3].map(|step| corners[(i + step) % 4])),
-            Quad::Nothing => {}
+        } else if let Quad::Without(i) = Quad::of([0, 1, 2, 3].map(corner)) {
+            add(0, [1, 2, 3].map(|step| corner(i + step)));
         }
     }
 

@@ -1,4 +1,4 @@
-use crate::data::Surface;
+use crate::data::{self, Surface};
 use crate::geometry::{Geometry, Terrain};
 use crate::kernel::Wide;
 use crate::num::Sign;
@@ -69,17 +69,13 @@ pub fn shape_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     checks.iter().map(|check| check(surface)).find(|flaws| !flaws.is_empty()).unwrap_or_default()
 }
 
-fn faces(surface: &dyn Surface) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
-    (0..surface.face_count() as u32).filter_map(|face| Some((face, surface.face(face)?)))
-}
-
 fn bad_vertices(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     let geometry = Terrain::<Wide>::default();
     let bad = |v: u32| {
         let p = surface.position(v);
         !geometry.admits(&p) || !p[2].is_finite()
     };
-    let mut flaws: Vec<u32> = faces(surface).flat_map(|(_, corners)| corners).filter(|&v| bad(v)).collect();
+    let mut flaws: Vec<u32> = data::corners(surface).flat_map(|(_, corners)| corners).filter(|&v| bad(v)).collect();
     flaws.sort_unstable();
     flaws.dedup();
     flaws.into_iter().map(SurfaceFlaw::Vertex).collect()
@@ -100,7 +96,7 @@ fn mirror(surface: &dyn Surface, face: u32, corners: [u32; 3], i: usize) -> Opti
 }
 
 fn bad_links(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    faces(surface)
+    data::corners(surface)
         .flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)))
         .filter(|&(face, corners, i)| {
             surface.neighbor(face, i).is_some() && mirror(surface, face, corners, i).is_none()
@@ -115,7 +111,10 @@ fn bad_orientations(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
         let points = corners.map(|v| surface.position(v));
         geometry.orientation(points.each_ref()) != Sign::Positive
     };
-    faces(surface).filter(|&(_, corners)| turned(corners)).map(|(face, _)| SurfaceFlaw::Orientation(face)).collect()
+    data::corners(surface)
+        .filter(|&(_, corners)| turned(corners))
+        .map(|(face, _)| SurfaceFlaw::Orientation(face))
+        .collect()
 }
 
 /// A border that passes a vertex twice is allowed (two pieces of a clipped surface may touch there), a
@@ -124,7 +123,7 @@ fn bad_fans(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     let mut degree = vec![0u32; surface.vertex_count()];
     let mut border = vec![false; surface.vertex_count()];
     let mut start = vec![None; surface.vertex_count()];
-    for (face, corners) in faces(surface) {
+    for (face, corners) in data::corners(surface) {
         for (i, v) in corners.into_iter().enumerate() {
             degree[v as usize] += 1;
             start[v as usize] = Some(face);
@@ -150,7 +149,7 @@ fn bad_fans(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
 fn bad_circles(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     let geometry = Terrain::<Wide>::default();
     let mut flaws = Vec::new();
-    for (face, corners) in faces(surface) {
+    for (face, corners) in data::corners(surface) {
         let points = corners.map(|v| surface.position(v));
         for i in (0..3).filter(|&i| !surface.is_constrained(face, i)) {
             let Some((beside, j)) = mirror(surface, face, corners, i) else { continue };

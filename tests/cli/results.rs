@@ -231,7 +231,11 @@ fn summaries_of_rasters_and_meshes_tell_what_they_hold() {
     let dem = fixture("dem.tif");
     let place = "x 688000 .. 688400, y 5261000 .. 5261300, z 796.669 .. 883.985\nCRS         EPSG:25832";
     run_in(&folder, &["hillshade", &dem, "-o", "s.png"]).works(&["200 x 150 cells of 2 m", place]);
-    run_in(&folder, &["contour", &dem, "--interval", "10", "-o", "c.shp"]).works(&[place]);
+    let run = run_in(&folder, &["contour", &dem, "--interval", "1", "--threads", "1", "-o", "c.shp"]);
+    run.works(&[place, "304 lines (43 closed) from 797 m to 883 m"]);
+    assert!(!run.stderr.contains("drawing"), "progress is for terminals: {}", run.stderr);
+    run_in(&folder, &["contour", &dem, "--interval", "1", "--threads", "3", "-o", "d.shp"]).works(&[]);
+    assert!(bytes(&folder, "c.shp") == bytes(&folder, "d.shp"), "contours depend on the number of threads");
     let lines = fixture("breaklines.shp");
     run_in(&folder, &["tin", &fixture("valley.laz"), "--breaklines", &lines, "-o", "t.ply"]).works(&[]);
     run_in(&folder, &["check", "t.ply"]).works(&["breaklines  1334 edges", "vertices    60492"]);

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use self::sheet::Sheet;
 use super::args::InfoArgs;
 use super::open::{self, Content};
+use super::progress::Size;
 use super::talk::Talk;
 use super::{Exit, escape, inputs, print};
 use crate::error::Result;
@@ -77,12 +78,16 @@ fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
 }
 
 fn sheet(path: &Path, options: Options, talk: &Talk) -> Result<Sheet> {
+    let read = |sheet: fn(&Path) -> Result<Sheet>| {
+        let _reading = talk.progress("reading", Size::Uncounted);
+        sheet(path)
+    };
     match open::content(path) {
         Content::Points => points::sheet(path, options, talk),
-        Content::Layer => layer::sheet(path),
-        Content::Raster => raster::sheet(path),
-        Content::Mesh => mesh::sheet(path),
-        Content::Picture => picture::sheet(path),
-        Content::Plane => plane::sheet(path),
+        Content::Layer => read(layer::sheet),
+        Content::Raster => read(raster::sheet),
+        Content::Mesh => read(mesh::sheet),
+        Content::Picture => read(picture::sheet),
+        Content::Plane => read(plane::sheet),
     }
 }

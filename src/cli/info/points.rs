@@ -3,6 +3,7 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::Sheet;
+use crate::cli::progress::Size;
 use crate::cli::talk::Talk;
 use crate::cli::units::counted;
 use crate::cli::{classes, open};
@@ -56,7 +57,7 @@ pub(super) fn sheet(path: &Path, options: Options, talk: &Talk) -> Result<Sheet>
         returns: [0; 256],
         flags: [0; FLAGS.len()],
     };
-    let bar = talk.bar("reading points", info.count);
+    let progress = talk.progress("reading points", info.count.map_or(Size::Unknown, Size::Items));
     let mut batch = PointBatch::default();
     loop {
         source.read(&mut batch)?;
@@ -64,9 +65,9 @@ pub(super) fn sheet(path: &Path, options: Options, talk: &Talk) -> Result<Sheet>
             break;
         }
         census.add(&batch);
-        bar.inc(batch.len() as u64);
+        progress.add(batch.len() as u64);
     }
-    bar.finish_and_clear();
+    drop(progress);
     let mut sheet = tell(&info, &census);
     sheet.warnings.extend(source.warnings().iter().cloned());
     Ok(sheet)

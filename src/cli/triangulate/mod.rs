@@ -10,6 +10,7 @@ use self::build::{Built, Place};
 use self::eaten::Outside;
 use super::args::{KernelArg, OnCrossingArg, TriangulateArgs};
 use super::outputs::{self, Format, Target};
+use super::progress::Size;
 use super::talk::Talk;
 use super::{Exit, inputs, open};
 use crate::data::Triangles;
@@ -62,7 +63,9 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     let mut read = vec![path.clone()];
     read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
     let outputs = outputs::resolve(&args.output, formats, &read)?;
+    let reading = talk.progress("reading", Size::Uncounted);
     let graph = open::line_graph(path)?;
+    drop(reading);
     graph.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
     if !args.region_areas
         && graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute))
@@ -73,7 +76,7 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
         ));
     }
 
-    let built = build(&graph, args, path)?;
+    let built = build(&graph, args, path, talk)?;
     if args.max_added.is_none() && built.shortfall.contains(&Shortfall::Limit) {
         return Err(unfinished(&built).in_file(path));
     }
@@ -104,7 +107,8 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
 }
 
 /// Triangulates with the arithmetic that was asked for.
-fn build(graph: &LineGraph, args: &TriangulateArgs, path: &Path) -> Result<Built> {
+fn build(graph: &LineGraph, args: &TriangulateArgs, path: &Path, talk: &Talk) -> Result<Built> {
+    let triangulating = talk.progress("triangulating", Size::Uncounted);
     let built = match args.kernel {
         KernelArg::Adaptive if is_ordinary(graph) => build_with::<Adaptive>(graph, args),
         KernelArg::Adaptive => build_with::<Wide>(graph, args),
@@ -116,8 +120,9 @@ fn build(graph: &LineGraph, args: &TriangulateArgs, path: &Path) -> Result<Built
         })?,
     };
     let built = built.map_err(|refused| explained(refused, graph, path))?;
+    drop(triangulating);
     if args.kernel == KernelArg::Fast {
-        refuse_flaws(&built).map_err(|e| e.in_file(path))?;
+        refuse_flaws(&built, talk).map_err(|e| e.in_file(path))?;
     }
     Ok(built)
 }
@@ -194,7 +199,7 @@ fn explained(refused: Refused, graph: &LineGraph, path: &Path) -> Error {
 }
 
 /// What is not exact may come out wrong.
-fn refuse_flaws(built: &Built) -> Result<()> {
+fn refuse_flaws(built: &Built, talk: &Talk) -> Result<()> {
     let triangles = Triangles {
         vertices: built.vertices.iter().map(|&[x, y]| [x, y, 0.0]).collect(),
         faces: built.faces.iter().map(|face| face.corners).collect(),
@@ -205,7 +210,7 @@ fn refuse_flaws(built: &Built) -> Result<()> {
             .collect(),
         ..Triangles::default()
     };
-    match open::first_flaw(triangles)? {
+    match open::first_flaw(triangles, talk)? {
         None => Ok(()),
         Some(flaw) => Err(Error::limit(format!("plain floating point gave a wrong triangulation ({flaw})"))
             .cure("leave out --kernel fast")),
@@ -250,11 +255,12 @@ fn write(
     if !meshes.is_empty() {
         let mesh = open::flat_mesh(triangulated)?;
         for target in meshes {
-            let written = open::write_mesh(target.within(outputs), &mesh)?;
+            let written = open::write_mesh(target.within(outputs), &mesh, talk)?;
             outputs::tell_lost(&target.path, written.lost_edges, ".ply and .poly keep them", talk);
         }
     }
     let files: Vec<Destination> = files.iter().map(|file| file.within(outputs)).collect();
+    let _writing = talk.progress("writing", Size::Uncounted);
     open::write_triangulated(&files, triangulated)
 }
 

@@ -60,7 +60,7 @@ impl<'a> Listing<'a> {
     }
 
     fn corners(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        data::corners(self.surface)
+        data::corners(self.surface).map(|(_, corners)| corners)
     }
 }
 

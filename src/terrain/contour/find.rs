@@ -31,15 +31,16 @@ fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// Returns about how many pieces each level has: those along edges count where they may be.
+/// Returns how many pieces each level has.
 pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec<usize> {
     let mut counts = vec![0; index.levels().len()];
     for waiting in stretches(surface).chunks(WAITING) {
         let of_stretch = |numbers: &Range<u32>| {
             let mut crossed = Vec::new();
-            faces_at(surface, index, 0..index.levels().len(), numbers.clone(), |_, heights, levels| {
+            faces_at(surface, index, 0..index.levels().len(), numbers.clone(), |face, heights, levels| {
                 let Crossed { across, along } = Crossed::of(heights, levels, index);
-                crossed.push(across.start..across.end + usize::from(along));
+                let has_shore = along && Cut { surface, level: index.levels()[across.end] }.shore(face).is_some();
+                crossed.push(across.start..across.end + usize::from(has_shore));
             });
             crossed
         };
