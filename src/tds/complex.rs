@@ -360,7 +360,7 @@ pub(crate) fn is_busier<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) ->
         return Ok(false);
     }
     let mut around_b = Star::new(complex, b, 2)?.skip(HIGH_DEGREE);
-    while let Some(at_a) = around_a.next() {
+    for at_a in around_a {
         at_a?;
         if around_b.next().is_none() {
             return Ok(true);

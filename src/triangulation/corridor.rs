@@ -259,7 +259,7 @@ mod tests {
     type Points = Vec<[f64; 2]>;
     type Segments = Vec<[u32; 2]>;
 
-    fn build<K: Kernel>(points: &Points, segments: &Segments) -> ConstrainedDelaunay<Plane<K>> {
+    fn build<K: Kernel>(points: &[[f64; 2]], segments: &[[u32; 2]]) -> ConstrainedDelaunay<Plane<K>> {
         ConstrainedDelaunay::from_lines(Plane::default(), points, segments, OnCrossing::Split).unwrap().0
     }
 
