@@ -48,11 +48,17 @@ fn finish_range(faces: &mut [Links<3>], cells: &mut [CellId], first: usize) -> F
     let mut found = Found { has_finite: false, infinite: None, elsewhere: Vec::new() };
     for (i, links) in faces.iter_mut().enumerate() {
         let cell = CellId::new(2 * first + i);
-        for vertex in links.vertices {
-            match cells.get_mut(vertex.index().wrapping_sub(first)) {
-                Some(place) => *place = cell,
-                None if vertex == VertexId::INFINITE => found.infinite = Some(cell),
-                None => found.elsewhere.push((vertex, cell)),
+        let places = links.vertices.map(|vertex| vertex.index().wrapping_sub(first));
+        // `PERF:` one branch for nearly all faces instead of three.
+        if places[0].max(places[1]).max(places[2]) < cells.len() {
+            places.into_iter().for_each(|place| cells[place] = cell);
+        } else {
+            for (vertex, place) in links.vertices.into_iter().zip(places) {
+                match cells.get_mut(place) {
+                    Some(place) => *place = cell,
+                    None if vertex == VertexId::INFINITE => found.infinite = Some(cell),
+                    None => found.elsewhere.push((vertex, cell)),
+                }
             }
         }
         found.has_finite |= links.vertices[2] != VertexId::INFINITE;
