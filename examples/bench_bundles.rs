@@ -27,6 +27,7 @@ use breakline::geometry::Plane;
 use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
 
 type Line = Vec<[f64; 2]>;
+type Build = fn(&[Line]) -> ConstrainedDelaunay<Plane>;
 
 /// Pseudo-random numbers.
 struct Random(u64);
@@ -123,8 +124,7 @@ fn main() -> ExitCode {
         eprintln!("usage: bench_bundles [--shape parallel|varied|fan|rings|crossed|random] [--check] [COUNT...]");
         return ExitCode::FAILURE;
     }
-    let roads: [(&str, fn(&[Line]) -> ConstrainedDelaunay<Plane>); 2] =
-        [("from_lines", from_lines), ("insert_lines", insert_lines)];
+    let roads: [(&str, Build); 2] = [("from_lines", from_lines), ("insert_lines", insert_lines)];
     for (road, build) in roads {
         for is_shuffled in [false, true] {
             let mut times = Vec::new();
