@@ -23,8 +23,11 @@ fn field(n: u32) -> Mesh {
     Mesh::new(vertices, faces, &breakline, None).unwrap()
 }
 
-/// Each face by the places of its corners, the kinds of its edges and whether it is a piece, in an order of its own.
-fn content(surface: &impl Surface) -> Vec<([([u64; 3], EdgeKind); 3], bool)> {
+/// The coordinates of a corner, and the kind of the edge that starts at it.
+type Side = ([u64; 3], EdgeKind);
+
+/// Each face by the coordinates of its corners, the kinds of its edges and whether it is a piece, in an order of its own.
+fn content(surface: &impl Surface) -> Vec<([Side; 3], bool)> {
     let mut faces: Vec<_> = (0..surface.face_count() as u32)
         .filter_map(|f| {
             let corners = surface.face(f)?;

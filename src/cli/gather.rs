@@ -35,7 +35,7 @@ const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 /// What the verbs work on.
 pub(super) enum Ground {
     Surface(Box<Gathered>),
-    Raster(Grid),
+    Raster(Box<Grid>),
 }
 
 impl Ground {
@@ -73,7 +73,7 @@ pub(super) fn ground(plan: &mut SurfacePlan, outputs: &OutputSet, talk: &Talk) -
             let (mut grid, warnings) = open::raster(path, talk)?;
             warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
             grid.crs = one_system(path, grid.crs.as_ref(), &plan.wish, talk)?;
-            Ok(Ground::Raster(grid))
+            Ok(Ground::Raster(Box::new(grid)))
         }
     }
 }

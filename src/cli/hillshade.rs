@@ -37,7 +37,7 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
         Ground::Raster(grid) => {
             refuse_frame(&args.frame)?;
             raster::announce(&outputs, cell_bytes, &grid.frame, (grid.crs.as_ref(), None), talk)?;
-            shade(&grid, args, &outputs, talk)?;
+            shade(grid.as_ref(), args, &outputs, talk)?;
             tell_place(raster::extent_of(&grid), grid.crs.as_ref(), talk);
         }
     }
