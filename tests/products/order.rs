@@ -105,7 +105,8 @@ fn bytes_depend_on_the_set_alone() {
         let names = expected.keys().map(String::as_str).collect::<Vec<_>>().join(" ");
         assert_eq!(
             names,
-            "c.cpg c.dbf c.geojson c.prj c.shp c.shx d.tif h.pgw h.png h.tif t.obj t.ply t.stl t.stl.origin.txt"
+            "c.cpg c.dbf c.geojson c.prj c.shp c.shx d.tif h.pgw h.png h.png.aux.xml h.tif \
+             t.obj t.ply t.stl t.stl.origin.txt"
         );
         let again = |inputs: &[(&str, String)], lines: &Lines, more: &[&str], what: &str| {
             let found = products(inputs, lines, &[&options[..], more].concat());
