@@ -269,7 +269,7 @@ mod with_gdal {
     #[test]
     #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
     fn real_rasters_are_as_the_facts_say() {
-        let raster = open_raster(&crate::common::shared("dem/gdal/n43.dt0")).unwrap();
+        let raster = open_raster(crate::common::shared("dem/gdal/n43.dt0")).unwrap();
         let grid = raster.read_grid().unwrap();
         assert_eq!((grid.frame.width, grid.frame.height), (121, 121));
         let range = grid.values.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
