@@ -314,6 +314,25 @@ fn no_prefix_and_no_flipped_byte_does_harm() {
 }
 
 #[test]
+fn properties_of_other_programs_are_no_kinds_of_edges() {
+    let folder = folder();
+    let read = |properties: &str, values: &str| {
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+             element face 1\nproperty list uchar int vertex_indices\n{properties}end_header\n\
+             0 0 0 1 0 0 0 1 0 3 0 1 2 {values}"
+        );
+        mesh::read(&written(folder.path(), "other.ply", text.as_bytes())).unwrap()
+    };
+    let constrained = |mesh: &Mesh| (0..3).filter(|&i| mesh.is_constrained(0, i)).count();
+    let all =
+        |kind: &str| ["edge1", "edge2", "edge3", "piece"].map(|name| format!("property {kind} {name}\n")).concat();
+    assert_eq!(constrained(&read(&all("uchar"), "1 1 1 0")), 3);
+    assert_eq!(constrained(&read(&all("float"), "1 1 1 0")), 0);
+    assert_eq!(constrained(&read("property uchar edge1\n", "7")), 0);
+}
+
+#[test]
 fn errors_name_the_value_and_the_place() {
     let folder = folder();
     let message = |name: &str, bytes: &[u8]| {
@@ -353,7 +372,10 @@ fn errors_name_the_value_and_the_place() {
         ),
         (ply("18446744073709551616", "1", square), "line 3: '18446744073709551616' is no count"),
         (
-            ply("4", "1", &format!("{square} 3 0 1 2 7 0 0")).replace("end_header", "property uchar edge1\nend_header"),
+            ply("4", "1", &format!("{square} 3 0 1 2 7 0 0 0")).replace(
+                "end_header",
+                "property uchar edge1\nproperty uchar edge2\nproperty uchar edge3\nproperty uchar piece\nend_header",
+            ),
             "face 0: edge1 is 7, expected 0 (plain), 1 (breakline), 2 (clip line) or 3 (rim)",
         ),
         ("solid x\n".into(), "the file does not begin with 'ply'"),

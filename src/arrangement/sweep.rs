@@ -78,7 +78,7 @@ impl<K: Kernel> Sweep<K> {
         }
     }
 
-    /// All ends in the order of the sweep; takes down the stops.
+    /// All ends in the order of the sweep. Records the stops: their places, and at which one each segment ends.
     fn ends(&mut self) -> Vec<End> {
         let lines = (0..).zip(&self.segments).filter(|(_, [a, b])| a != b);
         let mut ends: Vec<End> = lines
@@ -134,7 +134,7 @@ impl<K: Kernel> Sweep<K> {
         }
     }
 
-    /// Puts down neighbors that cross beyond where they have become neighbors.
+    /// Records two neighbors as due to be exchanged, if they cross further on.
     fn look_at(&mut self, lower: Option<u32>, upper: Option<u32>, stop: u32) {
         let (Some(lower), Some(upper)) = (lower, upper) else { return };
         let [a, b] = self.segments[lower as usize];
@@ -235,5 +235,28 @@ mod tests {
         segments.push([[-1.0, 499.0], [1300.0, 501.0]]);
         assert_eq!(crossing_pairs::<Counting>(&segments).len(), 2000);
         assert!(ASKED.swap(0, Relaxed) < 120 * 2000);
+    }
+
+    /// Where many boxes overlap in vain, the pairs found before are not all; what other threads find meanwhile does not
+    /// make them so.
+    #[test]
+    fn whether_boxes_were_asked_first_does_not_show() {
+        let diagonal = |x: f64, y: f64, size: f64| [[x, y], [x + size, y + size]];
+        // In the first bundle nothing crosses, in the second one pair in fifty: as much as is enough to go on.
+        let mut segments: Vec<Segment> = (0..600).map(|i| diagonal(0.1 * f64::from(i), 0.0, 1000.0)).collect();
+        for i in 0..1200 {
+            let [from, to] = diagonal(5000.0 + 0.1 * f64::from(i), 0.0, 1000.0);
+            let across = if i % 10 == 0 { 12.0 } else { 0.0 };
+            segments.push([from, [to[0] + across, to[1]]]);
+        }
+        let expected = sorted(crossing_pairs::<Adaptive>(&segments));
+        let places: Vec<Place> = segments.as_flattened().to_vec();
+        let ends: Vec<[u32; 2]> = (0..segments.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().expect("threads");
+        for _ in 0..50 {
+            let arranged =
+                pool.install(|| super::super::Arrangement::new(places.len(), |i| places[i as usize], &ends, 0.0));
+            assert!(arranged.crossings().iter().map(|crossing| crossing.segments).eq(expected.iter().copied()));
+        }
     }
 }

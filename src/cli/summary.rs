@@ -84,6 +84,9 @@ impl Made {
             (tin.vertices_cut, "added by the clip"),
         ];
         talk.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
+        if tin.clip_edges > 0 {
+            talk.line(format_args!("clip lines  {} edges", tin.clip_edges));
+        }
     }
 
     fn left_out(&self) -> String {

@@ -70,8 +70,10 @@ pub struct TinReport {
     pub breaklines: usize,
     /// Distinct places among the vertices of the breaklines.
     pub breakline_vertices: usize,
-    /// Edges of the triangulation that are breaklines.
+    /// Edges of the surface that are breaklines.
     pub constrained_edges: usize,
+    /// Edges of the surface along the boundary or the bounds, those left out that are breaklines.
+    pub clip_edges: usize,
     /// Vertices added where breaklines cross between their own.
     pub crossings: usize,
     /// How these were rounded; `None` if no breaklines cross.
@@ -203,9 +205,6 @@ impl TinBuilder {
         if self.crossing_heights == CrossingRule::Refuse {
             refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
         }
-        // Without lines there are none, however many edges there are to look at.
-        report.constrained_edges = if report.breaklines == 0 { 0 } else { triangulation.constrained_edges().count() };
-
         let mut tin = Tin::new(triangulation, self.crs.take());
         let all = tin.triangulation.vertex_count();
         if let Some(limit) = self.max_edge {
@@ -226,6 +225,14 @@ impl TinBuilder {
         report.vertices_beyond_max_edge = all - left;
         report.vertices_clipped = left - old_vertices;
         report.vertices_cut = vertices - old_vertices;
+        let (has_lines, is_clipped) = (report.breaklines > 0, !clip.is_everything());
+        (report.constrained_edges, report.clip_edges) = if is_clipped || has_lines && report.faces_beyond_max_edge > 0 {
+            tin.count_lines()
+        } else if has_lines {
+            (tin.triangulation.constrained_edges().count(), 0)
+        } else {
+            (0, 0) // however many edges there are to look at
+        };
         (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
         tin.report = report;
         Ok(tin)

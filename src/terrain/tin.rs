@@ -1,5 +1,5 @@
 use crate::crs::Crs;
-use crate::data::{Bounds, EdgeKind, Surface};
+use crate::data::{Bounds, EdgeKind, Surface, faces};
 use crate::geometry::{Terrain, height_along};
 use crate::kernel::RANGE;
 use crate::tds::{CellId, VertexId, ccw, cw};
@@ -124,6 +124,24 @@ impl Tin {
         }
         count
     }
+
+    /// How many edges of the surface are breaklines, and how many lie on clip lines.
+    pub(super) fn count_lines(&self) -> (usize, usize) {
+        let (mut breaklines, mut clips) = (0, 0);
+        for face in faces(self) {
+            for (i, kind) in face.edges.into_iter().enumerate() {
+                match kind {
+                    // From the face with the larger number, if there are two.
+                    EdgeKind::Breakline if self.neighbor(face.number, i).is_none_or(|beside| beside < face.number) => {
+                        breaklines += 1;
+                    }
+                    EdgeKind::Clip => clips += 1,
+                    _ => {}
+                }
+            }
+        }
+        (breaklines, clips)
+    }
 }
 
 /// What a surface consists of.
@@ -211,6 +229,7 @@ impl Surface for Tin {
             return EdgeKind::Breakline;
         }
         match self.neighbor(face, i) {
+            Some(_) if self.cut.as_ref().is_some_and(|cut| cut.is_breakline(face, i)) => EdgeKind::Breakline,
             Some(_) => EdgeKind::Plain,
             None if self.cut.as_ref().is_some_and(|cut| cut.is_clipped(face, i)) => EdgeKind::Clip,
             None => EdgeKind::Rim,

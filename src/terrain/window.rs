@@ -170,8 +170,8 @@ impl Judge<'_> {
             }
             for i in 0..3 {
                 let beyond = tds.neighbor(cell, i);
-                let is_way = beyond != from && !self.triangulation.is_constrained(cell, i);
-                if is_way && disk.meets_segment(self.ends(cell, i)) && seen.insert(beyond) {
+                let is_open_edge = beyond != from && !self.triangulation.is_constrained(cell, i);
+                if is_open_edge && disk.meets_segment(self.ends(cell, i)) && seen.insert(beyond) {
                     ahead.push((beyond, cell));
                 }
             }

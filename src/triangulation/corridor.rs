@@ -63,7 +63,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         for &u in gone.iter().rev() {
             tree.insert(u, neighbors[u as usize])?;
         }
-        tree.tell(apexes);
+        tree.collect_apexes(apexes);
         Some(())
     }
 
@@ -232,7 +232,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
     }
 
     /// Adds all nodes, each before its children.
-    fn tell(&self, apexes: &mut Vec<u32>) {
+    fn collect_apexes(&self, apexes: &mut Vec<u32>) {
         let mut root = 1;
         while let Some((parent, _)) = self.parent(root) {
             root = parent;

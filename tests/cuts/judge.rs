@@ -12,7 +12,8 @@ use dashu_ratio::RBig;
 use crate::found::{Exact, Found, exact, turn};
 use crate::scene::Scene;
 
-/// What a cut may move, in units of the last place of the largest coordinate.
+/// What a cut may move, in units of the last place of the largest coordinate: of the surface, and of what it is cut
+/// along where that is no further than twice as far from zero.
 const UNITS: f64 = 2.0;
 
 /// Judges the clipped surface of a scene; returns the number of its faces.
@@ -165,17 +166,21 @@ struct Line {
     /// Rounded: the ends and the slope.
     about: [[f64; 2]; 2],
     about_slope: f64,
+    doubt: f64,
 }
 
-/// Far more than what rounding hides in numbers of the size of a scene.
+/// Far more than what rounding hides in numbers of the size of a scene; and of others, as part of them.
 const DOUBT: f64 = 1e-6;
+const RELATIVE_DOUBT: f64 = 1e-12;
 
 impl Line {
     fn new(domain: usize, from: [RBig; 2], to: [RBig; 2]) -> Self {
         assert!(from[0] < to[0], "a side is upright when sheared");
         let slope = (&to[1] - &from[1]) / (&to[0] - &from[0]);
         let about = [&from, &to].map(|p| [0, 1].map(|k| p[k].to_f64().value()));
-        Line { domain, from, to, about_slope: slope.to_f64().value(), slope, about }
+        let largest = about.as_flattened().iter().fold(0.0, |sum: f64, x| sum.max(x.abs()));
+        let doubt = DOUBT + RELATIVE_DOUBT * largest;
+        Line { domain, from, to, about_slope: slope.to_f64().value(), slope, about, doubt }
     }
 
     fn height(&self, x: &RBig) -> RBig {
@@ -184,13 +189,13 @@ impl Line {
 
     /// The height, rounded, and what it may be off.
     fn about(&self, x: f64) -> (f64, f64) {
-        (self.about[0][1] + (x - self.about[0][0]) * self.about_slope, DOUBT * (1.0 + self.about_slope.abs()))
+        (self.about[0][1] + (x - self.about[0][0]) * self.about_slope, self.doubt * (1.0 + self.about_slope.abs()))
     }
 
     fn is_apart(&self, other: &Line) -> bool {
         (0..2).any(|k| {
-            let low = |line: &Line| line.about[0][k].min(line.about[1][k]) - DOUBT;
-            let high = |line: &Line| line.about[0][k].max(line.about[1][k]) + DOUBT;
+            let low = |line: &Line| line.about[0][k].min(line.about[1][k]) - line.doubt;
+            let high = |line: &Line| line.about[0][k].max(line.about[1][k]) + line.doubt;
             low(self) > high(other) || low(other) > high(self)
         })
     }
@@ -229,14 +234,13 @@ impl Region {
             let [x, y] = [0, 1].map(|k| (&q[k] - &p[k]).to_f64().value());
             x.hypot(y)
         };
-        let perimeter = sides.iter().map(|(_, side)| length(side)).sum();
-        let largest = curves.iter().flat_map(|(_, ring)| ring.as_flattened()).fold(0.0, |sum: f64, x| sum.max(x.abs()));
-        let largest = before
-            .vertices
-            .iter()
-            .flatten()
-            .flat_map(|p| &p[..2])
-            .fold(largest, |sum, x| sum.max(x.to_f64().value().abs()));
+        // No side runs further through the surface than the sum of the rim's sides.
+        let around: f64 = sides.iter().filter(|(domain, _)| *domain == surface).map(|(_, side)| length(side)).sum();
+        let perimeter = sides.iter().map(|(_, side)| length(side).min(around)).sum();
+        let places = before.vertices.iter().flatten().flat_map(|p| &p[..2]);
+        let of_surface = places.fold(0.0, |sum: f64, x| sum.max(x.to_f64().value().abs()));
+        let of_curves = curves.iter().flat_map(|(_, ring)| ring.as_flattened());
+        let largest = of_curves.fold(of_surface, |sum, x| sum.max(x.abs())).min(2.0 * of_surface);
         let lines: Vec<Line> = sides
             .into_iter()
             .map(|(domain, [p, q])| {

@@ -13,6 +13,7 @@ mod judge;
 mod scene;
 
 use common::random::Random;
+use rayon::prelude::*;
 use scene::{KINDS, Scene};
 
 fn count() -> u64 {
@@ -25,17 +26,22 @@ const HARD: [u64; 2] = [101, 138];
 /// A few hundred sets of clip polygons over a surface with breaklines, on small grids of whole numbers and in UTM.
 #[test]
 fn what_is_left_is_what_the_rings_enclose() {
-    let mut cut = 0;
-    for (kind, (name, draw)) in KINDS.iter().enumerate() {
-        for seed in (0..count()).chain(HARD) {
-            for units in scene::UNITS {
-                let scene = Scene::new(&mut Random(1000 * seed + kind as u64), units, *draw);
-                match judge::judge(&scene) {
-                    Ok(faces) => cut += usize::from(faces > 0),
-                    Err(what) => panic!("{name}, seed {seed}, in {units:?}: {what}\n{scene:?}"),
-                }
-            }
-        }
+    let judged = |(kind, seed): (usize, u64)| {
+        let (name, draw) = KINDS[kind];
+        scene::UNITS.map(|units| {
+            let scene = Scene::new(&mut Random(1000 * seed + kind as u64), units, draw);
+            judge::judge(&scene).map_err(|what| format!("{name}, seed {seed}, in {units:?}: {what}\n{scene:?}"))
+        })
+    };
+    let seeds: Vec<u64> = (0..count()).chain(HARD).collect();
+    let sets: Vec<(usize, u64)> =
+        (0..KINDS.len()).flat_map(|kind| seeds.iter().map(move |&seed| (kind, seed))).collect();
+    let judged: Vec<Result<usize, String>> = sets.into_par_iter().map(judged).flatten_iter().collect();
+    let wrong: Vec<&String> = judged.iter().filter_map(|judged| judged.as_ref().err()).collect();
+    if let Some(first) = wrong.first() {
+        let all: Vec<&str> = wrong.iter().filter_map(|what| what.lines().next()).collect();
+        panic!("{} of {} sets are cut wrong:\n{}\n{first}", wrong.len(), judged.len(), all.join("\n"));
     }
+    let cut = judged.iter().filter(|judged| matches!(judged, Ok(1..))).count();
     assert!(cut as u64 > count() * KINDS.len() as u64, "{cut} sets left something");
 }

@@ -38,7 +38,7 @@ pub(crate) struct Scene {
 /// Adds what the surface is clipped to.
 pub(crate) type Draw = fn(&mut Scene, &mut Random, Units);
 
-pub(crate) const KINDS: [(&str, Draw); 9] = [
+pub(crate) const KINDS: [(&str, Draw); 10] = [
     ("anything", anything),
     ("adjacent polygons", adjacent),
     ("corners on sides", corners_on_sides),
@@ -48,6 +48,7 @@ pub(crate) const KINDS: [(&str, Draw); 9] = [
     ("through vertices", through_vertices),
     ("across breaklines", across_breaklines),
     ("bounds", bounds),
+    ("far corners", far_corners),
 ];
 
 impl Units {
@@ -229,5 +230,24 @@ fn bounds(scene: &mut Scene, random: &mut Random, units: Units) {
     scene.bounds = Some(Bounds { min, max });
     if random.below(2) == 0 {
         scene.polygons.push(vec![units.ring(random)]);
+    }
+}
+
+/// A polygon and bounds of which some corners are as far away as "no limit" is.
+fn far_corners(scene: &mut Scene, random: &mut Random, units: Units) {
+    let far = |random: &mut Random| random.around(1) as f64 * 2.0_f64.powi(4 + random.below(57) as i32);
+    let mut ring = units.ring(random);
+    for _ in 0..1 + random.below(3) {
+        let at = random.index(ring.len());
+        ring[at] = ring[at].map(|x| x + far(random));
+    }
+    if random.below(3) > 0 {
+        scene.polygons.push(vec![ring]);
+    }
+    if scene.polygons.is_empty() || random.below(2) == 0 {
+        bounds(scene, random, units);
+        if let Some(Bounds { min, max }) = &mut scene.bounds {
+            (0..2).for_each(|k| (min[k], max[k]) = (min[k] - far(random).abs(), max[k] + far(random).abs()));
+        }
     }
 }

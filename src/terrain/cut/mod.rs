@@ -11,6 +11,7 @@
 //!    /_______\            /_______\       same new vertices
 //! ```
 //!
+//! 0. *Far*: segments that reach far beyond the surface are divided, so that their ends do not say how it is rounded.
 //! 1. *Met*: the triangles that each segment of the lines meets are found by walking.
 //! 2. *Snap*: these segments are snapped to each other, so that a corner of one polygon that was meant to lie on the side
 //!    of another one does, and a side that goes out and back over itself encloses nothing.
@@ -24,6 +25,7 @@
 //! The pieces of a triangle need not be Delaunay with those beside: the triangulation that was cut stays as it is
 //! underneath.
 
+mod far;
 mod met;
 mod patch;
 mod patched;
@@ -38,6 +40,7 @@ use crate::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, Location};
 
 use super::tin::linear;
+use far::divided;
 use patch::Patch;
 use patched::{Patched, Remains};
 use snap::snapped;
@@ -64,8 +67,9 @@ pub(super) struct Cut {
 }
 
 /// Cuts a triangulation along closed curves, given as segments, each with the number of a domain that it bounds.
-/// `is_kept` tells of the domains that a face lies in, sorted, whether it stays. Of the triangles `inside`, those that
-/// stay whole remain; pieces of others are returned.
+///
+/// A face stays if `is_kept` says so, given the domains that the face lies in, sorted. Of the triangles `inside`, those
+/// that stay whole remain; pieces of others are returned.
 ///
 /// # Errors
 /// If there are more vertices than can be numbered.
@@ -78,7 +82,7 @@ pub(super) fn cut(
     curves: &[(Domain, Segment)],
     is_kept: impl Fn(&[Domain]) -> bool,
 ) -> Result<Option<Cut>> {
-    let curves = &snapped(base, curves);
+    let curves = &snapped(base, &divided(base, curves));
     let segments: Vec<Segment> = curves.iter().map(|(_, segment)| *segment).collect();
     let Some(patch) = Patch::new(base, &segments)? else {
         let start = base.finite_cells().next();
@@ -162,6 +166,11 @@ impl Cut {
     /// What a side of a piece is.
     pub(super) fn edge_kind(&self, face: u32, i: usize) -> Option<EdgeKind> {
         self.piece(face).map(|piece| self.remains.kinds[piece.index()][i])
+    }
+
+    /// Whether a breakline runs along the side of a whole triangle, as it is seen from the piece beside it.
+    pub(super) fn is_breakline(&self, face: u32, i: usize) -> bool {
+        self.remains.breaklines.contains(&(face, i))
     }
 
     /// Whether a line runs along the side of a whole triangle.

@@ -35,6 +35,9 @@ pub(super) struct Remains {
     pub(super) kinds: Vec<[EdgeKind; 3]>,
     /// Across sides between a piece and a whole triangle, from either.
     pub(super) beside: FxHashMap<Side, u32>,
+    /// Sides of whole triangles beside pieces along which a breakline runs: maybe another edge than their own, that has
+    /// come to lie here.
+    pub(super) breaklines: FxHashSet<Side>,
     /// Sides of triangles along which a line runs.
     pub(super) clipped: FxHashSet<Side>,
     /// How many triangles are in pieces.
@@ -140,6 +143,7 @@ impl<'a> Patched<'a> {
         let mut remains = Remains {
             kinds: vec![[EdgeKind::Plain; 3]; is_piece.len()],
             beside: FxHashMap::default(),
+            breaklines: FxHashSet::default(),
             clipped: self.clipped(),
             cut: 0,
             is_piece,
@@ -154,7 +158,9 @@ impl<'a> Patched<'a> {
                     remains.beside.extend([((self.number(face), i), side.0), (side, self.number(face))]);
                 }
                 let is_rim = whole.is_none() && !remains.is_piece[beyond.index()];
-                remains.kinds[face.index()][i] = self.kind(face, i, is_rim);
+                let kind = self.kind(face, i, is_rim);
+                remains.breaklines.extend(whole.filter(|_| kind == EdgeKind::Breakline));
+                remains.kinds[face.index()][i] = kind;
             }
         }
         cut.sort_unstable();

@@ -144,6 +144,7 @@ impl Arranged<'_> {
                 let is_level = tds.is_infinite(beyond) || (z - height).abs() <= self.tolerance(beyond);
                 let chain = first_edge + edge;
                 let moved = if is_level { None } else { self.beside(site, [u, v], chain, distance + 1, taken) };
+                let moved = moved.filter(|&moved| self.is_free(site, moved, chain, beyond, edges, first_edge));
                 let (vertex, height, distance) = match moved {
                     Some(vertex) => (vertex, z, distance + 1),
                     None => (vertex, height, distance),
@@ -198,6 +199,31 @@ impl Arranged<'_> {
             self.points.push(moved);
             self.points.len() as u32 - 1
         })
+    }
+
+    /// Whether a chain can be led through a new point in place of a site without meeting another edge of the triangle
+    /// beyond.
+    fn is_free(&self, site: u32, moved: u32, chain: usize, beyond: CellId, here: &[usize], first_edge: usize) -> bool {
+        let neighbors = self.beside_on(chain, site);
+        let sides = (0..3).map(|i| self.base.tds().edge_ends(beyond, i));
+        let edges = sides.filter_map(|[u, v]| self.edges.binary_search(&[u.min(v), u.max(v)]).ok());
+        edges.filter(|edge| !here.contains(edge)).map(|edge| first_edge + edge).all(|other| {
+            let mut pieces = self.chains[other].windows(2).map(|pair| [pair[0], pair[1]]);
+            pieces.all(|piece| neighbors.into_iter().flatten().all(|end| !self.meet([moved, end], piece)))
+        })
+    }
+
+    /// Whether two segments have a point in common that is no common end; the first end of the first is no end of the
+    /// second.
+    fn meet(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> bool {
+        let side = |p: u32, q: u32, r: u32| {
+            let [p, q, r] = [p, q, r].map(|site| self.points[site as usize]);
+            self.base.geometry().orientation([&p, &q, &r])
+        };
+        if b == c || b == d {
+            return false;
+        }
+        side(a, b, c) * side(a, b, d) != Sign::Positive && side(c, d, a) * side(c, d, b) != Sign::Positive
     }
 
     /// The points before and after a site on a chain.

@@ -10,7 +10,7 @@ mod header;
 use std::io::Write;
 
 use body::Body;
-use header::{Element, Header, Property};
+use header::{Element, Header, Property, Scalar};
 
 use super::listing::Listing;
 use super::{crs_text, polygon};
@@ -140,8 +140,7 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
     let names = ["vertex_indices", "vertex_index"];
     let list = element.properties.iter().position(|p| names.contains(&p.name.as_str()) && p.length.is_some());
     let list = list.ok_or_else(|| Error::format("the faces have no list 'vertex_indices'").at("header"))?;
-    let kinds = EDGES.map(|name| scalar(element, name).ok());
-    let piece = scalar(element, PIECE).ok();
+    let lines = line_properties(element);
     let mut polygons = Polygons::default();
     polygons.corners.reserve_exact(element.count);
     polygons.ends.reserve_exact(element.count);
@@ -152,7 +151,8 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         }
         polygons.ends.push(polygons.corners.len());
         let corners = &polygons.corners[first..];
-        for (i, property) in kinds.into_iter().enumerate().filter_map(|(i, kind)| Some((i, kind?))) {
+        let Some((kinds, piece)) = lines else { return Ok(()) };
+        for (i, property) in kinds.into_iter().enumerate() {
             let edges = match edge_kind(EDGES[i], row[property][0])? {
                 EdgeKind::Breakline => &mut polygons.breaklines,
                 EdgeKind::Clip => &mut polygons.clips,
@@ -162,7 +162,7 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
                 edges.push([a.min(b), a.max(b)]);
             }
         }
-        if piece.is_some_and(|piece| row[piece][0] != 0.0) {
+        if row[piece][0] != 0.0 {
             polygons.pieces.push(number);
         }
         Ok(())
@@ -173,6 +173,17 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         edges.dedup();
     }
     Ok(polygons)
+}
+
+/// Where the kinds of the edges of each face stand, and whether it is a piece; if all are there as they are written
+/// here. Properties of these names in files of other programs mean something else.
+fn line_properties(element: &Element) -> Option<([usize; 3], usize)> {
+    let position = |name: &str| {
+        let at = scalar(element, name).ok()?;
+        (element.properties[at].kind == Scalar::U8).then_some(at)
+    };
+    let [a, b, c] = EDGES.map(position);
+    Some(([a?, b?, c?], position(PIECE)?))
 }
 
 fn edge_kind(name: &str, number: f64) -> Result<EdgeKind> {

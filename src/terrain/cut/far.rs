@@ -1,0 +1,63 @@
+//! Lines that reach far beyond a triangulation, divided near it.
+
+use crate::geometry::{Crossing, Geometry, Terrain};
+use crate::num::Dyadic;
+use crate::tds::VertexId;
+use crate::triangulation::ConstrainedDelaunay;
+
+use super::{Domain, Segment};
+
+/// How many times as far from zero as the triangulation, on each axis, a segment may reach.
+const REACH: f64 = 2.0;
+
+/// Closed curves without long ways from the triangulation to an end: where a segment leaves the box that is [`REACH`]
+/// times as far from zero as the triangulation, it is divided.
+///
+/// The places to which crossings are rounded are as fine as the largest coordinate of a segment has them. From a corner
+/// at 2^52, in place of "no limit", they would be whole numbers: the surface would be cut a meter off.
+///
+/// # Complexity
+/// Linear.
+pub(super) fn divided(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
+    let mut walls = [0.0_f64; 2];
+    for vertex in base.tds().vertices().filter(|&vertex| vertex != VertexId::INFINITE) {
+        let p = base.point(vertex);
+        walls = [0, 1].map(|k| walls[k].max(REACH * p[k].abs()));
+    }
+    let mut divided = Vec::with_capacity(curves.len());
+    for &(domain, [a, b]) in curves {
+        let is_far = (0..2).any(|k| a[k].abs().max(b[k].abs()) > walls[k]);
+        let mut ends = vec![a, b];
+        if is_far {
+            for (axis, wall) in [(0, -walls[0]), (0, walls[0]), (1, -walls[1]), (1, walls[1])] {
+                let place = crossing([a, b], axis, wall).map(|place| base.geometry().on_step(place));
+                let admitted = place.filter(|&[x, y]| base.geometry().admits(&[x, y, 0.0]));
+                ends.extend(admitted.filter(|place| (0..2).all(|k| place[k].abs() <= walls[k])));
+            }
+        }
+        let longer = usize::from((b[0] - a[0]).abs() < (b[1] - a[1]).abs());
+        ends.sort_unstable_by(|p, q| p[longer].total_cmp(&q[longer]));
+        if a[longer] > b[longer] {
+            ends.reverse();
+        }
+        ends.dedup();
+        divided.extend(ends.windows(2).map(|pair| (domain, [pair[0], pair[1]])));
+    }
+    divided
+}
+
+/// Where a segment crosses a line across an axis, if it does so between its ends: to within two units in the last place,
+/// however long the segment is; and exactly, if it runs along the axis.
+fn crossing([a, b]: Segment, axis: usize, wall: f64) -> Option<[f64; 2]> {
+    let is_between = a[axis] < wall && wall < b[axis] || b[axis] < wall && wall < a[axis];
+    if !is_between {
+        return None;
+    }
+    let other = 1 - axis;
+    let difference = |k: usize| Dyadic::difference(b[k], a[k]);
+    let numerator = Dyadic::from(a[other]) * difference(axis) + Dyadic::difference(wall, a[axis]) * difference(other);
+    let mut place = [wall; 2];
+    let (low, high) = (a[other].min(b[other]), a[other].max(b[other]));
+    place[other] = numerator.quotient(&difference(axis)).clamp(low, high) + 0.0; // zero has one sign only
+    Some(place)
+}
