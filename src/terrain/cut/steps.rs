@@ -143,8 +143,13 @@ impl Arranged<'_> {
                 let z = self.height_on(edge, site);
                 let is_level = tds.is_infinite(beyond) || (z - height).abs() <= self.tolerance(beyond);
                 let chain = first_edge + edge;
-                let moved = if is_level { None } else { self.beside(site, [u, v], chain, distance + 1, taken) };
-                let moved = moved.filter(|&moved| self.is_free(site, moved, chain, beyond, edges, first_edge));
+                let moved = if is_level {
+                    None
+                } else {
+                    let others = self.edges_of(beyond).filter(|other| !edges.contains(other));
+                    let others: Vec<usize> = others.map(|other| first_edge + other).collect();
+                    self.beside(site, [u, v], chain, distance + 1, &others, taken)
+                };
                 let (vertex, height, distance) = match moved {
                     Some(vertex) => (vertex, z, distance + 1),
                     None => (vertex, height, distance),
@@ -170,14 +175,21 @@ impl Arranged<'_> {
         self.unit[0].max(self.unit[1]) * slope + 1e-12 * highest
     }
 
-    /// A new point some units from another one, to the right of the direction from one vertex to another; or, if the
-    /// chain of the edge between them goes that way, the next point on it.
+    /// The edges of a triangle, by their positions.
+    fn edges_of(&self, cell: CellId) -> impl Iterator<Item = usize> + '_ {
+        let sides = (0..3).map(move |i| self.base.tds().edge_ends(cell, i));
+        sides.filter_map(|[u, v]| self.edges.binary_search(&[u.min(v), u.max(v)]).ok())
+    }
+
+    /// A new point some units from another one, to the right of the direction from one vertex to another, from where the
+    /// chain of the edge between them meets none of the others; or, if the chain goes that way, the next point on it.
     fn beside(
         &mut self,
         site: u32,
         [from, to]: [VertexId; 2],
         chain: usize,
         distance: u32,
+        others: &[usize],
         taken: &mut FxHashSet<[u64; 2]>,
     ) -> Option<u32> {
         let [x, y, _] = self.points[site as usize];
@@ -193,37 +205,35 @@ impl Arranged<'_> {
         if let Some(next) = self.beside_on(chain, site).into_iter().flatten().find(is_that_way) {
             return Some(next);
         }
-        let moved = [x + i * self.unit[0] + 0.0, y + j * self.unit[1] + 0.0, f64::NAN];
-        let is_new = self.base.geometry().admits(&moved) && taken.insert(bits(&moved));
-        is_new.then(|| {
-            self.points.push(moved);
-            self.points.len() as u32 - 1
-        })
-    }
-
-    /// Whether a chain can be led through a new point in place of a site without meeting another edge of the triangle
-    /// beyond.
-    fn is_free(&self, site: u32, moved: u32, chain: usize, beyond: CellId, here: &[usize], first_edge: usize) -> bool {
-        let neighbors = self.beside_on(chain, site);
-        let sides = (0..3).map(|i| self.base.tds().edge_ends(beyond, i));
-        let edges = sides.filter_map(|[u, v]| self.edges.binary_search(&[u.min(v), u.max(v)]).ok());
-        edges.filter(|edge| !here.contains(edge)).map(|edge| first_edge + edge).all(|other| {
-            let mut pieces = self.chains[other].windows(2).map(|pair| [pair[0], pair[1]]);
-            pieces.all(|piece| neighbors.into_iter().flatten().all(|end| !self.meet([moved, end], piece)))
-        })
-    }
-
-    /// Whether two segments have a point in common that is no common end; the first end of the first is no end of the
-    /// second.
-    fn meet(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> bool {
-        let side = |p: u32, q: u32, r: u32| {
-            let [p, q, r] = [p, q, r].map(|site| self.points[site as usize]);
-            self.base.geometry().orientation([&p, &q, &r])
-        };
-        if b == c || b == d {
-            return false;
+        // If it does meet another, then a little to one side, or not as far.
+        let turned = |[i, j]: [f64; 2], turn: f64| [i - turn * j, j + turn * i].map(f64::round);
+        let tried = [[i, j], turned([i, j], 0.5), turned([i, j], -0.5), [i / 2.0, j / 2.0], [i / 4.0, j / 4.0]];
+        for [i, j] in tried {
+            let moved = [x + i * self.unit[0] + 0.0, y + j * self.unit[1] + 0.0, f64::NAN];
+            let is_new = self.base.geometry().admits(&moved) && !taken.contains(&bits(&moved));
+            if is_new && self.is_free(site, &moved, chain, others) {
+                taken.insert(bits(&moved));
+                self.points.push(moved);
+                return Some(self.points.len() as u32 - 1);
+            }
         }
-        side(a, b, c) * side(a, b, d) != Sign::Positive && side(c, d, a) * side(c, d, b) != Sign::Positive
+        None
+    }
+
+    /// Whether a chain can be led through a new point in place of a site without meeting others.
+    fn is_free(&self, site: u32, moved: &[f64; 3], chain: usize, others: &[usize]) -> bool {
+        let place = |site: u32| &self.points[site as usize];
+        let side = |p, q, r| self.base.geometry().orientation([p, q, r]);
+        let crosses = |end: u32, [c, d]: [u32; 2]| {
+            let (b, p, q) = (place(end), place(c), place(d));
+            end != c
+                && end != d
+                && side(moved, b, p) * side(moved, b, q) != Sign::Positive
+                && side(p, q, moved) * side(p, q, b) != Sign::Positive
+        };
+        let mut pieces = others.iter().flat_map(|&other| self.chains[other].windows(2).map(|pair| [pair[0], pair[1]]));
+        let ends = self.beside_on(chain, site);
+        pieces.all(|piece| !ends.into_iter().flatten().any(|end| crosses(end, piece)))
     }
 
     /// The points before and after a site on a chain.
