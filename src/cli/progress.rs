@@ -142,6 +142,10 @@ impl Surface for Watched<'_, dyn Surface + '_> {
         self.source.edge_kind(face, i)
     }
 
+    fn has_lines(&self) -> bool {
+        self.source.has_lines()
+    }
+
     fn is_piece(&self, face: u32) -> bool {
         self.source.is_piece(face)
     }

@@ -60,6 +60,11 @@ pub trait Surface: Sync {
     /// breakline, the edge is a [`Breakline`](EdgeKind::Breakline).
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind;
 
+    /// Whether there may be edges on breaklines or clip lines; if not, none has to be looked at for that.
+    fn has_lines(&self) -> bool {
+        true
+    }
+
     /// Whether the edge opposite corner `i` lies on a breakline or a clip line.
     fn is_constrained(&self, face: u32, i: usize) -> bool {
         self.edge_kind(face, i).is_constrained()

@@ -250,6 +250,10 @@ impl Surface for GridSurface<'_> {
         }
     }
 
+    fn has_lines(&self) -> bool {
+        false
+    }
+
     fn crs(&self) -> Option<&Crs> {
         self.grid.crs.as_ref()
     }

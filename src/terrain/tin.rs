@@ -236,6 +236,10 @@ impl Surface for Tin {
         }
     }
 
+    fn has_lines(&self) -> bool {
+        self.report.breaklines > 0 || self.cut.is_some()
+    }
+
     fn is_piece(&self, face: u32) -> bool {
         face as usize >= self.inside.len()
     }

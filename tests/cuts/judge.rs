@@ -2,7 +2,7 @@
 //!
 //! - *Area*: by slabs between all places where sides of rings and of the surface end or cross. In a slab they come in
 //!   one order from below to above, and the even-odd rule tells what stays between each two.
-//! - *Rim*: each side without a neighbor lies along what bounds that area. So there is no crack.
+//! - *Rim*: each side without a neighbor lies along what bounds that area, or outside. So there is no crack.
 //! - *Heights*: each vertex, and the middle of each face, is as high as the triangle of the uncut surface there.
 //! - *Pieces*: each has an area, and none has a vertex of another one in the middle of its side.
 
@@ -30,7 +30,7 @@ pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
     let region = Region::new(scene, &before);
     judge_pieces(&after)?;
     judge_area(&region, &after)?;
-    judge_rim(&region, &after)?;
+    judge_rim(scene, &region, &after)?;
     judge_heights(&region, &before, &after)?;
     judge_uncut(&uncut, &tin)?;
     match surface_flaws(&tin).first() {
@@ -74,11 +74,14 @@ fn judge_area(region: &Region, after: &Found) -> Result<(), String> {
     Ok(())
 }
 
-fn judge_rim(region: &Region, after: &Found) -> Result<(), String> {
+fn judge_rim(scene: &Scene, region: &Region, after: &Found) -> Result<(), String> {
     for &[from, to] in &after.rim {
         let (p, q) = (after.at(from), after.at(to));
-        let middle = [0, 1].map(|k| ((&p[k] + &q[k]) / exact(2.0) - &region.origin[k]).to_f64().value());
-        if !region.rim.iter().any(|&side| distance(side, middle) <= UNITS * region.unit) {
+        let exactly = [0, 1].map(|k| (&p[k] + &q[k]) / exact(2.0));
+        let middle = [0, 1].map(|k| (&exactly[k] - &region.origin[k]).to_f64().value());
+        let is_near_rim = region.rim.iter().any(|&side| distance(side, middle) <= UNITS * region.unit);
+        // Where two lines run along each other less than a rounding apart, what is between them may go on a little.
+        if !is_near_rim && region.holds(scene, &exactly) {
             return Err(format!(
                 "a crack: nothing bounds the surface along {from} {to}, at {middle:?} from its corner"
             ));
@@ -155,6 +158,9 @@ struct Region {
     perimeter: f64,
     /// The last place of the largest coordinate.
     unit: f64,
+    /// The surface's number among the domains.
+    surface: usize,
+    lines: Vec<Line>,
 }
 
 /// A side of a ring, of which domain; sheared, so that it is not upright.
@@ -218,11 +224,7 @@ impl Region {
         let origin = [origin[0].clone(), origin[1].clone()];
         // The surface is one more domain.
         let surface = scene.polygons.len() + 1;
-        let shear = RBig::from_parts(1.into(), 65_537u32.into());
-        let sheared = |p: &[RBig]| {
-            let [x, y] = [0, 1].map(|k| &p[k] - &origin[k]);
-            [x + &shear * &y, y]
-        };
+        let sheared = |p: &[RBig]| sheared(&origin, p);
         let mut sides: Vec<(usize, [[RBig; 2]; 2])> = Vec::new();
         for (domain, ring) in &curves {
             let next = ring.iter().cycle().skip(1);
@@ -248,8 +250,9 @@ impl Region {
                 Line::new(domain, from, to)
             })
             .collect();
+        let unit = largest.next_up() - largest;
         let mut region =
-            Region { area: RBig::ZERO, rim: Vec::new(), origin, perimeter, unit: largest.next_up() - largest };
+            Region { area: RBig::ZERO, rim: Vec::new(), origin, perimeter, unit, surface, lines: Vec::new() };
         let mut at: Vec<RBig> = lines.iter().flat_map(|line| [line.from[0].clone(), line.to[0].clone()]).collect();
         for (i, line) in lines.iter().enumerate() {
             at.extend(lines[..i].iter().filter_map(|other| line.crossing(other)));
@@ -259,7 +262,18 @@ impl Region {
         for slab in at.windows(2) {
             region.add_slab(scene, surface, &lines, &slab[0], &slab[1]);
         }
+        region.lines = lines;
         region
+    }
+
+    /// Whether a place is part of what stays: by the lines above it.
+    fn holds(&self, scene: &Scene, place: &[RBig; 2]) -> bool {
+        let [x, y] = sheared(&self.origin, place);
+        let mut within = vec![false; self.surface + 1];
+        for line in self.lines.iter().filter(|line| line.from[0] <= x && x < line.to[0]) {
+            within[line.domain] ^= line.height(&x) > y;
+        }
+        within[self.surface] && scene.is_kept(|domain| within[domain])
     }
 
     fn add_slab(&mut self, scene: &Scene, surface: usize, lines: &[Line], left: &RBig, right: &RBig) {
@@ -298,6 +312,12 @@ impl Region {
             }
         }
     }
+}
+
+/// From the origin; and so that no side is upright.
+fn sheared(origin: &[RBig; 2], p: &[RBig]) -> [RBig; 2] {
+    let [x, y] = [0, 1].map(|k| &p[k] - &origin[k]);
+    [x + RBig::from_parts(1.into(), 65_537u32.into()) * &y, y]
 }
 
 /// How far a place is from a segment.

@@ -21,13 +21,20 @@ impl<'a> Listing<'a> {
         let mut number = vec![UNUSED; surface.vertex_count()];
         let mut face_count = 0;
         let mut constrained_edges = 0;
-        data::faces(surface).for_each(|face| {
+        let mut add = |corners: [u32; 3]| {
             face_count += 1;
-            face.corners.iter().for_each(|&v| number[v as usize] = 0);
-            // An edge inside is met from both sides.
-            let is_first = |i: &usize| surface.neighbor(face.number, *i).is_none_or(|other| face.number < other);
-            constrained_edges += (0..3).filter(|&i| face.edges[i].is_constrained()).filter(is_first).count();
-        });
+            corners.iter().for_each(|&v| number[v as usize] = 0);
+        };
+        if surface.has_lines() {
+            data::faces(surface).for_each(|face| {
+                add(face.corners);
+                // An edge inside is met from both sides.
+                let is_first = |i: &usize| surface.neighbor(face.number, *i).is_none_or(|other| face.number < other);
+                constrained_edges += (0..3).filter(|&i| face.edges[i].is_constrained()).filter(is_first).count();
+            });
+        } else {
+            data::corners(surface).for_each(|(_, corners)| add(corners));
+        }
         let mut vertex_count = 0;
         for number in number.iter_mut().filter(|n| **n != UNUSED) {
             *number = vertex_count;
