@@ -1,5 +1,7 @@
+use std::ops::Range;
+
 use crate::crs::Crs;
-use crate::data::{Bounds, EdgeKind, Surface, faces};
+use crate::data::{Bounds, EdgeKind, Face, Surface};
 use crate::geometry::{Terrain, height_along};
 use crate::kernel::RANGE;
 use crate::tds::{CellId, VertexId, ccw, cw};
@@ -125,14 +127,37 @@ impl Tin {
         count
     }
 
+    /// What the edges opposite the corners of a face are.
+    ///
+    /// `PERF:` without a cut, no more than a look at each neighbor.
+    #[inline(always)]
+    fn kinds(&self, face: u32) -> [EdgeKind; 3] {
+        if self.cut.is_some() {
+            return [0, 1, 2].map(|i| self.edge_kind(face, i));
+        }
+        let cell = CellId::new(face as usize);
+        [0, 1, 2].map(|i| {
+            if self.triangulation.is_constrained(cell, i) {
+                EdgeKind::Breakline
+            } else if self.inside[self.triangulation.tds().neighbor(cell, i).index()] {
+                EdgeKind::Plain
+            } else {
+                EdgeKind::Rim
+            }
+        })
+    }
+
     /// How many edges of the surface are breaklines, and how many lie on clip lines.
     pub(super) fn count_lines(&self) -> (usize, usize) {
         let (mut breaklines, mut clips) = (0, 0);
-        for face in faces(self) {
-            for (i, kind) in face.edges.into_iter().enumerate() {
+        let has_lines = |face: &u32| {
+            self.cut.is_some() || (0..3).any(|i| self.triangulation.is_constrained(CellId::new(*face as usize), i))
+        };
+        for face in (0..self.face_count() as u32).filter(has_lines).filter(|&face| self.face(face).is_some()) {
+            for (i, kind) in self.kinds(face).into_iter().enumerate() {
                 match kind {
                     // From the face with the larger number, if there are two.
-                    EdgeKind::Breakline if self.neighbor(face.number, i).is_none_or(|beside| beside < face.number) => {
+                    EdgeKind::Breakline if self.neighbor(face, i).is_none_or(|beside| beside < face) => {
                         breaklines += 1;
                     }
                     EdgeKind::Clip => clips += 1,
@@ -190,10 +215,12 @@ impl Surface for Tin {
         self.cut.as_ref().map_or(self.triangulation.tds().vertex_slots(), Cut::vertex_count)
     }
 
+    #[inline(always)] // into the loops over many faces
     fn position(&self, vertex: u32) -> [f64; 3] {
         match (self.triangulation.points().get(vertex as usize), &self.cut) {
+            (Some(point), _) => *point,
             (None, Some(cut)) => cut.position(vertex),
-            _ => self.triangulation.points()[vertex as usize],
+            (None, None) => panic!("vertex {vertex} of {}", self.triangulation.points().len()),
         }
     }
 
@@ -201,6 +228,7 @@ impl Surface for Tin {
         self.cut.as_ref().map_or(self.inside.len(), Cut::face_count)
     }
 
+    #[inline(always)] // into the loops over many faces
     fn face(&self, face: u32) -> Option<[u32; 3]> {
         match self.inside.get(face as usize) {
             Some(inside) => {
@@ -246,6 +274,13 @@ impl Surface for Tin {
 
     fn crs(&self) -> Option<&Crs> {
         self.crs.as_ref()
+    }
+
+    fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
+        faces.extend(numbers.filter_map(|number| {
+            let corners = self.face(number)?;
+            Some(Face { number, corners, edges: self.kinds(number) })
+        }));
     }
 }
 

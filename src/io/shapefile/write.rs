@@ -58,6 +58,8 @@ pub fn write_contours<'a>(
     let mut set = FileSet::create(target.path(), 13, &fields)?;
     let mut summary = ContourSummary::default();
     let mut record = Vec::new();
+    // `PERF:` lines of one level come together: to write its number for each would take longer than to draw small ones.
+    let mut elevation = (f64::NAN, String::new());
     for line in lines {
         if line.points.len() < 2 {
             continue;
@@ -66,7 +68,10 @@ pub fn write_contours<'a>(
         let vertices = line.points.iter().map(|&[x, y]| [x, y, line.level]);
         record.clear();
         poly(&mut record, 13, &[line.points.len()], vertices.clone());
-        set.write(&record, vertices, &[id(summary.lines), real(line.level)])?;
+        if elevation.0 != line.level {
+            elevation = (line.level, real(line.level));
+        }
+        set.write(&record, vertices, &[&id(summary.lines), &elevation.1])?;
     }
     set.finish(target, crs)?;
     Ok(summary)
@@ -288,8 +293,13 @@ impl FileSet {
     }
 
     /// Adds a record; `points` are its vertices, `cells` its attributes in their full width.
-    fn write(&mut self, content: &[u8], points: impl Iterator<Item = [f64; 3]>, cells: &[String]) -> Result<()> {
-        let row: usize = 1 + cells.iter().map(String::len).sum::<usize>();
+    fn write(
+        &mut self,
+        content: &[u8],
+        points: impl Iterator<Item = [f64; 3]>,
+        cells: &[impl AsRef<str>],
+    ) -> Result<()> {
+        let row: usize = 1 + cells.iter().map(|cell| cell.as_ref().len()).sum::<usize>();
         let shp_bytes = self.shp_bytes + 8 + content.len() as u64;
         let dbf_bytes = self.dbf_bytes + row as u64;
         for (bytes, output) in [(shp_bytes, &self.shp), (dbf_bytes, &self.dbf)] {
@@ -316,7 +326,7 @@ impl FileSet {
 
         self.scratch.clear();
         self.scratch.push(b' ');
-        cells.iter().for_each(|cell| self.scratch.extend(cell.bytes()));
+        cells.iter().for_each(|cell| self.scratch.extend_from_slice(cell.as_ref().as_bytes()));
         self.dbf.write_all(&self.scratch).map_err(|e| failed(e, self.dbf.target()))?;
         (self.shp_bytes, self.dbf_bytes) = (shp_bytes, dbf_bytes);
         Ok(())
