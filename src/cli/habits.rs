@@ -59,6 +59,7 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-ts", "-outsize"], verbs: &[], meaning: Refused("--resolution LENGTH is the size of a cell") },
     Habit { typed: &["-a_srs", "--a_srs", "-s_srs", "--s_srs", "--s-srs", "-s-srs", "-a-srs"], verbs: &[], meaning: Same("--a-srs") },
     Habit { typed: &["-t_srs", "--t_srs", "-t-srs"], verbs: &[], meaning: Same("--t-srs") },
+    Habit { typed: &["--crs", "-crs"], verbs: &[], meaning: Refused("--a-srs says what the coordinates are in, --t-srs transforms them") },
     Habit { typed: &["-of", "--of", "-f"], verbs: &[], meaning: Format },
     Habit { typed: &["-co", "--co"], verbs: &[], meaning: Creation },
     Habit { typed: &["-overwrite"], verbs: &[], meaning: Same("--overwrite") },
