@@ -11,14 +11,17 @@ fn main() -> ExitCode {
 /// A program that is asked to end removes its temporary files first.
 #[cfg(unix)]
 mod signals {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
+    use std::sync::Arc;
 
-    /// Removes temporary files at SIGINT, SIGTERM and SIGHUP, and then ends as the signal would have it: a shell sees the
+    /// Removes temporary files at SIGINT, SIGTERM, SIGQUIT and SIGHUP, and then ends as the signal would have it: a shell sees the
     /// status 128 + the signal's number, and a loop in a script ends, too.
     pub(super) fn clean_up() {
-        let heeded = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
+        // A file larger than the user may write is then an error like a full disk.
+        let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
+        let heeded = [SIGINT, SIGTERM, SIGQUIT, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
         // Without it, only temporary files would stay.
         let Ok(mut signals) = Signals::new(heeded) else { return };
         std::thread::spawn(move || {

@@ -246,9 +246,8 @@ struct Reach {
 
 impl Reach {
     fn new(plan: &PointPlan, rim: &Rim) -> Self {
-        // What comes through a pipe is read once.
-        let is_stream = plan.files.iter().any(|file| file.as_os_str() == inputs::STDIN);
-        Reach { bounds: plan.bounds, buffer: if is_stream { f64::INFINITY } else { rim.buffer } }
+        let is_read_once = plan.files.iter().any(|file| inputs::is_read_once(file));
+        Reach { bounds: plan.bounds, buffer: if is_read_once { f64::INFINITY } else { rim.buffer } }
     }
 
     /// Where points are used.

@@ -60,6 +60,8 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-a_srs", "--a_srs", "-s_srs", "--s_srs", "--s-srs", "-s-srs", "-a-srs"], verbs: &[], meaning: Same("--a-srs") },
     Habit { typed: &["-t_srs", "--t_srs", "-t-srs"], verbs: &[], meaning: Same("--t-srs") },
     Habit { typed: &["--crs", "-crs"], verbs: &[], meaning: Refused("--a-srs says what the coordinates are in, --t-srs transforms them") },
+    Habit { typed: &["-odir", "-odix", "-otif", "-opng", "-oasc", "-obil", "-olaz", "-olas"], verbs: &[],
+        meaning: Refused("-o FILE names the output, and by its extension the format") },
     Habit { typed: &["-of", "--of", "-f"], verbs: &[], meaning: Format },
     Habit { typed: &["-co", "--co"], verbs: &[], meaning: Creation },
     Habit { typed: &["-overwrite"], verbs: &[], meaning: Same("--overwrite") },
@@ -185,7 +187,8 @@ fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<St
         match *meaning {
             Same(option) => ours.push(option.into()),
             Square(option) => match &numbers(&mut rest, 2)[..] {
-                [x, y] if finite(x) != finite(y) => {
+                // Of the height of a cell, GDAL tells the direction, too.
+                [x, y] if finite(x).map(f64::abs) != finite(y).map(f64::abs) => {
                     return Err(Error::usage(format!("{name} {x} {y}: cells are square"))
                         .cure(format!("{option} {x}, or {option} {y}")));
                 }
@@ -255,18 +258,35 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
     let mut i = 0;
     while i < words.len() && words[i] != "--" {
         let text = words[i].to_string_lossy();
-        if text == "-o" || text == "--output" {
+        let is_short = text.len() > 1 && text.starts_with('-') && !text.starts_with("--") && finite(&text).is_err();
+        // The letter of a value, and what of the word is the value.
+        let mut of_value = None;
+        if is_short {
+            let letters = text.char_indices().skip(1).collect::<Vec<_>>();
+            for &(at, letter) in &letters {
+                if takes_value(&|option| option.get_short() == Some(letter)) {
+                    of_value = Some((letter, &text[at + letter.len_utf8()..]));
+                    break;
+                }
+                let is_known = options.iter().any(|option| option.get_short() == Some(letter));
+                if letters.len() > 1 && !is_known {
+                    return Err(Error::usage(format!("{text} is no option of `breakline {verb}`")).cure(format!(
+                        "names of options begin with two dashes: `breakline {verb} --help` lists them"
+                    )));
+                }
+            }
+        }
+        let is_output = text == "--output" || of_value == Some(('o', ""));
+        if is_output {
             targets.extend(words.get(i + 1).map(PathBuf::from));
-        } else if let Some(target) = text.strip_prefix("--output=").or_else(|| text.strip_prefix("-o")) {
+        } else if let Some(('o', target)) = of_value {
+            targets.push(target.into());
+        } else if let Some(target) = text.strip_prefix("--output=") {
             targets.push(target.into());
         }
         let is_followed = match text.strip_prefix("--") {
             Some(long) => takes_value(&|option| option.get_long() == Some(long)),
-            None => {
-                text.len() == 2
-                    && text.starts_with('-')
-                    && takes_value(&|option| option.get_short() == text.chars().nth(1))
-            }
+            None => of_value.is_some_and(|(_, value)| value.is_empty()),
         };
         if !text.starts_with('-') || text == "-" {
             files.push(i);
@@ -277,7 +297,7 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
         let path = PathBuf::from(&words[*last]);
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if written(verb).contains(&extension.as_str()) {
-            if path.exists() {
+            if path.exists() && !words.iter().any(|word| word == "--overwrite") {
                 let name = path.display();
                 return Err(Error::usage("no output is named")
                     .cure(format!("if it is {name}, which exists: -o {name} --overwrite")));
@@ -343,6 +363,8 @@ mod tests {
                 "b dem --a-srs EPSG:25832 --overwrite a.laz -o b.TIF",
             ),
             ("b dem a.laz --s-srs EPSG:1 b.tif", "b dem a.laz --a-srs EPSG:1 -o b.tif"),
+            ("b dem a.laz -qo b.tif", "b dem a.laz -qo b.tif"),
+            ("b dem a.laz b.tif -tr 1 -1", "b dem a.laz -o b.tif --resolution 1"),
             ("b dem a.laz --class 2 b.tif -q", "b dem a.laz --class 2 -o b.tif -q"),
             (
                 "b gdal_contour -i 10 -off 5 -3d nowhere.tif out.shp",
@@ -381,6 +403,9 @@ mod tests {
             ("b slope dem.tif", "`slope` is no verb", "gdaldem slope dem.tif"),
             ("b a.laz -o b.tif", "`a.laz` stands in the place of a verb", "breakline info a.laz"),
             ("b dem -drop_class 7 a.laz", "-drop_class is no option", "--class N"),
+            ("b dem -odir out a.laz", "-odir is no option", "-o FILE"),
+            ("b dem a.laz -o b.tif -hillshade", "-hillshade is no option", "two dashes"),
+            ("b dem a.laz --crs EPSG:1 -o b.tif", "--crs is no option", "--a-srs"),
             ("b triangulate -tr 1 1 x.poly", "`-tr`: of Triangle's switches", "two dashes"),
         ] {
             let error = words(typed).unwrap_err();

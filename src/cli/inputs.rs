@@ -94,6 +94,11 @@ fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
     Ok(())
 }
 
+/// Whether an input can be read once only: the standard input, a pipe, a device.
+pub(super) fn is_read_once(path: &Path) -> bool {
+    path.as_os_str() == STDIN || std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
 fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
     if path.as_os_str() == STDIN || file_of(path).is_some() {
         // A folder with an extension may be a data set of GDAL, as `.gdb`.

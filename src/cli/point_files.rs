@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::inputs::is_read_once;
 use super::progress::Size;
 use super::roads::Roads;
 use super::systems::{Role, Stated};
@@ -52,7 +53,7 @@ impl PointFiles {
             }
             let stated = Stated { path: path.clone(), crs: info.crs.clone(), role: Role::Ground };
             let (count, columns) = (info.count, info.columns);
-            let keep = paths.len() <= FILES_KEPT_OPEN || is_stream(path);
+            let keep = paths.len() <= FILES_KEPT_OPEN || is_read_once(path);
             let has_classes = info.has_classes;
             files.push(PointFile { stated, count, has_classes, columns, source: Some(source).filter(|_| keep) });
         }
@@ -79,7 +80,7 @@ impl PointFiles {
         };
         let is_one = self.files.iter().all(|file| is_same(&file.stated.crs, &self.files[0].stated.crs));
         // What comes through a pipe is read once.
-        if is_one || self.files.iter().any(|file| is_stream(&file.stated.path)) {
+        if is_one || self.files.iter().any(|file| is_read_once(&file.stated.path)) {
             return Ok(stated);
         }
         let (wanted, or_all) = match classes {
@@ -198,8 +199,4 @@ impl PointFiles {
         }
         Ok(extents)
     }
-}
-
-fn is_stream(path: &Path) -> bool {
-    path.as_os_str() == super::inputs::STDIN
 }

@@ -174,7 +174,14 @@ fn write_tiles(
     if summary.valid == 0 {
         (summary.min, summary.max) = (f64::NAN, f64::NAN);
     }
-    target.put(out.out)?;
+    // Overviews and statistics of another raster would be taken for those of this one.
+    let beside = ["ovr", "aux.xml"].map(|extension| {
+        let mut name = target.path().as_os_str().to_owned();
+        name.push(".");
+        name.push(extension);
+        name.into()
+    });
+    target.put_all([], out.out, beside)?;
     Ok(summary)
 }
 

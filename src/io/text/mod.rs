@@ -3,7 +3,8 @@
 //! One point in a line. Fields are separated by semicolons, tabs, commas or blanks; which, is told
 //! by the first point. Which columns are taken is what [`Columns`] say, if they are given; else what a header line
 //! says; else the first three are x, y and z. (If the first then counts up by one in each line and three numbers
-//! follow, it is perhaps the number of a point: that is refused.) Columns are found by name, in any case and order:
+//! follow, it is perhaps the number of a point: that is refused. If it holds whole numbers only, and the next two do
+//! not, that is a warning.) Columns are found by name, in any case and order:
 //!
 //! | column | names |
 //! |---|---|
@@ -13,7 +14,7 @@
 //! | class, if there is one | `class`, `classification` |
 //!
 //! A unit in brackets after a name is ignored: `Height (m)`. Comments begin with `#` or `//`; one
-//! before the points may be the header. Fields may stand in double quotes. A decimal comma is
+//! before the points may be the header, if it has no more names than a line has fields (words up to a colon aside). Fields may stand in double quotes. A decimal comma is
 //! understood where fields are not separated by commas. A first line of one number is the count of
 //! points that `.pts` files begin with. UTF-8 and its relatives, with or without a byte order
 //! mark; any line ends. What is not a point is an error with its line: no line is dropped silently.
@@ -27,7 +28,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use self::columns::{Layout, Point};
-use self::numbering::Numbering;
+use self::numbering::{Guess, Numbering};
 use self::separator::Separator;
 use crate::data::{Columns, PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result};
@@ -129,10 +130,14 @@ impl PointSource for TextReader {
             }
         }
         // One batch is enough to tell numbers from coordinates.
-        if self.numbering.take().is_some_and(|numbering| numbering.is_likely()) {
-            self.is_done = true;
-            batch.clear();
-            return Err(numbering::refuse().in_file(&self.lines.name));
+        match self.numbering.take().map(Numbering::guess) {
+            Some(Guess::Counted) => {
+                self.is_done = true;
+                batch.clear();
+                return Err(numbering::refuse().in_file(&self.lines.name));
+            }
+            Some(Guess::Whole) => self.warnings.push(numbering::WHOLE.to_owned()),
+            Some(Guess::Coordinates) | None => {}
         }
         self.read += batch.len() as u64;
         Ok(())
@@ -176,14 +181,17 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
     // What a header names, or was asked for.
     let asked = columns.map(|columns| Layout { columns, ..Layout::FIRST });
     let mut named: Option<Layout> = None;
+    // What a comment names, and how many names it has.
+    let mut commented: Option<(Layout, usize)> = None;
     let mut is_header_passed = false;
     let mut count = None;
     while lines.next()? {
         let line = match Line::new(&lines.line) {
             Line::Blank => continue,
             Line::Comment(text) => {
-                let layout = Separator::guess(text).and_then(|separator| Layout::named(text, separator).ok());
-                named = layout.or(named);
+                let names = text.rsplit(|&byte| byte == b':').next().unwrap_or(text);
+                let layout = Separator::guess(names).and_then(|separator| Layout::named(names, separator).ok());
+                commented = layout.map(|layout| (layout, layout.separator.fields(names).count())).or(commented);
                 continue;
             }
             Line::Data(line) => line,
@@ -203,6 +211,9 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
             is_header_passed = true;
             continue;
         }
+        // A comment with more words than a line has fields is prose.
+        let commented = commented.filter(|(_, names)| *names <= separator.fields(line).count());
+        let named = named.or(commented.map(|(layout, _)| layout));
         let known = asked.or(named);
         let layout = Layout { separator, ..known.unwrap_or(Layout::FIRST) };
         let first = layout.point(line).map_err(|error| match known {
@@ -215,6 +226,7 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
         let has_header = is_header_passed || named.is_some();
         return Ok(Start { layout, has_header, count, first: Some(first), numbering });
     }
+    let named = named.or(commented.map(|(layout, _)| layout));
     let has_header = is_header_passed || named.is_some();
     let layout = asked.or(named).unwrap_or(Layout::FIRST);
     Ok(Start { layout, has_header, count, first: None, numbering: None })
@@ -329,6 +341,24 @@ mod tests {
     }
 
     const TWO: [[f64; 3]; 2] = [[1.5, 2.25, -3.0], [4.0, 5.0, 6.5]];
+
+    #[test]
+    fn a_comment_of_more_words_than_fields_is_prose() {
+        assert_eq!(points("# height is z of x and y\n1 2 3\n"), [[1.0, 2.0, 3.0]]);
+        assert_eq!(points("# columns: y x z r\n1 2 3 0\n"), [[2.0, 1.0, 3.0]]);
+        assert_eq!(points("# exported by Foo: id x y z\n7 1 2 3\n"), [[1.0, 2.0, 3.0]]);
+        assert_eq!(points("# y x z\n1 2 3 0\n"), [[2.0, 1.0, 3.0]]);
+    }
+
+    #[test]
+    fn numbers_with_gaps_are_a_warning() {
+        let warned = |text: &str| !read(text).unwrap().0.warnings().is_empty();
+        assert!(warned("101,5000.12,2000.5,33.1\n102,5001.5,2001,33.2\n104,5002,2002,33\n"));
+        assert!(warned("10 5000.12 2000.5 33.1\n9 5001.5 2001 33.2\n"));
+        assert!(!warned("101 5000 2000 33.1\n104 5001 2001 33.2\n"), "a grid");
+        assert!(!warned("101.5 5000.12 2000.5 33.1\n104 5001.5 2001 33.2\n"));
+        assert!(!warned("101 5000.12 33.1\n104 5001.5 33.2\n"), "three columns");
+    }
 
     #[test]
     fn every_spelling_of_two_points() {

@@ -3,37 +3,66 @@
 use super::separator::Separator;
 use crate::error::Error;
 
-/// A first column that counted up by one so far, with three numbers behind it in each line.
+/// What a first column of whole numbers is, with three numbers behind it in each line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Numbering {
     last: f64,
     lines: u64,
+    /// Whether it has counted up by one so far.
+    is_counted: bool,
+    /// Whether one of the next two columns has held a number that is not whole.
+    has_fraction: bool,
 }
+
+/// What the first column seems to be.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Guess {
+    /// x, as far as can be seen.
+    Coordinates,
+    /// The number of the point: it counts up by one.
+    Counted,
+    /// Maybe the number of the point: it is whole in each line, and the next two are not.
+    Whole,
+}
+
+pub(super) const WHOLE: &str = "the first column, taken as x, holds whole numbers only, and the next two do not: if it \
+                                is the number of the point, say so with --columns PNEZD (or PENZD)";
 
 impl Numbering {
-    /// What the first point leaves open.
+    /// The guess after the first point; `None` if its first column is no number of a point.
     pub(super) fn start(separator: Separator, line: &[u8]) -> Option<Self> {
-        let last = first_of_four(separator, line)?;
-        (last.fract() == 0.0).then_some(Numbering { last, lines: 1 })
+        let [last, x, y] = first_of_four(separator, line)?;
+        let has_fraction = x.fract() != 0.0 || y.fract() != 0.0;
+        (last.fract() == 0.0).then_some(Numbering { last, lines: 1, is_counted: true, has_fraction })
     }
 
-    /// What another point leaves open.
+    /// The guess after one more point; `None` if its first column is no number of a point.
     pub(super) fn next(self, separator: Separator, line: &[u8]) -> Option<Self> {
-        let next = self.last + 1.0;
-        (first_of_four(separator, line) == Some(next)).then_some(Numbering { last: next, lines: self.lines + 1 })
+        let here = Numbering::start(separator, line)?;
+        Some(Numbering {
+            lines: self.lines + 1,
+            is_counted: self.is_counted && here.last == self.last + 1.0,
+            has_fraction: self.has_fraction || here.has_fraction,
+            ..here
+        })
     }
 
-    /// Whether there are points enough to say so.
-    pub(super) fn is_likely(self) -> bool {
-        self.lines > 1
+    /// What is likely after all these points.
+    pub(super) fn guess(self) -> Guess {
+        match self {
+            _ if self.lines < 2 => Guess::Coordinates,
+            _ if self.is_counted => Guess::Counted,
+            _ if self.has_fraction => Guess::Whole,
+            _ => Guess::Coordinates,
+        }
     }
 }
 
-/// The first number, if all of the first four fields are numbers.
-fn first_of_four(separator: Separator, line: &[u8]) -> Option<f64> {
+/// The first three numbers, if all of the first four fields are numbers.
+fn first_of_four(separator: Separator, line: &[u8]) -> Option<[f64; 3]> {
     let mut numbers = separator.fields(line).map_while(|field| separator.number(field));
-    let first = numbers.next()?;
-    (numbers.take(3).count() == 3).then_some(first)
+    let first = [numbers.next()?, numbers.next()?, numbers.next()?];
+    numbers.next().map(|_| first)
 }
 
 #[cold]
