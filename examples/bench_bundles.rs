@@ -23,7 +23,7 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use breakline::geometry::Plane;
+use breakline::triangulation::geometry::Plane;
 use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
 
 type Line = Vec<[f64; 2]>;

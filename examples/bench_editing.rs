@@ -14,7 +14,7 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use breakline::geometry::Plane;
+use breakline::triangulation::geometry::Plane;
 use breakline::triangulation::{Delaunay, Hierarchy, Locate, Location, Refused};
 
 fn run(stem: &str, points: &[[f64; 2]]) -> Result<(), Refused> {

@@ -14,8 +14,8 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use breakline::geometry::Plane;
 use breakline::io::triangle;
+use breakline::triangulation::geometry::Plane;
 use breakline::triangulation::refine::{Domain, Quality};
 use breakline::triangulation::{ConstrainedDelaunay, OnCrossing};
 

@@ -22,11 +22,11 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
-use breakline::geometry::{Plane, Space};
-use breakline::kernel::{
+use breakline::triangulation::geometry::{Plane, Space};
+use breakline::triangulation::kernel::{
     Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnFineLattice, OnLattice, Predicate, Range,
 };
-use breakline::num::Sign;
+use breakline::triangulation::num::Sign;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Refused};
 
 /// The stages of [`Adaptive`], but for the pairs of doubles, each counting what it is asked.

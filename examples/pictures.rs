@@ -1,10 +1,10 @@
-//! Draws the pictures of the documentation: `cargo run --example pictures -- docs/pictures`.
+//! Draws the pictures of the documentation: `cargo run --example pictures -- triangulation/docs/pictures`.
 
 use std::fs;
 use std::path::Path;
 
-use breakline::geometry::{Plane, Weighted};
-use breakline::tds::{CellId, VertexId};
+use breakline::triangulation::geometry::{Plane, Weighted};
+use breakline::triangulation::tds::{CellId, VertexId};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, Passage, Refused, Regular};
 
 type Place = [f64; 2];

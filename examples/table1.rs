@@ -24,8 +24,8 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use breakline::geometry::Plane;
-use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel};
+use breakline::triangulation::geometry::Plane;
+use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel};
 use breakline::triangulation::{Delaunay, Hierarchy, JumpAndWalk, Locate, Near};
 use breakline::{io, terrain};
 

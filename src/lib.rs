@@ -33,7 +33,7 @@
 //! # Triangulations
 //!
 //! ```
-//! use breakline::geometry::Plane;
+//! use breakline::triangulation::geometry::Plane;
 //! use breakline::triangulation::{Delaunay, Level};
 //!
 //! let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -46,8 +46,8 @@
 //! ```
 //!
 //! What a point is, how exactly its predicates are computed and which law the triangulation obeys are
-//! three choices that do not depend on each other: a [`geometry`], a [`kernel`], a kind of
-//! [`triangulation`]. The [`guide`] is for those who come from CGAL, spade or Triangle.
+//! three choices that do not depend on each other: a [geometry](triangulation::geometry), a [kernel](triangulation::kernel), a
+//! kind of [`triangulation`]. The [guide](triangulation::guide) is for those who come from CGAL, spade or Triangle.
 //!
 //! # The floors
 //!
@@ -55,31 +55,20 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`num`] | numbers that can tell their sign |
-//! | [`kernel`] | predicates: formula times number |
+//! | [`triangulation`] | the crate `breakline-triangulation`: numbers, predicates, geometry, combinatorics, all kinds of triangulations |
 //! | [`crs`] | coordinate systems: names, codes, units |
 //! | [`data`] | plain records between formats and algorithms |
-//! | [`geometry`] | what a triangulation asks of points |
-//! | [`tds`] | combinatorics, without coordinates |
-//! | [`arrangement`] | segments that cross, rounded so that they meet at common ends only |
-//! | [`triangulation`] | location, insertion, kinds, checks |
 //! | [`terrain`] | TIN, contours, DEM, hillshade |
 //! | [`io`] | formats: LAS, GeoTIFF, shapefile, PLY and others |
 //! | `cli` | the command line; not for other programs |
 
-pub mod arrangement;
 #[doc(hidden)] // the program as a function: no part of what the library promises
 pub mod cli;
 pub mod crs;
 pub mod data;
 pub mod error;
-pub mod geometry;
-pub mod guide;
 pub mod io;
-pub mod kernel;
-pub mod num;
-pub mod tds;
 pub mod terrain;
-pub mod triangulation;
 
+pub use breakline_triangulation as triangulation;
 pub use error::{Error, Result};

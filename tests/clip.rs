@@ -1,11 +1,9 @@
 //! Surfaces clipped to polygons, against the even-odd rule by rays.
 
-mod common;
-
 use breakline::data::{EdgeKind, Surface};
 use breakline::terrain::{Tin, TinBuilder};
 use breakline::triangulation::Level;
-use common::random::Random;
+use testkit::random::Random;
 
 type Ring = Vec<[f64; 2]>;
 

@@ -1,10 +1,8 @@
 //! Lines that once went wrong, by name: files of `fixtures/constraints`, and what others displaced.
 
-mod common;
-
-use common::case::{Case, Point};
-use common::judge;
-use common::subject::build;
+use testkit::case::{Case, Point};
+use testkit::judge;
+use testkit::subject::build;
 
 /// Every failure that was found and mended stays here, made small.
 #[test]
@@ -33,7 +31,7 @@ fn displaced_breakline() {
     assert_eq!(judge::pass(&back), Ok(()));
     let [there, back] = [there, back].map(|case| build(&case).unwrap());
     assert!(there.rounding.unwrap().on_grid);
-    let points = |line: usize, built: &common::subject::Built| -> Vec<Point> {
+    let points = |line: usize, built: &testkit::subject::Built| -> Vec<Point> {
         built.chains[line].iter().map(|&v| *built.triangulation.point(v)).collect()
     };
     assert_eq!(points(0, &there), points(1, &back));

@@ -1,13 +1,11 @@
 //! Coordinate systems against real files, and against what GDAL makes of our text and keys (where its tools are
 //! installed).
 
-mod common;
-
 use std::path::Path;
 use std::process::Command;
 
 use breakline::crs::{Crs, CrsKind, GeoKeys, RasterType, Unit};
-use common::shared;
+use testkit::shared;
 
 /// The systems that a `.prj` must carry through other programs.
 const CODES: &[u32] = &[

@@ -1,11 +1,9 @@
 //! The raster of a surface: what its cells hold, and that nothing else matters.
 
-mod common;
-
 use breakline::data::{BlockSource, Frame, Grid, Mesh, Surface, Window};
 use breakline::terrain::{Dem, Hillshade, Light};
-use common::random::Random;
 use rayon::prelude::*;
+use testkit::random::Random;
 
 type Lattice = [i64; 2];
 

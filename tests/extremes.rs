@@ -1,12 +1,10 @@
 //! Triangulations of points at the ends of floating point, and across all of it.
 
-mod common;
-
-use breakline::geometry::{Plane, Space};
-use breakline::kernel::Wide;
 use breakline::terrain::TinBuilder;
+use breakline::triangulation::geometry::{Plane, Space};
+use breakline::triangulation::kernel::Wide;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, spatial_order};
-use common::random::Random;
+use testkit::random::Random;
 
 type Constrained = ConstrainedDelaunay<Plane<Wide>>;
 
@@ -50,7 +48,7 @@ fn thousands_of_points_of_one_size() {
 fn points_of_every_size_at_once() {
     let mut random = Random(2);
     let mut any = || loop {
-        let x = f64::from_bits(random.next());
+        let x = f64::from_bits(random.bits());
         if x.is_finite() {
             return x;
         }

@@ -1,8 +1,5 @@
 //! Vector layers and rasters through GDAL, from files that GDAL has written.
 
-#[cfg(feature = "gdal")]
-mod common;
-
 use std::path::Path;
 
 use breakline::io::gdal::{IS_HERE, open_raster, read_layer};
@@ -269,13 +266,13 @@ mod with_gdal {
     #[test]
     #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
     fn real_rasters_are_as_the_facts_say() {
-        let raster = open_raster(crate::common::shared("dem/gdal/n43.dt0")).unwrap();
+        let raster = open_raster(testkit::shared("dem/gdal/n43.dt0")).unwrap();
         let grid = raster.read_grid().unwrap();
         assert_eq!((grid.frame.width, grid.frame.height), (121, 121));
         let range = grid.values.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
         assert_eq!(range, (75.0, 460.0));
         assert_eq!(grid.crs.unwrap().epsg, Some(4326));
-        let layer = read_layer(&crate::common::shared("shp/shapelib_eg/brklinz.shp"), None).unwrap();
+        let layer = read_layer(&testkit::shared("shp/shapelib_eg/brklinz.shp"), None).unwrap();
         assert_eq!(layer.shapes.len(), 122);
         assert_eq!(layer.shapes.iter().map(|shape| shape.vertices().count()).sum::<usize>(), 1736);
     }

@@ -4,15 +4,13 @@
 //! `HOSTILE=FOLDER cargo test --release --test hostile -- --nocapture` tries those that the script itself wrote.
 #![allow(clippy::print_stdout)]
 
-mod common;
-
 use std::path::Path;
 
 use breakline::triangulation::Refused;
-use common::case::{Case, Point};
-use common::judge;
-use common::random::{Random, ulps};
-use common::subject::build;
+use testkit::case::{Case, Point};
+use testkit::judge;
+use testkit::random::{Random, ulps};
+use testkit::subject::build;
 
 /// A set by name; `lines` is empty for those of points only.
 type Named = (&'static str, Case);

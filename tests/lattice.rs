@@ -1,16 +1,17 @@
 //! Triangulations of points as LAS files hold them: whole numbers of steps, without a conversion.
 
-mod common;
-
 use breakline::data::{Lattice, PointBatch};
-use breakline::geometry::{Plane, Steps};
-use breakline::kernel::{self, Exact, InCircle, Kernel, Orientation2};
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::{Plane, Steps};
+use breakline::triangulation::kernel::{self, Exact, InCircle, Kernel, Orientation2};
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing};
-use common::random::Random;
+use testkit::random::Random;
 
 /// The triangles as the positions of their points, from the smallest on, in order.
-fn triangles<G: breakline::geometry::Geometry<3>>(t: &Delaunay<G, 3>, vertices: &[VertexId]) -> Vec<[usize; 3]> {
+fn triangles<G: breakline::triangulation::geometry::Geometry<3>>(
+    t: &Delaunay<G, 3>,
+    vertices: &[VertexId],
+) -> Vec<[usize; 3]> {
     let mut first = vec![usize::MAX; t.vertex_count()];
     for (i, v) in vertices.iter().enumerate().rev() {
         first[v.index()] = i;
@@ -72,7 +73,7 @@ fn the_kernel_is_exact_on_whole_numbers() {
         let (in_circle, orientation) = (InCircle(points), Orientation2([a, b, c]));
         assert_eq!(kernel::Lattice::sign(&in_circle), Exact::sign(&in_circle), "{points:?}");
         assert_eq!(kernel::Lattice::sign(&orientation), Exact::sign(&orientation), "{points:?}");
-        ties += usize::from(Exact::sign(&in_circle) == breakline::num::Sign::Zero);
+        ties += usize::from(Exact::sign(&in_circle) == breakline::triangulation::num::Sign::Zero);
     }
     assert!(ties > 500, "{ties}");
 }
@@ -125,7 +126,7 @@ fn crossings_are_whole_numbers() {
 fn a_tile() {
     let tiles = ["lidar/lake_breakline/lake.laz", "lidar/formats/1.2-with-color.las", "lidar/formats/pdrf10-1.4.las"];
     for tile in tiles {
-        let mut source = breakline::io::points::open(common::shared(tile)).unwrap();
+        let mut source = breakline::io::points::open(testkit::shared(tile)).unwrap();
         let lattice = source.info().lattice.unwrap();
         let mut points = Vec::new();
         let mut batch = PointBatch::default();

@@ -1,8 +1,6 @@
 //! Vector layers: every real file against its facts, every damaged one against a table, and what is
 //! written against what is read.
 
-mod common;
-
 use std::io::Write;
 use std::path::Path;
 use std::process::Command;
@@ -15,7 +13,7 @@ use breakline::io::{contours, layer, shapefile};
 use serde_json::Value;
 
 fn facts() -> serde_json::Map<String, Value> {
-    let text = std::fs::read_to_string(common::shared("FACTS.json")).unwrap();
+    let text = std::fs::read_to_string(testkit::shared("FACTS.json")).unwrap();
     // Written by Python, which has numbers that JSON has not.
     let text = text.replace("NaN", "null").replace("-Infinity", "null").replace("Infinity", "null");
     let Value::Object(facts) = serde_json::from_str(&text).unwrap() else { panic!("FACTS.json is no object") };
@@ -65,7 +63,7 @@ fn every_sound_shapefile_has_the_facts() {
     let facts = facts();
     let mut seen = 0;
     for (name, fact) in facts.iter().filter(|(name, _)| name.ends_with(".shp") && !name.contains("/broken")) {
-        let layer = read(&common::shared(name)).unwrap_or_else(|e| panic!("{e}"));
+        let layer = read(&testkit::shared(name)).unwrap_or_else(|e| panic!("{e}"));
         let number = |key: &str| fact[key].as_u64().unwrap_or_else(|| panic!("{name}: no {key}")) as usize;
         seen += 1;
         assert_eq!(layer.format, format!("shapefile {}", format_name(number("hdr_type") as u64)), "{name}");
@@ -165,7 +163,7 @@ const DAMAGED: &[(&str, Outcome)] = &[
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn every_damaged_shapefile_is_in_the_table() {
-    let folder = common::shared("shp");
+    let folder = testkit::shared("shp");
     let mut there = Vec::new();
     for sub in ["broken", "broken_mut"] {
         for entry in std::fs::read_dir(folder.join(sub)).unwrap() {
@@ -203,7 +201,7 @@ fn every_damaged_shapefile_is_in_the_table() {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn multipatches_become_triangles() {
     for (name, count) in [("shp/gdal/multipatch.shp", 4 + 6 + 18), ("shp/types/multipatch.shp", 8 + 4)] {
-        let layer = read(&common::shared(name)).unwrap();
+        let layer = read(&testkit::shared(name)).unwrap();
         // A fan and a strip of n vertices give n - 2, a ring with h holes n + 2h - 2.
         assert!(matches!(&layer.shapes[..], [Shape::Triangles(t)] if t.len() == count), "{name}");
         assert_eq!(layer.warnings, [] as [&str; 0], "{name}");
@@ -213,7 +211,7 @@ fn multipatches_become_triangles() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn heights_come_from_an_attribute() {
-    let path = common::shared("lidar/ign_0292_6833/Lignes_3d_0292_6833.shp");
+    let path = testkit::shared("lidar/ign_0292_6833/Lignes_3d_0292_6833.shp");
     let spec = |field: &str| format!("{}:{field}", path.display());
     let layer = layer::read(&spec("recupz")).unwrap();
     assert_eq!(layer.shapes.len(), 1189);
@@ -221,7 +219,7 @@ fn heights_come_from_an_attribute() {
     assert!(layer.shapes.iter().flat_map(Shape::vertices).all(|v| v[2].is_finite()));
 
     // The same lines as GeoJSON, for the lines in the tile: the heights agree line by line.
-    let twin = common::shared("lidar/ign_0292_6833/Lignes_2d_0292_6833.geojson");
+    let twin = testkit::shared("lidar/ign_0292_6833/Lignes_2d_0292_6833.geojson");
     let twin = layer::read(&format!("{}:RecupZ", twin.display())).unwrap();
     assert_eq!(twin.shapes.len(), 48);
     let find = |v: &[f64; 3]| {
@@ -242,7 +240,7 @@ fn heights_come_from_an_attribute() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn geojson_has_heights_of_its_own() {
-    let layer = read(&common::shared("lidar/ign_0292_6833/Points_virtuels_0292_6833.geojson")).unwrap();
+    let layer = read(&testkit::shared("lidar/ign_0292_6833/Points_virtuels_0292_6833.geojson")).unwrap();
     assert_eq!((layer.shapes.len(), layer.format.as_str()), (2423, "GeoJSON"));
     assert!(layer.shapes.iter().all(|s| matches!(s, Shape::Points(p) if p.len() == 1 && p[0][2].is_finite())));
 }
@@ -549,7 +547,7 @@ fn every_prj_names_its_system() {
     let mut seen = 0;
     for (folder, names, code) in SYSTEMS {
         for name in *names {
-            let layer = read(&common::shared(&format!("{folder}/{name}.shp"))).unwrap();
+            let layer = read(&testkit::shared(&format!("{folder}/{name}.shp"))).unwrap();
             assert_eq!(layer.crs.and_then(|crs| crs.epsg), Some(*code), "{folder}/{name}");
             seen += 1;
         }
@@ -557,7 +555,7 @@ fn every_prj_names_its_system() {
     let with_prj = |fact: &Value| fact["sidecars"].as_array().is_some_and(|list| list.contains(&"prj".into()));
     assert_eq!(seen, facts.values().filter(|fact| with_prj(fact)).count());
     for name in ["Lignes_2d", "Lignes_3d", "Points_virtuels"] {
-        let path = common::shared(&format!("lidar/ign_0292_6833/{name}_0292_6833.geojson"));
+        let path = testkit::shared(&format!("lidar/ign_0292_6833/{name}_0292_6833.geojson"));
         assert_eq!(read(&path).unwrap().crs.and_then(|crs| crs.epsg), Some(2154), "{name}");
     }
 }

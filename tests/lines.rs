@@ -1,13 +1,11 @@
 //! Lines with ids: whatever is added, removed, divided and joined, the triangulation is that of what is left.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use breakline::geometry::{Plane, distance_to_segment};
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::{Plane, distance_to_segment};
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing, Refused};
-use common::random::{Random, ulps};
+use testkit::random::{Random, ulps};
 
 type Point = [f64; 2];
 type Constrained = ConstrainedDelaunay<Plane>;
@@ -261,7 +259,7 @@ fn nesting_counts_the_lines_from_outside() {
 /// Edits leave what building anew would have given, also below the plane, and with a point where lines cross.
 #[test]
 fn edits_at_the_edges() {
-    use breakline::geometry::{Plane, Terrain};
+    use breakline::triangulation::geometry::{Plane, Terrain};
     use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
 
     let mut t = ConstrainedDelaunay::<_>::new(<Plane>::default());

@@ -1,13 +1,11 @@
 //! The triangulation is a function of the set of points: whatever their order, the number of threads, and whether they came at
 //! once or one by one.
 
-mod common;
-
 use breakline::data::PointBatch;
-use breakline::geometry::Plane;
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::Plane;
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{Delaunay, Level, spatial_order};
-use common::random::Random;
+use testkit::random::Random;
 
 type Point = [f64; 2];
 
@@ -87,7 +85,7 @@ fn points_on_a_circle_and_in_heaps() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn lidar() {
-    let mut source = breakline::io::points::open(common::shared("lidar/lake_breakline/lake.laz")).unwrap();
+    let mut source = breakline::io::points::open(testkit::shared("lidar/lake_breakline/lake.laz")).unwrap();
     let mut batch = PointBatch::default();
     let mut points: Vec<Point> = Vec::new();
     loop {

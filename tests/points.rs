@@ -1,7 +1,5 @@
 //! Readers of points against real files, and against files that are broken.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -59,7 +57,7 @@ fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summ
 /// Fractions are kept as text: the JSON reader rounds some of them wrongly, and Python wrote NaN and
 /// Infinity, which JSON does not have.
 fn facts() -> BTreeMap<String, Value> {
-    let text = std::fs::read_to_string(common::shared("FACTS.json")).unwrap();
+    let text = std::fs::read_to_string(testkit::shared("FACTS.json")).unwrap();
     let mut quoted = String::with_capacity(text.len());
     for (i, part) in text.split('"').enumerate() {
         let is_string = i % 2 == 1;
@@ -103,7 +101,7 @@ fn every_lidar_file_gives_what_is_known_of_it() {
         }
         // Its header counts points that are not there.
         let cut = if path.ends_with("1.2-no-points.las") { las::Cut::Accept } else { las::Cut::Refuse };
-        let mut source = las::open_with(common::shared(path), cut).unwrap();
+        let mut source = las::open_with(testkit::shared(path), cut).unwrap();
         let found = summarize(&mut source).unwrap_or_else(|error| panic!("{path}: {error}"));
         let info = source.info();
         let version = fact["hdr_version"].as_str().unwrap();
@@ -159,7 +157,7 @@ fn check_crs(path: &str, info: &PointInfo, fact: &Value) {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn geocentric_coordinates_are_known_as_such() {
-    let source = las::open(common::shared("lidar/formats/lone-star.copc.laz")).unwrap();
+    let source = las::open(testkit::shared("lidar/formats/lone-star.copc.laz")).unwrap();
     assert_eq!(source.info().crs.as_ref().unwrap().kind, CrsKind::Geocentric);
 }
 
@@ -168,7 +166,7 @@ fn geocentric_coordinates_are_known_as_such() {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn returns_are_those_of_the_header() {
     for path in ["lidar/bcts/bcts_1.laz", "lidar/ign_0292_6833/test_semis_2023_0292_6833_LA93_IGN69.laz"] {
-        let mut source = las::open(common::shared(path)).unwrap();
+        let mut source = las::open(testkit::shared(path)).unwrap();
         let found = summarize(&mut source).unwrap();
         let stated: BTreeMap<u8, u64> = (1..).zip(source.header().returns.iter().copied()).collect();
         // The header has no place for points that state return 0.
@@ -181,8 +179,8 @@ fn returns_are_those_of_the_header() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn laz_without_chunks_equals_its_las() {
-    let laz = common::shared("lidar/formats/simple-laszip-compressor-version-1.2r0.laz");
-    let las = common::shared("lidar/formats/simple.las");
+    let laz = testkit::shared("lidar/formats/simple-laszip-compressor-version-1.2r0.laz");
+    let las = testkit::shared("lidar/formats/simple.las");
     let (mut a, mut b) = (las::open(laz).unwrap(), las::open(las).unwrap());
     let (mut left, mut right) = (PointBatch::default(), PointBatch::default());
     a.read(&mut left).unwrap();
@@ -249,7 +247,7 @@ const BROKEN: &[(&str, Fate)] = &[
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn every_broken_file_has_its_fate() {
-    let folder = common::shared("lidar/broken");
+    let folder = testkit::shared("lidar/broken");
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -320,8 +318,8 @@ fn points_before_the_damage_are_good() {
         ("mut_point-time-color__truncated_half.laz", "formats/lazrs/point-time-color.las"),
         ("mut_point-time-color__chunktable_ptr_garbage.laz", "formats/lazrs/point-time-color.las"),
     ] {
-        let cut = common::shared(&format!("lidar/broken/{cut}"));
-        let whole = common::shared(&format!("lidar/{whole}"));
+        let cut = testkit::shared(&format!("lidar/broken/{cut}"));
+        let whole = testkit::shared(&format!("lidar/{whole}"));
         let (part, all) = (columns(&cut), columns(&whole));
         let count = part.len();
         assert!(count > 500);
@@ -354,7 +352,7 @@ fn columns(path: &Path) -> PointBatch {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_stream_gives_what_its_file_gives() {
     for path in ["lidar/formats/lazrs/point10.laz", "lidar/formats/simple.las"] {
-        let file = common::shared(path);
+        let file = testkit::shared(path);
         let mut from_file = las::open(&file).unwrap();
         let mut from_stream = las::from_stream(std::fs::File::open(&file).unwrap(), PathBuf::from("stream")).unwrap();
         let (a, b) = (summarize(&mut from_file).unwrap(), summarize(&mut from_stream).unwrap());
@@ -370,7 +368,7 @@ fn points_are_opened_by_what_they_are() {
         ("lidar/formats/simple_with_page.copc.laz", "LAS 1.4, point format 7, COPC", 1065),
         ("lidar/formats/lazrs/point-color.las", "LAS 1.2, point format 2", 1065),
     ] {
-        let file = common::shared(path);
+        let file = testkit::shared(path);
         let mut source = points::open(&file).unwrap();
         assert_eq!(source.info().format, format);
         assert_eq!(summarize(source.as_mut()).unwrap().count, count);
@@ -380,16 +378,16 @@ fn points_are_opened_by_what_they_are() {
         std::fs::copy(&file, &renamed).unwrap();
         assert_eq!(points::open(&renamed).unwrap().info().format, format);
     }
-    let mut source = points::open(common::shared("shp/shapelib_eg/masspntz.shp")).unwrap();
+    let mut source = points::open(testkit::shared("shp/shapelib_eg/masspntz.shp")).unwrap();
     let mut batch = PointBatch::default();
     source.read(&mut batch).unwrap();
     assert_eq!(batch.len(), 815);
     assert!(batch.z.iter().all(|z| (678.0..1050.0).contains(z)));
-    let lines = common::shared("shp/shapelib_eg/brklinz.shp");
+    let lines = testkit::shared("shp/shapelib_eg/brklinz.shp");
     let error = points::open(&lines).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("has no points, but 122 other shapes"), "{error}");
     assert_eq!(error.path(), Some(lines.as_path()));
-    let error = points::open(common::shared("dem/bigtujunga.tif")).map(|_| ()).unwrap_err();
+    let error = points::open(testkit::shared("dem/bigtujunga.tif")).map(|_| ()).unwrap_err();
     assert_eq!(error.kind(), Kind::Unsupported);
     assert!(error.to_string().contains("a TIFF file; points are read from LAS"), "{error}");
 }
@@ -399,7 +397,7 @@ fn points_are_opened_by_what_they_are() {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn text_of_real_points_is_read_back() {
     use std::fmt::Write as _;
-    let all = columns(&common::shared("lidar/lake_breakline/lake.laz"));
+    let all = columns(&testkit::shared("lidar/lake_breakline/lake.laz"));
     let mut text = String::from("Easting;Northing;Height;Class\n");
     for i in 0..all.len() {
         let line = format!("{};{};{};{}", all.x[i], all.y[i], all.z[i], all.class[i]);
@@ -442,7 +440,7 @@ fn changed_bytes_do_not_bring_it_down() {
         "lidar/formats/simple-laszip-compressor-version-1.2r0.laz",
         "lidar/formats/test1_4.las",
     ] {
-        let file = common::shared(path);
+        let file = testkit::shared(path);
         let bytes = std::fs::read(file).unwrap();
         for round in 0..200 {
             let mut changed = bytes.clone();

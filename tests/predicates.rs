@@ -4,17 +4,15 @@
 //! The judge shares nothing with the crate: other numbers (`dashu-ratio`), and other formulas (determinants of
 //! homogeneous coordinates by expansion, circumcenters).
 
-mod common;
-
-use breakline::geometry::{Crossing, Geometry, Plane, Weighted};
-use breakline::kernel::{
+use breakline::triangulation::geometry::{Crossing, Geometry, Plane, Weighted};
+use breakline::triangulation::kernel::{
     Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, Fixed, FixedBound, FlooredErrorBound, InCircle,
     InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnFineLattice, OnLattice, Orientation2,
     Orientation3, PairBound, PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
-use breakline::num::Sign;
-use common::random::{Random, ulps};
+use breakline::triangulation::num::Sign;
 use dashu_ratio::RBig;
+use testkit::random::{Random, ulps};
 
 fn rational(x: f64) -> RBig {
     RBig::try_from(x).unwrap()
@@ -398,7 +396,7 @@ fn every_finite_number() {
     ask_all(250, || random.pick(&pool) * random.pick(&[-1.0, 1.0]));
     ask_all(250, || 5e-324 * random.around(3) as f64);
     ask_all(250, || f64::MAX / 4.0 * random.around(3) as f64);
-    ask_all(250, || Some(f64::from_bits(random.next())).filter(|x| x.is_finite()).unwrap_or(0.0));
+    ask_all(250, || Some(f64::from_bits(random.bits())).filter(|x| x.is_finite()).unwrap_or(0.0));
 }
 
 /// Exponents for which products underflow, overflow, or nearly do, alone and beside each other.

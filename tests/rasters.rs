@@ -1,8 +1,6 @@
 //! Rasters: every real file against its facts, every broken one against its verdict, and what is
 //! written against what is read.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
 use breakline::crs::Crs;
@@ -10,8 +8,8 @@ use breakline::data::{BlockSource, Frame, Window};
 use breakline::error::{Error, Kind, Result};
 use breakline::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
 use breakline::io::{png, raster};
-use common::shared;
 use serde_json::Value;
+use testkit::shared;
 
 fn facts() -> Value {
     let text = std::fs::read_to_string(shared("FACTS.json")).expect("FACTS.json can be read");

@@ -1,15 +1,13 @@
 //! TINs of real deliveries: the counts that ../shared/data states, and every breakline edge present.
 
-mod common;
-
 use breakline::data::{PointBatch, Shape};
-use breakline::tds::VertexId;
 use breakline::terrain::{Tin, TinBuilder};
 use breakline::triangulation::Level;
+use breakline::triangulation::tds::VertexId;
 
 /// All points, or those of class 2, without reduction.
 fn add_points(builder: &mut TinBuilder, path: &str, ground_only: bool) {
-    let mut source = breakline::io::points::open(common::shared(path)).unwrap();
+    let mut source = breakline::io::points::open(testkit::shared(path)).unwrap();
     let mut batch = PointBatch::default();
     loop {
         source.read(&mut batch).unwrap();
@@ -23,7 +21,7 @@ fn add_points(builder: &mut TinBuilder, path: &str, ground_only: bool) {
 }
 
 fn lines(path: &str) -> Vec<Vec<[f64; 3]>> {
-    let layer = breakline::io::layer::read(common::shared(path).to_str().unwrap()).unwrap();
+    let layer = breakline::io::layer::read(testkit::shared(path).to_str().unwrap()).unwrap();
     let parts = layer.shapes.into_iter().flat_map(|shape| match shape {
         Shape::Lines(parts) | Shape::Polygon(parts) => parts,
         _ => Vec::new(),

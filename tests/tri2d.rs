@@ -1,17 +1,15 @@
 //! The shared cases of other triangulation packages, by the counts that their README states and by our own judge.
 #![allow(clippy::print_stdout)]
 
-mod common;
-
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use breakline::geometry::Plane;
 use breakline::triangulation::Delaunay;
-use common::case::Case;
-use common::judge;
-use common::random::Random;
-use common::subject::{Built, build};
+use breakline::triangulation::geometry::Plane;
+use testkit::case::Case;
+use testkit::judge;
+use testkit::random::Random;
+use testkit::subject::{Built, build};
 
 /// A file of the format that ../shared/data/README.md tells.
 struct Stated {
@@ -127,7 +125,7 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn known_counts() {
-    let folder = common::shared("tri2d");
+    let folder = testkit::shared("tri2d");
     let mut faults = Vec::new();
     println!("| family | files | passed | compared |\n|---|---|---|---|");
     for family in entries(&folder) {

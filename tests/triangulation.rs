@@ -1,14 +1,12 @@
 //! Laws of the triangulations, on small integer grids where ties are the rule.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use breakline::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
-use breakline::kernel::{Adaptive, Exact, Expansions, Kernel};
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
+use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Kernel};
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, Refused, Triangulation};
-use common::random::Random;
+use testkit::random::Random;
 
 /// The finite cells as sorted points, in whole steps of 1/1024.
 fn cells<G, const N: usize, V, C>(t: &Triangulation<G, N, V, C>) -> BTreeSet<Vec<Vec<i64>>>
@@ -16,7 +14,7 @@ where
     G: Coordinates<N>,
     C: Copy + Default,
 {
-    common::cells::cells(t, |p| p.as_ref().iter().map(|x| (x * 1024.0) as i64).collect())
+    testkit::cells::cells(t, |p| p.as_ref().iter().map(|x| (x * 1024.0) as i64).collect())
 }
 
 fn grid_points<const D: usize>(random: &mut Random, count: u64, side: u64, scale: f64) -> Vec<[f64; D]> {
@@ -132,7 +130,9 @@ fn covers(t: &ConstrainedDelaunay<Plane>, a: [f64; 2], b: [f64; 2]) -> bool {
     let mut on: Vec<VertexId> = t
         .tds()
         .vertices()
-        .filter(|&v| g.orientation([&a, &b, t.point(v)]) == breakline::num::Sign::Zero && between(t.point(v)))
+        .filter(|&v| {
+            g.orientation([&a, &b, t.point(v)]) == breakline::triangulation::num::Sign::Zero && between(t.point(v))
+        })
         .collect();
     on.sort_by(|&u, &v| g.compare(t.point(u), t.point(v)));
     on.windows(2).all(|pair| t.tds().edge(pair[0], pair[1]).is_some_and(|(cell, i)| t.is_constrained(cell, i)))

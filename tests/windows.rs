@@ -6,13 +6,11 @@
 //! BREAKLINE_WINDOWS=20000 cargo test --release --test windows
 //! ```
 
-mod common;
-
 use std::collections::BTreeSet;
 
 use breakline::data::{Bounds, Surface};
 use breakline::terrain::{Tin, TinBuilder, Window};
-use common::random::Random;
+use testkit::random::Random;
 
 /// A scene: points, breaklines, and what is asked for.
 struct Scene {

@@ -4,11 +4,8 @@
 //! `breakline-fuzz --poly FILE` prints what the bytes of a file mean.
 #![allow(clippy::print_stdout)]
 
-#[path = "../../tests/common/mod.rs"]
-mod common;
-
-use common::case::{Case, Point};
-use common::judge;
+use testkit::case::{Case, Point};
+use testkit::judge;
 
 /// More is slow, and shows nothing that less does not.
 const MOST_POINTS: usize = 60;

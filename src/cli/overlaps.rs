@@ -8,10 +8,10 @@
 use std::collections::HashMap;
 
 use crate::data::{self, Surface};
-use crate::geometry::Plane;
-use crate::kernel::Wide;
-use crate::tds::{CellId, VertexId, ccw, cw};
-use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::Plane;
+use crate::triangulation::kernel::Wide;
+use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
+use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 /// A place where the faces of a surface do not fit beside each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,12 +55,11 @@ pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
         [x + 0.0, y + 0.0]
     };
     let ends: Vec<[f64; 2]> = border.iter().flat_map(|&(_, c, i)| [place(c[ccw(i)]), place(c[cw(i)])]).collect();
-    let Ok((mut t, vertices)) = ConstrainedDelaunay::<_>::from_points(Plane::<Wide>::default(), &ends) else {
+    let sides: Vec<[u32; 2]> = (0..border.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
+    let Ok((t, vertices)) = ConstrainedDelaunay::from_lines(Plane::<Wide>::default(), &ends, &sides, OnCrossing::Split)
+    else {
         return Vec::new(); // coordinates that are not finite are flaws of their own
     };
-    for edge in vertices.chunks_exact(2) {
-        t.insert_segment(edge[0], edge[1]);
-    }
     let is_whole =
         |edge: &[VertexId]| t.tds().edge(edge[0], edge[1]).is_some_and(|(cell, i)| t.is_constrained(cell, i));
     let broken = border.iter().zip(vertices.chunks_exact(2)).filter(|(_, edge)| !is_whole(edge));

@@ -3,8 +3,8 @@ use std::collections::HashSet;
 use super::{EdgeKind, LinkFlaw, Surface, Triangles};
 use crate::crs::Crs;
 use crate::error::{Error, Result};
-use crate::kernel::{Adaptive, Exact, Kernel, Orientation2};
-use crate::num::Sign;
+use crate::triangulation::kernel::{Adaptive, Exact, Kernel, Orientation2};
+use crate::triangulation::num::Sign;
 
 /// Triangles as lists: what a mesh file holds.
 #[derive(Debug, Clone, Default)]

@@ -1,10 +1,10 @@
 use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
-use crate::geometry::{Geometry, Terrain};
-use crate::kernel::{RANGE, Range};
-use crate::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, LineId, LineVertices, OnCrossing, Refused, Rounding, spatial_order};
+use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::kernel::{RANGE, Range};
+use crate::triangulation::tds::VertexId;
+use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing, Refused, Rounding, spatial_order};
 
 use super::clip::Clip;
 use super::crossings::{Pass, refuse, settle_heights};
@@ -180,9 +180,9 @@ impl TinBuilder {
         // One vertex for each place, in spatial order.
         let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
         let lines = lines_of(&line_vertices, &self.line_ends);
-        let (mut triangulation, renumbered) = crate::triangulation::Sites::sorted(&geometry, vertices)
-            .and_then(|sites| ConstrainedDelaunay::from_sorted_lines(geometry, sites, lines, self.on_crossing))
-            .map_err(|error| not_built(error, name))?;
+        let (mut triangulation, renumbered) =
+            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, &lines, self.on_crossing)
+                .map_err(|error| not_built(error, name))?;
         if let Some(renumbered) = renumbered {
             disputed.iter_mut().for_each(|pass| pass.vertex = renumbered[pass.vertex.index()]);
         }
@@ -250,7 +250,7 @@ impl TinBuilder {
         if vertices.try_reserve_exact(all.len()).is_err() {
             return Err(Error::limit(format!("there is no memory for {} vertices", all.len())));
         }
-        let mut line_vertices = vec![VertexId::INFINITE; all.len() - lines_from];
+        let mut line_vertices = vec![u32::MAX; all.len() - lines_from];
         let mut disputed = Vec::new();
         let mut heights = Vec::new();
         for group in order.chunk_by(|&i, &j| place(i) == place(j)) {
@@ -275,7 +275,7 @@ impl TinBuilder {
             heights.extend(standing.iter().map(|&i| all[i as usize][2]));
             let [x, y] = place(group[0]);
             for &i in lines {
-                line_vertices[i as usize - lines_from] = VertexId::new(vertices.len());
+                line_vertices[i as usize - lines_from] = vertices.len() as u32;
             }
             if !lines.is_empty() && heights.iter().any(|&z| z != heights[0]) {
                 disputed.extend(lines.iter().map(|&i| {
@@ -294,15 +294,15 @@ struct Sites {
     /// In spatial order.
     vertices: Vec<[f64; 3]>,
     /// For each vertex of a breakline its place.
-    line_vertices: Vec<VertexId>,
+    line_vertices: Vec<u32>,
     /// The breaklines at places at which they have vertices of different heights.
     disputed: Vec<Pass>,
 }
 
 /// The vertices of each line.
-fn lines_of(vertices: &[VertexId], line_ends: &[usize]) -> Vec<LineVertices> {
+fn lines_of<'a>(vertices: &'a [u32], line_ends: &[usize]) -> Vec<&'a [u32]> {
     let starts = std::iter::once(&0).chain(line_ends);
-    starts.zip(line_ends).map(|(&start, &end)| vertices[start..end].into()).collect()
+    starts.zip(line_ends).map(|(&start, &end)| &vertices[start..end]).collect()
 }
 
 #[cold]

@@ -2,8 +2,8 @@
 
 use crate::data::Bounds;
 use crate::error::Result;
-use crate::geometry::Geometry;
-use crate::kernel::RANGE;
+use crate::triangulation::geometry::Geometry;
+use crate::triangulation::kernel::RANGE;
 
 use super::Tin;
 use super::builder::refused;

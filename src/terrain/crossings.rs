@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 use std::collections::HashSet;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Terrain, height_along};
-use crate::tds::VertexId;
+use crate::triangulation::geometry::{Terrain, height_along};
+use crate::triangulation::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, LineId};
 
 use super::DuplicateRule;

@@ -1,7 +1,7 @@
 use crate::data::{self, Surface};
-use crate::geometry::{Geometry, Terrain};
-use crate::kernel::Wide;
-use crate::num::Sign;
+use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::kernel::Wide;
+use crate::triangulation::num::Sign;
 
 /// What is wrong with a surface of triangles, found with exact predicates.
 #[derive(Debug, Clone, Copy, PartialEq)]

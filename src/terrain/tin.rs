@@ -2,9 +2,9 @@ use std::ops::Range;
 
 use crate::crs::Crs;
 use crate::data::{Bounds, EdgeKind, Face, Surface};
-use crate::geometry::{Terrain, height_along};
-use crate::kernel::RANGE;
-use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::triangulation::geometry::{Terrain, height_along};
+use crate::triangulation::kernel::RANGE;
+use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
 use super::TinReport;

@@ -6,10 +6,10 @@
 //! all that rounding can hide: a triangle that is called certain is.
 
 use crate::data::Bounds;
-use crate::geometry::{Geometry, Terrain};
-use crate::num::Sign;
-use crate::tds::{CellId, VertexId};
 use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::num::Sign;
+use crate::triangulation::tds::{CellId, VertexId};
 
 /// What is known of points of which not all were read, in plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -161,18 +161,18 @@ impl Judge<'_> {
         let tds = self.triangulation.tds();
         // Triangles that are seen, each from a neighbor. Constraints hide what is behind, so that no cycle is gone
         // round but around a vertex: each triangle is left by the edges that it was not entered by.
-        let mut ahead: Vec<(CellId, CellId)> = Vec::new();
+        let mut ahead: Vec<(CellId, Option<CellId>)> = Vec::new();
         let mut seen = rustc_hash::FxHashSet::default();
-        let mut here = Some((cell, CellId::NONE));
+        let mut here = Some((cell, None));
         while let Some((cell, from)) = here {
             if tds.is_infinite(cell) || is_open(self.box_of(cell)) {
                 return false;
             }
             for i in 0..3 {
                 let beyond = tds.neighbor(cell, i);
-                let is_open_edge = beyond != from && !self.triangulation.is_constrained(cell, i);
+                let is_open_edge = Some(beyond) != from && !self.triangulation.is_constrained(cell, i);
                 if is_open_edge && disk.meets_segment(self.ends(cell, i)) && seen.insert(beyond) {
-                    ahead.push((beyond, cell));
+                    ahead.push((beyond, Some(cell)));
                 }
             }
             here = ahead.pop();

@@ -1,7 +1,5 @@
 //! The laws of contours, on surfaces where levels hit vertices, edges and faces all the time.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod judge;
 mod raster;
 mod real;

@@ -1,12 +1,12 @@
 //! Contours of a raster: the surface over its cells.
 
-use super::common::shared;
 use super::surface::Faces;
 use super::{bits, draw, judge, signed_area};
 use breakline::data::{ContourLine, Frame, Grid, Surface};
 use breakline::terrain::{GridSurface, Levels, contours};
 use proptest::prelude::*;
 use std::path::Path;
+use testkit::shared;
 
 const X: f64 = f64::NAN;
 

@@ -1,11 +1,11 @@
 //! Contours of real deliveries, with coordinates and heights as they come.
 
-use super::common::shared;
 use breakline::data::{ContourLine, PointBatch, Shape, Surface};
-use breakline::kernel::{Adaptive, Kernel, Orientation2};
-use breakline::num::Sign;
 use breakline::terrain::{Levels, Tin, TinBuilder, contours};
+use breakline::triangulation::kernel::{Adaptive, Kernel, Orientation2};
+use breakline::triangulation::num::Sign;
 use std::collections::{HashMap, HashSet};
+use testkit::shared;
 
 type Piece = [[f64; 2]; 2];
 

@@ -6,15 +6,13 @@
 //! BREAKLINE_CUTS=2500 cargo test --release --test cuts
 //! ```
 
-#[path = "../common/mod.rs"]
-mod common;
 mod found;
 mod judge;
 mod scene;
 
-use common::random::Random;
 use rayon::prelude::*;
 use scene::{KINDS, Scene};
+use testkit::random::Random;
 
 fn count() -> u64 {
     std::env::var("BREAKLINE_CUTS").ok().and_then(|n| n.parse().ok()).unwrap_or(25)

@@ -3,7 +3,7 @@
 use breakline::data::Bounds;
 use breakline::terrain::TinBuilder;
 
-use crate::common::random::{Random, ulps};
+use testkit::random::{Random, ulps};
 
 pub(crate) type Place = [f64; 2];
 pub(crate) type Ring = Vec<Place>;

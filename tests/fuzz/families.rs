@@ -1,7 +1,7 @@
 //! Points and lines as an adversary would draw them.
 
-use crate::common::case::{Case, Point};
-use crate::common::random::{Random, ulps};
+use testkit::case::{Case, Point};
+use testkit::random::{Random, ulps};
 
 /// In UTM, as surveys are: a billionth of a metre is one unit in the last place of a northing.
 const UTM: Point = [500_000.0, 4_649_000.0];
@@ -15,7 +15,7 @@ impl Family {
     /// The set of a seed, the same on every machine.
     pub(crate) fn case(&self, seed: u64) -> Case {
         let name = self.name.bytes().fold(0u64, |hash, byte| hash.wrapping_mul(31) + u64::from(byte));
-        let mut random = Random(Random(seed ^ name << 32).next());
+        let mut random = Random(Random(seed ^ name << 32).bits());
         (self.draw)(&mut random)
     }
 }

@@ -7,13 +7,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::common::case::Case;
-use crate::common::judge;
-use crate::common::random::Random;
-use crate::common::subject::build;
 use crate::families::Family;
 use crate::shrink::shrink;
 use crate::tally::Tally;
+use testkit::case::Case;
+use testkit::judge;
+use testkit::random::Random;
+use testkit::subject::build;
 
 /// One set in so many is judged by what takes longer than to build it.
 const SAMPLE: u64 = 64;

@@ -1,6 +1,6 @@
 //! Makes a failing set small, as long as it fails by the same law.
 
-use crate::common::case::{Case, Point};
+use testkit::case::{Case, Point};
 
 /// `fails` names the law that a set breaks.
 pub(crate) fn shrink(case: Case, law: &str, fails: impl Fn(&Case) -> Option<String>) -> Case {

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::common::case::Case;
-use crate::common::judge::crossing_count;
+use testkit::case::Case;
+use testkit::judge::crossing_count;
 
 /// The first number of each bin.
 const SEGMENTS: [usize; 8] = [0, 3, 10, 20, 30, 40, 50, 61];

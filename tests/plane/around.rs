@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::random::Random;
 use crate::grid::{Free, build};
-use breakline::geometry::Geometry;
-use breakline::num::Sign;
-use breakline::tds::{Tds, VertexId};
+use breakline::triangulation::geometry::Geometry;
+use breakline::triangulation::num::Sign;
+use breakline::triangulation::tds::{Tds, VertexId};
+use testkit::random::Random;
 
 /// Points of a tiny grid; every third time on one line, and with some taken out again, so that there are holes in the
 /// numbers.

@@ -3,9 +3,9 @@
 
 use std::cmp::Ordering;
 
-use breakline::geometry::{Coordinates, Crossing, Geometry, Plane, Weighted};
-use breakline::kernel::{Adaptive, Kernel};
-use breakline::num::Sign;
+use breakline::triangulation::geometry::{Coordinates, Crossing, Geometry, Plane, Weighted};
+use breakline::triangulation::kernel::{Adaptive, Kernel};
+use breakline::triangulation::num::Sign;
 
 /// The answers of a geometry of points with `D` coordinates, by its functions.
 #[derive(Debug, Clone, Copy)]

@@ -1,13 +1,13 @@
 //! The compact triangulation: the answers of the one that was written, and errors for whatever is damaged.
 
-use crate::common::random::Random;
 use crate::grid::{Free, Point, build, place, points};
-use breakline::geometry::{Plane, Terrain};
-use breakline::tds::{CellId, Complex, VertexId};
+use breakline::triangulation::geometry::{Plane, Terrain};
+use breakline::triangulation::tds::{CellId, Complex, VertexId};
 use breakline::triangulation::{
     Compact, ConflictZone, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Law, Level, Location, OnCrossing,
     Passage, Regular, Triangulation,
 };
+use testkit::random::Random;
 
 type Forced = ConstrainedDelaunay<Plane>;
 type Opened<'a> = Compact<Plane, &'a [u8]>;
@@ -178,14 +178,17 @@ fn all_kinds_and_geometries() {
     assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(Damaged::Unanswerable(Law::Constrained)));
 
     // A hidden vertex has no place in it.
-    let mut regular: Regular<breakline::geometry::Weighted> = Regular::new(Default::default());
+    let mut regular: Regular<breakline::triangulation::geometry::Weighted> = Regular::new(Default::default());
     for (k, [x, y]) in square.into_iter().chain([[2.0, 2.0]]).enumerate() {
         regular.insert([x, y, if k == 4 { -100.0 } else { 0.0 }]).unwrap();
     }
     bytes.clear();
     regular.write_compact(&mut bytes).unwrap();
-    let weighted =
-        Compact::open(breakline::geometry::Weighted::<breakline::kernel::Adaptive>::default(), &bytes).unwrap();
+    let weighted = Compact::open(
+        breakline::triangulation::geometry::Weighted::<breakline::triangulation::kernel::Adaptive>::default(),
+        &bytes,
+    )
+    .unwrap();
     assert_eq!((weighted.law(), weighted.vertex_count()), (Law::None, 4));
     assert_eq!(weighted.check(Level::Orientation), Ok(()));
 

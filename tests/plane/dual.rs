@@ -1,13 +1,13 @@
 //! Voronoi diagrams: against exact centers, clipping by all bisectors, and the law that cells tile.
 
 use crate::center;
-use crate::common::random::{Random, ulps};
 use crate::grid::{Free, Point, build};
 use crate::polygon::{area, part};
-use breakline::geometry::Plane;
-use breakline::kernel::{Exact, circumcenter};
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::Plane;
+use breakline::triangulation::kernel::{Exact, circumcenter};
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{Delaunay, VoronoiEdge};
+use testkit::random::{Random, ulps};
 
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 1 + dice.below(6);

@@ -1,8 +1,8 @@
 //! Delaunay triangulations of points on tiny grids, where ties are the rule.
 
-use crate::common::random::Random;
-use breakline::geometry::Plane;
 use breakline::triangulation::Delaunay;
+use breakline::triangulation::geometry::Plane;
+use testkit::random::Random;
 
 pub(crate) type Point = [f64; 2];
 pub(crate) type Free = Delaunay<Plane, 3>;

@@ -3,19 +3,19 @@
 use std::collections::BTreeSet;
 
 use crate::chosen::{Chosen, plane, weighted};
-use crate::common::random::Random;
-use breakline::geometry::Space;
-use breakline::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
+use breakline::triangulation::geometry::Space;
+use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
+use testkit::random::Random;
 
 type Cells = BTreeSet<Vec<Vec<i64>>>;
 
 fn cells<G, const N: usize, V, C>(t: &Triangulation<G, N, V, C>) -> Cells
 where
-    G: breakline::geometry::Coordinates<N>,
+    G: breakline::triangulation::geometry::Coordinates<N>,
     C: Copy + Default,
 {
-    crate::common::cells::cells(t, |p| p.as_ref().iter().map(|x| *x as i64).collect())
+    testkit::cells::cells(t, |p| p.as_ref().iter().map(|x| *x as i64).collect())
 }
 
 /// Points in space, and lines between them that may cross in plan, and then at points of the grid.

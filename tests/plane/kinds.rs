@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::random::Random;
-use breakline::geometry::{Plane, Space, Weighted};
-use breakline::kernel::Adaptive;
-use breakline::tds::{Tds, VertexId};
+use breakline::triangulation::geometry::{Plane, Space, Weighted};
+use breakline::triangulation::kernel::Adaptive;
+use breakline::triangulation::tds::{Tds, VertexId};
 use breakline::triangulation::{Blocked, Constrained, Delaunay, Level, Regular, Triangulation, Walls};
+use testkit::random::Random;
 
 type Point = [f64; 2];
 

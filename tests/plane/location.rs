@@ -4,14 +4,14 @@ use std::cell::Cell;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use crate::common::random::Random;
-use breakline::geometry::{Geometry, Mapped, Plane, Space, Steps, Terrain, Weighted};
-use breakline::kernel::{Adaptive, Lattice, Wide};
-use breakline::num::Sign;
-use breakline::tds::{Tds, VertexId};
+use breakline::triangulation::geometry::{Geometry, Mapped, Plane, Space, Steps, Terrain, Weighted};
+use breakline::triangulation::kernel::{Adaptive, Lattice, Wide};
+use breakline::triangulation::num::Sign;
+use breakline::triangulation::tds::{Tds, VertexId};
 use breakline::triangulation::{
     Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine, Triangulation,
 };
+use testkit::random::Random;
 
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;
@@ -28,7 +28,7 @@ enum Place {
 /// The place, after a look at whether it is the one.
 fn place<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Location, q: Point) -> Place {
     let tds: &Tds<3> = t.tds();
-    let plane = Plane::<breakline::kernel::Exact>::default();
+    let plane = Plane::<breakline::triangulation::kernel::Exact>::default();
     match location {
         Location::Vertex(vertex) => {
             assert_eq!(*t.point(vertex), q);

@@ -1,9 +1,6 @@
 //! The package of the plane: kinds, location, edits, queries, meshes, files. One program, so that the triangulations
 //! that all of these tests make are compiled once.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod around;
 mod center;
 mod chosen;

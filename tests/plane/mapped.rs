@@ -2,10 +2,10 @@
 
 use std::fmt::Debug;
 
-use crate::common::random::Random;
-use breakline::geometry::{Coordinates, Mapped, Metric, Plane, seen_along};
-use breakline::kernel::{Exact, Fixed};
+use breakline::triangulation::geometry::{Coordinates, Mapped, Metric, Plane, seen_along};
+use breakline::triangulation::kernel::{Exact, Fixed};
 use breakline::triangulation::{Delaunay, Level, Triangulation};
+use testkit::random::Random;
 
 /// The triangles by the positions of their points, from the smallest on: orientation counts.
 fn triangles<G: Coordinates<3>, V, C: Copy + Default>(
@@ -31,7 +31,7 @@ where
     G::Point: Debug,
 {
     let places: Vec<[f64; 2]> = points.iter().map(&place).collect();
-    let positions = |vertices: &[breakline::tds::VertexId]| {
+    let positions = |vertices: &[breakline::triangulation::tds::VertexId]| {
         let mut first = vec![usize::MAX; vertices.len()];
         for (i, v) in vertices.iter().enumerate().rev() {
             first[v.index()] = i;

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::random::Random;
 use crate::grid::{Free, Point, build};
-use breakline::geometry::Plane;
-use breakline::kernel::Wide;
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::Plane;
+use breakline::triangulation::kernel::Wide;
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{Delaunay, Location};
+use testkit::random::Random;
 
 type Weights = Vec<(VertexId, f64)>;
 

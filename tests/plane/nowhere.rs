@@ -4,10 +4,10 @@
 use std::cmp::Ordering;
 
 use crate::grid::{Free, Point, build};
-use breakline::geometry::{Metric, Plane, Space, Weighted};
-use breakline::kernel::{Exact, Kernel, Wide};
-use breakline::tds::{CellId, VertexId};
+use breakline::triangulation::geometry::{Metric, Plane, Space, Weighted};
+use breakline::triangulation::kernel::{Exact, Kernel, Wide};
 use breakline::triangulation::refine::{Conformity, Domain, Quality, Region};
+use breakline::triangulation::tds::{CellId, VertexId};
 use breakline::triangulation::{
     Buckets, Compact, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Hierarchy, JumpAndWalk, Level, LineId,
     Locate, Location, Mark, Near, Passage, Regular, StraightLine, Triangulation, VoronoiEdge,
@@ -101,7 +101,7 @@ fn asks_the_complex<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
 }
 
 fn is_ordinary(x: f64) -> bool {
-    <breakline::kernel::Adaptive as Kernel>::RANGE.admits(x)
+    <breakline::triangulation::kernel::Adaptive as Kernel>::RANGE.admits(x)
 }
 
 /// Odd places lie nowhere, others somewhere.
@@ -375,7 +375,8 @@ fn compact_triangulations() {
         let t = &build(points);
         let mut bytes = Vec::new();
         t.write_compact(&mut bytes).unwrap();
-        let compact = Compact::open(Plane::<breakline::kernel::Adaptive>::default(), &bytes[..]).unwrap();
+        let compact =
+            Compact::open(Plane::<breakline::triangulation::kernel::Adaptive>::default(), &bytes[..]).unwrap();
         let all = |q: Point, rim: Point| -> Result<_, Damaged> {
             Ok((
                 compact.nearest(&q, None)?,
@@ -420,7 +421,9 @@ fn compact_triangulations() {
 fn in_space() {
     let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [1.0, 1.0, 1.0]];
     for count in 0..=corners.len() {
-        let (t, _) = Delaunay::from_points(Space::<breakline::kernel::Adaptive>::default(), &corners[..count]).unwrap();
+        let (t, _) =
+            Delaunay::from_points(Space::<breakline::triangulation::kernel::Adaptive>::default(), &corners[..count])
+                .unwrap();
         for [x, y] in odd_places() {
             for z in COORDINATES {
                 let is_place = [x, y, z].into_iter().all(is_ordinary);

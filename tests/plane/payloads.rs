@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::random::Random;
-use breakline::geometry::{Geometry, Plane, Space, Weighted};
-use breakline::tds::{CellId, VertexId};
+use breakline::triangulation::geometry::{Geometry, Plane, Space, Weighted};
+use breakline::triangulation::tds::{CellId, VertexId};
 use breakline::triangulation::{
     Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation, Walls,
 };
+use testkit::random::Random;
 
 /// Cells by their vertices, with their payloads; and the dimension.
 type Seen = (i32, BTreeMap<Vec<VertexId>, u32>);
@@ -92,7 +92,8 @@ fn delaunay_cells_inherit_what_they_replace() {
 fn delaunay_cells_around_a_hub() {
     let rim = (0..40).map(|k| f64::from(k) * 0.157).map(|turn| [turn.cos(), turn.sin()]);
     let points: Vec<[f64; 2]> = rim.chain([[0.0, 0.0]]).collect();
-    let (t, vertices) = Delaunay::from_points(Plane::<breakline::kernel::Adaptive>::default(), &points).unwrap();
+    let (t, vertices) =
+        Delaunay::from_points(Plane::<breakline::triangulation::kernel::Adaptive>::default(), &points).unwrap();
     let mut t = t.with_cell_data(another);
     let before = seen(&t);
     assert!(t.tds().around(vertices[40]).count() > 20);

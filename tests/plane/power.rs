@@ -1,12 +1,12 @@
 //! Power diagrams: against all bisectors, and the law that cells tile; nearest points by power against all points.
 
 use crate::center;
-use crate::common::random::{Random, ulps};
 use crate::polygon::{area, part};
-use breakline::geometry::{Geometry, Weighted, distance_to_segment};
-use breakline::kernel::{Adaptive, power_center};
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::{Geometry, Weighted, distance_to_segment};
+use breakline::triangulation::kernel::{Adaptive, power_center};
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{Regular, VoronoiEdge};
+use testkit::random::{Random, ulps};
 
 type Point = [f64; 3];
 type Weights = Regular<Weighted>;

@@ -3,14 +3,14 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use crate::common::cells::{by_vertices, vertices};
-use crate::common::picture::OnFailure;
-use crate::common::random::Random;
 use crate::grid::{Point, build, grid_point, place, points};
-use breakline::geometry::{Geometry, Metric, Plane, Steps, Terrain};
-use breakline::num::Sign;
-use breakline::tds::{CellId, VertexId};
+use breakline::triangulation::geometry::{Geometry, Metric, Plane, Steps, Terrain};
+use breakline::triangulation::num::Sign;
+use breakline::triangulation::tds::{CellId, VertexId};
 use breakline::triangulation::{ConstrainedDelaunay, Mark, OnCrossing, Passage, Triangulation};
+use testkit::cells::{by_vertices, vertices};
+use testkit::picture::OnFailure;
+use testkit::random::Random;
 
 type Forced = ConstrainedDelaunay<Plane>;
 
@@ -121,9 +121,15 @@ fn metrics_agree() {
         let expected = squared(q, a).total_cmp(&squared(q, b));
         assert_eq!(plane().compare_distance(&q, &a, &b), expected);
         let [q, a, b] = places.map(|[x, y]| [x, y, dice.unit()]);
-        assert_eq!(Terrain::<breakline::kernel::Exact>::default().compare_distance(&q, &a, &b), expected);
+        assert_eq!(
+            Terrain::<breakline::triangulation::kernel::Exact>::default().compare_distance(&q, &a, &b),
+            expected
+        );
         let [q, a, b] = places.map(|[x, y]| [x as i32, y as i32, dice.below(9) as i32]);
-        assert_eq!(Steps::<breakline::kernel::Lattice>::default().compare_distance(&q, &a, &b), expected);
+        assert_eq!(
+            Steps::<breakline::triangulation::kernel::Lattice>::default().compare_distance(&q, &a, &b),
+            expected
+        );
     }
 }
 

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::random::Random;
-use breakline::geometry::{Crossing, Plane, Terrain, distance_to_segment};
-use breakline::kernel::{Adaptive, DotProduct, Exact, Fixed, InCircle, Kernel, Lattice, Wide};
-use breakline::num::Sign;
-use breakline::tds::CellId;
+use breakline::triangulation::geometry::{Crossing, Plane, Terrain, distance_to_segment};
+use breakline::triangulation::kernel::{Adaptive, DotProduct, Exact, Fixed, InCircle, Kernel, Lattice, Wide};
+use breakline::triangulation::num::Sign;
 use breakline::triangulation::refine::{Conformity, Domain, Quality, Refined, Region, Shortfall};
+use breakline::triangulation::tds::CellId;
 use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
+use testkit::random::Random;
 
 type Point = [f64; 2];
 
@@ -23,7 +23,7 @@ struct Pslg {
 impl Pslg {
     /// A file of the format that ../shared/data/README.md tells.
     fn shared(path: &str) -> Pslg {
-        let text = std::fs::read_to_string(crate::common::shared(&format!("tri2d/{path}.tri"))).unwrap();
+        let text = std::fs::read_to_string(testkit::shared(&format!("tri2d/{path}.tri"))).unwrap();
         let mut rows = text.lines().map(|row| row.split_whitespace().collect::<Vec<_>>());
         let mut pslg = Pslg::default();
         while let Some(row) = rows.next() {

@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use crate::common::random::Random;
-use breakline::geometry::{Geometry, Weighted};
-use breakline::kernel::Adaptive;
-use breakline::num::Sign;
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::{Geometry, Weighted};
+use breakline::triangulation::kernel::Adaptive;
+use breakline::triangulation::num::Sign;
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{Delaunay, Flaw, Level, Regular};
 use dashu_int::IBig;
+use testkit::random::Random;
 
 /// x, y and weight.
 type Point = [i64; 3];

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::common::random::{Random, ulps};
-use breakline::geometry::Plane;
-use breakline::kernel::Adaptive;
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::Plane;
+use breakline::triangulation::kernel::Adaptive;
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{Delaunay, Level, Refused};
+use testkit::random::{Random, ulps};
 
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;
@@ -14,7 +14,7 @@ type Free = Delaunay<Plane, 3>;
 /// The finite cells as sorted points.
 fn cells(t: &Free) -> BTreeSet<Vec<[u64; 2]>> {
     // Bits order negative numbers wrongly, which does no harm here.
-    crate::common::cells::cells(t, |p| p.map(f64::to_bits))
+    testkit::cells::cells(t, |p| p.map(f64::to_bits))
 }
 
 fn fresh(points: &[Point]) -> Free {
@@ -236,7 +236,7 @@ fn vertices_move() {
             assert_eq!(t.tds().vertices().map(|v| (v, *t.tds().vertex_data(v))).collect::<BTreeMap<_, _>>(), payloads);
             let left: Vec<Point> = places.values().copied().collect();
             let key = |p: Point| p.map(f64::to_bits);
-            assert_eq!(crate::common::cells::cells(&t, key), crate::common::cells::cells(&fresh(&left), key));
+            assert_eq!(testkit::cells::cells(&t, key), testkit::cells::cells(&fresh(&left), key));
         }
         assert_eq!(t.move_to(vertices[0], [f64::NAN, 0.0]), Err(Refused::Coordinate(t.vertex_count())));
     }

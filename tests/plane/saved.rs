@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::cells::by_vertices;
-use breakline::geometry::{Plane, Weighted};
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::{Plane, Weighted};
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{Constrained, Delaunay, Level, Regular, Triangulation};
 use proptest::prelude::*;
 use serde_json::Value;
+use testkit::cells::by_vertices;
 
 pub(crate) fn through<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T) -> T {
     serde_json::from_str(&serde_json::to_string(t).unwrap()).unwrap()

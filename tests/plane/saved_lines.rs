@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::cells::by_vertices;
-use crate::common::random::{Random, ulps};
 use crate::saved::{PLACES, read_damaged, through};
-use breakline::geometry::Plane;
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::Plane;
 use breakline::triangulation::refine::Quality;
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing};
 use serde_json::Value;
+use testkit::cells::by_vertices;
+use testkit::random::{Random, ulps};
 
 /// All that can be seen of lines.
 fn lines_of(t: &ConstrainedDelaunay<Plane>) -> impl PartialEq + std::fmt::Debug + use<> {

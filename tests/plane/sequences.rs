@@ -10,11 +10,11 @@
 use std::collections::BTreeSet;
 
 use crate::chosen::{Chosen, plane, weighted};
-use crate::common::random::Random;
-use breakline::geometry::Coordinates;
-use breakline::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide};
-use breakline::tds::VertexId;
+use breakline::triangulation::geometry::Coordinates;
+use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide};
+use breakline::triangulation::tds::VertexId;
 use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Kept, Level, LineId, Regular, Triangulation};
+use testkit::random::Random;
 
 fn sequences() -> u64 {
     std::env::var("BREAKLINE_SEQUENCES").ok().and_then(|n| n.parse().ok()).unwrap_or(150)
@@ -39,7 +39,7 @@ where
     // Of crossings, too.
     let whole = |c: G::Coordinates| [0, 1].map(|k| (c.as_ref()[k] * 1e6) as i64);
     let seen = t.tds().vertices().map(|v| whole(t.geometry().coordinates(t.point(v)))).collect();
-    (t.dimension(), crate::common::cells::cells(t, whole), seen)
+    (t.dimension(), testkit::cells::cells(t, whole), seen)
 }
 
 fn tiny<const D: usize>(random: &mut Random, side: u64) -> [f64; D] {

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use assert_cmd::Command;
 
-use crate::common::shared;
 use crate::{folder, program};
+use testkit::shared;
 
 /// Address space that a run may have, in kilobytes, and how long it may take.
 const MEMORY: &str = "1000000";

@@ -7,8 +7,6 @@
 //! | [`peers`] | GDAL reads everything as it is meant |
 //! | [`damaged`] | a damaged file ends in a sound result or in an error, soon and in little memory |
 
-#[path = "../common/mod.rs"]
-mod common;
 mod damaged;
 mod order;
 mod peers;

@@ -6,8 +6,6 @@
 //! | [`damaged`] | a damaged file gives an error with file, line, value and cure, and nothing is written |
 //! | [`check`] | `check` finds every kind of flaw and believes what is right |
 
-#[path = "../common/mod.rs"]
-mod common;
 #[path = "../common/program.rs"]
 mod program;
 

@@ -2,8 +2,8 @@ use std::collections::BTreeSet;
 
 use tempfile::TempDir;
 
-use crate::common::random::Random;
 use crate::{BOX, files_of, folder_with, run, table, triangles, twice_area};
+use testkit::random::Random;
 
 #[test]
 fn the_box_of_the_manual() {
@@ -154,7 +154,7 @@ fn what_was_given_comes_back() {
 fn all_doubles_come_back() {
     let mut random = Random(3);
     let mut value = || loop {
-        let x = f64::from_bits(random.next());
+        let x = f64::from_bits(random.bits());
         if x.is_finite() && (x == 0.0 || (1e-40..1e50).contains(&x.abs())) {
             return x;
         }

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use crate::geometry::Plane;
-use crate::kernel::{Kernel, twice_area};
-use crate::tds::{CellId, VertexId};
+use crate::triangulation::geometry::Plane;
+use crate::triangulation::kernel::{Kernel, twice_area};
 use crate::triangulation::refine::{Quality, Shortfall};
+use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, LineId, Location, OnCrossing, Refused};
 
 /// A triangulation of points and segments, as plain lists. Vertices have numbers of their own.

@@ -61,8 +61,8 @@ mod tests {
     use super::*;
     use crate::cli::triangulate::build::build;
     use crate::io::triangle::{Hole, Region};
-    use crate::kernel::Adaptive;
     use crate::triangulation::OnCrossing;
+    use crate::triangulation::kernel::Adaptive;
 
     /// A square in a square, both of segments.
     fn squares(holes: &[[f64; 2]], regions: &[[f64; 2]]) -> (Built, LineGraph) {

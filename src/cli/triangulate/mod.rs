@@ -17,7 +17,7 @@ use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::triangle::{LineGraph, Triangulated};
 use crate::io::{Destination, OutputSet, contain};
-use crate::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
+use crate::triangulation::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
 use crate::triangulation::refine::{Domain, Quality, Region, Shortfall};
 use crate::triangulation::{OnCrossing, Refused};
 

@@ -1,6 +1,6 @@
 use crate::data::{not_finite, orientation};
 use crate::error::{Error, Result};
-use crate::num::Sign;
+use crate::triangulation::num::Sign;
 
 /// Divides a polygon into triangles by a fan from one of its corners, and adds them to `faces`.
 ///

@@ -1,8 +1,8 @@
 use super::cut::Way;
 use super::trace::{LooseEnd, Trace};
 use crate::data::Surface;
-use crate::kernel::{Exact, Kernel, Orientation2};
-use crate::num::Sign;
+use crate::triangulation::kernel::{Exact, Kernel, Orientation2};
+use crate::triangulation::num::Sign;
 use std::cmp::Ordering;
 
 /// The points of a line; one that is closed repeats its first at the end.

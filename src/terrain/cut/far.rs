@@ -1,9 +1,9 @@
 //! Lines that reach far beyond a triangulation, divided near it.
 
-use crate::geometry::{Crossing, Geometry, Terrain};
-use crate::num::Dyadic;
-use crate::tds::VertexId;
 use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::{Crossing, Geometry, Terrain};
+use crate::triangulation::num::Dyadic;
+use crate::triangulation::tds::VertexId;
 
 use super::{Domain, Segment};
 

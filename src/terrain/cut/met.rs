@@ -1,7 +1,7 @@
 //! Which triangles a segment meets.
 
-use crate::geometry::Terrain;
-use crate::tds::{CellId, VertexId};
+use crate::triangulation::geometry::Terrain;
+use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, Passage};
 
 use super::Segment;

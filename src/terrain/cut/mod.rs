@@ -15,7 +15,7 @@
 //! 1. *Met*: the triangles that each segment of the lines meets are found by walking.
 //! 2. *Snap*: these segments are snapped to each other, so that a corner of one polygon that was meant to lie on the side
 //!    of another one does, and a side that goes out and back over itself encloses nothing.
-//! 3. *Patch*: the segments and the edges of the triangles are [arranged](crate::arrangement) together: where they
+//! 3. *Patch*: the segments and the edges of the triangles are [arranged](crate::triangulation::arrangement) together: where they
 //!    cross, they get a common vertex, rounded, and bend with it. No piece can be turned around by that, and no crack
 //!    can open, since what is bent is bent for both sides. All is triangulated, with edges and lines as constraints.
 //! 4. *Heights* at new vertices are those of the edge that they lie on, breaklines first, or of the triangle.
@@ -35,8 +35,8 @@ mod steps;
 
 use crate::data::EdgeKind;
 use crate::error::Result;
-use crate::geometry::Terrain;
-use crate::tds::{CellId, VertexId};
+use crate::triangulation::geometry::Terrain;
+use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, Location};
 
 use super::tin::linear;

@@ -2,10 +2,10 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::arrangement::Arrangement;
 use crate::error::{Error, Result};
-use crate::geometry::{Crossing, Geometry, Terrain, height_along};
-use crate::tds::{CellId, VertexId};
+use crate::triangulation::arrangement::Arrangement;
+use crate::triangulation::geometry::{Crossing, Geometry, Terrain, height_along};
+use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing};
 
 use super::super::tin::linear;

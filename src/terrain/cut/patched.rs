@@ -3,9 +3,9 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::data::EdgeKind;
-use crate::geometry::Terrain;
-use crate::tds::{CellId, VertexId};
 use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::Terrain;
+use crate::triangulation::tds::{CellId, VertexId};
 
 use super::patch::Patch;
 use super::regions::Faces;

@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::geometry::{Geometry, Terrain};
-use crate::num::Sign;
+use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::num::Sign;
 
 use super::{Domain, Segment};
 

@@ -2,9 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::arrangement::Arrangement;
-use crate::geometry::{Crossing, Terrain};
 use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::arrangement::Arrangement;
+use crate::triangulation::geometry::{Crossing, Terrain};
 
 use super::met::met;
 use super::{Domain, Segment};

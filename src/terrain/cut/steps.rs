@@ -16,10 +16,10 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::geometry::{Geometry, Terrain, height_along};
-use crate::num::Sign;
-use crate::tds::{CellId, VertexId};
 use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::{Geometry, Terrain, height_along};
+use crate::triangulation::num::Sign;
+use crate::triangulation::tds::{CellId, VertexId};
 
 /// Lines to cut along and edges of triangles as they were arranged.
 pub(super) struct Arranged<'a> {

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use super::placement::Centers;
 use crate::data::orientation;
-use crate::num::Sign;
+use crate::triangulation::num::Sign;
 
 /// A block of cells that faces are drawn into.
 pub(super) struct Scan<'a> {

@@ -1,0 +1,20 @@
+//! A picture of what a test was about when it failed.
+
+/// Draws and says where, if the test fails while this is there.
+pub struct OnFailure<F: Fn() -> String> {
+    /// Of the file.
+    pub name: &'static str,
+    pub svg: F,
+}
+
+impl<F: Fn() -> String> Drop for OnFailure<F> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            let path = std::env::temp_dir().join(self.name).with_extension("svg");
+            match std::fs::write(&path, (self.svg)()) {
+                Ok(()) => eprintln!("see {}", path.display()),
+                Err(error) => eprintln!("no picture: {error}"),
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The one place where the tests of lines meet the program that they test.
+
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::kernel::{Adaptive, Exact, Filter, Filtered, Kernel, Predicate, RANGE, Range};
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{ConstrainedDelaunay, OnCrossing, Refused, Rounding};
+
+use super::case::Case;
+
+/// The default kernel in its range, exact numbers outside of it.
+pub type AnyFinite = Filtered<WithinRange, Exact>;
+
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WithinRange;
+
+impl Filter for WithinRange {
+    const RANGE: Range = Range::FINITE;
+
+    fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
+        let is_within = (0..P::AXES).all(|axis| predicate.axis(axis).all(|x| RANGE.admits(x)));
+        is_within.then(|| Adaptive::sign(predicate))
+    }
+}
+
+pub type Subject = ConstrainedDelaunay<Plane<AnyFinite>>;
+
+/// A triangulation, and what it says of its input.
+#[derive(Debug)]
+pub struct Built {
+    pub triangulation: Subject,
+    /// The vertex of each point of the input.
+    pub vertices: Vec<VertexId>,
+    /// The vertices of each line, in order.
+    pub chains: Vec<Vec<VertexId>>,
+    /// How crossings were rounded; `None` if there are none.
+    pub rounding: Option<Rounding>,
+}
+
+pub fn build(case: &Case) -> Result<Built, Refused> {
+    let (triangulation, vertices) =
+        Subject::from_lines(Plane::default(), &case.points, &case.lines, OnCrossing::Split)?;
+    let chains = triangulation.lines().map(|line| triangulation.chain(line)).collect();
+    let rounding = triangulation.rounding();
+    Ok(Built { triangulation, vertices, chains, rounding })
+}

@@ -1,0 +1,95 @@
+use std::cmp::Ordering;
+
+use super::{Geometry, Plane, Steps, Terrain, Weighted};
+use crate::kernel::{CompareDistance, ComparePower, Kernel};
+
+/// A geometry of the plane that can tell which of two points is nearer.
+///
+/// Needed for [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest),
+/// [`nearest_first`](crate::triangulation::Delaunay::nearest_first) and
+/// [`within`](crate::triangulation::Delaunay::within).
+///
+/// # Laws
+/// - The distance is the one that the circles of the [geometry](Geometry::side_of_sphere) are circles of: walks to the
+///   nearest vertex follow from the empty circles.
+/// - The answer is exact: `Equal` for equal distances, and `Less` for no two points at once.
+///
+/// # Models
+/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`], whose distance
+/// is the power. A geometry of one's own that leaves places to one of these leaves distances to it, too. Here on a map
+/// whose y axis points down:
+///
+/// ```
+/// use std::cmp::Ordering;
+/// use breakline_triangulation::geometry::{Geometry, Metric, Plane};
+/// use breakline_triangulation::num::Sign;
+/// use breakline_triangulation::Delaunay;
+///
+/// type Pixel = [u16; 2];
+/// struct Screen(Plane);
+/// fn place([x, y]: &Pixel) -> [f64; 2] { [f64::from(*x), -f64::from(*y)] }
+///
+/// impl Geometry<3> for Screen {
+///     type Point = Pixel;
+///     fn admits(&self, _: &Pixel) -> bool { true }
+///     fn compare(&self, p: &Pixel, q: &Pixel) -> Ordering { self.0.compare(&place(p), &place(q)) }
+///     fn orientation(&self, s: [&Pixel; 3]) -> Sign { self.0.orientation(s.map(place).each_ref()) }
+///     fn side_of_sphere(&self, s: [&Pixel; 3], q: &Pixel) -> Sign {
+///         self.0.side_of_sphere(s.map(place).each_ref(), &place(q))
+///     }
+/// }
+///
+/// impl Metric for Screen {
+///     fn compare_distance(&self, q: &Pixel, a: &Pixel, b: &Pixel) -> Ordering {
+///         self.0.compare_distance(&place(q), &place(a), &place(b))
+///     }
+/// }
+///
+/// let mut t = Delaunay::new(Screen(Plane::default()));
+/// for pixel in [[0, 0], [300, 400], [0, 501]] {
+///     t.insert(pixel)?;
+/// }
+/// let by_distance: Vec<Pixel> = t.nearest_first(&[0, 0], None).map(|v| *t.point(v)).collect();
+/// assert_eq!(by_distance, [[0, 0], [300, 400], [0, 501]]);
+/// assert_eq!(t.within(&[0, 0], &[500, 0]).count(), 2, "a point on the rim is within");
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+pub trait Metric: Geometry<3> {
+    /// Whether `a` is nearer to `q` than `b` is (`Less`), or further away.
+    fn compare_distance(&self, q: &Self::Point, a: &Self::Point, b: &Self::Point) -> Ordering;
+}
+
+fn compare<K: Kernel>(places: [[f64; 2]; 3]) -> Ordering {
+    (K::sign(&CompareDistance(places)) as i8).cmp(&0)
+}
+
+impl<K: Kernel> Metric for Plane<K> {
+    #[inline]
+    fn compare_distance(&self, q: &[f64; 2], a: &[f64; 2], b: &[f64; 2]) -> Ordering {
+        compare::<K>([*q, *a, *b])
+    }
+}
+
+impl<K: Kernel> Metric for Terrain<K> {
+    /// In plan.
+    #[inline]
+    fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
+        compare::<K>([q, a, b].map(super::plan))
+    }
+}
+
+impl<K: Kernel> Metric for Steps<K> {
+    /// In plan.
+    #[inline]
+    fn compare_distance(&self, q: &[i32; 3], a: &[i32; 3], b: &[i32; 3]) -> Ordering {
+        compare::<K>([q, a, b].map(super::steps::plan))
+    }
+}
+
+impl<K: Kernel> Metric for Weighted<K> {
+    /// By power: squared distance less weight. That of `q` counts for neither.
+    #[inline]
+    fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
+        (K::sign(&ComparePower([*q, *a, *b])) as i8).cmp(&0)
+    }
+}

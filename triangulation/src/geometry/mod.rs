@@ -1,0 +1,326 @@
+//! What a triangulation asks of its points: the "geometric traits" concept.
+//!
+//! A triangulation never looks at a coordinate. It asks a [`Geometry`], and the geometry decides
+//! what a point is: a pair of numbers, a 3D point seen in plan, a record of the user's own. Nothing
+//! is copied or projected for that.
+//!
+//! | model | points | predicates |
+//! |---|---|---|
+//! | [`Plane`] | `[f64; 2]` | in the plane |
+//! | [`Terrain`] | `[f64; 3]` | in plan: on x and y; z is carried along |
+//! | [`Steps`] | `[i32; 3]` | in plan, of points on a lattice like that of a LAS file |
+//! | [`Mapped`] | any type | in the plane, at places that a function gives: other planes ([`seen_along`]), scaled axes |
+//! | [`Weighted`] | `[f64; 3]` | in the plane, with weights: x, y, weight |
+//! | [`Space`] | `[f64; 3]` | in space |
+//!
+//! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
+//!
+//! | for | a geometry of one's own needs |
+//! |---|---|
+//! | insertion one by one, location, checks | [`Geometry`] |
+//! | construction in bulk | [`Coordinates`], too |
+//! | constraints | [`Crossing`], too |
+//! | the nearest vertices of a place | [`Metric`], too |
+//!
+//! Distances are asked for where a walk may start and for what is nearest only, angles nowhere, and units play no part.
+
+mod crossed;
+mod mapped;
+mod metric;
+mod perturbation;
+mod plane;
+mod space;
+mod steps;
+mod terrain;
+mod weighted;
+
+pub use mapped::{Mapped, seen_along};
+pub use metric::Metric;
+pub(crate) use perturbation::{in_sphere, in_sphere_of_flat, in_tied_circle};
+pub use plane::{Plane, distance_to_segment};
+pub use space::Space;
+pub use steps::Steps;
+pub use terrain::{Terrain, height_along};
+pub use weighted::Weighted;
+
+use std::cmp::Ordering;
+use std::fmt::Debug;
+
+use crate::kernel::{Orientation2, Predicate};
+use crate::num::Sign;
+
+/// The questions a triangulation asks of points. `N` is the number of vertices of a full cell: 3 for
+/// triangles, 4 for tetrahedra.
+///
+/// # Laws
+/// - `compare` is a total order; points that compare `Equal` are the same *site* for all other
+///   questions. Along any straight line it runs monotonically.
+/// - `orientation` changes its sign when two points are exchanged, and is zero exactly when the
+///   points lie in a common hyperplane (line, plane).
+/// - `side_of_sphere` is positive inside for a positively oriented simplex, negative outside, zero
+///   on the sphere, and changes its sign with the orientation.
+/// - All answers are those of one and the same set of exact points.
+///
+/// # Models
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`]. For points that have a place in the plane,
+/// `Mapped` is a geometry in one line. Users add their own, here one that counts what it is asked:
+///
+/// ```
+/// use std::cell::Cell;
+/// use std::cmp::Ordering;
+/// use breakline_triangulation::geometry::{Geometry, Plane};
+/// use breakline_triangulation::num::Sign;
+/// use breakline_triangulation::Delaunay;
+///
+/// #[derive(Default)]
+/// struct Counting { plane: Plane, circles: Cell<usize> }
+///
+/// impl Geometry<3> for Counting {
+///     type Point = [f64; 2];
+///     fn admits(&self, p: &[f64; 2]) -> bool { self.plane.admits(p) }
+///     fn compare(&self, p: &[f64; 2], q: &[f64; 2]) -> Ordering { self.plane.compare(p, q) }
+///     fn orientation(&self, s: [&[f64; 2]; 3]) -> Sign { self.plane.orientation(s) }
+///     fn side_of_sphere(&self, s: [&[f64; 2]; 3], q: &[f64; 2]) -> Sign {
+///         self.circles.set(self.circles.get() + 1);
+///         self.plane.side_of_sphere(s, q)
+///     }
+/// }
+///
+/// let mut delaunay = Delaunay::new(Counting::default());
+/// for p in [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0], [1.0, 1.0]] {
+///     delaunay.insert(p)?;
+/// }
+/// assert_eq!(delaunay.finite_cells().count(), 3);
+/// assert!(delaunay.geometry().circles.get() < 4);
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+pub trait Geometry<const N: usize> {
+    /// What is triangulated.
+    type Point: Copy + Debug + Send + Sync;
+
+    /// Whether the point's coordinates are finite and in the range that the arithmetic is proven for.
+    fn admits(&self, p: &Self::Point) -> bool;
+
+    /// Total order on sites; lexicographic by coordinates in the models here.
+    fn compare(&self, p: &Self::Point, q: &Self::Point) -> Ordering;
+
+    /// The orientation of a simplex: positive if counter-clockwise (right-handed in space).
+    fn orientation(&self, simplex: [&Self::Point; N]) -> Sign;
+
+    /// On which side of the simplex's circumscribed sphere `q` lies: positive inside, if the simplex
+    /// is positively oriented.
+    fn side_of_sphere(&self, simplex: [&Self::Point; N], q: &Self::Point) -> Sign;
+
+    /// About how far two points are from each other, in any measure: for choosing where a walk starts, no answer
+    /// depends on it. Without one, which is NaN, walks from far away take long.
+    #[inline]
+    fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> f64 {
+        f64::NAN
+    }
+
+    /// About how far inside of each facet of a positively oriented simplex `q` lies, opposite the vertex in the same
+    /// place; negative outside. Any measure will do in which facets can be compared, as the areas (volumes) that they
+    /// span with `q`: for choosing which way a walk goes, no answer depends on it (structural filtering; Funke,
+    /// Mehlhorn and Näher 1999). Without one, which is NaN, walks ask for orientations at each step, and take 1.6 times as
+    /// long.
+    #[inline]
+    fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> [f64; N] {
+        [f64::NAN; N]
+    }
+
+    /// The orientation of fewer than `N` points within the flat (line, plane) that they span: of two
+    /// points their order, of three (asked for `N = 4` only) their turn in a plane, seen from a side
+    /// that is fixed for the plane. Zero if they span less.
+    fn orientation_in_flat(&self, simplex: &[&Self::Point]) -> Sign {
+        match simplex {
+            [p, q] => self.compare(q, p).into(),
+            _ => Sign::Zero,
+        }
+    }
+
+    /// Whether `q`, which lies in the flat of the simplex, lies inside (positive), on or outside of the sphere around
+    /// it there; whatever the orientation of the simplex. Two points: between them. One point: `q` is on the same site,
+    /// and inside if its weight is larger; asked of weighted points only, of which the answer without weights, that no
+    /// point is inside of another, is wrong.
+    fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
+        match simplex {
+            [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
+            _ => Sign::Negative,
+        }
+    }
+}
+
+/// A geometry that knows numbers for its points.
+///
+/// Needed for: construction from many points at once ([`from_points`](crate::triangulation::Delaunay::from_points),
+/// [`spatial_order`](crate::triangulation::spatial_order)), questions about rectangles, Voronoi cells, natural neighbor
+/// coordinates, pictures, and as a part of [`Crossing`].
+///
+/// # Laws
+/// - In space coordinates are for sorting only: no answer depends on them.
+/// - In the plane they are exact: two sites have different ones, and if the predicates say that points lie along a line
+///   in some order, the coordinates say so, too.
+///
+/// # Models
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with three. Here a type
+/// of one's own, which passes all questions on to `Plane`:
+///
+/// ```
+/// use std::cmp::Ordering;
+/// use breakline_triangulation::geometry::{Coordinates, Geometry, Plane};
+/// use breakline_triangulation::num::Sign;
+/// use breakline_triangulation::Delaunay;
+///
+/// #[derive(Debug, Clone, Copy)]
+/// struct Tree { kind: &'static str, at: [f64; 2] }
+/// struct Forest(Plane);
+///
+/// impl Geometry<3> for Forest {
+///     type Point = Tree;
+///     fn admits(&self, p: &Tree) -> bool { self.0.admits(&p.at) }
+///     fn compare(&self, p: &Tree, q: &Tree) -> Ordering { self.0.compare(&p.at, &q.at) }
+///     fn orientation(&self, s: [&Tree; 3]) -> Sign { self.0.orientation(s.map(|p| &p.at)) }
+///     fn side_of_sphere(&self, s: [&Tree; 3], q: &Tree) -> Sign { self.0.side_of_sphere(s.map(|p| &p.at), &q.at) }
+/// }
+///
+/// impl Coordinates<3> for Forest {
+///     type Coordinates = [f64; 2];
+///     fn coordinates(&self, p: &Tree) -> [f64; 2] { p.at }
+///     // The predicates are those of floating point numbers in the plane: construction takes half the time.
+///     fn exact_plan(&self, p: &Tree) -> Option<[f64; 2]> { self.0.exact_plan(&p.at) }
+/// }
+///
+/// let trees = [("oak", [0.0, 0.0]), ("elm", [4.0, 0.0]), ("ash", [0.0, 3.0])].map(|(kind, at)| Tree { kind, at });
+/// let (forest, v) = Delaunay::from_points(Forest(Plane::default()), &trees)?;
+/// assert_eq!(forest.point(v[1]).kind, "elm");
+/// let field = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
+/// assert_eq!(forest.voronoi_cell(v[0], &field).area, 3.0);
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
+    /// The coordinates, up to three of them.
+    type Coordinates: AsRef<[f64]>;
+
+    /// Coordinates of a point.
+    fn coordinates(&self, p: &Self::Point) -> Self::Coordinates;
+
+    /// Where a point lies in the plane, if the predicates' answers are the signs of
+    /// [`Orientation2`] and [`InCircle`](crate::kernel::InCircle) of such places, within the
+    /// [range](crate::kernel::RANGE) of floating point. Construction in bulk then asks the geometry what floating
+    /// point cannot answer with certainty only, and takes half the time.
+    #[inline(always)]
+    fn exact_plan(&self, _: &Self::Point) -> Option<[f64; 2]> {
+        None
+    }
+}
+
+/// A geometry of the plane that can make points where segments meet: what constrained triangulations need
+/// beyond predicates.
+///
+/// # Laws
+/// - The predicates of the geometry are those of the points' plans.
+/// - `plan` of `meet` is the place that was asked for.
+/// - `meet` does not depend on the order of the segments, nor of their ends.
+///
+/// Needed for [`ConstrainedDelaunay`](crate::triangulation::ConstrainedDelaunay). The other kind with constraints,
+/// [`Constrained`](crate::triangulation::Constrained), makes no points and does without.
+///
+/// # Models
+/// [`Plane`]; [`Terrain`], where the lowest of the lines' heights is taken. Here points that know whether they were
+/// surveyed or made:
+///
+/// ```
+/// use std::cmp::Ordering;
+/// use breakline_triangulation::geometry::{Coordinates, Crossing, Geometry, Plane};
+/// use breakline_triangulation::num::Sign;
+/// use breakline_triangulation::{ConstrainedDelaunay, OnCrossing};
+///
+/// #[derive(Debug, Clone, Copy)]
+/// struct Station { at: [f64; 2], is_surveyed: bool }
+/// struct Site(Plane);
+///
+/// impl Geometry<3> for Site {
+///     type Point = Station;
+///     fn admits(&self, p: &Station) -> bool { self.0.admits(&p.at) }
+///     fn compare(&self, p: &Station, q: &Station) -> Ordering { self.0.compare(&p.at, &q.at) }
+///     fn orientation(&self, s: [&Station; 3]) -> Sign { self.0.orientation(s.map(|p| &p.at)) }
+///     fn side_of_sphere(&self, s: [&Station; 3], q: &Station) -> Sign {
+///         self.0.side_of_sphere(s.map(|p| &p.at), &q.at)
+///     }
+/// }
+///
+/// impl Coordinates<3> for Site {
+///     type Coordinates = [f64; 2];
+///     fn coordinates(&self, p: &Station) -> [f64; 2] { p.at }
+/// }
+///
+/// impl Crossing for Site {
+///     fn plan(&self, p: &Station) -> [f64; 2] { p.at }
+///     fn step(&self) -> f64 { self.0.step() }
+///     fn meet(&self, place: [f64; 2], _: &[[&Station; 2]]) -> Station { Station { at: place, is_surveyed: false } }
+/// }
+///
+/// let stations = [[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]].map(|at| Station { at, is_surveyed: true });
+/// let lines = [[0, 1], [2, 3]];
+/// let (t, _) = ConstrainedDelaunay::<_>::from_lines(Site(Plane::default()), &stations, &lines, OnCrossing::Split)?;
+/// let made: Vec<_> = t.points().iter().filter(|p| !p.is_surveyed).map(|p| p.at).collect();
+/// assert_eq!(made, [[2.0, 2.0]]);
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+pub trait Crossing: Coordinates<3> {
+    /// The point's coordinates in the plane, exactly.
+    fn plan(&self, p: &Self::Point) -> [f64; 2];
+
+    /// A power of two that all coordinates that are admitted are multiples of, those near zero included; zero if there
+    /// is none.
+    fn step(&self) -> f64 {
+        0.0
+    }
+
+    /// A point at a place at which segments meet that pass by it no further away than a rounding.
+    fn meet(&self, place: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;
+
+    /// The point where segments `a b` and `c d` cross in their interiors, rounded; or an end of one of them
+    /// that is so near to the other that rounding may hide on which side of it the end lies.
+    fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point {
+        let place = crossed::place(ab.map(|p| self.plan(p)), cd.map(|p| self.plan(p)));
+        self.meet(self.on_step(place), &[ab, cd])
+    }
+
+    /// The place that is nearest to one on a line between points that are admitted, and whose coordinates are multiples
+    /// of the [step](Self::step).
+    fn on_step(&self, place: [f64; 2]) -> [f64; 2] {
+        let step = self.step();
+        if step == 0.0 { place } else { place.map(|x| (x / step).round() * step + 0.0) } // zero has one sign only
+    }
+}
+
+/// A point seen from above.
+#[inline(always)]
+fn plan(p: &[f64; 3]) -> [f64; 2] {
+    [p[0], p[1]]
+}
+
+/// Twice the areas that `q` spans with the edges of a triangle, rounded: from a corner, so that a triangle which is small
+/// beside its distance from `q` is not lost.
+#[inline(always)]
+fn rough_areas([a, b, c]: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
+    [[b, c], [c, a], [a, b]].map(|[from, to]| Orientation2([to, q, from]).value(|x, y| x - y))
+}
+
+/// Along the axes.
+#[inline(always)]
+fn manhattan<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
+    (0..D).map(|axis| (p[axis] - q[axis]).abs()).sum()
+}
+
+/// Lexicographic order of coordinates.
+#[inline(always)]
+fn lexicographic<const D: usize>(p: [f64; D], q: [f64; D]) -> Ordering {
+    for axis in 0..D {
+        if p[axis] != q[axis] {
+            return if p[axis] < q[axis] { Ordering::Less } else { Ordering::Greater };
+        }
+    }
+    Ordering::Equal
+}

@@ -1,0 +1,92 @@
+use std::cmp::Ordering;
+use std::marker::PhantomData;
+
+use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, plan, rough_areas};
+use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
+use crate::num::Sign;
+
+/// Points in space, seen in plan: all questions are answered on x and y, the height is carried along.
+///
+/// Two heights over one footprint are one site. Where breaklines cross, each has a height of its own:
+/// the vertex there takes the lower one, as points do.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Terrain<K = Adaptive>(PhantomData<K>);
+
+impl<K: Kernel> Geometry<3> for Terrain<K> {
+    type Point = [f64; 3];
+
+    #[inline]
+    fn admits(&self, p: &[f64; 3]) -> bool {
+        K::RANGE.admits(p[0]) && K::RANGE.admits(p[1])
+    }
+
+    #[inline(always)]
+    fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
+        lexicographic(plan(p), plan(q))
+    }
+
+    #[inline]
+    fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
+        manhattan(plan(p), plan(q))
+    }
+
+    #[inline(always)]
+    fn rough_sides(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> [f64; 3] {
+        rough_areas(simplex.map(plan), plan(q))
+    }
+
+    #[inline(always)]
+    fn orientation(&self, simplex: [&[f64; 3]; 3]) -> Sign {
+        K::sign(&Orientation2(simplex.map(plan)))
+    }
+
+    #[inline(always)]
+    fn side_of_sphere(&self, [a, b, c]: [&[f64; 3]; 3], q: &[f64; 3]) -> Sign {
+        K::sign(&InCircle([a, b, c, q].map(plan)))
+    }
+}
+
+impl<K: Kernel> Coordinates<3> for Terrain<K> {
+    type Coordinates = [f64; 2];
+
+    #[inline]
+    fn coordinates(&self, p: &[f64; 3]) -> [f64; 2] {
+        plan(p)
+    }
+
+    #[inline(always)]
+    fn exact_plan(&self, p: &[f64; 3]) -> Option<[f64; 2]> {
+        K::RANGE.filtered(plan(p))
+    }
+}
+
+impl<K: Kernel> Crossing for Terrain<K> {
+    #[inline]
+    fn plan(&self, p: &[f64; 3]) -> [f64; 2] {
+        plan(p)
+    }
+
+    #[inline]
+    fn step(&self) -> f64 {
+        K::RANGE.min * f64::EPSILON
+    }
+
+    fn meet(&self, [x, y]: [f64; 2], segments: &[[&[f64; 3]; 2]]) -> [f64; 3] {
+        let heights = segments.iter().map(|&[p, q]| height_along(*p, *q, [x, y]));
+        [x, y, heights.fold(f64::NAN, f64::min)]
+    }
+}
+
+/// The height of a segment where it passes by a place in plan; the same for either order of its ends.
+///
+/// That is at the foot of the perpendicular in plan, or at the end that the place lies beyond; where the ends share a
+/// place in plan, the lower height. In the unit of the ends' heights, which need not be that of the plan. O(1).
+pub fn height_along(p: [f64; 3], q: [f64; 3], [x, y]: [f64; 2]) -> f64 {
+    let (p, q) = if lexicographic(plan(&p), plan(&q)).is_gt() { (q, p) } else { (p, q) };
+    // In parts of the longer side: squares of extreme magnitudes are none.
+    let [dx, dy] = [0, 1].map(|k| q[k] / 2.0 - p[k] / 2.0);
+    let longer = dx.abs().max(dy.abs());
+    let [ux, uy] = [dx / longer, dy / longer];
+    let along = ((x / 2.0 - p[0] / 2.0) / longer * ux + (y / 2.0 - p[1] / 2.0) / longer * uy) / (ux * ux + uy * uy);
+    if along.is_nan() { p[2].min(q[2]) } else { p[2] + along.clamp(0.0, 1.0) * (q[2] - p[2]) }
+}

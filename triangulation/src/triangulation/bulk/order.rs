@@ -1,0 +1,430 @@
+//! Spatial order: points that are near each other come near each other.
+//!
+//! A *record* holds a key on the [curve](Curve) in its high bits and the position of the point in its low bits:
+//!
+//! ```text
+//!   63                                     0
+//!   | x y x y x y ... of the key | position |
+//! ```
+//!
+//! 1. One pass counts the points in each *bucket* (the highest bits of the key), a second puts the records there.
+//! 2. Groups of buckets that fit a core's cache are sorted by the bits that are left, from the lowest up (both kinds of
+//!    radix sort are of Hollerith's machines, 1887; see Knuth 1973, 5.2.5).
+//! 3. Records hold the bits that tell a few million evenly spread points apart. Where these are equal, the whole
+//!    key decides; where that is equal, too, a curve of their own, through these points alone; and so on. So no
+//!    dynamic range is too large.
+//!
+//! Threads share nothing but the arrays they write to, each place of which is written once; hence atomics that are
+//! never waited for: `PERF:` they compile to ordinary stores.
+
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+use crate::geometry::Coordinates;
+use crate::tds::VertexId;
+
+use super::super::{MAX_VERTICES, Refused};
+use super::Grain;
+use super::curve::{Curve, Span, Squares};
+
+/// Bits of the buckets at the most: as many as there are lines in a core's cache to write to.
+const BUCKET_BITS: u32 = 11;
+
+/// The digit of the sort within a group.
+const DIGIT_BITS: u32 = 11;
+
+/// The keys of points in spatial order, in the high bits.
+#[derive(Debug, Default)]
+pub(crate) struct Keys {
+    records: Vec<AtomicU64>,
+    /// The bits that are no key.
+    low: u64,
+}
+
+impl Keys {
+    /// Those of points that are in spatial order already.
+    pub(super) fn of<A: AsRef<[f64]>>(
+        count: usize,
+        coordinates: impl Fn(usize) -> A + Sync,
+        curve: &Curve,
+        grain: Grain,
+    ) -> Self {
+        let key = |i: usize| AtomicU64::new(curve.key(coordinates(i).as_ref()));
+        Keys { records: (0..count).into_par_iter().with_min_len(grain.points).map(key).collect(), low: 0 }
+    }
+
+    /// The bits in which the keys of two points differ.
+    #[inline(always)]
+    pub(super) fn difference(&self, i: usize, j: usize) -> u64 {
+        (self.records[i].load(Relaxed) ^ self.records[j].load(Relaxed)) & !self.low
+    }
+
+    /// Whether the key of a point is smaller than that of another one.
+    #[inline(always)]
+    fn is_before(&self, i: usize, j: usize) -> bool {
+        self.records[i].load(Relaxed) < self.records[j].load(Relaxed)
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+
+    /// Whether all bits that the curve gives are there.
+    pub(super) fn are_whole(&self) -> bool {
+        self.low == 0
+    }
+
+    /// Whether the key of a point has a bit.
+    #[inline(always)]
+    pub(super) fn has(&self, i: usize, bit: u32) -> bool {
+        self.records[i].load(Relaxed) >> bit & 1 == 1
+    }
+}
+
+/// Points, each site once, in spatial order.
+#[derive(Debug)]
+pub(crate) struct Sites<P> {
+    pub(crate) points: Vec<P>,
+    pub(super) keys: Keys,
+    /// The curve along which they are in order.
+    pub(super) curve: Curve,
+    /// Whether all have an exact plan.
+    pub(super) have_plans: bool,
+}
+
+/// The result of sorting.
+struct Sorted {
+    /// Of each site the first point on it.
+    keys: Keys,
+    /// Of every other point its position, and the rank of its site.
+    others: Vec<(u32, u32)>,
+}
+
+impl Sorted {
+    #[inline(always)]
+    fn position(&self, rank: usize) -> usize {
+        (self.keys.records[rank].load(Relaxed) & self.keys.low) as usize
+    }
+}
+
+/// The positions `0..count` in the order of a Morton curve through the points' coordinates (one to three of them;
+/// Morton 1966). Points that it cannot tell apart are in the order of a curve through these alone, and so on; points in
+/// one place keep the order of their positions. For distinct points the order is a function of the set.
+///
+/// # Errors
+/// If there are more than 2^31 - 2 points.
+///
+/// # Complexity
+/// O(n), on all threads, for points that are spread evenly; where many fall into one of a few million squares, O(n log
+/// n) for each factor of 2^31 in their distances. 12 bytes a point.
+pub fn spatial_order<A: AsRef<[f64]>>(
+    count: usize,
+    coordinates: impl Fn(usize) -> A + Sync,
+) -> Result<Vec<u32>, Refused> {
+    if count > MAX_VERTICES {
+        return Err(Refused::TooMany);
+    }
+    let grain = Grain::default();
+    let curve = Curve::through(count, &coordinates, grain.points);
+    let sorted = sort(count, &coordinates, &curve, |_, _| false, grain);
+    Ok((0..count).into_par_iter().with_min_len(1 << 12).map(|rank| sorted.position(rank) as u32).collect())
+}
+
+impl<P: Copy + Send + Sync> Sites<P> {
+    /// The sites of points, and of each point its site.
+    ///
+    /// # Errors
+    /// The first point that is refused, by its position; or too many.
+    pub(crate) fn of<G: Coordinates<N, Point = P>, const N: usize>(
+        geometry: &G,
+        points: &[P],
+        grain: Grain,
+    ) -> Result<(Self, Vec<VertexId>), Refused> {
+        let (curve, have_plans) = survey(geometry, points, grain)?;
+        let coordinates = |i: usize| geometry.coordinates(&points[i]);
+        let is_same = |i: u32, j: u32| geometry.compare(&points[i as usize], &points[j as usize]).is_eq();
+        let sorted = sort(points.len(), &coordinates, &curve, is_same, grain);
+
+        let ranks: Vec<AtomicU32> =
+            (0..points.len()).into_par_iter().with_min_len(grain.points).map(|_| AtomicU32::new(0)).collect();
+        let site = |rank: usize| {
+            let position = sorted.position(rank);
+            ranks[position].store(rank as u32, Relaxed);
+            points[position]
+        };
+        let count = sorted.keys.records.len();
+        let sites = (0..count).into_par_iter().with_min_len(grain.points).map(site).collect();
+        for &(position, rank) in &sorted.others {
+            ranks[position as usize].store(rank, Relaxed);
+        }
+        // In place.
+        let vertices = ranks.into_iter().map(|rank| VertexId::new(rank.into_inner() as usize)).collect();
+        Ok((Sites { points: sites, keys: sorted.keys, curve, have_plans }, vertices))
+    }
+
+    /// Points that are all different and in [`spatial_order`] already.
+    ///
+    /// # Errors
+    /// As for [`of`](Self::of); and the first point that is not in order.
+    pub(crate) fn sorted<G: Coordinates<N, Point = P>, const N: usize>(
+        geometry: &G,
+        points: Vec<P>,
+    ) -> Result<Self, Refused> {
+        let grain = Grain::default();
+        let (curve, have_plans) = survey(geometry, &points, grain)?;
+        let keys = Keys::of(points.len(), |i| geometry.coordinates(&points[i]), &curve, grain);
+        let is_wrong = |&i: &usize| {
+            keys.is_before(i, i - 1)
+                || keys.difference(i, i - 1) == 0 && geometry.compare(&points[i - 1], &points[i]).is_eq()
+        };
+        if let Some(position) = (1..points.len()).into_par_iter().with_min_len(grain.points).find_first(is_wrong) {
+            return Err(Refused::Unsorted(position));
+        }
+        Ok(Sites { points, keys, curve, have_plans })
+    }
+}
+
+/// Checks that all points may come in; the curve through them, and whether all have an exact plan.
+///
+/// `PERF:` in one pass instead of three.
+fn survey<G: Coordinates<N>, const N: usize>(
+    geometry: &G,
+    points: &[G::Point],
+    grain: Grain,
+) -> Result<(Curve, bool), Refused> {
+    let look = |(admitted, planned, span): (bool, bool, Span), p: &G::Point| {
+        let planned = planned & geometry.exact_plan(p).is_some();
+        (admitted & geometry.admits(p), planned, span.with(geometry.coordinates(p).as_ref()))
+    };
+    let nothing = || (true, true, Span::EMPTY);
+    let chunks = points.par_chunks(grain.points).map(|chunk| chunk.iter().fold(nothing(), look));
+    let (admitted, have_plans, span) = chunks.reduce(nothing, |p, q| (p.0 & q.0, p.1 & q.1, p.2.and(q.2)));
+    if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
+        return Err(Refused::Coordinate(bad));
+    }
+    if points.len() > MAX_VERTICES {
+        return Err(Refused::TooMany);
+    }
+    Ok((Curve::along(span), have_plans))
+}
+
+/// Sorts; `is_same` says of two points in one place whether they are on one site.
+///
+/// `PERF:` with 7 bits less in the records, groups take two passes instead of three: 2 % of the time of 1 million uniform
+/// points; but clusters take 10 % more, for the many that are then equal.
+fn sort<A: AsRef<[f64]>>(
+    count: usize,
+    coordinates: &(impl Fn(usize) -> A + Sync),
+    curve: &Curve,
+    is_same: impl Fn(u32, u32) -> bool + Sync,
+    grain: Grain,
+) -> Sorted {
+    let index_bits = usize::BITS - count.saturating_sub(1).leading_zeros();
+    let key_bits = (index_bits + 17).min(64 - index_bits);
+    let low = u64::MAX >> key_bits;
+
+    let (records, starts) = distribute(count, coordinates, curve, low, grain);
+    let sorter = Sorter { curve, coordinates, is_same: &is_same, low, grain };
+    let groups = groups(&starts, grain);
+    let sorted: Vec<(usize, Vec<(u32, u32)>)> = groups
+        .par_windows(2)
+        .map_init(Scratch::default, |scratch, ends| sorter.sort(&records[ends[0]..ends[1]], scratch))
+        .collect();
+
+    // Close the gaps behind groups in which sites have several points.
+    let mut others = Vec::new();
+    let mut rank = 0;
+    for (&start, (sites, repeated)) in groups.iter().zip(&sorted) {
+        if rank != start {
+            (0..*sites).for_each(|i| records[rank + i].store(records[start + i].load(Relaxed), Relaxed));
+        }
+        others.extend(repeated.iter().map(|&(position, site)| (position, rank as u32 + site)));
+        rank += sites;
+    }
+    let mut records = records;
+    records.truncate(rank);
+    Sorted { keys: Keys { records, low }, others }
+}
+
+/// The records in the order of their buckets, and where each bucket starts, with the end.
+fn distribute<A: AsRef<[f64]>>(
+    count: usize,
+    coordinates: &(impl Fn(usize) -> A + Sync),
+    curve: &Curve,
+    low: u64,
+    grain: Grain,
+) -> (Vec<AtomicU64>, Vec<usize>) {
+    let index_bits = usize::BITS - count.leading_zeros();
+    let bits = index_bits.saturating_sub(9).min(BUCKET_BITS);
+    let bucket = |key: u64| (key >> 1 >> (63 - bits)) as usize;
+    let axes = if count == 0 { 0 } else { coordinates(0).as_ref().len() };
+    let squares = Squares::new(curve, axes, bits);
+    let records: Vec<AtomicU64> =
+        (0..count).into_par_iter().with_min_len(grain.points).map(|_| AtomicU64::new(0)).collect();
+
+    let chunk = count.div_ceil(rayon::current_num_threads()).max(grain.points);
+    let range = |c: usize| c * chunk..count.min((c + 1) * chunk);
+    let counted = |c: usize| {
+        // `PERF:` two of each, in turn, so that points in one square need not wait for each other.
+        let mut counts = vec![[0u32; 2]; 1 << bits];
+        range(c).for_each(|i| counts[squares.of(coordinates(i).as_ref())][i % 2] += 1);
+        let mut by_bucket = vec![0u32; 1 << bits];
+        counts.iter().enumerate().for_each(|(square, [even, odd])| by_bucket[squares.key_bits(square)] += even + odd);
+        by_bucket
+    };
+    let mut counts: Vec<Vec<u32>> = (0..count.div_ceil(chunk)).into_par_iter().map(counted).collect();
+    // Of each bucket in turn the share of each chunk in turn.
+    let mut starts = Vec::with_capacity((1 << bits) + 1);
+    let mut start = 0;
+    for bucket in 0..1 << bits {
+        starts.push(start as usize);
+        for counts in &mut counts {
+            start += std::mem::replace(&mut counts[bucket], start);
+        }
+    }
+    starts.push(count);
+    counts.par_iter_mut().enumerate().for_each(|(c, places)| {
+        for i in range(c) {
+            let key = curve.key(coordinates(i).as_ref());
+            let place = &mut places[bucket(key)];
+            records[*place as usize].store(key & !low | i as u64, Relaxed);
+            *place += 1;
+        }
+    });
+    (records, starts)
+}
+
+/// Ends of groups of whole buckets, from 0 on.
+fn groups(starts: &[usize], grain: Grain) -> Vec<usize> {
+    let mut ends = vec![0];
+    let mut last = 0;
+    for (i, &end) in starts.iter().enumerate() {
+        if end > last && (end - last >= grain.group || i + 1 == starts.len()) {
+            ends.push(end);
+            last = end;
+        }
+    }
+    ends
+}
+
+/// Room for a group, twice.
+#[derive(Default)]
+struct Scratch {
+    records: Vec<u64>,
+    spare: Vec<u64>,
+}
+
+struct Sorter<'a, C, S> {
+    curve: &'a Curve,
+    coordinates: &'a C,
+    is_same: &'a S,
+    low: u64,
+    grain: Grain,
+}
+
+impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<'_, C, S> {
+    /// Sorts a group, moves the sites to its front and counts them; the points that are not the first on their site
+    /// come beside.
+    fn sort(&self, group: &[AtomicU64], scratch: &mut Scratch) -> (usize, Vec<(u32, u32)>) {
+        let Scratch { records, spare } = scratch;
+        records.clear();
+        records.extend(group.iter().map(|record| record.load(Relaxed)));
+        sort_records(records, spare, self.low);
+
+        let mut others = Vec::new();
+        let mut sites = 0;
+        let mut i = 0;
+        while i < records.len() {
+            let key = records[i] | self.low;
+            if records.get(i + 1).is_none_or(|next| next | self.low != key) {
+                group[sites].store(records[i], Relaxed);
+                sites += 1;
+                i += 1;
+                continue;
+            }
+            let end = i + records[i..].partition_point(|record| record | self.low == key);
+            let run = &mut records[i..end];
+            self.sort_run(run);
+            let position = |record: u64| (record & self.low) as u32;
+            let mut last = None;
+            for &record in run.iter() {
+                if last.is_some_and(|last| (self.is_same)(last, position(record))) {
+                    others.push((position(record), sites as u32 - 1));
+                } else {
+                    last = Some(position(record));
+                    group[sites].store(record, Relaxed);
+                    sites += 1;
+                }
+            }
+            i = end;
+        }
+        (sites, others)
+    }
+
+    /// Records with equal bits of their keys.
+    #[cold]
+    fn sort_run(&self, run: &mut [u64]) {
+        let mut positions: Vec<(u64, u32)> = run.iter().map(|record| (0, (record & self.low) as u32)).collect();
+        self.sort_along(self.curve, &mut positions);
+        for (record, (_, position)) in run.iter_mut().zip(positions) {
+            *record = *record & !self.low | u64::from(position);
+        }
+    }
+
+    /// By whole keys; then, where these are equal, by those of a curve through the points that share one.
+    fn sort_along(&self, curve: &Curve, points: &mut [(u64, u32)]) {
+        let coordinates = |position: u32| (self.coordinates)(position as usize);
+        if points.len() > self.grain.points {
+            points.par_iter_mut().for_each(|(key, position)| *key = curve.key(coordinates(*position).as_ref()));
+            points.par_sort_unstable();
+        } else {
+            points.iter_mut().for_each(|(key, position)| *key = curve.key(coordinates(*position).as_ref()));
+            points.sort_unstable();
+        }
+        for equal in points.chunk_by_mut(|(p, _), (q, _)| p == q).filter(|equal| equal.len() > 1) {
+            let inner = Curve::through(equal.len(), |i| coordinates(equal[i].1), self.grain.points);
+            if !inner.is_point() {
+                self.sort_along(&inner, equal);
+            }
+        }
+    }
+}
+
+/// Sorts records by their keys (the bits above `low`), equal ones by position, which is how they come.
+fn sort_records(records: &mut Vec<u64>, spare: &mut Vec<u64>, low: u64) {
+    /// Below this, clearing and summing the counts takes longer.
+    const FEW: usize = 1 << 10;
+    if records.len() < FEW {
+        records.sort_unstable();
+        return;
+    }
+    // A group has the smallest and the largest key in its first and last bucket; what lies below the first one is in no
+    // record.
+    let (least, largest) = records.iter().fold((u64::MAX, 0), |(least, largest), &r| (least.min(r), largest.max(r)));
+    let shift = low.count_ones();
+    let key = |record: u64| (record >> shift) - (least >> shift);
+    let bits = u64::BITS - key(largest).leading_zeros();
+    let passes = bits.div_ceil(DIGIT_BITS);
+    if passes == 0 {
+        return;
+    }
+    let digit_bits = bits.div_ceil(passes);
+    let digit =
+        |record: u64, pass: usize| (key(record) >> (pass as u32 * digit_bits)) as usize & ((1 << digit_bits) - 1);
+    let mut counts = vec![[0u32; 1 << DIGIT_BITS]; passes as usize];
+    for &record in records.iter() {
+        counts.iter_mut().enumerate().for_each(|(pass, counts)| counts[digit(record, pass)] += 1);
+    }
+    spare.resize(records.len(), 0);
+    for (pass, counts) in counts.iter_mut().enumerate() {
+        let mut start = 0;
+        counts.iter_mut().for_each(|count| start += std::mem::replace(count, start));
+        for &record in records.iter() {
+            let place = &mut counts[digit(record, pass)];
+            spare[*place as usize] = record;
+            *place += 1;
+        }
+        std::mem::swap(records, spare);
+    }
+}

@@ -1,0 +1,326 @@
+//! The compact, read-only triangulation, looked at where it lies: in bytes, or a file mapped to memory.
+
+mod check;
+mod layout;
+mod queries;
+mod write;
+
+use std::fmt;
+
+use crate::geometry::Geometry;
+use crate::tds::{CellId, Complex, VertexId};
+
+use super::Embedded;
+use layout::{CELL, HEADER, Header, Offsets};
+
+/// The law that a file claims for its triangulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// None: what the basic [`Triangulation`](super::Triangulation) wrote.
+    None = 0,
+    /// That of [`Delaunay`](super::Delaunay).
+    Delaunay = 1,
+    /// Some edges are constrained: what [`Constrained`](super::Constrained) wrote.
+    Constrained = 2,
+    /// That of [`ConstrainedDelaunay`](super::ConstrainedDelaunay).
+    ConstrainedDelaunay = 3,
+}
+
+impl Law {
+    fn from_number(number: u32) -> Option<Self> {
+        [Law::None, Law::Delaunay, Law::Constrained, Law::ConstrainedDelaunay].into_iter().find(|&l| l as u32 == number)
+    }
+
+    fn has_walls(self) -> bool {
+        matches!(self, Law::Constrained | Law::ConstrainedDelaunay)
+    }
+}
+
+/// Why a [`Compact`] triangulation has no answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Damaged {
+    /// It does not begin as such a file does.
+    Foreign,
+    /// It is of a version that is not known.
+    Version(u32),
+    /// This in the header cannot be.
+    Header(&'static str),
+    /// It has fewer or more bytes than its header says.
+    Length {
+        /// Bytes, as the header says.
+        expected: u64,
+        /// Bytes that are there.
+        found: u64,
+    },
+    /// Its points have another number of coordinates than those of the geometry.
+    Coordinates {
+        /// Of a point of the geometry.
+        expected: usize,
+        /// Of a point of the file.
+        found: usize,
+    },
+    /// There is no such vertex, or its point or its cell cannot be.
+    Vertex(VertexId),
+    /// There is no such cell, or one of its vertices or neighbors cannot be.
+    Cell(CellId),
+    /// The question is one for Delaunay triangulations, and the file is of another law.
+    Unanswerable(Law),
+}
+
+impl fmt::Display for Damaged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Damaged::Foreign => write!(f, "not a compact triangulation: the first bytes are others"),
+            Damaged::Version(version) => {
+                write!(f, "a compact triangulation of version {version}; known is {}", layout::VERSION)
+            }
+            Damaged::Header(what) => write!(f, "the header is damaged: {what}"),
+            Damaged::Length { expected, found } => {
+                write!(f, "{found} bytes where the header says that there are {expected}")
+            }
+            Damaged::Coordinates { expected, found } => {
+                write!(f, "points of {found} coordinates; the geometry has {expected}")
+            }
+            Damaged::Vertex(vertex) => write!(f, "vertex {vertex:?} does not exist or is damaged"),
+            Damaged::Cell(cell) => write!(f, "cell {cell:?} does not exist or is damaged"),
+            Damaged::Unanswerable(law) => write!(f, "a question for Delaunay triangulations; the law here is {law:?}"),
+        }
+    }
+}
+
+impl std::error::Error for Damaged {}
+
+/// A triangulation of the plane that is read where it lies, and cannot be changed.
+///
+/// The kinds write it: [`Delaunay::write_compact`](super::Delaunay::write_compact),
+/// [`ConstrainedDelaunay::write_compact`](super::ConstrainedDelaunay::write_compact) and so on. `B` is whatever lends
+/// bytes: a slice, a vector, or a file that another crate maps to memory. Opening looks at the header and at the
+/// number of bytes, in constant time however many points there are; a question then touches the bytes that it needs.
+/// Answers are those of the triangulation that was written.
+///
+/// Nothing in the bytes is trusted: each number is held against its limits where it is used, each point is one that
+/// the geometry [admits](Geometry::admits), and walks are bounded by the number of cells. So damaged bytes lead to an
+/// error that names the cell or vertex, or to an answer that is wrong, never to a panic or an endless loop.
+/// [`check`](Self::check) looks at all of them.
+///
+/// To map a file is left to the caller, who knows whether the file stays as it is meanwhile; with the crate `memmap2`:
+///
+/// ```text
+/// let map = unsafe { memmap2::Mmap::map(&File::open("valley.tin")?)? }; // nobody writes to it
+/// let compact = Compact::open(Plane::default(), map)?;
+/// ```
+///
+/// A point takes 8 bytes a coordinate, 4 bytes for a cell of its vertex, and 48 bytes for its two triangles; two
+/// bytes more with constraints. The format is described in `docs/formats.md`.
+///
+/// ```
+/// use breakline_triangulation::{geometry::Plane, Compact, Damaged, Delaunay};
+///
+/// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
+/// let plane: Plane = Plane::default();
+/// let (t, v) = Delaunay::from_points(plane, &points)?;
+/// let mut bytes = Vec::new();
+/// t.write_compact(&mut bytes)?;
+///
+/// let compact = Compact::open(plane, &bytes[..])?;
+/// assert_eq!(compact.nearest(&[4.0, 2.0], None)?, Some(v[2]));
+/// bytes.pop();
+/// assert!(matches!(Compact::open(plane, &bytes[..]), Err(Damaged::Length { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Compact<G, B> {
+    geometry: G,
+    bytes: B,
+    header: Header,
+    offsets: Offsets,
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
+    /// Looks at the header and at the number of bytes. O(1).
+    ///
+    /// # Errors
+    /// If these do not fit, or the points are not such as the geometry has.
+    pub fn open(geometry: G, bytes: B) -> Result<Self, Damaged> {
+        let all = bytes.as_ref();
+        let header = Header::read(&all[..all.len().min(HEADER)])?;
+        if header.doubles as usize != D {
+            return Err(Damaged::Coordinates { expected: D, found: header.doubles as usize });
+        }
+        let offsets = header.offsets().ok_or(Damaged::Header("more bytes than can be"))?;
+        if all.len() != offsets.end {
+            return Err(Damaged::Length { expected: offsets.end as u64, found: all.len() as u64 });
+        }
+        Ok(Compact { geometry, bytes, header, offsets })
+    }
+
+    /// The law that the file claims.
+    pub fn law(&self) -> Law {
+        self.header.law
+    }
+
+    /// The geometry.
+    pub fn geometry(&self) -> &G {
+        &self.geometry
+    }
+
+    /// -1 without a point, 0 with one, 1 if all are collinear, and so on.
+    pub fn dimension(&self) -> i32 {
+        Complex::dimension(self)
+    }
+
+    /// Vertices; they are numbered below this without gaps.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_slots()
+    }
+
+    /// Cells, the infinite ones included; they are numbered below this without gaps.
+    pub fn cell_count(&self) -> usize {
+        self.cell_slots()
+    }
+
+    /// The point of a finite vertex.
+    ///
+    /// # Errors
+    /// If there is none, or the geometry does not admit it.
+    pub fn point(&self, vertex: VertexId) -> Result<[f64; D], Damaged> {
+        Embedded::point(self, vertex)
+    }
+
+    /// Whether the edge opposite vertex `i` of a cell is constrained.
+    ///
+    /// # Errors
+    /// If there is no such cell.
+    pub fn is_constrained(&self, cell: CellId, i: usize) -> Result<bool, Damaged> {
+        if !self.is_used(cell) {
+            return Err(Damaged::Cell(cell));
+        }
+        if !self.header.law.has_walls() {
+            return Ok(false);
+        }
+        match self.number(self.offsets.walls + cell.index()) {
+            Some([walls]) if walls < 8 => Ok(i < 3 && walls >> i & 1 == 1),
+            _ => Err(Damaged::Cell(cell)),
+        }
+    }
+
+    #[inline]
+    fn number<const W: usize>(&self, at: usize) -> Option<[u8; W]> {
+        self.bytes.as_ref().get(at..)?.first_chunk().copied()
+    }
+
+    /// The number at a place of the cells' array.
+    #[inline]
+    fn link(&self, cell: CellId, place: usize) -> Result<u32, Damaged> {
+        let at = self.offsets.cells + CELL * cell.index() + 4 * place;
+        let number = self.is_used(cell).then(|| self.number(at)).flatten();
+        number.map(u32::from_le_bytes).ok_or(Damaged::Cell(cell))
+    }
+
+    fn cell(&self, stored: u32) -> Option<CellId> {
+        (u64::from(stored) < self.header.cells).then(|| CellId::new(stored as usize))
+    }
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3> for Compact<G, B> {
+    type Error = Damaged;
+
+    #[inline]
+    fn dimension(&self) -> i32 {
+        self.header.width as i32 - 1
+    }
+
+    #[inline]
+    fn vertex_slots(&self) -> usize {
+        self.header.vertices as usize
+    }
+
+    #[inline]
+    fn cell_slots(&self) -> usize {
+        self.header.cells as usize
+    }
+
+    #[inline]
+    fn is_used(&self, cell: CellId) -> bool {
+        cell.index() < self.cell_slots()
+    }
+
+    #[inline]
+    fn corners(&self, cell: CellId) -> Result<[VertexId; 3], Damaged> {
+        let mut corners = [VertexId::NONE; 3];
+        for (place, corner) in corners.iter_mut().enumerate().take(self.width()) {
+            *corner = match self.link(cell, place)? {
+                layout::INFINITE => VertexId::INFINITE,
+                stored if u64::from(stored) < self.header.vertices => VertexId::new(stored as usize),
+                _ => return Err(Damaged::Cell(cell)),
+            };
+        }
+        Ok(corners)
+    }
+
+    #[inline]
+    fn neighbor(&self, cell: CellId, i: usize) -> Result<CellId, Damaged> {
+        if i >= self.width() {
+            return Err(Damaged::Cell(cell));
+        }
+        self.cell(self.link(cell, 3 + i)?).ok_or(Damaged::Cell(cell))
+    }
+
+    #[inline]
+    fn cell_of(&self, vertex: VertexId) -> Result<Option<CellId>, Damaged> {
+        if vertex == VertexId::INFINITE {
+            return Ok(self.cell(self.header.infinite_cell));
+        }
+        if vertex.index() >= self.vertex_slots() {
+            return Err(Damaged::Vertex(vertex));
+        }
+        let stored = self.number(self.offsets.cells_of_vertices + 4 * vertex.index());
+        let cell = stored.and_then(|stored| self.cell(u32::from_le_bytes(stored)));
+        cell.map(Some).ok_or(Damaged::Vertex(vertex))
+    }
+
+    #[inline]
+    fn ensure(&self, at: CellId, holds: impl FnOnce() -> bool) -> Result<(), Damaged> {
+        if holds() { Ok(()) } else { Err(Damaged::Cell(at)) }
+    }
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Embedded<3> for Compact<G, B> {
+    type Geometry = G;
+    type Complex = Self;
+    type Error = Damaged;
+    type Held<'a>
+        = [f64; D]
+    where
+        Self: 'a;
+
+    #[inline]
+    fn geometry(&self) -> &G {
+        &self.geometry
+    }
+
+    #[inline]
+    fn complex(&self) -> &Self {
+        self
+    }
+
+    #[inline]
+    fn point(&self, vertex: VertexId) -> Result<[f64; D], Damaged> {
+        let mut point = [f64::NAN; D];
+        if vertex.index() < self.vertex_slots() {
+            for (axis, x) in point.iter_mut().enumerate() {
+                let at = HEADER + 8 * (D * vertex.index() + axis);
+                *x = self.number(at).map_or(f64::NAN, f64::from_le_bytes);
+            }
+        }
+        if self.geometry.admits(&point) { Ok(point) } else { Err(Damaged::Vertex(vertex)) }
+    }
+
+    #[inline]
+    fn hold<'a>(point: &'a [f64; D]) -> [f64; D]
+    where
+        Self: 'a,
+    {
+        *point
+    }
+}

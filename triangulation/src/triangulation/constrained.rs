@@ -1,0 +1,257 @@
+use std::collections::HashSet;
+use std::ops::Deref;
+
+use crate::geometry::{Coordinates, Crossing};
+use crate::tds::{CellId, VertexId};
+
+use super::bulk::{self, Sites};
+use super::lines::Lines;
+use super::segment::Scratch;
+use super::{Flaw, Level, Refused, Rounding, Triangulation};
+
+/// Which edges of a triangle are constraints, and its payload: bit `i` is set for the edge opposite vertex `i`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Walls<C = ()>(u8, C);
+
+impl<C> Walls<C> {
+    /// Whether the edge opposite vertex `i` is one.
+    #[inline(always)]
+    pub fn has(&self, i: usize) -> bool {
+        self.0 >> i & 1 == 1
+    }
+
+    /// The payload.
+    pub(super) fn data(&self) -> &C {
+        &self.1
+    }
+
+    /// The payload, to change.
+    pub(super) fn data_mut(&mut self) -> &mut C {
+        &mut self.1
+    }
+
+    /// The same with the edge opposite vertex `i` set as told.
+    #[inline]
+    pub(super) fn with(self, i: usize, wall: bool) -> Self {
+        Walls(self.0 & !(1 << i) | u8::from(wall) << i, self.1)
+    }
+
+    /// The same with only the edge opposite vertex `i` a constraint, if it was one.
+    #[inline(always)]
+    pub(super) fn only(self, i: usize) -> Self {
+        Walls(self.0 & 1 << i, self.1)
+    }
+
+    /// The same with another payload.
+    pub(super) fn with_data<D>(&self, data: D) -> Walls<D> {
+        Walls(self.0, data)
+    }
+
+    /// Whether it marks a triangle that is being replaced.
+    pub(super) fn is_taken_out(&self) -> bool {
+        self.0 == u8::MAX
+    }
+}
+
+impl<C: Default> Walls<C> {
+    /// Marks a triangle that is being replaced.
+    pub(super) fn taken_out() -> Self {
+        Walls(u8::MAX, C::default())
+    }
+}
+
+/// A constrained Delaunay triangulation of the plane: given edges are there, and no vertex lies inside
+/// of a triangle's circumscribed circle unless a constraint stands between them (Lee and Lin 1986;
+/// Chew 1989).
+///
+/// What is constrained are *lines*: points in a row, which may touch, overlap, repeat, cross and close. Each keeps an
+/// [id](super::LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is
+/// split there; where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines
+/// bend no further than the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is
+/// proven.
+///
+/// Vertices have payloads `V`, and triangles, the infinite ones included, payloads `C`, read with
+/// [`cell_data`](Triangulation::cell_data). Triangles around a new vertex inherit the payload of the destroyed one that
+/// had the edge opposite the vertex; those that a removal or a constraint makes, or that come with another dimension,
+/// have the default one.
+///
+/// The triangulation is a function of the set of points and the set of lines' segments, whether they came at once
+/// ([`from_lines`](Self::from_lines)), one by one or with others that have been removed since.
+///
+/// ```
+/// use breakline_triangulation::geometry::Plane;
+/// use breakline_triangulation::{ConstrainedDelaunay, Level, OnCrossing};
+///
+/// let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+/// let lines = [vec![0, 2], vec![1, 3, 0]];
+/// let geometry: Plane = Plane::default();
+/// let (mut t, v) = ConstrainedDelaunay::<_, ()>::from_lines(geometry, &points, &lines, OnCrossing::Split)?;
+///
+/// let ids: Vec<_> = t.lines().collect();
+/// let [from, crossing, to] = t.chain(ids[0])[..] else { panic!("they cross once") };
+/// assert_eq!((from, to), (v[0], v[2]));
+/// assert_eq!((*t.point(crossing), t.is_added(crossing)), ([2.0, 2.0], true));
+/// assert!(t.lines_through(crossing, v[3]).eq([ids[1]]));
+///
+/// t.remove_line(ids[1]);
+/// assert_eq!(t.chain(ids[0]), [v[0], v[2]]);
+/// assert!(t.check(Level::Law).is_empty());
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ConstrainedDelaunay<G: Crossing, V = (), C = ()> {
+    pub(super) inner: Triangulation<G, 3, V, Walls<C>>,
+    /// Segments among collinear points, which no triangle can hold yet.
+    pub(super) waiting: Vec<[VertexId; 2]>,
+    /// Vertices added where segments cross.
+    pub(super) crossings: Vec<VertexId>,
+    /// Pieces of segments that are not there whole.
+    pub(super) left_out: Vec<[VertexId; 2]>,
+    /// The input lines, and their ways.
+    pub(super) lines: Lines,
+    pub(super) rounding: Option<Rounding>,
+    /// Vertices that have come with lines, and go with them.
+    pub(super) lent: HashSet<VertexId>,
+    /// Whether pieces crossed after they had been arranged, possible off the grid only, and were arranged again.
+    pub(super) was_tangled: bool,
+    pub(super) scratch: Scratch,
+}
+
+impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
+    type Target = Triangulation<G, 3, V, Walls<C>>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.inner
+    }
+}
+
+impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
+    /// Without points, and without payloads of triangles: these come with [`with_cell_data`](Self::with_cell_data).
+    pub fn new(geometry: G) -> Self {
+        ConstrainedDelaunay {
+            inner: Triangulation::new(geometry),
+            waiting: Vec::new(),
+            crossings: Vec::new(),
+            left_out: Vec::new(),
+            lines: Lines::default(),
+            rounding: None,
+            lent: HashSet::new(),
+            was_tangled: false,
+            scratch: Scratch::default(),
+        }
+    }
+}
+
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
+    /// The same triangulation with these payloads of triangles, the infinite ones included; asked for in order of their
+    /// numbers. Linear in the number of triangles; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> ConstrainedDelaunay<G, V, D> {
+        let ConstrainedDelaunay { inner, waiting, crossings, left_out, lines, rounding, lent, was_tangled, scratch } =
+            self;
+        let inner = inner.with_data_of_cells(data);
+        ConstrainedDelaunay { inner, waiting, crossings, left_out, lines, rounding, lent, was_tangled, scratch }
+    }
+
+    /// The payload of a triangle, to change. O(1).
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell).data_mut()
+    }
+
+    pub(super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
+        let location = self.inner.locate(&p, near);
+        let split = self.inner.wall_at(location);
+        let takes = |t: &Triangulation<G, 3, V, Walls<C>>, from, i, beyond| {
+            !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p)
+        };
+        let vertex = self.inner.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i));
+        for end in split.into_iter().flatten() {
+            self.inner.wall_up(vertex, end);
+        }
+        if let Some([a, b]) = split {
+            self.lines.split(a, b, vertex);
+        }
+        vertex
+    }
+
+    /// Puts in what could not be while all points were collinear.
+    pub(super) fn insert_waiting(&mut self) {
+        if self.dimension() == 2 && !self.waiting.is_empty() {
+            for [a, b] in std::mem::take(&mut self.waiting) {
+                self.force(a, b);
+            }
+        }
+    }
+
+    /// The payload of a finite vertex, to change.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+
+    /// Whether there is a constraint on the edge between two vertices.
+    pub(super) fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
+        self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
+    }
+
+    /// The vertices that were added where constraints cross.
+    pub fn crossings(&self) -> &[VertexId] {
+        &self.crossings
+    }
+
+    /// Replaces the point of a finite vertex by another one at the same place, at another height, say; returns the old
+    /// one. `None` if it is elsewhere: nothing has changed then.
+    pub fn replace_point(&mut self, vertex: VertexId, p: G::Point) -> Option<G::Point> {
+        let old = self.inner.points.get_mut(vertex.index())?;
+        self.inner.geometry.compare(&p, old).is_eq().then(|| std::mem::replace(old, p))
+    }
+
+    /// Checks up to the level, with exact predicates. No flaw means that the triangulation is what it
+    /// claims to be.
+    #[must_use]
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        let flaws = self.flaws(level, |cell, i| !self.is_constrained(cell, i));
+        if !flaws.is_empty() || level < Level::Law || self.dimension() < 2 {
+            return flaws;
+        }
+        let one_sided = self.one_sided_walls().into_iter();
+        let left_out = self.left_out.iter().map(|&[a, b]| Flaw::Missing(a, b));
+        let broken = self.lines().flat_map(|line| {
+            let chain = self.chain(line);
+            let gap = |pair: &&[VertexId]| !self.is_wall(pair[0], pair[1]);
+            chain.windows(2).filter(gap).map(|pair| Flaw::Line(line, pair[0], pair[1])).collect::<Vec<_>>()
+        });
+        one_sided.chain(left_out).chain(broken).collect()
+    }
+}
+
+impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+    /// Triangulates sites: the vertices are numbered as their points are, and no copy of them is made.
+    pub(crate) fn from_sites(geometry: G, sites: Sites<G::Point>) -> Self {
+        let mut triangulation = Self::new(geometry);
+        let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, bulk::Grain::default());
+        let count = points.len();
+        triangulation.inner.points = points;
+        if let Some(tds) = tds {
+            triangulation.inner.tds = tds;
+            return triangulation;
+        }
+        for index in 0..count {
+            triangulation.insert_near(triangulation.inner.points[index], None);
+        }
+        debug_assert_eq!(triangulation.vertex_count(), count, "two points on one site");
+        triangulation
+    }
+
+    /// Triangulates many points. Returns the vertex of each point beside: they are numbered along a space
+    /// filling curve, and points on one site share theirs (the first of them stands).
+    ///
+    /// # Errors
+    /// The first point that is refused, by its position.
+    ///
+    /// # Complexity
+    /// O(n log n), on all threads.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
+        let (sites, vertices) = Sites::of(&geometry, points, bulk::Grain::default())?;
+        Ok((Self::from_sites(geometry, sites), vertices))
+    }
+}

@@ -1,0 +1,306 @@
+//! Who is who among the lines of a constrained triangulation.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::OnceLock;
+
+use rustc_hash::FxHashMap;
+
+use crate::arrangement::Arrangement;
+use crate::geometry::Crossing;
+use crate::num::Sign;
+use crate::tds::{Id, VertexId};
+
+use super::ConstrainedDelaunay;
+
+/// Marks numbers of lines.
+#[derive(Debug)]
+pub enum LineTag {}
+
+/// The number of a line: its position among those that were given.
+pub type LineId = Id<LineTag>;
+
+/// The input lines, and the way that each takes in the triangulation.
+///
+/// A line is kept as the vertices that it was given by. What lies between two of them is told by two tables that hold
+/// nothing for a segment that is one edge: through which sites a segment is led, and at which vertex an edge was split.
+/// So a line takes 24 bytes, and 4 for each of its vertices if they are not two; a segment that crosses others about 40
+/// more, and 4 for each site on it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lines {
+    /// By their ids.
+    pub(super) given: Vec<Option<LineVertices>>,
+    /// Of segments, from the smaller vertex to the larger: the sites between.
+    pub(super) led: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
+    /// Of pieces: the vertex on which they were split.
+    pub(super) splits: FxHashMap<[VertexId; 2], VertexId>,
+    /// The lines on each edge, sorted; made when it is first asked for.
+    on_edges: OnceLock<Vec<([VertexId; 2], LineId)>>,
+}
+
+/// The vertices that a line was given by.
+///
+/// `PERF:` those of a segment are kept in place, as programs give millions of these.
+#[derive(Debug, Clone)]
+pub(super) enum LineVertices {
+    Segment([VertexId; 2]),
+    Other(Box<[VertexId]>),
+}
+
+impl LineVertices {
+    #[inline]
+    pub(super) fn of<T: Copy>(given: &[T], vertex: impl Fn(T) -> VertexId) -> Self {
+        match *given {
+            [a, b] => LineVertices::Segment([vertex(a), vertex(b)]),
+            _ => LineVertices::Other(given.iter().map(|&v| vertex(v)).collect()),
+        }
+    }
+}
+
+impl From<&[VertexId]> for LineVertices {
+    fn from(vertices: &[VertexId]) -> Self {
+        LineVertices::of(vertices, |v| v)
+    }
+}
+
+impl Deref for LineVertices {
+    type Target = [VertexId];
+
+    #[inline]
+    fn deref(&self) -> &[VertexId] {
+        match self {
+            LineVertices::Segment(ends) => ends,
+            LineVertices::Other(vertices) => vertices,
+        }
+    }
+}
+
+impl DerefMut for LineVertices {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [VertexId] {
+        match self {
+            LineVertices::Segment(ends) => ends,
+            LineVertices::Other(vertices) => vertices,
+        }
+    }
+}
+
+/// The same key for both directions.
+#[inline]
+pub(super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}
+
+/// Each segment of some lines once, from the smaller vertex to the larger, in order; the numbers keep the order of the
+/// vertices.
+pub(super) fn segments_of<'a>(
+    lines: impl Iterator<Item = &'a [VertexId]>,
+    number: impl Fn(VertexId) -> u32,
+) -> Vec<[u32; 2]> {
+    let pairs = lines.flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
+    let mut segments: Vec<[u32; 2]> = pairs.map(|pair| undirected(pair[0], pair[1]).map(&number)).collect();
+    segments.sort_unstable();
+    segments.dedup();
+    segments
+}
+
+impl Lines {
+    /// The vertices of each line that is there.
+    pub(super) fn each(&self) -> impl Iterator<Item = &[VertexId]> {
+        self.given.iter().flatten().map(|line| &**line)
+    }
+
+    /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each
+    /// once, in order.
+    pub(super) fn lead(
+        &mut self,
+        arrangement: &Arrangement,
+        segments: &[[u32; 2]],
+        vertex: impl Fn(u32) -> VertexId,
+    ) -> Vec<[VertexId; 2]> {
+        self.led.clear();
+        let mut pieces = Vec::with_capacity(segments.len());
+        for (i, ends) in (0..).zip(segments) {
+            let [a, b] = ends.map(&vertex);
+            if !arrangement.is_led(i) {
+                pieces.push(undirected(a, b));
+                continue;
+            }
+            let mut between: Box<[VertexId]> = arrangement.chain(i).iter().map(|&site| vertex(site)).collect();
+            let mut at = a;
+            for &next in between.iter().chain([&b]) {
+                pieces.push(undirected(at, next));
+                at = next;
+            }
+            if a > b {
+                between.reverse();
+            }
+            self.led.insert(undirected(a, b), between);
+        }
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
+    /// Forgets what was derived. After every change.
+    pub(super) fn touch(&mut self) {
+        self.on_edges.take();
+    }
+
+    /// Puts down that the edge was split.
+    pub(super) fn split(&mut self, a: VertexId, b: VertexId, at: VertexId) {
+        self.splits.insert(undirected(a, b), at);
+        self.touch();
+    }
+
+    /// Adds the way of a segment to `chain`, without its start.
+    pub(super) fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+        let mut at = a;
+        let mut steps = |site: VertexId| {
+            self.walk_piece(at, site, chain);
+            at = site;
+        };
+        if let Some(sites) = self.led.get(&undirected(a, b)) {
+            if a < b {
+                sites.iter().for_each(|&site| steps(site));
+            } else {
+                sites.iter().rev().for_each(|&site| steps(site));
+            }
+        }
+        steps(b);
+    }
+
+    /// The same for a piece, which is led through nothing but may have been split.
+    pub(super) fn walk_piece(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+        let mut at = a;
+        let mut ahead = vec![b];
+        while let Some(&next) = ahead.last() {
+            match self.splits.get(&undirected(at, next)) {
+                Some(&between) => ahead.push(between),
+                None => {
+                    if next != at {
+                        chain.push(next);
+                    }
+                    at = next;
+                    ahead.pop();
+                }
+            }
+        }
+    }
+
+    /// Adds what this table tells of a piece to another one.
+    pub(super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
+        let mut pieces = vec![undirected(a, b)];
+        while let Some([a, b]) = pieces.pop() {
+            if let Some(&between) = self.splits.get(&[a, b]) {
+                to.insert([a, b], between);
+                pieces.extend([undirected(a, between), undirected(between, b)]);
+            }
+        }
+    }
+}
+
+/// Lines by their ids.
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
+    /// Adds the way of a segment to `chain`, without its start.
+    fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+        if self.dimension() == 2 {
+            return self.lines.walk(a, b, chain);
+        }
+        // No edge could be split where all points are collinear.
+        let first = chain.len();
+        let ends = [a, b].map(|v| self.point(v));
+        let is_between = |&v: &VertexId| self.geometry().side_of_sphere_in_flat(&ends, self.point(v)) == Sign::Positive;
+        chain.extend(self.tds().vertices().filter(is_between));
+        chain[first..].sort_unstable_by(|&u, &v| self.geometry().compare(self.point(u), self.point(v)));
+        if self.geometry().compare(ends[0], ends[1]).is_gt() {
+            chain[first..].reverse();
+        }
+        chain.push(b);
+    }
+
+    fn on_edges(&self) -> &[([VertexId; 2], LineId)] {
+        self.lines.on_edges.get_or_init(|| {
+            let mut on_edges = Vec::new();
+            for line in self.lines() {
+                on_edges.extend(self.chain(line).windows(2).map(|pair| (undirected(pair[0], pair[1]), line)));
+            }
+            on_edges.sort_unstable();
+            on_edges.dedup();
+            on_edges
+        })
+    }
+
+    /// The ids of all lines, in order.
+    pub fn lines(&self) -> impl Iterator<Item = LineId> + '_ {
+        let given = self.lines.given.iter().enumerate();
+        given.filter(|(_, line)| line.is_some()).map(|(index, _)| LineId::new(index))
+    }
+
+    /// The vertices that a line was given by, in order: where several points were given for one site, its vertex.
+    /// Empty for a line that does not exist.
+    pub fn line_vertices(&self, line: LineId) -> &[VertexId] {
+        self.lines.given.get(line.index()).and_then(Option::as_deref).unwrap_or_default()
+    }
+
+    /// The vertices of a line in the triangulation, in order: those that it was given by, and those that it meets on
+    /// its way. Between each two of them there is a constrained edge. Empty for a line that does not exist.
+    ///
+    /// # Complexity
+    /// Linear in the length of the result.
+    pub fn chain(&self, line: LineId) -> Vec<VertexId> {
+        let vertices = self.line_vertices(line);
+        let mut chain: Vec<VertexId> = vertices.first().copied().into_iter().collect();
+        for pair in vertices.windows(2).filter(|pair| pair[0] != pair[1]) {
+            self.walk(pair[0], pair[1], &mut chain);
+        }
+        chain
+    }
+
+    /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it
+    /// is one edge, and if one of the two does not exist.
+    ///
+    /// # Complexity
+    /// Linear in the length of the result.
+    pub fn way(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
+        let mut chain = Vec::new();
+        if [a, b].into_iter().all(|v| self.tds().is_vertex(v)) {
+            self.walk(a, b, &mut chain);
+            chain.pop();
+        }
+        chain
+    }
+
+    /// The ids of all lines that run along the edge between two vertices, in order.
+    ///
+    /// # Complexity
+    /// A binary search; the first call after a change takes O(n log n) for n edges of lines, and 12 bytes for each of
+    /// them while the triangulation stays as it is.
+    pub fn lines_through(&self, a: VertexId, b: VertexId) -> impl ExactSizeIterator<Item = LineId> + '_ {
+        let on_edges = self.on_edges();
+        let edge = undirected(a, b);
+        let first = on_edges.partition_point(|(e, _)| *e < edge);
+        let count = on_edges[first..].partition_point(|(e, _)| *e == edge);
+        on_edges[first..first + count].iter().map(|&(_, line)| line)
+    }
+
+    /// Whether a vertex was added where lines cross, rather than given.
+    pub fn is_added(&self, vertex: VertexId) -> bool {
+        self.crossings.binary_search(&vertex).is_ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the docs of [`Lines`] say.
+    #[test]
+    fn lines_are_small() {
+        assert_eq!(size_of::<Option<LineVertices>>(), 24, "a line");
+        assert_eq!(size_of::<VertexId>(), 4, "a vertex of a line, a site on a segment");
+        assert_eq!(size_of::<([VertexId; 2], Box<[VertexId]>)>(), 24, "a segment that crosses others, in the table");
+        assert_eq!(size_of::<([VertexId; 2], VertexId)>(), 12, "an edge that was split, in the table");
+        assert_eq!(size_of::<([VertexId; 2], LineId)>(), 12, "a line on an edge, once that was asked for");
+        assert_eq!(size_of::<super::super::Walls>(), 1, "the flags of three edges, at each triangle");
+    }
+}

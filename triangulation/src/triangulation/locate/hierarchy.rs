@@ -1,0 +1,158 @@
+use rustc_hash::FxHashMap;
+
+use crate::geometry::Geometry;
+use crate::tds::{CellId, VertexId};
+
+use super::super::{Delaunay, Triangulation};
+use super::{Dice, Locate, Location};
+
+/// One vertex in that many is in the sample above.
+const RATIO: usize = 30;
+
+/// The Delaunay hierarchy (Devillers 2002): samples of samples of the vertices, each triangulated.
+///
+/// ```text
+///   level 2     o                 o       one vertex in 900
+///   level 1     o     o      o    o       one vertex in 30
+///   all         o o o o o oo o o oo o
+/// ```
+///
+/// A place is located from the top down; each time the walk begins at the vertex that was found nearest above. So it
+/// takes expected `O(log n)` steps on any Delaunay triangulation whose points came in random order, however they are
+/// spread (O(n) when a line goes through all triangles from there), and memory grows by a thirtieth.
+///
+/// The geometry of the samples is one over the same kind of points, in which the place of a point is the same. It is
+/// that of the triangulation itself but for weighted points: there it is one that leaves weights aside.
+///
+/// Which vertices are in the samples looks random and is the same in every run.
+///
+/// ```
+/// use breakline_triangulation::geometry::Plane;
+/// use breakline_triangulation::{Delaunay, Hierarchy, Locate, Location};
+///
+/// let plane: Plane = Plane::default();
+/// let (mut t, mut hierarchy) = (Delaunay::new(plane), Hierarchy::new(plane));
+/// for i in 0..1000 {
+///     t.insert_by(&mut hierarchy, [f64::from(i * 7919 % 1000), f64::from(i * 104_729 % 997)], ())?;
+/// }
+/// assert!(matches!(hierarchy.locate(&t, &[500.5, 500.5]), Location::Cell { .. }));
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Hierarchy<L: Geometry<3>> {
+    geometry: L,
+    /// From the largest sample up.
+    levels: Vec<Level<L>>,
+    dice: Dice,
+}
+
+#[derive(Debug, Clone)]
+struct Level<L: Geometry<3>> {
+    /// Each vertex knows the same one in the level below.
+    sample: Delaunay<L, 3, VertexId>,
+    /// And back.
+    of_below: FxHashMap<VertexId, VertexId>,
+}
+
+impl<L: Geometry<3>> Level<L> {
+    /// A cell at a point and a vertex near it, given one to start from.
+    fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
+        let tds = self.sample.tds();
+        let cell = self.sample.approach(q, start.and_then(|vertex| tds.cell_of(vertex)));
+        let nearest = match cell {
+            Some(cell) => {
+                let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
+                let far = |v: VertexId| self.sample.geometry().rough_distance(self.sample.point(v), q);
+                finite.map(|v| (v, far(v))).reduce(|p, q| if q.1 < p.1 { q } else { p }).map(|(v, _)| v)
+            }
+            None => tds.vertices().next(),
+        };
+        (cell, nearest)
+    }
+
+    fn below(&self, vertex: VertexId) -> VertexId {
+        *self.sample.tds().vertex_data(vertex)
+    }
+}
+
+impl<L: Geometry<3> + Clone> Hierarchy<L> {
+    /// For a triangulation that is still empty.
+    pub fn new(geometry: L) -> Self {
+        Hierarchy { geometry, levels: Vec::new(), dice: Dice::default() }
+    }
+
+    /// For the vertices of a triangulation. O(n).
+    pub fn of<G, V, C>(geometry: L, triangulation: &Triangulation<G, 3, V, C>) -> Self
+    where
+        G: Geometry<3, Point = L::Point>,
+        C: Copy + Default,
+    {
+        let mut hierarchy = Self::new(geometry);
+        for vertex in triangulation.tds.vertices() {
+            hierarchy.sample(vertex, triangulation.point(vertex));
+        }
+        hierarchy
+    }
+
+    /// Draws up to which level a vertex is in the samples, and puts it there.
+    fn sample(&mut self, vertex: VertexId, point: &L::Point) {
+        let mut height = 0;
+        while height <= self.levels.len() && self.dice.below(RATIO) == 0 {
+            height += 1;
+        }
+        if height == 0 {
+            return;
+        }
+        if height > self.levels.len() {
+            let sample = Delaunay::new(self.geometry.clone());
+            self.levels.push(Level { sample, of_below: FxHashMap::default() });
+        }
+        let mut near = Vec::with_capacity(self.levels.len());
+        self.descend(point, |cell| near.push(cell));
+        let mut below = vertex;
+        for (level, near) in self.levels[..height].iter_mut().zip(near.into_iter().rev()) {
+            let Ok(vertex) = level.sample.insert_near(*point, below, near) else { return };
+            // Where the site is taken, it was by a vertex that is there no more, of whose end nothing was told.
+            *level.sample.inner.tds.vertex_data_mut(vertex) = below;
+            level.of_below.insert(below, vertex);
+            below = vertex;
+        }
+    }
+}
+
+impl<L: Geometry<3>> Hierarchy<L> {
+    /// How many vertices are in the samples, from the largest up.
+    pub fn sample_sizes(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.levels.iter().map(|level| level.sample.vertex_count())
+    }
+
+    /// A vertex of the triangulation near a point. Shown on the way, from the top down, is a cell near it on each
+    /// level.
+    fn descend(&self, q: &L::Point, mut show: impl FnMut(Option<CellId>)) -> Option<VertexId> {
+        self.levels.iter().rev().fold(None, |start, level| {
+            let (cell, nearest) = level.nearest(q, start);
+            show(cell);
+            nearest.map(|vertex| level.below(vertex))
+        })
+    }
+}
+
+impl<G: Geometry<3>, L: Geometry<3, Point = G::Point> + Clone> Locate<G, 3> for Hierarchy<L> {
+    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, 3, V, C>, q: &G::Point) -> Location {
+        let nearest = self.descend(q, |_| ()).filter(|&vertex| triangulation.tds.is_vertex(vertex));
+        triangulation.locate(q, nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)))
+    }
+
+    fn inserted(&mut self, _: &G, vertex: VertexId, point: &G::Point) {
+        self.sample(vertex, point);
+    }
+
+    fn removed(&mut self, vertex: VertexId) {
+        let mut below = vertex;
+        for level in &mut self.levels {
+            let Some(vertex) = level.of_below.remove(&below) else { return };
+            level.sample.remove(vertex);
+            below = vertex;
+        }
+    }
+}

@@ -1,0 +1,81 @@
+use crate::geometry::Geometry;
+use crate::tds::{CellId, VertexId};
+
+use super::super::Triangulation;
+use super::Location;
+
+/// A strategy to find where a point lies: a value of the caller's, which may learn from insertions and removals.
+///
+/// Needed for nothing: [`Triangulation::locate`] walks from the last insertion. Taken by `insert_by`, `remove_by`, and
+/// to be asked itself.
+///
+/// # Laws
+/// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same place relative to the complex; of
+///   the cells that an edge or the outside of the hull is told by, any.
+/// - What [`inserted`](Self::inserted) and [`removed`](Self::removed) have not been told changes the time only.
+///
+/// # Models
+/// [`Near`], [`JumpAndWalk`], [`StraightLine`](super::StraightLine), [`Buckets`](super::Buckets),
+/// [`Hierarchy`](super::Hierarchy). All take any kind of triangulation. One of one's own says where a walk starts;
+/// here, where the last question ended:
+///
+/// ```
+/// use std::cell::Cell;
+/// use breakline_triangulation::geometry::{Geometry, Plane};
+/// use breakline_triangulation::tds::CellId;
+/// use breakline_triangulation::{Delaunay, Locate, Location, Triangulation};
+///
+/// #[derive(Default)]
+/// struct LastAnswer(Cell<Option<CellId>>);
+///
+/// impl<G: Geometry<N>, const N: usize> Locate<G, N> for LastAnswer {
+///     fn locate<V, C: Copy + Default>(&self, t: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
+///         let location = t.locate(q, self.0.get()); // a cell that is there no more does no harm
+///         if let Location::Cell { cell, .. } = location {
+///             self.0.set(Some(cell));
+///         }
+///         location
+///     }
+/// }
+///
+/// let points: Vec<[f64; 2]> = (0..100).map(|k| [k % 10, k / 10].map(f64::from)).collect();
+/// let (t, v) = Delaunay::<Plane, 3>::from_points(Plane::default(), &points)?;
+/// let last = LastAnswer::default();
+/// assert!(matches!(last.locate(&t, &[8.5, 8.25]), Location::Cell { touching: 0, .. }));
+/// assert_eq!(last.locate(&t, &[8.0, 8.0]), Location::Vertex(v[88]));
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+pub trait Locate<G: Geometry<N>, const N: usize> {
+    /// Returns where a point lies; [`Location::Nowhere`] for one that the geometry does not [admit](Geometry::admits).
+    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location;
+
+    /// Learns of a new vertex of a triangulation with this geometry.
+    fn inserted(&mut self, _geometry: &G, _vertex: VertexId, _point: &G::Point) {}
+
+    /// Learns that a vertex is there no more.
+    fn removed(&mut self, _vertex: VertexId) {}
+}
+
+/// From a cell nearby; or, without one, from where the last insertion was. What [`Triangulation::locate`] does.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Near(pub Option<CellId>);
+
+impl<G: Geometry<N>, const N: usize> Locate<G, N> for Near {
+    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
+        triangulation.locate(q, self.0)
+    }
+}
+
+/// From the nearest of `n^(1/3)` of the `n` vertices, chosen as if at random; the same ones for the same number of
+/// vertices. Takes a geometry that knows [distances](Geometry::rough_distance).
+///
+/// Of uniformly distributed points the walk takes `O(n^(1/3))` steps then (Mücke, Saias and Zhu 1996).
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JumpAndWalk;
+
+impl<G: Geometry<N>, const N: usize> Locate<G, N> for JumpAndWalk {
+    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
+        let nearest = triangulation.nearest_of_some(q);
+        triangulation.locate(q, nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)))
+    }
+}

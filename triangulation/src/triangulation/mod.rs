@@ -1,0 +1,189 @@
+//! The engine, the kinds, and what is asked of them.
+
+mod basic;
+mod bulk;
+mod check;
+mod compact;
+mod constrained;
+mod corridor;
+mod crossed;
+mod delaunay;
+mod edit;
+mod embedded;
+mod flip;
+mod insert;
+mod lines;
+mod locate;
+mod low_degree;
+mod nesting;
+mod network;
+mod query;
+pub mod refine;
+mod regular;
+mod remove;
+#[cfg(feature = "serde")]
+mod saved;
+mod segment;
+mod sides;
+mod simplify;
+mod walled;
+
+pub use bulk::spatial_order;
+pub use check::{Flaw, Level};
+pub use compact::{Compact, Damaged, Law};
+pub use constrained::{ConstrainedDelaunay, Walls};
+pub use delaunay::Delaunay;
+pub use edit::Kept;
+pub use embedded::{Embedded, PointOf};
+pub use lines::{LineId, LineTag};
+pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
+pub use network::{OnCrossing, Rounding};
+pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
+pub use regular::Regular;
+pub use walled::{Blocked, Constrained};
+
+use std::fmt;
+
+use crate::geometry::Geometry;
+use crate::num::Sign;
+use crate::tds::{CellId, Tds, VertexId, Zone};
+
+/// A point that a triangulation cannot take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refused {
+    /// The point at this position has a coordinate that is not finite, or whose magnitude is outside
+    /// of what the arithmetic is proven for (see [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
+    Coordinate(usize),
+    /// The point at this position lies before the one before it in [`spatial_order`], or at the same place, where points
+    /// have to come in order.
+    Unsorted(usize),
+    /// There are more points than 32-bit numbers can count with their cells: the limit is 2^31 - 2.
+    TooMany,
+    /// A line names a point that does not exist.
+    Index {
+        /// The line, by its position.
+        line: usize,
+        /// The number it names.
+        index: u32,
+    },
+    /// Two segments cross, and [`OnCrossing::Reject`] was asked for.
+    Crossing {
+        /// Each line by its position, and the segment in it.
+        segments: [(usize, usize); 2],
+        /// Where, rounded.
+        place: [f64; 2],
+    },
+    /// The ends of a ring are apart.
+    Open {
+        /// The ring, by its position.
+        ring: usize,
+        /// Its first and its last point.
+        gap: [[f64; 2]; 2],
+    },
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Refused::Coordinate(index) => {
+                write!(f, "point {index} has a coordinate that is not finite or too large or small to compute with")
+            }
+            Refused::Unsorted(index) => {
+                write!(f, "point {index} is not in spatial order, or where the one before it is")
+            }
+            Refused::TooMany => write!(f, "more than {MAX_VERTICES} points"),
+            Refused::Index { line, index } => write!(f, "line {line} names point {index}, which does not exist"),
+            Refused::Crossing { segments: [(line, segment), (other, crossed)], place: [x, y] } => {
+                write!(f, "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}")
+            }
+            Refused::Open { ring, gap: [[x0, y0], [x1, y1]] } => {
+                write!(f, "ring {ring} is not closed: it begins at {x0} {y0} and ends at {x1} {y1}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// Two cells to a vertex must be numbered.
+const MAX_VERTICES: usize = VertexId::LIMIT / 2;
+
+/// Points and cells without a law of their own: the basic kind; and, for reading, what all kinds share.
+///
+#[derive(Debug, Clone)]
+pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
+    geometry: G,
+    tds: Tds<N, V, C>,
+    points: Vec<G::Point>,
+    /// Scratch of the insertion.
+    zone: Zone,
+    /// Where the last insertion ended, where the next begins to look.
+    last: Option<CellId>,
+}
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
+    /// The geometry.
+    pub fn geometry(&self) -> &G {
+        &self.geometry
+    }
+
+    /// The combinatorics.
+    pub fn tds(&self) -> &Tds<N, V, C> {
+        &self.tds
+    }
+
+    /// -1 without a point, 0 with one, 1 if all are collinear, and so on.
+    pub fn dimension(&self) -> i32 {
+        self.tds.dimension()
+    }
+
+    /// Finite vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.tds.vertex_count()
+    }
+
+    /// The point of a finite vertex. Of one that was removed it is still there, see [`points`](Self::points).
+    ///
+    /// # Panics
+    /// If there never was such a vertex, like an index; of the infinite one, too.
+    #[inline(always)]
+    pub fn point(&self, vertex: VertexId) -> &G::Point {
+        &self.points[vertex.index()]
+    }
+
+    /// All points, in the order of their vertices' numbers. Where a [vertex](Tds::is_vertex) has been removed,
+    /// its point is still there.
+    pub fn points(&self) -> &[G::Point] {
+        &self.points
+    }
+
+    /// The cells without the infinite vertex, in order of their numbers. Below full dimension these
+    /// have fewer vertices: segments, or triangles in space.
+    pub fn finite_cells(&self) -> impl Iterator<Item = CellId> + '_ {
+        self.tds.cells().filter(|&cell| !self.tds.is_infinite(cell))
+    }
+
+    /// The points of a full cell without the infinite vertex.
+    #[inline(always)]
+    fn simplex(&self, cell: CellId) -> [&G::Point; N] {
+        self.tds.corners(cell).map(|v| &self.points[v.index()])
+    }
+
+    /// Whether the complex spans the space.
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        self.tds.dimension() as usize == N - 1
+    }
+
+    #[inline(always)]
+    fn side_of_facet(&self, cell: CellId, replaced: usize, q: &G::Point) -> Sign {
+        let Ok(sign) = sides::side_of_facet(self, cell, replaced, q);
+        sign
+    }
+
+    #[inline(always)]
+    fn in_conflict(&self, cell: CellId, q: &G::Point) -> bool {
+        let Ok(is_in_conflict) = sides::in_conflict(self, cell, q);
+        is_in_conflict
+    }
+}

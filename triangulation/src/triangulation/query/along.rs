@@ -1,0 +1,259 @@
+//! What a segment meets on its way.
+
+use std::borrow::Borrow;
+use std::cmp::Ordering;
+
+use crate::geometry::Geometry;
+use crate::num::Sign;
+use crate::tds::{self, CellId, Complex, Star, VertexId, ccw, cw};
+
+use super::super::embedded::{Embedded, PointOf};
+use super::super::{Location, Triangulation};
+
+/// A face, edge or vertex whose inside a segment meets: the faces are open, and so are the edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passage {
+    /// Through a face.
+    Face(CellId),
+    /// Over an edge from one side to the other, or ending on it: the edge opposite this vertex of the cell that it is
+    /// left by. That is an infinite cell where a segment comes in over the hull.
+    Edge(CellId, usize),
+    /// Along an edge from the first vertex towards the second. The faces beside it are those of [`Tds::edge`] for both
+    /// directions.
+    ///
+    /// [`Tds::edge`]: crate::tds::Tds::edge
+    Along([VertexId; 2]),
+    /// Through a vertex.
+    Vertex(VertexId),
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+    /// All that a segment meets, in order from `a` to `b`, which may be equal; nothing if the geometry does not
+    /// [admit](Geometry::admits) one of them. What meets two parts only at their border is told by the border: a segment through a vertex meets the
+    /// vertex and perhaps two faces, none of the edges there. Nothing is told of the way outside of the hull, nor below
+    /// dimension 2. Exact.
+    ///
+    /// # Complexity
+    /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for a face or an edge, and the degree of
+    /// each vertex. If `a` lies outside of the hull, its vertices are all looked at.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Plane, Delaunay, Passage};
+    ///
+    /// // Two faces, with the edge from the lower right to the upper left between them.
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 5.0], [0.0, 4.0]];
+    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let met: Vec<Passage> = t.along([&[-1.0, -1.0], &[3.0, 3.0]], None).collect();
+    /// assert!(matches!(met[..], [Passage::Vertex(w), Passage::Face(_), Passage::Edge(..), Passage::Face(_)] if w == v[0]));
+    /// let met: Vec<Passage> = t.along([&[1.0, 0.0], &[4.0, 0.0]], None).collect();
+    /// assert_eq!(met, [Passage::Along([v[0], v[1]]), Passage::Vertex(v[1])]);
+    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// ```
+    pub fn along<'t>(
+        &'t self,
+        [a, b]: [&G::Point; 2],
+        near: Option<CellId>,
+    ) -> impl Iterator<Item = Passage> + use<'t, G, V, C> {
+        let location = if self.is_full() { self.locate(a, near) } else { Location::OutsideAffineHull };
+        Along::new(self, [a, b], location).map(|Ok(passage)| passage)
+    }
+}
+
+/// What a segment meets, from its start on.
+pub(in crate::triangulation) struct Along<'t, T: Embedded<3>> {
+    way: Way<'t, T>,
+    next: Result<Option<Passage>, T::Error>,
+    /// Each face is met once: if there are more, links lead astray.
+    faces: usize,
+    /// The last one met: the next one is further on the way.
+    vertex: Option<VertexId>,
+}
+
+impl<'t, T: Embedded<3>> Along<'t, T> {
+    /// Given where the segment starts.
+    pub(in crate::triangulation) fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
+        let way = Way { t, a: *a, b: *b };
+        let next = if t.geometry().admits(b) { way.first(location) } else { Ok(None) };
+        Along { way, next, faces: 0, vertex: None }
+    }
+
+    fn after(&mut self, passage: Passage) -> Result<Option<Passage>, T::Error> {
+        let complex = self.way.t.complex();
+        match passage {
+            Passage::Face(cell) => {
+                self.faces += 1;
+                complex.ensure(cell, || self.faces <= complex.cell_slots())?;
+            }
+            Passage::Vertex(vertex) => {
+                if let (Some(last), Some(cell)) = (self.vertex.replace(vertex), complex.cell_of(vertex)?) {
+                    complex.ensure(cell, || self.way.order_of(last, vertex).is_ok_and(Ordering::is_gt))?;
+                }
+            }
+            Passage::Edge(..) | Passage::Along(_) => {}
+        }
+        self.way.after(passage)
+    }
+}
+
+impl<T: Embedded<3>> Iterator for Along<'_, T> {
+    type Item = Result<Passage, T::Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let passage = std::mem::replace(&mut self.next, Ok(None)).transpose()?;
+        if let Ok(passage) = passage {
+            self.next = self.after(passage);
+        }
+        Some(passage)
+    }
+}
+
+/// A segment on its way.
+struct Way<'t, T: Embedded<3>> {
+    t: &'t T,
+    a: PointOf<T, 3>,
+    b: PointOf<T, 3>,
+}
+
+impl<T: Embedded<3>> Way<'_, T> {
+    /// On which side of the line a vertex lies: positive on the left.
+    fn side(&self, vertex: VertexId) -> Result<Sign, T::Error> {
+        Ok(self.t.geometry().orientation([&self.a, &self.b, self.t.point(vertex)?.borrow()]))
+    }
+
+    /// On which side of an edge a point lies.
+    fn beside(&self, [from, to]: [VertexId; 2], p: &PointOf<T, 3>) -> Result<Sign, T::Error> {
+        Ok(self.t.geometry().orientation([self.t.point(from)?.borrow(), self.t.point(to)?.borrow(), p]))
+    }
+
+    /// On which side of an edge the segment ends.
+    fn end_side(&self, edge: [VertexId; 2]) -> Result<Sign, T::Error> {
+        self.beside(edge, &self.b)
+    }
+
+    /// Of points on the line: `Greater` if `q` comes after `p` on the way.
+    fn order(&self, p: &PointOf<T, 3>, q: &PointOf<T, 3>) -> Ordering {
+        let g = self.t.geometry();
+        let order = g.compare(q, p);
+        if g.compare(&self.b, &self.a).is_lt() { order.reverse() } else { order }
+    }
+
+    /// The same of vertices.
+    fn order_of(&self, p: VertexId, q: VertexId) -> Result<Ordering, T::Error> {
+        Ok(self.order(self.t.point(p)?.borrow(), self.t.point(q)?.borrow()))
+    }
+
+    /// The same of a vertex and the end.
+    fn order_to_end(&self, vertex: VertexId) -> Result<Ordering, T::Error> {
+        Ok(self.order(self.t.point(vertex)?.borrow(), &self.b))
+    }
+
+    /// A vertex on the line, as what comes next, if the segment goes that far.
+    fn up_to(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
+        Ok(self.order_to_end(vertex)?.is_ge().then_some(Passage::Vertex(vertex)))
+    }
+
+    fn first(&self, location: Location) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        Ok(match location {
+            Location::Vertex(vertex) => Some(Passage::Vertex(vertex)),
+            Location::Cell { cell, touching: 0 } => Some(Passage::Face(cell)),
+            Location::Cell { cell, touching } => {
+                let i = touching.trailing_zeros() as usize;
+                let ends @ [from, to] = complex.edge_ends(cell, i)?;
+                let beyond = complex.neighbor(cell, i)?;
+                Some(match self.end_side(ends)? {
+                    Sign::Negative => Passage::Edge(cell, i),
+                    Sign::Positive => Passage::Edge(beyond, complex.index_of_neighbor(beyond, cell)?),
+                    Sign::Zero if self.order(&self.a, &self.b).is_eq() => Passage::Edge(cell, i),
+                    Sign::Zero if self.order_of(from, to)?.is_gt() => Passage::Along([from, to]),
+                    Sign::Zero => Passage::Along([to, from]),
+                })
+            }
+            Location::OutsideHull { .. } => self.entry()?,
+            Location::OutsideAffineHull | Location::Nowhere => None,
+        })
+    }
+
+    /// Where a segment from outside comes upon the hull: over an edge that runs from its left to its right, or, if the
+    /// line has none such, at the first vertex that it goes through.
+    fn entry(&self) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        let mut touched: Option<VertexId> = None;
+        for cell in Star::new(complex, VertexId::INFINITE, 2)? {
+            let (cell, i) = cell?;
+            // Of the infinite face: the hull runs from `to` to `from`.
+            let ends @ [to, from] = complex.edge_ends(cell, i)?;
+            let sides = [self.side(from)?, self.side(to)?];
+            if sides == [Sign::Positive, Sign::Negative] {
+                let starts_outside = self.beside([to, from], &self.a)? == Sign::Positive;
+                let arrives = self.end_side(ends)? != Sign::Positive;
+                return Ok((starts_outside && arrives).then_some(Passage::Edge(cell, i)));
+            }
+            let is_first = match touched {
+                Some(first) => self.order_of(from, first)?.is_gt(),
+                None => true,
+            };
+            if sides[0] == Sign::Zero && is_first {
+                touched = Some(from);
+            }
+        }
+        match touched {
+            Some(v) if self.order(&self.a, self.t.point(v)?.borrow()).is_gt() => self.up_to(v),
+            _ => Ok(None),
+        }
+    }
+
+    fn after(&self, passage: Passage) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        match passage {
+            Passage::Vertex(vertex) => self.after_vertex(vertex),
+            Passage::Along([_, to]) => self.up_to(to),
+            Passage::Edge(cell, i) => {
+                let beyond = complex.neighbor(cell, i)?;
+                let goes_on = self.end_side(complex.edge_ends(cell, i)?)? == Sign::Negative;
+                Ok((goes_on && !complex.is_infinite(beyond)?).then_some(Passage::Face(beyond)))
+            }
+            Passage::Face(cell) => self.after_face(cell),
+        }
+    }
+
+    /// A line leaves a triangle where, counter-clockwise, its border comes over from the right.
+    fn after_face(&self, cell: CellId) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        let corners @ [u, v, w] = complex.corners(cell)?;
+        let sides = [self.side(u)?, self.side(v)?, self.side(w)?];
+        let Some(last) = (0..3).find(|&i| sides[i] == Sign::Negative && sides[ccw(i)] != Sign::Negative) else {
+            return Ok(None);
+        };
+        if sides[ccw(last)] == Sign::Zero {
+            return self.up_to(corners[ccw(last)]);
+        }
+        let i = cw(last);
+        Ok((self.end_side(complex.edge_ends(cell, i)?)? != Sign::Positive).then_some(Passage::Edge(cell, i)))
+    }
+
+    fn after_vertex(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
+        let complex = self.t.complex();
+        if self.order_to_end(vertex)?.is_le() {
+            return Ok(None);
+        }
+        for edge in tds::edges_around(complex, vertex)? {
+            let (cell, i) = edge?;
+            // The next edge of the cell is opposite the vertex.
+            let [right, left] = [complex.vertex(cell, cw(i))?, complex.vertex(cell, i)?];
+            if right == VertexId::INFINITE {
+                continue;
+            }
+            match self.side(right)? {
+                Sign::Zero if self.order_of(vertex, right)?.is_gt() => {
+                    return Ok(Some(Passage::Along([vertex, right])));
+                }
+                Sign::Negative if left != VertexId::INFINITE && self.side(left)? == Sign::Positive => {
+                    return Ok(Some(Passage::Face(cell)));
+                }
+                _ => {}
+            }
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,200 @@
+//! Voronoi diagrams: what is nearest to which vertex, as the dual of a Delaunay triangulation; and what they have in
+//! common with [power diagrams](super::power).
+//!
+//! Coordinates of the [geometry](crate::geometry::Coordinates) must be those that its circles are circles of, as in
+//! [`Plane`](crate::geometry::Plane), [`Terrain`](crate::geometry::Terrain) and [`Steps`](crate::geometry::Steps). What
+//! is computed is rounded; lengths are in the unit of the coordinates.
+
+use crate::geometry::Coordinates;
+use crate::kernel;
+use crate::tds::{CellId, VertexId};
+
+use super::super::{Delaunay, Triangulation};
+
+type Place = [f64; 2];
+
+/// The places that two vertices are both nearest to: the dual of an edge. Of a Voronoi diagram, or of a power diagram.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VoronoiEdge {
+    /// Between the centers of the faces beside an edge; of no length if these are one, as where their corners lie on
+    /// one circle.
+    Segment([[f64; 2]; 2]),
+    /// From the center of the only face beside an edge of the hull, outwards.
+    Ray {
+        /// The end.
+        from: [f64; 2],
+        /// As long as the edge.
+        direction: [f64; 2],
+    },
+    /// Between two of collinear vertices.
+    Line {
+        /// On the line through both; in the middle between them if they weigh the same.
+        through: [f64; 2],
+        /// As long as the edge.
+        direction: [f64; 2],
+    },
+}
+
+/// The places in a convex polygon that no vertex is nearer to than this one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VoronoiCell {
+    /// Counter-clockwise; none if the cell lies outside of the polygon.
+    pub corners: Vec<[f64; 2]>,
+    /// In square units of the coordinates.
+    pub area: f64,
+}
+
+/// The places whose product with `normal` is at most `offset`.
+pub(super) struct HalfPlane {
+    normal: Place,
+    offset: f64,
+}
+
+impl HalfPlane {
+    /// What is nearer to the origin than to `p`.
+    fn nearer_than(p: Place) -> Self {
+        Self::of_less_power(p, 0.0)
+    }
+
+    /// The same by power, the origin weighing more than `p` by this.
+    pub(super) fn of_less_power(p: Place, by: f64) -> Self {
+        HalfPlane { normal: p, offset: (dot(p, p) + by) / 2.0 }
+    }
+
+    /// The part of a convex polygon in it (Sutherland and Hodgman 1974, for one line).
+    fn clip(&self, polygon: &[Place]) -> Vec<Place> {
+        let beyond = |p: Place| dot(self.normal, p) - self.offset;
+        let mut clipped = Vec::with_capacity(polygon.len() + 1);
+        for (k, &p) in polygon.iter().enumerate() {
+            let q = polygon[(k + 1) % polygon.len()];
+            let (at_p, at_q) = (beyond(p), beyond(q));
+            if at_p <= 0.0 {
+                clipped.push(p);
+            }
+            if at_p < 0.0 && at_q > 0.0 || at_p > 0.0 && at_q < 0.0 {
+                let along = at_p / (at_p - at_q);
+                clipped.push([0, 1].map(|k| p[k] + along * (q[k] - p[k])));
+            }
+        }
+        clipped
+    }
+}
+
+pub(super) fn dot(p: Place, q: Place) -> f64 {
+    p[0] * q[0] + p[1] * q[1]
+}
+
+pub(super) fn minus(p: Place, q: Place) -> Place {
+    [p[0] - q[0], p[1] - q[1]]
+}
+
+pub(super) fn plus(p: Place, q: Place) -> Place {
+    [p[0] + q[0], p[1] + q[1]]
+}
+
+/// Twice the area of a polygon, positive if it is counter-clockwise.
+pub(super) fn twice_area(polygon: &[Place]) -> f64 {
+    let next = polygon.iter().cycle().skip(1);
+    polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
+}
+
+/// The cell of a site: the part of a convex polygon in half planes that are given relative to the site.
+pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>, within: &[Place]) -> VoronoiCell {
+    let is_polygon = within.as_flattened().iter().all(|x| x.is_finite());
+    let polygon = within.iter().filter(|_| is_polygon).map(|&p| minus(p, site)).collect();
+    let cell: Vec<Place> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(&polygon));
+    if cell.len() < 3 {
+        return VoronoiCell { corners: Vec::new(), area: 0.0 };
+    }
+    VoronoiCell { area: twice_area(&cell) / 2.0, corners: cell.into_iter().map(|p| plus(p, site)).collect() }
+}
+
+impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+    /// The center of the circle around a finite face, weights aside; `None` for what is not one, as below dimension 2.
+    /// Right to a few units in the last place of the larger of its coordinates and its
+    /// [distance](kernel::power_center) from the corners. O(1).
+    pub fn circumcenter(&self, cell: CellId) -> Option<[f64; 2]> {
+        let corners = self.finite_face(cell)?.map(|v| self.place(v));
+        Some(plus(corners[0], kernel::circumcenter(corners)))
+    }
+
+    /// The corners of a finite face; `None` if the cell is not one.
+    pub(super) fn finite_face(&self, cell: CellId) -> Option<[VertexId; 3]> {
+        let is_face = self.is_full() && self.tds().is_used(cell) && !self.tds().is_infinite(cell);
+        is_face.then(|| *self.tds().corners(cell))
+    }
+
+    /// The ends of a finite edge, given as in [`Tds::edges`](crate::tds::Tds::edges); `None` if it is not one.
+    pub(super) fn finite_edge(&self, cell: CellId, i: usize) -> Option<[VertexId; 2]> {
+        let is_edge = match self.dimension() {
+            2 => i < 3,
+            1 => i == 2,
+            _ => false,
+        };
+        let ends = (is_edge && self.tds().is_used(cell)).then(|| self.tds().edge_ends(cell, i))?;
+        (!ends.contains(&VertexId::INFINITE)).then_some(ends)
+    }
+
+    /// The dual of a finite edge, `None` of what is not one; given the centers of finite faces, and which place between two
+    /// collinear vertices belongs to both.
+    pub(super) fn dual_edge(
+        &self,
+        cell: CellId,
+        i: usize,
+        center: impl Fn(CellId) -> Option<Place>,
+        between: impl Fn([VertexId; 2]) -> Place,
+    ) -> Option<VoronoiEdge> {
+        let ends = self.finite_edge(cell, i)?;
+        let [a, b] = ends.map(|v| self.place(v));
+        let [dx, dy] = minus(b, a);
+        if self.dimension() == 1 {
+            return Some(VoronoiEdge::Line { through: between(ends), direction: [-dy, dx] });
+        }
+        Some(match [cell, self.tds().neighbor(cell, i)].map(center) {
+            [Some(from), Some(to)] => VoronoiEdge::Segment([from, to]),
+            // The face lies to the left of `a b`, or to its right.
+            [Some(from), None] => VoronoiEdge::Ray { from, direction: [dy, -dx] },
+            [None, from] => VoronoiEdge::Ray { from: from?, direction: [-dy, dx] },
+        })
+    }
+}
+
+impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+    /// The places that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
+    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex, and
+    /// for what is not an edge: on a line an edge has index 2, below that there is none. O(1).
+    pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
+        let middle = |ends: [VertexId; 2]| {
+            let [a, b] = ends.map(|v| self.place(v));
+            [0, 1].map(|k| a[k] / 2.0 + b[k] / 2.0)
+        };
+        self.dual_edge(cell, i, |cell| self.circumcenter(cell), middle)
+    }
+
+    /// What of a convex polygon, counter-clockwise, is nearest to a finite vertex. The cells of all vertices tile it,
+    /// in every dimension, as long as squares of distances are numbers: between `1e-150` and `1e150`, say. No corners for
+    /// what is not a vertex, nor where a corner of the polygon is not finite.
+    ///
+    /// # Complexity
+    /// The degree of the vertex times the corners of the polygon and the cell.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Plane, Delaunay};
+    ///
+    /// let points = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0], [2.0, 2.0]];
+    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    /// let [corner, middle] = [v[0], v[4]].map(|v| t.voronoi_cell(v, &square));
+    /// assert_eq!((corner.area, middle.area), (3.5, 2.0));
+    /// assert_eq!(middle.corners.len(), 4);
+    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// ```
+    pub fn voronoi_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
+        if !self.tds().is_vertex(vertex) {
+            return VoronoiCell { corners: Vec::new(), area: 0.0 };
+        }
+        let site = self.place(vertex);
+        let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
+        cell_of(site, neighbors.map(|v| HalfPlane::nearer_than(minus(self.place(v), site))), within)
+    }
+}

@@ -1,0 +1,152 @@
+//! Natural neighbor coordinates.
+//!
+//! If a place was a vertex, its Voronoi cell would take something from the cells of some vertices: its *natural
+//! neighbors*, those around its [conflict zone](ConflictZone). Nothing is inserted to see that: the new corners of
+//! cells are circumcenters over the border of the zone, the old ones those of the faces within.
+//!
+//! | weight of a neighbor | is proportional to |
+//! |---|---|
+//! | [Sibson](Delaunay::sibson)'s | the area that its cell loses |
+//! | [Laplace](Delaunay::laplace)'s | the length of the border with the new cell, over its distance |
+//!
+//! Both are positive, sum up to 1, and give back the place as the weighted mean of its neighbors; so they interpolate,
+//! and linear functions exactly. They are continuous, Sibson's smooth but at the vertices, Laplace's less so and
+//! cheaper.
+
+use rustc_hash::FxHashMap;
+
+use crate::geometry::Coordinates;
+use crate::kernel;
+use crate::tds::{CellId, VertexId, ccw};
+
+use super::super::{Delaunay, Location};
+use super::dual::{minus, plus, twice_area};
+use super::zone::ConflictZone;
+
+type Place = [f64; 2];
+
+/// Vertices with weights.
+type Weights = Vec<(VertexId, f64)>;
+
+impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+    /// Sibson's coordinates of a place: vertices with weights that are not negative, sum up to 1, and whose mean is the
+    /// place; counter-clockwise. Rounded: in all tests the mean misses the place by less than `1e-11`, of points that
+    /// are some 10 apart.
+    ///
+    /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends
+    /// in linear proportion, which is the limit from within. `None` outside of the hull, at a place that the geometry does
+    /// not [admit](crate::geometry::Geometry::admits), and where squares of distances are no numbers (beyond `1e150`, below
+    /// `1e-150`). The coordinates must be those that circles are circles of.
+    ///
+    /// After Sibson 1981, *A brief description of natural neighbour interpolation*; without insertion as Watson 1992,
+    /// *Contouring*.
+    ///
+    /// # Complexity
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of
+    /// the conflict zone: some six neighbors.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Plane, Delaunay};
+    ///
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    /// let (t, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let weights = t.sibson(&[1.0, 1.0], None).expect("it is inside");
+    /// let x: f64 = weights.iter().map(|&(v, weight)| weight * t.point(v)[0]).sum();
+    /// assert!((x - 1.0).abs() < 1e-12);
+    /// assert_eq!(t.sibson(&[9.0, 1.0], None), None);
+    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// ```
+    pub fn sibson(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
+        self.coordinates(q, near, |zone, at, new| {
+            // Relative to the place, which all of them surround.
+            let center = |&cell: &CellId| {
+                let corners = self.tds().corners(cell).map(|v| self.place(v));
+                (cell, plus(minus(corners[0], at), kernel::circumcenter(corners)))
+            };
+            let old: FxHashMap<CellId, Place> = zone.cells.iter().map(center).collect();
+            let mut lost = Vec::new();
+            let weight = |k: usize, vertex: VertexId| {
+                // What a cell loses: from the first face around the vertex to the last one, then to the new corners.
+                let next = (k + 1) % new.len();
+                let (mut cell, last) = (zone.border[next].0, zone.border[k].0);
+                lost.clear();
+                lost.extend(old.get(&cell));
+                while cell != last
+                    && let Some(i) = self.tds().index_of(cell, vertex)
+                {
+                    cell = self.tds().neighbor(cell, ccw(i));
+                    lost.extend(old.get(&cell));
+                }
+                lost.extend([new[k], new[next]]);
+                twice_area(&lost)
+            };
+            self.around(zone, weight)
+        })
+    }
+
+    /// Laplace's coordinates of a place, also called non-Sibsonian: answers and cost are as those of
+    /// [`sibson`](Self::sibson), which see, but no face within the zone is looked at.
+    ///
+    /// After Belikov, Ivanov, Kontorovich, Korytnik and Semenov 1997, *The non-Sibsonian interpolation*.
+    pub fn laplace(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
+        self.coordinates(q, near, |zone, at, new| {
+            let weight = |k: usize, vertex: VertexId| {
+                let length = |[x, y]: Place| x.hypot(y);
+                length(minus(new[(k + 1) % new.len()], new[k])) / length(minus(self.place(vertex), at))
+            };
+            self.around(zone, weight)
+        })
+    }
+
+    /// The weights on the border of a zone, each from its position there and the vertex that the edge ends at.
+    fn around(&self, zone: &ConflictZone, mut weight: impl FnMut(usize, VertexId) -> f64) -> Weights {
+        let ends = zone.border.iter().map(|&(cell, i)| self.tds().edge_ends(cell, i)[1]);
+        ends.enumerate().map(|(k, vertex)| (vertex, weight(k, vertex).max(0.0))).collect()
+    }
+
+    /// Weights that sum up to 1, from those that `inside` gives for a place within the hull: from the zone, the place,
+    /// and the corners of its Voronoi cell relative to it, one for each edge of the border.
+    fn coordinates(
+        &self,
+        q: &G::Point,
+        near: Option<CellId>,
+        inside: impl FnOnce(&ConflictZone, Place, &[Place]) -> Weights,
+    ) -> Option<Weights> {
+        let at = super::place_of(&self.geometry, q);
+        let location = self.locate(q, near);
+        let mut weights = match location {
+            Location::Vertex(vertex) => return Some(vec![(vertex, 1.0)]),
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => return None,
+            Location::Cell { cell, .. } if self.dimension() == 1 => self.between(self.tds().edge_ends(cell, 2), at),
+            Location::Cell { cell, touching } => {
+                let on_hull =
+                    (0..3).find(|&i| touching >> i & 1 == 1 && self.tds().is_infinite(self.tds().neighbor(cell, i)));
+                if let Some(i) = on_hull {
+                    self.between(self.tds().edge_ends(cell, i), at)
+                } else {
+                    let Ok(zone) = super::zone::zone_at(&self.inner, q, location, |_, _| Ok(true));
+                    let zone = zone?;
+                    let center = |&(cell, i): &(CellId, usize)| {
+                        let [a, b] = self.tds().edge_ends(cell, i).map(|v| self.place(v));
+                        kernel::circumcenter([at, a, b])
+                    };
+                    let new: Vec<Place> = zone.border.iter().map(center).collect();
+                    inside(&zone, at, &new)
+                }
+            }
+        };
+        let sum: f64 = weights.iter().map(|&(_, weight)| weight).sum();
+        // Of lengths whose squares are no numbers.
+        if !(sum > 0.0 && sum.is_finite()) {
+            return None;
+        }
+        weights.iter_mut().for_each(|(_, weight)| *weight /= sum);
+        Some(weights)
+    }
+
+    /// Linear interpolation.
+    fn between(&self, ends: [VertexId; 2], at: Place) -> Weights {
+        let [a, b] = ends.map(|v| minus(self.place(v), at)).map(|[x, y]| x.hypot(y));
+        vec![(ends[0], b), (ends[1], a)]
+    }
+}

@@ -1,0 +1,218 @@
+//! The vertices of a Delaunay or regular triangulation by their distance from a place.
+//!
+//! All follows from one fact: a vertex that is not nearest to a place has a neighbor that is nearer, because its
+//! Voronoi cell, bounded by bisectors with neighbors, does not hold the place. So a walk to nearer neighbors ends at a
+//! nearest vertex; and each vertex is a neighbor of one that comes before it in the order of distance, so that none is
+//! missed if the nearest of all neighbors of what has been found comes next. The same holds of a regular triangulation,
+//! power for distance, and of the cells of its power diagram.
+
+use std::borrow::Borrow;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use rustc_hash::FxHashSet;
+
+use crate::geometry::{Geometry, Metric};
+use crate::tds::{self, CellId, Complex, VertexId};
+
+use super::super::embedded::{Embedded, PointOf};
+use super::super::{Delaunay, Location};
+
+/// A vertex found, but not yet told: the nearest is the greatest.
+pub(in crate::triangulation) struct Candidate<'t, T: Embedded<3>> {
+    t: &'t T,
+    q: PointOf<T, 3>,
+    pub(in crate::triangulation) vertex: VertexId,
+    point: T::Held<'t>,
+}
+
+impl<T: Embedded<3, Geometry: Metric>> Candidate<'_, T> {
+    /// Whether it is no further from the place than `rim` is.
+    pub(in crate::triangulation) fn is_within(&self, rim: &PointOf<T, 3>) -> bool {
+        self.t.geometry().compare_distance(&self.q, self.point.borrow(), rim).is_le()
+    }
+}
+
+impl<T: Embedded<3, Geometry: Metric>> Ord for Candidate<'_, T> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let (geometry, ours, theirs) = (self.t.geometry(), self.point.borrow(), other.point.borrow());
+        geometry.compare_distance(&self.q, theirs, ours).then_with(|| geometry.compare(theirs, ours))
+    }
+}
+
+impl<T: Embedded<3, Geometry: Metric>> PartialOrd for Candidate<'_, T> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<T: Embedded<3, Geometry: Metric>> PartialEq for Candidate<'_, T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl<T: Embedded<3, Geometry: Metric>> Eq for Candidate<'_, T> {}
+
+/// The vertices of a Delaunay triangulation by their distance from a place.
+pub(in crate::triangulation) struct NearestFirst<'t, T: Embedded<3, Geometry: Metric>> {
+    t: &'t T,
+    q: PointOf<T, 3>,
+    found: FxHashSet<VertexId>,
+    next: BinaryHeap<Candidate<'t, T>>,
+}
+
+impl<'t, T: Embedded<3, Geometry: Metric>> NearestFirst<'t, T> {
+    /// Given where the place is.
+    pub(in crate::triangulation) fn new(t: &'t T, q: &PointOf<T, 3>, location: Location) -> Result<Self, T::Error> {
+        let mut nearest = NearestFirst { t, q: *q, found: FxHashSet::default(), next: BinaryHeap::new() };
+        all_nearest(t, q, location)?.into_iter().try_for_each(|vertex| nearest.find(vertex))?;
+        Ok(nearest)
+    }
+
+    fn find(&mut self, vertex: VertexId) -> Result<(), T::Error> {
+        if self.found.insert(vertex) {
+            self.next.push(Candidate { t: self.t, q: self.q, vertex, point: self.t.point(vertex)? });
+        }
+        Ok(())
+    }
+}
+
+impl<'t, T: Embedded<3, Geometry: Metric>> Iterator for NearestFirst<'t, T> {
+    type Item = Result<Candidate<'t, T>, T::Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let nearest = self.next.pop()?;
+        let around = finite_neighbors(self.t, nearest.vertex);
+        let all_found = around.and_then(|mut around| around.try_for_each(|vertex| self.find(vertex?)));
+        Some(match all_found {
+            Ok(()) => Ok(nearest),
+            Err(error) => {
+                self.next.clear();
+                Err(error)
+            }
+        })
+    }
+}
+
+fn finite_neighbors<T: Embedded<3>>(
+    t: &T,
+    vertex: VertexId,
+) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
+    let around = tds::vertices_around(t.complex(), vertex)?;
+    Ok(around.filter(|v| !v.as_ref().is_ok_and(|&v| v == VertexId::INFINITE)))
+}
+
+/// The vertex nearest to a place; of several, the first in the order of the geometry.
+pub(in crate::triangulation) fn nearest<T: Embedded<3, Geometry: Metric>>(
+    t: &T,
+    q: &PointOf<T, 3>,
+    location: Location,
+) -> Result<Option<VertexId>, T::Error> {
+    let mut first: Option<(VertexId, T::Held<'_>)> = None;
+    for vertex in all_nearest(t, q, location)? {
+        let point = t.point(vertex)?;
+        if first.is_none_or(|(_, best)| t.geometry().compare(point.borrow(), best.borrow()).is_lt()) {
+            first = Some((vertex, point));
+        }
+    }
+    Ok(first.map(|(vertex, _)| vertex))
+}
+
+/// All vertices that no other is nearer than. They lie on an empty circle around the place, on whose chords edges
+/// join them all.
+fn all_nearest<T: Embedded<3, Geometry: Metric>>(
+    t: &T,
+    q: &PointOf<T, 3>,
+    location: Location,
+) -> Result<Vec<VertexId>, T::Error> {
+    let complex = t.complex();
+    let start = match location {
+        Location::Vertex(vertex) => Some(vertex), // with weights, another may be nearer
+        Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
+            complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
+        }
+        Location::OutsideAffineHull => tds::vertices(complex).next().transpose()?,
+        Location::Nowhere => None,
+    };
+    let mut nearest: Vec<VertexId> = start.into_iter().collect();
+    // Of these, all but the first.
+    let mut found = FxHashSet::default();
+    let mut next = 0;
+    while next < nearest.len() {
+        let vertex = nearest[next];
+        let point = t.point(vertex)?;
+        next += 1;
+        for v in finite_neighbors(t, vertex)? {
+            let v = v?;
+            match t.geometry().compare_distance(q, t.point(v)?.borrow(), point.borrow()) {
+                Ordering::Less => {
+                    nearest = vec![v];
+                    found.clear();
+                    next = 0;
+                    break;
+                }
+                Ordering::Equal if v != nearest[0] && found.insert(v) => nearest.push(v),
+                _ => {}
+            }
+        }
+    }
+    Ok(nearest)
+}
+
+impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+    /// The vertex nearest to a place; of several, the first in the [order](crate::geometry::Geometry::compare) of the
+    /// geometry. `None` if there are no vertices, or if the geometry does not
+    /// [admit](crate::geometry::Geometry::admits) the place: with the kernel [`Wide`](crate::kernel::Wide) it admits every
+    /// finite one. Exact.
+    ///
+    /// # Complexity
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and the degrees of a few vertices.
+    /// From beyond the hull, and on a line, the walk may lead along all vertices there.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Plane, Delaunay};
+    ///
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
+    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// assert_eq!(t.nearest(&[4.0, 2.0], None), Some(v[2]));
+    /// assert!(t.nearest_first(&[4.0, 2.0], None).take(2).eq([v[2], v[1]]));
+    /// assert!(t.within(&[4.0, 2.0], &[4.0, 0.0]).eq([v[2], v[1]]));
+    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// ```
+    pub fn nearest(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexId> {
+        let Ok(nearest) = nearest(&self.inner, q, self.locate(q, near));
+        nearest
+    }
+
+    /// All vertices from the nearest to the furthest: [`take`](Iterator::take) as many as are wanted. Those that are
+    /// equally far come in the order of the geometry. None where [`nearest`](Self::nearest) is `None`. Exact.
+    ///
+    /// # Complexity
+    /// As [`nearest`](Self::nearest), and O(d log k) for the `k`-th, of degree `d`.
+    pub fn nearest_first<'a>(
+        &'a self,
+        q: &G::Point,
+        near: Option<CellId>,
+    ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
+        let Ok(nearest) = NearestFirst::new(&self.inner, q, self.locate(q, near));
+        nearest.map(|Ok(candidate)| candidate.vertex)
+    }
+
+    /// The vertices no further from a place than `rim` is, nearest first. Exact: the circle is given by a point on it,
+    /// as the length of a radius is rounded. None if the geometry does not [admit](crate::geometry::Geometry::admits) the
+    /// center or the rim.
+    ///
+    /// # Complexity
+    /// As [`nearest_first`](Self::nearest_first).
+    pub fn within<'a>(
+        &'a self,
+        center: &G::Point,
+        rim: &G::Point,
+    ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
+        let location = if self.geometry().admits(rim) { self.locate(center, None) } else { Location::Nowhere };
+        let Ok(nearest) = NearestFirst::new(&self.inner, center, location);
+        let rim = *rim;
+        nearest.map(|Ok(candidate)| candidate).take_while(move |c| c.is_within(&rim)).map(|candidate| candidate.vertex)
+    }
+}

@@ -1,0 +1,93 @@
+//! Power diagrams: the dual of regular triangulations (Aurenhammer 1987).
+
+use crate::geometry::{Metric, Weighted};
+use crate::kernel::{self, Kernel};
+use crate::tds::{CellId, VertexId};
+
+use super::super::Regular;
+use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus};
+use super::nearest::nearest;
+
+impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
+    /// The point of the least power at a place, its squared distance less its weight; of several, the first in the
+    /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be
+    /// one of the same power. `None` if there are no points, or if the geometry does not
+    /// [admit](crate::geometry::Geometry::admits) the place, whose weight does not count otherwise. Exact.
+    ///
+    /// # Complexity
+    /// As [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
+    pub fn nearest(&self, q: &G::Point) -> Option<VertexId> {
+        let Ok(nearest) = nearest(&**self, q, self.locate(q, None));
+        nearest
+    }
+}
+
+impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
+    /// The place that has the same power with the corners of a finite face, and less with no other point: the corner of
+    /// the power diagram, and the center of the circle that is orthogonal to those of the three. `None` for what is not a
+    /// finite face, as below dimension 2. As right as a [circumcenter](crate::triangulation::Triangulation::circumcenter),
+    /// which it is where all weights are equal. O(1).
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Weighted, Regular, VoronoiEdge};
+    ///
+    /// let mut t: Regular<Weighted> = Regular::new(Weighted::default());
+    /// for p in [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 8.0]] {
+    ///     t.insert(p)?;
+    /// }
+    /// let face = t.finite_cells().next().unwrap();
+    /// assert_eq!(t.power_center(face), Some([2.0, 1.0])); // without weights [2.0, 2.0]
+    /// for (cell, i) in t.tds().finite_edges() {
+    ///     assert!(matches!(t.power_edge(cell, i), Some(VoronoiEdge::Ray { from: [2.0, 1.0], .. })));
+    /// }
+    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// ```
+    pub fn power_center(&self, cell: CellId) -> Option<[f64; 2]> {
+        let corners = self.finite_face(cell)?.map(|v| *self.point(v));
+        let [x, y, _] = corners[0];
+        Some(plus([x, y], kernel::power_center(corners)))
+    }
+
+    /// The places that have the same power with the ends of an edge, and less with no other point: the edge between
+    /// their cells of the power diagram, given as in [`Tds::edges`](crate::tds::Tds::edges). A segment leads from the
+    /// center of `cell` to that of the other face. `None` for edges with the infinite vertex, and for what is not an edge:
+    /// on a line an edge has index 2, below that there is none. O(1).
+    pub fn power_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
+        let between = |ends: [VertexId; 2]| {
+            let [[x, y, weight], [u, w, other]] = ends.map(|v| *self.point(v));
+            let way = minus([u, w], [x, y]);
+            let along = 0.5 + (weight - other) / dot(way, way) / 2.0;
+            plus([x, y], way.map(|d| along * d))
+        };
+        self.dual_edge(cell, i, |cell| self.power_center(cell), between)
+    }
+
+    /// What of a convex polygon, counter-clockwise, has no less power with any other point than with this one. The
+    /// cells of all points tile it; that of a hidden point has no corners. None either where a corner of the polygon is not
+    /// finite. What is computed is rounded.
+    ///
+    /// # Complexity
+    /// The degree of the vertex times the corners of the polygon and the cell.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Weighted, Regular};
+    ///
+    /// let mut t: Regular<Weighted> = Regular::new(Weighted::default());
+    /// let [light, heavy] = [[1.0, 1.0, 0.0], [3.0, 1.0, 2.0]].map(|p| t.insert(p).unwrap());
+    /// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];
+    /// let [light, heavy] = [light, heavy].map(|v| t.power_cell(v, &square).area);
+    /// assert_eq!((light, heavy), (3.0, 5.0)); // without weights each would have half
+    /// ```
+    pub fn power_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
+        if !self.tds().is_vertex(vertex) {
+            return VoronoiCell { corners: Vec::new(), area: 0.0 };
+        }
+        let [x, y, weight] = *self.point(vertex);
+        let half_plane = |v: VertexId| {
+            let [u, w, other] = *self.point(v);
+            HalfPlane::of_less_power(minus([u, w], [x, y]), weight - other)
+        };
+        let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
+        cell_of([x, y], neighbors.map(half_plane), within)
+    }
+}

@@ -1,0 +1,98 @@
+use rustc_hash::FxHashSet;
+
+use crate::geometry::{Crossing, Geometry};
+use crate::tds::{CellId, Complex};
+
+use super::super::embedded::{Embedded, PointOf};
+use super::super::sides::in_conflict;
+use super::super::{ConstrainedDelaunay, Delaunay, Location};
+
+/// The cells that a new point would destroy, and the edges around them, which the cells of its star would stand on.
+///
+/// In the plane there are two edges more than cells; on a line, where an edge of the border is a vertex, two.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ConflictZone {
+    /// The cells, infinite ones among them if the point lies outside of the hull or on it. The point lies in the first,
+    /// or beyond its finite edge.
+    pub cells: Vec<CellId>,
+    /// The edges around, counter-clockwise: the cell within, and the index of the edge in it. Each ends where the next
+    /// one starts, at the infinite vertex perhaps.
+    pub border: Vec<(CellId, usize)>,
+}
+
+/// What insertion would replace, given where the point is; `passes` says over which edges the
+/// zone may grow. `None` where a point would destroy nothing: on a vertex, and where it raises the dimension.
+pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
+    t: &T,
+    q: &PointOf<T, 3>,
+    location: Location,
+    passes: impl Fn(CellId, usize) -> Result<bool, T::Error>,
+) -> Result<Option<ConflictZone>, T::Error> {
+    let complex = t.complex();
+    let (start, touching) = match location {
+        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return Ok(None),
+        Location::Cell { cell, touching } => (cell, touching),
+        Location::OutsideHull { cell } => (cell, 0),
+    };
+    let takes = |from: CellId, i: usize, beyond: CellId| {
+        // A point on an edge destroys the cells on both sides, wall or not.
+        let is_split = from == start && touching >> i & 1 == 1;
+        Ok(is_split || passes(from, i)? && in_conflict(t, beyond, q)?)
+    };
+    let width = complex.width();
+    let mut taken = FxHashSet::from_iter([start]);
+    let mut zone = ConflictZone { cells: vec![start], border: Vec::new() };
+    // Depth first, over the sides of each cell counter-clockwise from where it was entered: the border comes in order, as
+    // in `tds::Zone`, which does it with memory of its own.
+    let mut sides: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
+    while let Some((cell, i)) = sides.pop() {
+        let beyond = complex.neighbor(cell, i)?;
+        if taken.contains(&beyond) {
+            continue;
+        }
+        if takes(cell, i, beyond)? {
+            taken.insert(beyond);
+            zone.cells.push(beyond);
+            let entry = complex.index_of_neighbor(beyond, cell)?;
+            sides.extend((1..width).rev().map(|turn| (beyond, (entry + turn) % width)));
+        } else {
+            zone.border.push((cell, i));
+        }
+    }
+    Ok(Some(zone))
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+    /// What would be destroyed if a point was inserted: the cells whose circumscribed circle it is in, ties decided
+    /// as the insertion does, in the plane or on a line. `None` if it is on a vertex, if it would raise the
+    /// dimension, or if the geometry does not [admit](Geometry::admits) it.
+    ///
+    /// # Complexity
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of
+    /// the zone.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Plane, Delaunay};
+    ///
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
+    /// let (t, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let zone = t.conflict_zone(&[2.0, 2.0], None).expect("it is inside");
+    /// assert_eq!((zone.cells.len(), zone.border.len()), (2, 4));
+    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// ```
+    pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
+        let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), |_, _| Ok(true));
+        zone
+    }
+}
+
+impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
+    /// The same as [`Delaunay::conflict_zone`], where constraints bound what the point sees; with one that it lies
+    /// on, the zone has both sides of it. Of a point on a segment that was bent at crossings, insertion replaces
+    /// more: it leads the segment through the point.
+    pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
+        let passes = |cell: CellId, i| Ok(!self.tds().cell_data(cell).has(i));
+        let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), passes);
+        zone
+    }
+}

@@ -1,0 +1,370 @@
+use std::ops::Deref;
+
+use rustc_hash::FxHashMap;
+
+use crate::geometry::{Coordinates, Geometry};
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId};
+
+use super::flip::Free;
+use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order};
+
+/// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2
+/// - w`, seen from below (Aurenhammer 1987; Edelsbrunner and Shah 1996). The dual of the power diagram.
+///
+/// It takes a geometry whose [`side_of_sphere`](Geometry::side_of_sphere) is the power test, like
+/// [`Weighted`](crate::geometry::Weighted). Of any other it is the Delaunay triangulation.
+///
+/// Points above the lower hull are *hidden*: they have a number and a payload, and no cell. They are kept with the cell
+/// that hides them, and come to light when enough is removed.
+///
+/// Ties are broken as in [`Delaunay`](super::Delaunay): so the cells, and which points are hidden, are a function of
+/// the set. A point *on* the lower hull is always seen, inside of a face of it, too: it lies below where the
+/// perturbation raises the larger corners around it. Of points on one site the heaviest counts; of those with equal
+/// weights, the first.
+///
+/// ```
+/// use breakline_triangulation::geometry::Weighted;
+/// use breakline_triangulation::{Level, Regular};
+///
+/// let mut t: Regular<Weighted> = Regular::new(Weighted::default());
+/// for [x, y] in [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]] {
+///     t.insert([x, y, 0.0])?;
+/// }
+/// let light = t.insert([1.0, 1.0, -9.0])?;
+/// assert!(t.is_hidden(light));
+/// assert_eq!(t.finite_cells().count(), 1);
+///
+/// let heavy = t.insert([1.0, 1.0, 2.0])?;
+/// assert_eq!(t.finite_cells().count(), 3);
+/// t.remove(heavy);
+/// assert!(t.hidden().eq([light]) && t.check(Level::Law).is_empty());
+/// # Ok::<(), breakline_triangulation::Refused>(())
+/// ```
+///
+/// Payloads of cells are kept as in [`Delaunay`](super::Delaunay).
+#[derive(Debug, Clone)]
+pub struct Regular<G: Geometry<3>, V = (), C = ()> {
+    inner: Triangulation<G, 3, V, C>,
+    hidden: Hidden,
+}
+
+/// The points that are in no cell.
+#[derive(Debug, Clone, Default)]
+struct Hidden {
+    /// The cell that hides each.
+    host: FxHashMap<VertexId, CellId>,
+    /// And back.
+    under: FxHashMap<CellId, Vec<VertexId>>,
+}
+
+impl Hidden {
+    fn put(&mut self, vertex: VertexId, cell: CellId) {
+        self.host.insert(vertex, cell);
+        self.under.entry(cell).or_default().push(vertex);
+    }
+
+    /// Takes out one point.
+    fn take(&mut self, vertex: VertexId) -> bool {
+        let Some(cell) = self.host.remove(&vertex) else { return false };
+        if let Some(under) = self.under.get_mut(&cell) {
+            under.retain(|&other| other != vertex);
+        }
+        true
+    }
+
+    /// Takes out all points under some cells.
+    fn take_under(&mut self, cells: impl IntoIterator<Item = CellId>) -> Vec<VertexId> {
+        if self.host.is_empty() {
+            return Vec::new();
+        }
+        let taken: Vec<VertexId> = cells.into_iter().filter_map(|cell| self.under.remove(&cell)).flatten().collect();
+        for vertex in &taken {
+            self.host.remove(vertex);
+        }
+        taken
+    }
+
+    /// Takes out all.
+    fn take_all(&mut self) -> Vec<VertexId> {
+        self.under.clear();
+        let mut taken: Vec<VertexId> = self.host.drain().map(|(vertex, _)| vertex).collect();
+        taken.sort_unstable();
+        taken
+    }
+}
+
+impl<G: Geometry<3>, V, C> Deref for Regular<G, V, C> {
+    type Target = Triangulation<G, 3, V, C>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.inner
+    }
+}
+
+impl<G: Geometry<3>, V> Regular<G, V> {
+    /// Without points, and without payloads of cells: these come with [`with_cell_data`](Self::with_cell_data).
+    pub fn new(geometry: G) -> Self {
+        Regular { inner: Triangulation::new(geometry), hidden: Hidden::default() }
+    }
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
+    /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
+    /// numbers. Linear in the number of cells; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, V, D> {
+        Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
+    }
+
+    /// Finds what hides the vertices that are in no cell. Those that nothing hides are put in.
+    #[cfg(feature = "serde")]
+    pub(super) fn over(inner: Triangulation<G, 3, V, C>) -> Self {
+        let hidden = inner.tds.detached_vertices();
+        let mut regular = Regular { inner, hidden: Hidden::default() };
+        regular.connect_again(hidden);
+        regular
+    }
+
+    /// Adds a point with a payload, seen or [hidden](Self::is_hidden); the one that is there already, with the payload
+    /// it has, if there is one on the same site and with the same weight.
+    ///
+    /// # Errors
+    /// If a coordinate or the weight is not finite or out of range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced
+    /// and of points hidden under these.
+    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
+        self.inner.admit(&p)?;
+        let location = self.inner.locate(&p, None);
+        Ok(self.insert_at(p, data, location).0)
+    }
+
+    /// The same, looking for the place by a [strategy](Locate), which learns of the new vertex if it is seen.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_by(&mut self, strategy: &mut impl Locate<G, 3>, p: G::Point, data: V) -> Result<VertexId, Refused> {
+        self.inner.admit(&p)?;
+        let location = strategy.locate(&self.inner, &p);
+        let (vertex, is_new) = self.insert_at(p, data, location);
+        if is_new && self.tds().is_vertex(vertex) {
+            strategy.inserted(&self.inner.geometry, vertex, &p);
+        }
+        Ok(vertex)
+    }
+
+    /// The vertex, and whether it is a new one.
+    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> (VertexId, bool) {
+        if let Some(same) = self.same(&p, location) {
+            return (same, false);
+        }
+        let vertex = self.inner.add_vertex(p, data);
+        self.connect(vertex, location);
+        (vertex, true)
+    }
+
+    /// A point, seen or hidden, on the same site and with the same weight.
+    fn same(&self, p: &G::Point, location: Location) -> Option<VertexId> {
+        let is_same =
+            |v: &VertexId| self.inner.geometry.compare(self.point(*v), p).is_eq() && self.side_of(*v, p) == Sign::Zero;
+        let tds = self.tds();
+        // Of what the place touches, any cell may hide it.
+        let cells: Vec<CellId> = match location {
+            Location::Vertex(vertex) if is_same(&vertex) => return Some(vertex),
+            _ if self.hidden.host.is_empty() => return None,
+            Location::Vertex(vertex) if self.dimension() == 2 => tds.around(vertex).collect(),
+            Location::Vertex(_) => tds.cells().collect(),
+            Location::Cell { cell, touching } => {
+                let beside = (0..3).filter(|i| touching >> i & 1 == 1).map(|i| tds.neighbor(cell, i));
+                beside.chain([cell]).collect()
+            }
+            _ => return None,
+        };
+        cells.iter().filter_map(|cell| self.hidden.under.get(cell)).flatten().copied().find(is_same)
+    }
+
+    /// Whether the point of a vertex would hide (negative) one on the same site, or be hidden by it.
+    fn side_of(&self, vertex: VertexId, p: &G::Point) -> Sign {
+        self.inner.geometry.side_of_sphere_in_flat(&[self.point(vertex)], p)
+    }
+
+    /// Gives a vertex its cells, or hides it, given where its point is.
+    fn connect(&mut self, vertex: VertexId, location: Location) {
+        let p = *self.inner.point(vertex);
+        let host = match location {
+            Location::Cell { cell, .. } => (!self.inner.in_conflict(cell, &p)).then_some(cell),
+            Location::Vertex(there) if self.side_of(there, &p) != Sign::Positive => self.tds().cell_of(there),
+            _ => None,
+        };
+        if let Some(cell) = host {
+            // Of a cell at infinity and its neighbor, the finite one.
+            let infinite = self.tds().index_of(cell, VertexId::INFINITE);
+            let cell = infinite.map_or(cell, |i| self.tds().neighbor(cell, i));
+            self.inner.tds.detach(vertex);
+            self.hidden.put(vertex, cell);
+            return;
+        }
+        let Some(mut zone) = self.inner.collect(location, |t, _, _, beyond| t.in_conflict(beyond, &p)) else {
+            let hidden = self.hidden.take_all();
+            self.inner.raise_dimension(vertex);
+            return self.connect_again(hidden);
+        };
+        let mut hidden = self.hidden.take_under(zone.cells().iter().copied());
+        for vertex in zone.inner_vertices(&self.inner.tds) {
+            self.inner.tds.detach(vertex);
+            hidden.push(vertex);
+        }
+        self.inner.last = self.inner.tds.star(&mut zone, vertex, |data, _| *data).last().copied();
+        self.inner.zone = zone;
+        self.connect_again(hidden);
+    }
+
+    /// Looks again whether points are hidden, and by which cell.
+    fn connect_again(&mut self, hidden: Vec<VertexId>) {
+        for vertex in hidden {
+            self.inner.tds.attach();
+            let location = self.inner.locate(self.inner.point(vertex), None);
+            self.connect(vertex, location);
+        }
+    }
+
+    /// Takes a point out, seen or hidden, and returns it; `None` if there is none with this number. The result is the
+    /// triangulation of the others, which keep their numbers; the next point that is added gets the number that is now
+    /// free.
+    ///
+    /// # Complexity
+    /// As [`Delaunay::remove`](super::Delaunay::remove), and an insertion for each point under the cells around it.
+    pub fn remove(&mut self, vertex: VertexId) -> Option<G::Point> {
+        if self.hidden.take(vertex) {
+            self.inner.tds.attach();
+            self.inner.tds.remove_vertex(vertex);
+        } else if self.tds().is_vertex(vertex) {
+            let hidden = if self.inner.is_flat_without(vertex) {
+                self.hidden.take_all()
+            } else {
+                self.hidden.take_under(self.inner.tds.around(vertex))
+            };
+            self.inner.remove_vertex(Free, vertex);
+            self.connect_again(hidden);
+        } else {
+            return None;
+        }
+        Some(*self.point(vertex))
+    }
+
+    /// The same, telling a [strategy](Locate) of location. Of points that come to light it is told nothing.
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Option<G::Point> {
+        let point = self.remove(vertex)?;
+        strategy.removed(vertex);
+        Some(point)
+    }
+
+    /// Moves a point, seen or hidden, which keeps its number and payload, and returns it; `None` if there is none with
+    /// this number. If there is one at the place already, with the same weight, that one is returned, and the one that
+    /// was moved is gone.
+    ///
+    /// # Errors
+    /// If a coordinate or the weight is not finite or out of range; nothing has changed then.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<Option<VertexId>, Refused> {
+        self.inner.admit(&p)?;
+        if self.remove(vertex).is_none() {
+            return Ok(None);
+        }
+        let location = self.inner.locate(&p, None);
+        if let Some(same) = self.same(&p, location) {
+            return Ok(Some(same));
+        }
+        let vertex = self.inner.restore_vertex(p);
+        if let Some(vertex) = vertex {
+            self.connect(vertex, location);
+        }
+        Ok(vertex)
+    }
+
+    /// The payload of a point, seen or hidden, to change.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+
+    /// The payload of a cell, to change. O(1).
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell)
+    }
+
+    /// Whether there is a point with this number that is in no cell.
+    pub fn is_hidden(&self, vertex: VertexId) -> bool {
+        self.hidden.host.contains_key(&vertex)
+    }
+
+    /// The hidden points, in order of their numbers. O(h log h).
+    pub fn hidden(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
+        let mut hidden: Vec<VertexId> = self.hidden.host.keys().copied().collect();
+        hidden.sort_unstable();
+        hidden.into_iter()
+    }
+
+    /// The points that a finite cell hides, in no order.
+    pub fn hidden_under(&self, cell: CellId) -> &[VertexId] {
+        self.hidden.under.get(&cell).map_or(&[], Vec::as_slice)
+    }
+
+    /// Checks up to the level, with exact predicates; no flaw means that the triangulation is what it claims to be.
+    #[must_use]
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        let mut flaws = self.flaws(level, |_, _| true);
+        if flaws.is_empty() && level == Level::Law {
+            flaws.extend(self.hidden().filter(|&vertex| !self.is_rightly_hidden(vertex)).map(Flaw::Hidden));
+        }
+        flaws
+    }
+
+    fn is_rightly_hidden(&self, vertex: VertexId) -> bool {
+        let p = self.point(vertex);
+        let Some(&host) = self.hidden.host.get(&vertex) else { return false };
+        if !self.tds().is_used(host) || self.tds().is_infinite(host) || self.tds().is_vertex(vertex) {
+            return false;
+        }
+        match self.tds().dimension() {
+            0 => self.side_of(self.tds().vertex(host, 0), p) != Sign::Positive,
+            _ => {
+                let width = self.tds().cell_vertices(host).len();
+                let holds = (0..width).all(|i| self.inner.side_of_facet(host, i, p) != Sign::Negative);
+                holds && !self.inner.in_conflict(host, p)
+            }
+        }
+    }
+}
+
+impl<G: Coordinates<3>, V: Default> Regular<G, V> {
+    /// Triangulates many points, put in in [spatial order](super::spatial_order). Returns the number of each; points on
+    /// one site with one weight share theirs.
+    ///
+    /// # Errors
+    /// The first point that is refused, by its position.
+    ///
+    /// # Complexity
+    /// For points that are spread evenly, time proportional to their number.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
+        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
+            return Err(Refused::Coordinate(bad));
+        }
+        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
+        let mut triangulation = Self::new(geometry);
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        for position in order {
+            vertices[position as usize] = triangulation.insert_with(points[position as usize], V::default())?;
+        }
+        Ok((triangulation, vertices))
+    }
+}
+
+impl<G: Geometry<3>, C: Copy + Default> Regular<G, (), C> {
+    /// Adds a point, seen or [hidden](Self::is_hidden).
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
+        self.insert_with(p, ())
+    }
+}
