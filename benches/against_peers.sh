@@ -4,7 +4,7 @@
 #   benches/against_peers.sh [-r RUNS] [-t "THREADS ..."] [-d FOLDER] [-p NAME=PROGRAM ...] DATA ...
 #
 # DATA is the stem of FOLDER/DATA.xy (or .xyz); DATA+seg takes FOLDER/DATA.seg, too. A PROGRAM is called as
-# `PROGRAM NAME FILE [FILE.seg]` and prints, like examples/bench_triangulation.rs:
+# `PROGRAM NAME FILE [FILE.seg]` and prints, like triangulation/examples/bench_triangulation.rs:
 #   name data points threads seconds peak_MB growth_MB triangles processor_seconds
 # What fails on some data is left out there. Runs are interleaved, so that a busy minute hits all alike.
 set -euo pipefail

@@ -1,4 +1,4 @@
-// What examples/bench_editing.rs does, by CGAL's Triangulation_hierarchy_2, in the same line format.
+// What triangulation/examples/bench_editing.rs does, by CGAL's Triangulation_hierarchy_2, in the same line format.
 //
 //   g++ -std=c++17 -O3 -DNDEBUG benches/cgal_editing.cpp -o cgal_editing -lgmp -lmpfr     (Debian: libcgal-dev)
 //   ./cgal_editing FILE.xy

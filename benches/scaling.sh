@@ -5,7 +5,7 @@
 #   benches/plot_scaling.py < scaling.txt > scaling.svg
 #
 # The points of the file have to be in random order, so that the first of them are spread like all. Each line that is
-# printed is the run of median time, in the form of examples/bench_triangulation.rs. PROGRAM: see against_peers.sh.
+# printed is the run of median time, in the form of triangulation/examples/bench_triangulation.rs. PROGRAM: see against_peers.sh.
 set -euo pipefail
 runs=3
 . "$(dirname "$0")/common.sh"

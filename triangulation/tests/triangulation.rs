@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use breakline::triangulation::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
-use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Kernel};
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, Refused, Triangulation};
+use breakline_triangulation::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
+use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Kernel};
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, Refused, Triangulation};
 use testkit::random::Random;
 
 /// The finite cells as sorted points, in whole steps of 1/1024.
@@ -131,7 +131,7 @@ fn covers(t: &ConstrainedDelaunay<Plane>, a: [f64; 2], b: [f64; 2]) -> bool {
         .tds()
         .vertices()
         .filter(|&v| {
-            g.orientation([&a, &b, t.point(v)]) == breakline::triangulation::num::Sign::Zero && between(t.point(v))
+            g.orientation([&a, &b, t.point(v)]) == breakline_triangulation::num::Sign::Zero && between(t.point(v))
         })
         .collect();
     on.sort_by(|&u, &v| g.compare(t.point(u), t.point(v)));

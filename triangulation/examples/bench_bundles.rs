@@ -23,8 +23,8 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use breakline::triangulation::geometry::Plane;
-use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::{ConstrainedDelaunay, Level, OnCrossing};
 
 type Line = Vec<[f64; 2]>;
 type Build = fn(&[Line]) -> ConstrainedDelaunay<Plane>;

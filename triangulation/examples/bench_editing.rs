@@ -14,8 +14,8 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use breakline::triangulation::geometry::Plane;
-use breakline::triangulation::{Delaunay, Hierarchy, Locate, Location, Refused};
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::{Delaunay, Hierarchy, Locate, Location, Refused};
 
 fn run(stem: &str, points: &[[f64; 2]]) -> Result<(), Refused> {
     let timed = |name: &str, start: Instant, done: usize| {

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use breakline::triangulation::geometry::{Plane, Weighted};
-use breakline::triangulation::tds::{CellId, VertexId};
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, Passage, Refused, Regular};
+use breakline_triangulation::geometry::{Plane, Weighted};
+use breakline_triangulation::tds::{CellId, VertexId};
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, Passage, Refused, Regular};
 
 type Place = [f64; 2];
 

@@ -22,12 +22,12 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
-use breakline::triangulation::geometry::{Plane, Space};
-use breakline::triangulation::kernel::{
+use breakline_triangulation::geometry::{Plane, Space};
+use breakline_triangulation::kernel::{
     Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnFineLattice, OnLattice, Predicate, Range,
 };
-use breakline::triangulation::num::Sign;
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Refused};
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Refused};
 
 /// The stages of [`Adaptive`], but for the pairs of doubles, each counting what it is asked.
 type Counting = Filtered<Counted<0, ErrorBound>, Filtered<Counted<1, OnLattice>, OnFineGrid>>;

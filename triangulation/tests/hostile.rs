@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use breakline::triangulation::Refused;
+use breakline_triangulation::Refused;
 use testkit::case::{Case, Point};
 use testkit::judge;
 use testkit::random::{Random, ulps};

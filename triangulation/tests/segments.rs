@@ -3,16 +3,16 @@
 
 use std::collections::{HashMap, HashSet};
 
-use breakline::triangulation::geometry::{Crossing, Geometry, Plane};
-use breakline::triangulation::kernel::{Exact, Kernel};
-use breakline::triangulation::num::Sign;
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{ConstrainedDelaunay, Level};
+use breakline_triangulation::geometry::{Crossing, Geometry, Plane};
+use breakline_triangulation::kernel::{Exact, Kernel};
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{ConstrainedDelaunay, Level};
 use testkit::random::{Random, ulps};
 
 type Point = [f64; 2];
 type Segment = [Point; 2];
-type Constrained<K = breakline::triangulation::kernel::Adaptive> = ConstrainedDelaunay<Plane<K>>;
+type Constrained<K = breakline_triangulation::kernel::Adaptive> = ConstrainedDelaunay<Plane<K>>;
 
 /// In UTM, as surveys are: a millionth of a millimetre is one unit in the last place of a northing.
 const UTM: Point = [500_000.37, 4_649_000.12];
@@ -288,7 +288,7 @@ fn crossings_at_the_ends_of_floating_point() {
 #[test]
 fn crossings_stay_in_the_range() {
     let tiny = 2f64.powi(-159);
-    let geometry = Plane::<breakline::triangulation::kernel::Adaptive>::default();
+    let geometry = Plane::<breakline_triangulation::kernel::Adaptive>::default();
     let mut random = Random(10);
     for _ in 0..2000 {
         let mut end = |sign: f64| [sign * tiny * (1.0 + random.unit()), sign * tiny * (1.0 + random.unit())];

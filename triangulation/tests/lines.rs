@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use breakline::triangulation::geometry::{Plane, distance_to_segment};
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing, Refused};
+use breakline_triangulation::geometry::{Plane, distance_to_segment};
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing, Refused};
 use testkit::random::{Random, ulps};
 
 type Point = [f64; 2];
@@ -259,8 +259,8 @@ fn nesting_counts_the_lines_from_outside() {
 /// Edits leave what building anew would have given, also below the plane, and with a point where lines cross.
 #[test]
 fn edits_at_the_edges() {
-    use breakline::triangulation::geometry::{Plane, Terrain};
-    use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
+    use breakline_triangulation::geometry::{Plane, Terrain};
+    use breakline_triangulation::{ConstrainedDelaunay, Level, OnCrossing};
 
     let mut t = ConstrainedDelaunay::<_>::new(<Plane>::default());
     let ids = t.insert_lines(&[[[0.0, 0.0], [1.0, 0.0]]]).unwrap();

@@ -4,13 +4,13 @@
 //! The judge shares nothing with the crate: other numbers (`dashu-ratio`), and other formulas (determinants of
 //! homogeneous coordinates by expansion, circumcenters).
 
-use breakline::triangulation::geometry::{Crossing, Geometry, Plane, Weighted};
-use breakline::triangulation::kernel::{
+use breakline_triangulation::geometry::{Crossing, Geometry, Plane, Weighted};
+use breakline_triangulation::kernel::{
     Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, Fixed, FixedBound, FlooredErrorBound, InCircle,
     InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnFineLattice, OnLattice, Orientation2,
     Orientation3, PairBound, PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
-use breakline::triangulation::num::Sign;
+use breakline_triangulation::num::Sign;
 use dashu_ratio::RBig;
 use testkit::random::{Random, ulps};
 

@@ -1,7 +1,7 @@
 //! Attach colors to vertices, and read them back through a Voronoi cell.
 
-use breakline::triangulation::geometry::Plane;
-use breakline::triangulation::{Delaunay, Refused};
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::{Delaunay, Refused};
 
 #[derive(Debug, PartialEq)]
 enum Color {
@@ -11,7 +11,7 @@ enum Color {
 }
 
 fn main() -> Result<(), Refused> {
-    let mut t = Delaunay::new(Plane::<breakline::triangulation::kernel::Adaptive>::default());
+    let mut t = Delaunay::new(Plane::<breakline_triangulation::kernel::Adaptive>::default());
     for (place, color) in [([1.0, 1.0], Color::Red), ([5.0, 1.0], Color::Green), ([3.0, 5.0], Color::Blue)] {
         t.insert_with(place, color)?;
     }

@@ -1,7 +1,7 @@
 //! Triangulate records of one's own, as they are: a name and a place.
 
-use breakline::triangulation::geometry::{Geometry, Plane};
-use breakline::triangulation::{Delaunay, Refused, num::Sign};
+use breakline_triangulation::geometry::{Geometry, Plane};
+use breakline_triangulation::{Delaunay, Refused, num::Sign};
 
 #[derive(Debug, Clone, Copy)]
 struct Tree(&'static str, [f64; 2]);
