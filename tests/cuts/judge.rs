@@ -2,7 +2,8 @@
 //!
 //! - *Area*: by slabs between all places where sides of rings and of the surface end or cross. In a slab they come in
 //!   one order from below to above, and the even-odd rule tells what stays between each two.
-//! - *Rim*: each side without a neighbor lies along what bounds that area, or outside. So there is no crack.
+//! - *Rim*: each side without a neighbor lies along what bounds that area. So there is no crack. Between two lines that run
+//!   less than a rounding apart a sliver may go on beyond its end: its sides lie along one of the two, and outside.
 //! - *Heights*: each vertex, and the middle of each face, is as high as the triangle of the uncut surface there.
 //! - *Pieces*: each has an area, and none has a vertex of another one in the middle of its side.
 
@@ -12,8 +13,8 @@ use dashu_ratio::RBig;
 use crate::found::{Exact, Found, exact, turn};
 use crate::scene::Scene;
 
-/// What a cut may move, in units of the last place of the largest coordinate: of the surface, and of what it is cut
-/// along where that is no further than twice as far from zero.
+/// What a cut may move, in units of the last place of the largest coordinate of the surface and of the rings; but of
+/// rings no more than twice the surface's.
 const UNITS: f64 = 2.0;
 
 /// Judges the clipped surface of a scene; returns the number of its faces.
@@ -80,8 +81,7 @@ fn judge_rim(scene: &Scene, region: &Region, after: &Found) -> Result<(), String
         let exactly = [0, 1].map(|k| (&p[k] + &q[k]) / exact(2.0));
         let middle = [0, 1].map(|k| (&exactly[k] - &region.origin[k]).to_f64().value());
         let is_near_rim = region.rim.iter().any(|&side| distance(side, middle) <= UNITS * region.unit);
-        // Where two lines run along each other less than a rounding apart, what is between them may go on a little.
-        if !is_near_rim && region.holds(scene, &exactly) {
+        if !is_near_rim && (region.holds(scene, &exactly) || !region.is_along_a_line(&exactly)) {
             return Err(format!(
                 "a crack: nothing bounds the surface along {from} {to}, at {middle:?} from its corner"
             ));
@@ -274,6 +274,17 @@ impl Region {
             within[line.domain] ^= line.height(&x) > y;
         }
         within[self.surface] && scene.is_kept(|domain| within[domain])
+    }
+
+    /// Whether a place is as near to a ring or to the rim of the uncut surface as a cut may move it.
+    fn is_along_a_line(&self, place: &[RBig; 2]) -> bool {
+        let [x, y] = sheared(&self.origin, place);
+        let reach = UNITS * self.unit;
+        self.lines.iter().any(|line| {
+            let is_above = line.from[0] <= &x + exact(reach) && &x - exact(reach) <= line.to[0];
+            let off = (line.height(&x) - &y).to_f64().value();
+            is_above && off.abs() <= reach * 1.0_f64.hypot(line.about_slope)
+        })
     }
 
     fn add_slab(&mut self, scene: &Scene, surface: usize, lines: &[Line], left: &RBig, right: &RBig) {
