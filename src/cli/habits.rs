@@ -187,7 +187,7 @@ fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<St
         match *meaning {
             Same(option) => ours.push(option.into()),
             Square(option) => match &numbers(&mut rest, 2)[..] {
-                // Of the height of a cell, GDAL tells the direction, too.
+                // GDAL writes the height of a cell with a minus where rows go down.
                 [x, y] if finite(x).map(f64::abs) != finite(y).map(f64::abs) => {
                     return Err(Error::usage(format!("{name} {x} {y}: cells are square"))
                         .cure(format!("{option} {x}, or {option} {y}")));

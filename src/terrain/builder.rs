@@ -72,7 +72,7 @@ pub struct TinReport {
     pub breakline_vertices: usize,
     /// Edges of the surface that are breaklines.
     pub constrained_edges: usize,
-    /// Edges of the surface along the boundary or the bounds, those left out that are breaklines.
+    /// Edges of the surface along the boundary or the bounds, except those that are breaklines.
     pub clip_edges: usize,
     /// Vertices added where breaklines cross between their own.
     pub crossings: usize,

@@ -78,13 +78,13 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`num`] | numbers that can tell their sign |
+//! | [`num`] | number types with exact signs |
 //! | [`kernel`] | predicates: formula times number |
 //! | [`geometry`] | what a triangulation asks of points |
 //! | [`tds`] | combinatorics, without coordinates |
 //! | [`arrangement`] | segments that cross, rounded so that they meet at common ends only |
 //!
-//! Who knows another package finds its calls beside ours in the [guides](crate::guide).
+//! The [guides](crate::guide) show the calls of other packages beside ours.
 //!
 //! Below: what a new point, the dot, is in conflict with; the edges that its star will stand on are red.
 //!

@@ -14,10 +14,11 @@
 //! | class, if there is one | `class`, `classification` |
 //!
 //! A unit in brackets after a name is ignored: `Height (m)`. Comments begin with `#` or `//`; one
-//! before the points may be the header, if it has no more names than a line has fields (words up to a colon aside). Fields may stand in double quotes. A decimal comma is
-//! understood where fields are not separated by commas. A first line of one number is the count of
-//! points that `.pts` files begin with. UTF-8 and its relatives, with or without a byte order
-//! mark; any line ends. What is not a point is an error with its line: no line is dropped silently.
+//! before the points may be the header, if it has no more names than a line has fields (words up to
+//! a colon do not count). Fields may stand in double quotes. A decimal comma is understood where
+//! fields are not separated by commas. A first line of one number is the count of points that
+//! `.pts` files begin with. UTF-8 and its relatives, with or without a byte order mark; any line
+//! ends. What is not a point is an error with its line: no line is dropped silently.
 
 mod columns;
 mod numbering;

@@ -29,14 +29,14 @@ pub(super) const WHOLE: &str = "the first column, taken as x, holds whole number
                                 is the number of the point, say so with --columns PNEZD (or PENZD)";
 
 impl Numbering {
-    /// The guess after the first point; `None` if its first column is no number of a point.
+    /// What is known after the first point; `None` if its first column cannot number points.
     pub(super) fn start(separator: Separator, line: &[u8]) -> Option<Self> {
         let [last, x, y] = first_of_four(separator, line)?;
         let has_fraction = x.fract() != 0.0 || y.fract() != 0.0;
         (last.fract() == 0.0).then_some(Numbering { last, lines: 1, is_counted: true, has_fraction })
     }
 
-    /// The guess after one more point; `None` if its first column is no number of a point.
+    /// What is known after one more point; `None` if its first column cannot number points.
     pub(super) fn next(self, separator: Separator, line: &[u8]) -> Option<Self> {
         let here = Numbering::start(separator, line)?;
         Some(Numbering {

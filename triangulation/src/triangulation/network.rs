@@ -87,6 +87,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// # Errors
     /// Those of [`from_lines`](Self::from_lines); and the first point that does not come after the one before it. (Of
     /// points a rounding apart that does not always show: they have to be all different.)
+    ///
+    /// # Complexity
+    /// That of [`from_lines`](Self::from_lines), without sorting: O((n + k) log n) for k crossings.
     pub fn from_sorted_lines<L: AsRef<[u32]>>(
         geometry: G,
         points: Vec<G::Point>,
