@@ -1,46 +1,29 @@
 //! The engine, the kinds, and what is asked of them.
 
-mod basic;
 mod bulk;
-mod check;
 mod compact;
-mod constrained;
-mod corridor;
-mod crossed;
-mod delaunay;
-mod edit;
-mod embedded;
-mod flip;
-mod insert;
+mod engine;
+mod kinds;
 mod lines;
 mod locate;
-mod low_degree;
-mod nesting;
-mod network;
 mod query;
 pub mod refine;
-mod regular;
-mod remove;
 #[cfg(feature = "serde")]
 mod saved;
-mod segment;
-mod sides;
-mod simplify;
-mod walled;
 
 pub use bulk::spatial_order;
-pub use check::{Flaw, Level};
 pub use compact::{Compact, Damaged, Law};
-pub use constrained::{ConstrainedDelaunay, Walls};
-pub use delaunay::Delaunay;
-pub use edit::Kept;
-pub use embedded::{Embedded, PointOf};
-pub use lines::{LineId, LineTag};
+pub use engine::check::{Flaw, Level};
+pub use engine::embedded::{Embedded, PointOf};
+pub use kinds::constrained::{Blocked, Constrained};
+pub use kinds::constrained_delaunay::{ConstrainedDelaunay, Walls};
+pub use kinds::delaunay::Delaunay;
+pub use kinds::regular::Regular;
+pub use lines::build::{OnCrossing, Rounding};
+pub use lines::edit::Kept;
+pub use lines::paths::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
-pub use network::{OnCrossing, Rounding};
 pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
-pub use regular::Regular;
-pub use walled::{Blocked, Constrained};
 
 use std::fmt;
 
@@ -177,13 +160,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     #[inline(always)]
     fn side_of_facet(&self, cell: CellId, replaced: usize, q: &G::Point) -> Sign {
-        let Ok(sign) = sides::side_of_facet(self, cell, replaced, q);
+        let Ok(sign) = engine::sides::side_of_facet(self, cell, replaced, q);
         sign
     }
 
     #[inline(always)]
     fn in_conflict(&self, cell: CellId, q: &G::Point) -> bool {
-        let Ok(is_in_conflict) = sides::in_conflict(self, cell, q);
+        let Ok(is_in_conflict) = engine::sides::in_conflict(self, cell, q);
         is_in_conflict
     }
 }

@@ -3,7 +3,7 @@ use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, Star, VertexId};
 
 use super::super::Level;
-use super::super::check::{is_convex, is_empty, is_positive};
+use super::super::engine::check::{is_convex, is_empty, is_positive};
 use super::{Compact, Damaged, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {

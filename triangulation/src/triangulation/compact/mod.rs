@@ -16,13 +16,13 @@ use layout::{CELL, HEADER, Header, Offsets};
 /// The law that a file claims for its triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
-    /// None: what the basic [`Triangulation`](super::Triangulation) wrote.
+    /// None: what the basic [`Triangulation`](crate::Triangulation) wrote.
     None = 0,
-    /// That of [`Delaunay`](super::Delaunay).
+    /// That of [`Delaunay`](crate::Delaunay).
     Delaunay = 1,
-    /// Some edges are constrained: what [`Constrained`](super::Constrained) wrote.
+    /// Some edges are constrained: what [`Constrained`](crate::Constrained) wrote.
     Constrained = 2,
-    /// That of [`ConstrainedDelaunay`](super::ConstrainedDelaunay).
+    /// That of [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
     ConstrainedDelaunay = 3,
 }
 
@@ -92,8 +92,8 @@ impl std::error::Error for Damaged {}
 
 /// A triangulation of the plane that is read where it lies, and cannot be changed.
 ///
-/// The kinds write it: [`Delaunay::write_compact`](super::Delaunay::write_compact),
-/// [`ConstrainedDelaunay::write_compact`](super::ConstrainedDelaunay::write_compact) and so on. `B` is whatever lends
+/// The kinds write it: [`Delaunay::write_compact`](crate::Delaunay::write_compact),
+/// [`ConstrainedDelaunay::write_compact`](crate::ConstrainedDelaunay::write_compact) and so on. `B` is whatever lends
 /// bytes: a slice, a vector, or a file that another crate maps to memory. Opening looks at the header and at the
 /// number of bytes, in constant time however many points there are; a question then touches the bytes that it needs.
 /// Answers are those of the triangulation that was written.

@@ -14,7 +14,7 @@
 //!
 //! A strategy is a value of the caller's. Some of them learn from insertions and removals: pass these to
 //! [`Locate::inserted`] and [`Locate::removed`], or insert and remove by way of the strategy:
-//! [`Delaunay::insert_by`](super::Delaunay::insert_by), [`Delaunay::remove_by`](super::Delaunay::remove_by). One that
+//! [`Delaunay::insert_by`](crate::Delaunay::insert_by), [`Delaunay::remove_by`](crate::Delaunay::remove_by). One that
 //! has not been told is slower, and as right.
 
 mod buckets;

@@ -7,7 +7,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, Star, VertexId, ccw, cw};
 
-use super::super::embedded::{Embedded, PointOf};
+use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::{Location, Triangulation};
 
 /// A face, edge or vertex whose inside a segment meets: the faces are open, and so are the edges.

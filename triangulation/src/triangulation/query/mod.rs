@@ -1,6 +1,7 @@
 //! Questions to triangulations of the plane that go beyond location.
 
 mod along;
+mod crossed;
 mod dual;
 mod faces;
 mod natural;
@@ -26,7 +27,7 @@ use crate::geometry::Coordinates;
 use crate::tds::VertexId;
 
 use super::Triangulation;
-use super::embedded::Embedded;
+use super::engine::embedded::Embedded;
 
 /// Where a point lies in the plane.
 fn place_of<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {

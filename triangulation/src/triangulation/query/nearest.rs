@@ -15,7 +15,7 @@ use rustc_hash::FxHashSet;
 use crate::geometry::{Geometry, Metric};
 use crate::tds::{self, CellId, Complex, VertexId};
 
-use super::super::embedded::{Embedded, PointOf};
+use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::{Delaunay, Location};
 
 /// A vertex found, but not yet told: the nearest is the greatest.

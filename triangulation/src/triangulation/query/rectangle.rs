@@ -5,7 +5,7 @@ use crate::kernel::{Kernel, Orientation2, Wide};
 use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, VertexId};
 
-use super::super::embedded::{Embedded, PointOf};
+use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::{Location, Triangulation};
 use super::{place, place_of};
 

@@ -3,8 +3,8 @@ use rustc_hash::FxHashSet;
 use crate::geometry::{Crossing, Geometry};
 use crate::tds::{CellId, Complex};
 
-use super::super::embedded::{Embedded, PointOf};
-use super::super::sides::in_conflict;
+use super::super::engine::embedded::{Embedded, PointOf};
+use super::super::engine::sides::in_conflict;
 use super::super::{ConstrainedDelaunay, Delaunay, Location};
 
 /// The cells that a new point would destroy, and the edges around them, which the cells of its star would stand on.

@@ -16,8 +16,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::geometry::Crossing;
 use crate::tds::VertexId;
 
-use super::super::lines::{Lines, segments_of, undirected};
-use super::super::segment::Scratch;
+use super::super::lines::constrain::Scratch;
+use super::super::lines::paths::{Lines, segments_of, undirected};
 use super::super::{ConstrainedDelaunay, Level, LineId, Rounding, Walls};
 use super::{Damage, Owned, first};
 

@@ -19,7 +19,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
-use super::segment::Scratch;
+use super::lines::constrain::Scratch;
 use super::{Constrained, Delaunay, Flaw, Level, MAX_VERTICES, Refused, Regular, Triangulation, Walls};
 
 /// What is saved. Written from slices, read into vectors.

@@ -1,10 +1,10 @@
 use crate::geometry::{Geometry, in_sphere};
 use crate::tds::{CellId, Tds, ccw, cw};
 
-use super::{Triangulation, Walls};
+use super::super::{Triangulation, Walls};
 
 /// What payloads of triangles tell of their edges, and what is left of them when triangles are exchanged.
-pub(super) trait Edges<C>: Copy {
+pub(in super::super) trait Edges<C>: Copy {
     /// Whether the edge opposite vertex `i` must stay.
     fn is_wall(self, data: &C, i: usize) -> bool;
 
@@ -14,7 +14,7 @@ pub(super) trait Edges<C>: Copy {
 
 /// Of triangulations without constraints, whatever the payload is.
 #[derive(Clone, Copy)]
-pub(super) struct Free;
+pub(in super::super) struct Free;
 
 impl<C> Edges<C> for Free {
     #[inline(always)]
@@ -30,7 +30,7 @@ impl<C> Edges<C> for Free {
 
 /// Where the payload is what is known of edges.
 #[derive(Clone, Copy)]
-pub(super) struct Forced;
+pub(in super::super) struct Forced;
 
 impl<C: Copy> Edges<Walls<C>> for Forced {
     #[inline(always)]
@@ -47,7 +47,7 @@ impl<C: Copy> Edges<Walls<C>> for Forced {
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Flips edges that are no walls until no vertex sees another in its circle (Lawson 1977), starting from
     /// these cells; none is left in the list.
-    pub(super) fn settle(&mut self, edges: impl Edges<C>, unsettled: &mut Vec<CellId>) {
+    pub(in super::super) fn settle(&mut self, edges: impl Edges<C>, unsettled: &mut Vec<CellId>) {
         while let Some(cell) = unsettled.pop() {
             if self.tds.is_infinite(cell) {
                 continue;
@@ -69,7 +69,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 
     /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.
-    pub(super) fn exchange_diagonal(&mut self, edges: impl Edges<C>, cell: CellId, i: usize) {
+    pub(in super::super) fn exchange_diagonal(&mut self, edges: impl Edges<C>, cell: CellId, i: usize) {
         let tds = &mut self.tds;
         let beside = tds.neighbor(cell, i);
         let j = tds.index_of_neighbor(beside, cell);
@@ -94,7 +94,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Gives a cell the default payload, and makes it the neighbor of others across some of its edges (given with the
     /// index of the edge there), with what those know of them.
     #[inline]
-    pub(super) fn renew_edges<const K: usize>(
+    pub(in super::super) fn renew_edges<const K: usize>(
         &mut self,
         edges: impl Edges<C>,
         cell: CellId,
@@ -108,7 +108,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 
     /// Makes a cell the neighbor of another one, with what that knows of their edge.
     #[inline]
-    pub(super) fn renew_edge(
+    pub(in super::super) fn renew_edge(
         &mut self,
         edges: impl Edges<C>,
         (cell, i): (CellId, usize),

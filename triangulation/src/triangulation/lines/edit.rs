@@ -15,11 +15,11 @@ use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::bulk::spatial_order;
-use super::lines::{segments_of, undirected};
-use super::locate::Dice;
-use super::network::points_added;
-use super::{ConstrainedDelaunay, LineId, Refused};
+use super::super::bulk::spatial_order;
+use super::super::locate::Dice;
+use super::super::{ConstrainedDelaunay, LineId, Refused};
+use super::build::points_added;
+use super::paths::{segments_of, undirected};
 
 /// Why a vertex cannot be taken out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// Why it stays.
     ///
     /// # Complexity
-    /// A look at all lines; then as [`Delaunay::remove`](super::Delaunay::remove), or, on a constraint, as
+    /// A look at all lines; then as [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as
     /// [`remove_line`](Self::remove_line).
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, Kept> {
         if !self.tds().is_vertex(vertex) {
@@ -242,7 +242,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     }
 
     /// Carries out the difference between what is there and what the lines ask for.
-    pub(super) fn rearrange(&mut self) {
+    pub(in super::super) fn rearrange(&mut self) {
         self.lines.touch();
         let used: HashSet<VertexId> = self.lines.each().flatten().copied().collect();
         let leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
@@ -359,7 +359,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         crossing
     }
 
-    pub(super) fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
+    pub(in super::super) fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
         self.inner.geometry.plan(self.point(vertex))
     }
 }

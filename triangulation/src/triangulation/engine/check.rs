@@ -4,9 +4,9 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, VertexId};
 
+use super::super::{LineId, Triangulation};
 use super::embedded::Embedded;
 use super::sides::{in_conflict, side_of_facet, simplex};
-use super::{LineId, Triangulation};
 
 /// How far a check goes. Each level assumes the ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,13 +45,13 @@ pub enum Flaw {
 }
 
 /// Whether a cell, full and finite, is positively oriented.
-pub(super) fn is_positive<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<bool, T::Error> {
+pub(in super::super) fn is_positive<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<bool, T::Error> {
     let simplex = simplex(t, cell)?;
     Ok(t.geometry().orientation(simplex.each_ref().map(Borrow::borrow)) == Sign::Positive)
 }
 
 /// Whether the hull is convex where a cell, infinite by the vertex at `infinite`, and that beyond its facet `i` meet.
-pub(super) fn is_convex<const N: usize, T: Embedded<N>>(
+pub(in super::super) fn is_convex<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
     infinite: usize,
@@ -62,7 +62,11 @@ pub(super) fn is_convex<const N: usize, T: Embedded<N>>(
 }
 
 /// Whether the sphere of a finite cell is empty of the vertex beyond its facet `i`, ties decided.
-pub(super) fn is_empty<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) -> Result<bool, T::Error> {
+pub(in super::super) fn is_empty<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    i: usize,
+) -> Result<bool, T::Error> {
     let far = vertex_beyond(t, cell, i)?;
     Ok(far == VertexId::INFINITE || !in_conflict(t, cell, t.point(far)?.borrow())?)
 }
@@ -75,7 +79,7 @@ fn vertex_beyond<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Checks up to the level, with exact predicates, and returns all flaws of the first level that has
     /// any. The law is that of a Delaunay triangulation wherever `passes` lets it act.
-    pub(super) fn flaws(&self, level: Level, passes: impl Fn(CellId, usize) -> bool) -> Vec<Flaw> {
+    pub(in super::super) fn flaws(&self, level: Level, passes: impl Fn(CellId, usize) -> bool) -> Vec<Flaw> {
         let structure = |flaws: Vec<tds::Flaw>| flaws.into_iter().map(Flaw::Structure).collect::<Vec<_>>();
         let checks: [(Level, &dyn Fn() -> Vec<Flaw>); 4] = [
             (Level::Links, &|| structure(self.tds.check_links())),
@@ -120,7 +124,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 }
 
-impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> super::Delaunay<G, N, V, C> {
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> super::super::Delaunay<G, N, V, C> {
     /// Checks up to the level, with exact predicates; no flaw means that the triangulation is what it
     /// claims to be.
     #[must_use]

@@ -9,7 +9,7 @@ use crate::tds::{CellId, Complex, VertexId};
 use super::embedded::{Embedded, PointOf};
 
 /// The points of a cell of any dimension, with `q` in place of the vertex at `replaced`, all others finite.
-pub(super) fn points_with<const N: usize, T: Embedded<N>>(
+pub(in super::super) fn points_with<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
     replaced: usize,
@@ -24,7 +24,7 @@ pub(super) fn points_with<const N: usize, T: Embedded<N>>(
 /// on the side of the facet opposite that vertex on which the cell is (or, with the infinite vertex
 /// replaced, beyond the hull there).
 #[inline(always)]
-pub(super) fn side_of_facet<const N: usize, T: Embedded<N>>(
+pub(in super::super) fn side_of_facet<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
     replaced: usize,
@@ -56,7 +56,10 @@ fn side_of_facet_in_flat<const N: usize, T: Embedded<N>>(
 
 /// The points of a full cell without the infinite vertex.
 #[inline(always)]
-pub(super) fn simplex<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<[T::Held<'_>; N], T::Error> {
+pub(in super::super) fn simplex<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+) -> Result<[T::Held<'_>; N], T::Error> {
     let corners = t.complex().corners(cell)?;
     let mut simplex = [t.point(corners[0])?; N];
     for i in 1..N {
@@ -69,7 +72,7 @@ pub(super) fn simplex<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Re
 /// an infinite cell is the open half space beyond its finite facet, with the inside of the facet's
 /// own sphere.
 #[inline(always)]
-pub(super) fn in_conflict<const N: usize, T: Embedded<N>>(
+pub(in super::super) fn in_conflict<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
     q: &PointOf<T, N>,

@@ -4,10 +4,10 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Crossing};
 use crate::tds::{CellId, VertexId};
 
-use super::bulk::{self, Sites};
-use super::lines::Lines;
-use super::segment::Scratch;
-use super::{Flaw, Level, Refused, Rounding, Triangulation};
+use super::super::bulk::{self, Sites};
+use super::super::lines::constrain::Scratch;
+use super::super::lines::paths::Lines;
+use super::super::{Flaw, Level, Refused, Rounding, Triangulation};
 
 /// Which edges of a triangle are constraints, and its payload: bit `i` is set for the edge opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,41 +22,41 @@ impl<C> Walls<C> {
     }
 
     /// The payload.
-    pub(super) fn data(&self) -> &C {
+    pub(in super::super) fn data(&self) -> &C {
         &self.1
     }
 
     /// The payload, to change.
-    pub(super) fn data_mut(&mut self) -> &mut C {
+    pub(in super::super) fn data_mut(&mut self) -> &mut C {
         &mut self.1
     }
 
     /// The same with the edge opposite vertex `i` set as told.
     #[inline]
-    pub(super) fn with(self, i: usize, wall: bool) -> Self {
+    pub(in super::super) fn with(self, i: usize, wall: bool) -> Self {
         Walls(self.0 & !(1 << i) | u8::from(wall) << i, self.1)
     }
 
     /// The same with only the edge opposite vertex `i` a constraint, if it was one.
     #[inline(always)]
-    pub(super) fn only(self, i: usize) -> Self {
+    pub(in super::super) fn only(self, i: usize) -> Self {
         Walls(self.0 & 1 << i, self.1)
     }
 
     /// The same with another payload.
-    pub(super) fn with_data<D>(&self, data: D) -> Walls<D> {
+    pub(in super::super) fn with_data<D>(&self, data: D) -> Walls<D> {
         Walls(self.0, data)
     }
 
     /// Whether it marks a triangle that is being replaced.
-    pub(super) fn is_taken_out(&self) -> bool {
+    pub(in super::super) fn is_taken_out(&self) -> bool {
         self.0 == u8::MAX
     }
 }
 
 impl<C: Default> Walls<C> {
     /// Marks a triangle that is being replaced.
-    pub(super) fn taken_out() -> Self {
+    pub(in super::super) fn taken_out() -> Self {
         Walls(u8::MAX, C::default())
     }
 }
@@ -66,7 +66,7 @@ impl<C: Default> Walls<C> {
 /// Chew 1989).
 ///
 /// What is constrained are *lines*: points in a row, which may touch, overlap, repeat, cross and close. Each keeps an
-/// [id](super::LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is
+/// [id](crate::LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is
 /// split there; where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines
 /// bend no further than the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is
 /// proven.
@@ -101,21 +101,21 @@ impl<C: Default> Walls<C> {
 /// ```
 #[derive(Debug, Clone)]
 pub struct ConstrainedDelaunay<G: Crossing, V = (), C = ()> {
-    pub(super) inner: Triangulation<G, 3, V, Walls<C>>,
+    pub(in super::super) inner: Triangulation<G, 3, V, Walls<C>>,
     /// Segments among collinear points, which no triangle can hold yet.
-    pub(super) waiting: Vec<[VertexId; 2]>,
+    pub(in super::super) waiting: Vec<[VertexId; 2]>,
     /// Vertices added where segments cross.
-    pub(super) crossings: Vec<VertexId>,
+    pub(in super::super) crossings: Vec<VertexId>,
     /// Pieces of segments that are not there whole.
-    pub(super) left_out: Vec<[VertexId; 2]>,
+    pub(in super::super) left_out: Vec<[VertexId; 2]>,
     /// The input lines, and their ways.
-    pub(super) lines: Lines,
-    pub(super) rounding: Option<Rounding>,
+    pub(in super::super) lines: Lines,
+    pub(in super::super) rounding: Option<Rounding>,
     /// Vertices that have come with lines, and go with them.
-    pub(super) lent: HashSet<VertexId>,
+    pub(in super::super) lent: HashSet<VertexId>,
     /// Whether pieces crossed after they had been arranged, possible off the grid only, and were arranged again.
-    pub(super) was_tangled: bool,
-    pub(super) scratch: Scratch,
+    pub(in super::super) was_tangled: bool,
+    pub(in super::super) scratch: Scratch,
 }
 
 impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
@@ -158,7 +158,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         self.inner.tds.cell_data_mut(cell).data_mut()
     }
 
-    pub(super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
+    pub(in super::super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
         let location = self.inner.locate(&p, near);
         let split = self.inner.wall_at(location);
         let takes = |t: &Triangulation<G, 3, V, Walls<C>>, from, i, beyond| {
@@ -175,7 +175,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     }
 
     /// Puts in what could not be while all points were collinear.
-    pub(super) fn insert_waiting(&mut self) {
+    pub(in super::super) fn insert_waiting(&mut self) {
         if self.dimension() == 2 && !self.waiting.is_empty() {
             for [a, b] in std::mem::take(&mut self.waiting) {
                 self.force(a, b);
@@ -189,7 +189,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     }
 
     /// Whether there is a constraint on the edge between two vertices.
-    pub(super) fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
+    pub(in super::super) fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
         self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
     }
 

@@ -4,8 +4,8 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Tds, VertexId, Zone, ccw, cw};
 
-use super::flip::Free;
-use super::{Flaw, Level, Locate, Location, Refused, Triangulation};
+use super::super::engine::flip::Free;
+use super::super::{Flaw, Level, Locate, Location, Refused, Triangulation};
 
 /// A point splits the cell, facet or edge that it lies on, or is joined to the part of the hull that it sees. Nothing
 /// is done for the shape of cells; what is there stays but for that. ("Lazy" insertion in Boissonnat, Devillers, Pion,
@@ -43,7 +43,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// A [walk](Self::locate) from the last insertion; constant time in the hull, outside of it time proportional to
     /// the number of its facets that are seen.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
-        self.insert_by(&mut super::Near(None), p, data)
+        self.insert_by(&mut super::super::Near(None), p, data)
     }
 
     /// The same, looking for the place by a [strategy](Locate), which learns of the new vertex.
@@ -62,7 +62,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     /// Whether a finite cell has the point inside or on its border, or an infinite one has its facet in the point's
     /// sight or under it.
-    pub(super) fn is_split_by(&self, cell: CellId, p: &G::Point) -> bool {
+    pub(in super::super) fn is_split_by(&self, cell: CellId, p: &G::Point) -> bool {
         let vertices = self.tds.cell_vertices(cell);
         match vertices.iter().position(|&v| v == VertexId::INFINITE) {
             None => (0..vertices.len()).all(|i| self.side_of_facet(cell, i, p) != Sign::Negative),
@@ -82,7 +82,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     /// The same with payloads that follow from those that were there.
-    pub(super) fn map_cell_data<D: Copy + Default>(
+    pub(in super::super) fn map_cell_data<D: Copy + Default>(
         self,
         data: impl FnMut(CellId, &C) -> D,
     ) -> Triangulation<G, N, V, D> {

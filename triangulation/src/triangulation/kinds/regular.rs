@@ -6,8 +6,8 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
-use super::flip::Free;
-use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order};
+use super::super::engine::flip::Free;
+use super::super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order};
 
 /// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2
 /// - w`, seen from below (Aurenhammer 1987; Edelsbrunner and Shah 1996). The dual of the power diagram.
@@ -18,7 +18,7 @@ use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order
 /// Points above the lower hull are *hidden*: they have a number and a payload, and no cell. They are kept with the cell
 /// that hides them, and come to light when enough is removed.
 ///
-/// Ties are broken as in [`Delaunay`](super::Delaunay): so the cells, and which points are hidden, are a function of
+/// Ties are broken as in [`Delaunay`](crate::Delaunay): so the cells, and which points are hidden, are a function of
 /// the set. A point *on* the lower hull is always seen, inside of a face of it, too: it lies below where the
 /// perturbation raises the larger corners around it. Of points on one site the heaviest counts; of those with equal
 /// weights, the first.
@@ -42,7 +42,7 @@ use super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order
 /// # Ok::<(), breakline_triangulation::Refused>(())
 /// ```
 ///
-/// Payloads of cells are kept as in [`Delaunay`](super::Delaunay).
+/// Payloads of cells are kept as in [`Delaunay`](crate::Delaunay).
 #[derive(Debug, Clone)]
 pub struct Regular<G: Geometry<3>, V = (), C = ()> {
     inner: Triangulation<G, 3, V, C>,
@@ -118,7 +118,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
 
     /// Finds what hides the vertices that are in no cell. Those that nothing hides are put in.
     #[cfg(feature = "serde")]
-    pub(super) fn over(inner: Triangulation<G, 3, V, C>) -> Self {
+    pub(in super::super) fn over(inner: Triangulation<G, 3, V, C>) -> Self {
         let hidden = inner.tds.detached_vertices();
         let mut regular = Regular { inner, hidden: Hidden::default() };
         regular.connect_again(hidden);
@@ -234,7 +234,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
     /// free.
     ///
     /// # Complexity
-    /// As [`Delaunay::remove`](super::Delaunay::remove), and an insertion for each point under the cells around it.
+    /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point under the cells around it.
     pub fn remove(&mut self, vertex: VertexId) -> Option<G::Point> {
         if self.hidden.take(vertex) {
             self.inner.tds.attach();
@@ -337,7 +337,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
 }
 
 impl<G: Coordinates<3>, V: Default> Regular<G, V> {
-    /// Triangulates many points, put in in [spatial order](super::spatial_order). Returns the number of each; points on
+    /// Triangulates many points, put in in [spatial order](super::super::spatial_order). Returns the number of each; points on
     /// one site with one weight share theirs.
     ///
     /// # Errors

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
-use super::lines::undirected;
-use super::{ConstrainedDelaunay, LineId, Refused};
+use super::super::{ConstrainedDelaunay, LineId, Refused};
+use super::paths::undirected;
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// How deep each cell is nested: the number of constraints that one has to cross, at least, to come there

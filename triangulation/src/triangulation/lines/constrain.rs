@@ -14,33 +14,33 @@ use crate::geometry::{Crossing, Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::flip::Forced;
-use super::lines::undirected;
-use super::{ConstrainedDelaunay, Triangulation, Walls};
+use super::super::engine::flip::Forced;
+use super::super::{ConstrainedDelaunay, Triangulation, Walls};
+use super::paths::undirected;
 
 /// Buffers of the segment insertion, kept from one to the next.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Scratch {
+pub(in super::super) struct Scratch {
     /// Triangles that the segment crosses, in order.
     corridor: Vec<CellId>,
-    pub(super) left: Side,
-    pub(super) right: Side,
+    pub(in super::super) left: Side,
+    pub(in super::super) right: Side,
     /// Parts of a side that are still to be triangulated.
     parts: Vec<Part>,
     /// How a side is triangulated.
     apexes: Vec<u32>,
     /// How many triangles have been met by all traces.
-    pub(super) met: usize,
+    pub(in super::super) met: usize,
     /// Triangles whose edges may have to be flipped.
-    pub(super) unsettled: Vec<CellId>,
+    pub(in super::super) unsettled: Vec<CellId>,
 }
 
 /// One side of a segment: the border of what it crosses there, from its one end to the other.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Side {
-    pub(super) chain: Vec<VertexId>,
+pub(in super::super) struct Side {
+    pub(in super::super) chain: Vec<VertexId>,
     /// Of each of these, but for the ends, a vertex to which an edge led over the segment. None of these edges cross.
-    pub(super) across: Vec<VertexId>,
+    pub(in super::super) across: Vec<VertexId>,
     /// Between each two of the chain.
     edges: Vec<Edge>,
 }
@@ -78,7 +78,7 @@ impl Side {
         self.chain[self.chain.len() - 1]
     }
 
-    pub(super) fn reverse(&mut self) {
+    pub(in super::super) fn reverse(&mut self) {
         self.chain.reverse();
         self.across.reverse();
         self.edges.reverse();
@@ -105,7 +105,7 @@ const LONG: usize = 32;
 const BASE: usize = 2;
 
 /// How a trace ended.
-pub(super) enum Met {
+pub(in super::super) enum Met {
     /// At this vertex, which may be the segment's end.
     Vertex(VertexId),
     /// At the constraint opposite corner `i` of the cell.
@@ -116,7 +116,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Says whether all of
     /// it is there: pieces that were arranged meet no constraint between their ends, but off the grid; behind one,
     /// nothing is put in.
-    pub(super) fn join(&mut self, a: VertexId, b: VertexId) -> bool {
+    pub(in super::super) fn join(&mut self, a: VertexId, b: VertexId) -> bool {
         let mut is_whole = true;
         self.force_until(a, b, |_, _, _, _| {
             is_whole = false;
@@ -131,7 +131,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// here. [`Crossing`] sees to it that this comes to an end; how soon cannot be told, so that there is a
     /// limit, far beyond what a segment can cross: every constraint once. Beyond it pieces are left out,
     /// and the check names them.
-    pub(super) fn force(&mut self, a: VertexId, b: VertexId) {
+    pub(in super::super) fn force(&mut self, a: VertexId, b: VertexId) {
         let mut crossings_left = 1000 + 4 * self.vertex_count();
         self.force_until(a, b, |this, ends, cell, i| {
             if crossings_left == 0 {
@@ -197,7 +197,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     }
 
     /// Restores the law, starting from the cells in `unsettled`.
-    pub(super) fn settle(&mut self) {
+    pub(in super::super) fn settle(&mut self) {
         self.inner.settle(Forced, &mut self.scratch.unsettled);
     }
 }
@@ -205,12 +205,12 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     /// Whether a vertex is in the circle of a counter-clockwise triangle.
     #[inline(always)]
-    pub(super) fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
+    pub(in super::super) fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
         in_sphere(&self.geometry, triangle.map(|v| self.point(v)), self.point(p))
     }
 
     #[inline]
-    pub(super) fn turn(&self, a: VertexId, b: VertexId, c: VertexId) -> Sign {
+    pub(in super::super) fn turn(&self, a: VertexId, b: VertexId, c: VertexId) -> Sign {
         self.geometry.orientation([a, b, c].map(|v| self.point(v)))
     }
 
@@ -221,7 +221,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Walks from `a` towards `b` and fills the corridor and its two sides.
-    pub(super) fn trace(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
+    pub(in super::super) fn trace(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
         scratch.corridor.clear();
         scratch.left.clear(a);
         scratch.right.clear(a);
@@ -291,7 +291,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     /// Makes the segment that was traced to a vertex a constrained edge. `triangulate` says how a side is triangulated:
     /// it adds the apexes of the side's parts, as positions in its chain, each part before its first and its second
     /// half.
-    pub(super) fn force_traced(
+    pub(in super::super) fn force_traced(
         &mut self,
         a: VertexId,
         v: VertexId,
@@ -397,7 +397,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     /// Triangulates a side, given whether a vertex goes before the third one of a triangle as that of the same base.
     ///
     /// Time quadratic in the length of the chain at the worst.
-    pub(super) fn wrap(
+    pub(in super::super) fn wrap(
         &self,
         side: &Side,
         is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
@@ -420,7 +420,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Which vertex of a chain makes a triangle with its first and last than which none is closer.
-    pub(super) fn apex(
+    pub(in super::super) fn apex(
         &self,
         chain: &[VertexId],
         is_closer: &impl Fn(&Self, [VertexId; 3], VertexId) -> bool,

@@ -6,7 +6,7 @@ use crate::geometry::{Coordinates, Crossing, distance_to_segment};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw};
 
-use super::{ConstrainedDelaunay, LineId};
+use super::super::{ConstrainedDelaunay, LineId};
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Takes vertices out of a line, in plan, as long as every one of them lies within `tolerance` of the piece that

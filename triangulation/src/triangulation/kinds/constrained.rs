@@ -5,17 +5,17 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, cw};
 
-use super::flip::Forced;
-use super::segment::{Met, Scratch, Side};
-use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
+use super::super::engine::flip::Forced;
+use super::super::lines::constrain::{Met, Scratch, Side};
+use super::super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 
 /// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
 /// basic [`Triangulation`]; where one lies on a constraint, it splits it.
 ///
-/// Payloads are inherited as those of [`ConstrainedDelaunay`](super::ConstrainedDelaunay) are.
+/// Payloads are inherited as those of [`ConstrainedDelaunay`](crate::ConstrainedDelaunay) are.
 ///
 /// Constraints are edges here, between vertices. For lines that cross, are told apart, and are taken out again, and for
-/// triangles of good shape there is [`ConstrainedDelaunay`](super::ConstrainedDelaunay).
+/// triangles of good shape there is [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
 ///
 /// ```
 /// use breakline_triangulation::geometry::Plane;
@@ -31,8 +31,8 @@ use super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Constrained<G: Geometry<3>, V = (), C = ()> {
-    pub(super) inner: Triangulation<G, 3, V, Walls<C>>,
-    pub(super) scratch: Scratch,
+    pub(in super::super) inner: Triangulation<G, 3, V, Walls<C>>,
+    pub(in super::super) scratch: Scratch,
 }
 
 /// Why a constraint cannot be put in.
@@ -190,7 +190,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// The same triangulation and constraints, with these payloads.
-    pub(super) fn with_data_of_cells<D: Copy + Default>(
+    pub(in super::super) fn with_data_of_cells<D: Copy + Default>(
         self,
         mut data: impl FnMut(CellId) -> D,
     ) -> Triangulation<G, 3, V, Walls<D>> {
@@ -221,19 +221,19 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Makes an edge a constraint; says whether it is there.
-    pub(super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
+    pub(in super::super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
         let edge = self.tds.edge(a, b);
         edge.map(|edge| self.set_wall(edge, true)).is_some()
     }
 
     /// Makes a constraint a mere edge, and returns the cells on both sides; `None` if there is none between the two.
-    pub(super) fn wall_down(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {
+    pub(in super::super) fn wall_down(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {
         let constraint = self.tds.edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i))?;
         Some(self.set_wall(constraint, false))
     }
 
     /// Tells the cells on both sides of an edge whether it is a constraint; returns them.
-    pub(super) fn set_wall(&mut self, (cell, i): (CellId, usize), is_wall: bool) -> [CellId; 2] {
+    pub(in super::super) fn set_wall(&mut self, (cell, i): (CellId, usize), is_wall: bool) -> [CellId; 2] {
         let beside = self.tds.neighbor(cell, i);
         let j = self.tds.index_of_neighbor(beside, cell);
         for (cell, i) in [(cell, i), (beside, j)] {
@@ -244,7 +244,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// The ends of the constraint that a place lies on in its inside.
-    pub(super) fn wall_at(&self, location: Location) -> Option<[VertexId; 2]> {
+    pub(in super::super) fn wall_at(&self, location: Location) -> Option<[VertexId; 2]> {
         match location {
             Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
                 let i = touching.trailing_zeros() as usize;
@@ -255,7 +255,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Whether a constraint ends in a vertex or runs through it.
-    pub(super) fn is_on_wall(&self, vertex: VertexId) -> bool {
+    pub(in super::super) fn is_on_wall(&self, vertex: VertexId) -> bool {
         self.constrained_around(vertex).next().is_some()
     }
 
@@ -267,7 +267,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Edges that are constrained on one side only.
-    pub(super) fn one_sided_walls(&self) -> Vec<Flaw> {
+    pub(in super::super) fn one_sided_walls(&self) -> Vec<Flaw> {
         let edges = self.tds.cells().filter(|_| self.dimension() == 2).flat_map(|cell| (0..3).map(move |i| (cell, i)));
         let is_one_sided = |&(cell, i): &(CellId, usize)| {
             let beside = self.tds.neighbor(cell, i);

@@ -4,7 +4,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::{Location, Triangulation};
+use super::super::{Location, Triangulation};
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// The finite edges that the open segment from `a` to `b` crosses between their ends, each once, from no

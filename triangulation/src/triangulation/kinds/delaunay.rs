@@ -3,7 +3,7 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
-use super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk, spatial_order};
+use super::super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk, spatial_order};
 
 /// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space: `N` follows from the
 /// geometry.
@@ -33,7 +33,7 @@ use super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk, spatia
 /// ```
 #[derive(Debug, Clone)]
 pub struct Delaunay<G: Geometry<N>, const N: usize, V = (), C = ()> {
-    pub(super) inner: Triangulation<G, N, V, C>,
+    pub(in super::super) inner: Triangulation<G, N, V, C>,
 }
 
 impl<G: Geometry<N>, const N: usize, V, C> Deref for Delaunay<G, N, V, C> {
@@ -82,7 +82,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         Ok(self.insert_at(p, data, location))
     }
 
-    /// The same, looking for the place by a [strategy](super::Locate), which learns of the new vertex.
+    /// The same, looking for the place by a [strategy](crate::Locate), which learns of the new vertex.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -157,7 +157,7 @@ impl<G: Geometry<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
 }
 
 impl<G: Coordinates<N>, const N: usize, V: Default, C: Copy + Default> Delaunay<G, N, V, C> {
-    /// Adds many points, in [spatial order](super::spatial_order). Returns the vertex of each point.
+    /// Adds many points, in [spatial order](super::super::spatial_order). Returns the vertex of each point.
     ///
     /// # Errors
     /// The first point that is refused, by its position; nothing has changed then.
@@ -184,7 +184,7 @@ impl<G: Coordinates<N>, const N: usize, V: Default, C: Copy + Default> Delaunay<
 
 impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
     /// Triangulates many points. Returns the vertex of each point beside: they are numbered in [spatial
-    /// order](super::spatial_order), and points on one site share theirs (the first of them stands).
+    /// order](super::super::spatial_order), and points on one site share theirs (the first of them stands).
     ///
     /// # Errors
     /// The first point that is refused, by its position.

@@ -10,7 +10,7 @@ use crate::geometry::Crossing;
 use crate::num::Sign;
 use crate::tds::{Id, VertexId};
 
-use super::ConstrainedDelaunay;
+use super::super::ConstrainedDelaunay;
 
 /// Marks numbers of lines.
 #[derive(Debug)]
@@ -26,13 +26,13 @@ pub type LineId = Id<LineTag>;
 /// So a line takes 24 bytes, and 4 for each of its vertices if they are not two; a segment that crosses others about 40
 /// more, and 4 for each site on it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Lines {
+pub(in super::super) struct Lines {
     /// By their ids.
-    pub(super) given: Vec<Option<LineVertices>>,
+    pub(in super::super) given: Vec<Option<LineVertices>>,
     /// Of segments, from the smaller vertex to the larger: the sites between.
-    pub(super) led: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
+    pub(in super::super) led: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
     /// Of pieces: the vertex on which they were split.
-    pub(super) splits: FxHashMap<[VertexId; 2], VertexId>,
+    pub(in super::super) splits: FxHashMap<[VertexId; 2], VertexId>,
     /// The lines on each edge, sorted; made when it is first asked for.
     on_edges: OnceLock<Vec<([VertexId; 2], LineId)>>,
 }
@@ -41,14 +41,14 @@ pub(super) struct Lines {
 ///
 /// `PERF:` those of a segment are kept in place, as programs give millions of these.
 #[derive(Debug, Clone)]
-pub(super) enum LineVertices {
+pub(in super::super) enum LineVertices {
     Segment([VertexId; 2]),
     Other(Box<[VertexId]>),
 }
 
 impl LineVertices {
     #[inline]
-    pub(super) fn of<T: Copy>(given: &[T], vertex: impl Fn(T) -> VertexId) -> Self {
+    pub(in super::super) fn of<T: Copy>(given: &[T], vertex: impl Fn(T) -> VertexId) -> Self {
         match *given {
             [a, b] => LineVertices::Segment([vertex(a), vertex(b)]),
             _ => LineVertices::Other(given.iter().map(|&v| vertex(v)).collect()),
@@ -86,13 +86,13 @@ impl DerefMut for LineVertices {
 
 /// The same key for both directions.
 #[inline]
-pub(super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
+pub(in super::super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
     if a < b { [a, b] } else { [b, a] }
 }
 
 /// Each segment of some lines once, from the smaller vertex to the larger, in order; the numbers keep the order of the
 /// vertices.
-pub(super) fn segments_of<'a>(
+pub(in super::super) fn segments_of<'a>(
     lines: impl Iterator<Item = &'a [VertexId]>,
     number: impl Fn(VertexId) -> u32,
 ) -> Vec<[u32; 2]> {
@@ -105,13 +105,13 @@ pub(super) fn segments_of<'a>(
 
 impl Lines {
     /// The vertices of each line that is there.
-    pub(super) fn each(&self) -> impl Iterator<Item = &[VertexId]> {
+    pub(in super::super) fn each(&self) -> impl Iterator<Item = &[VertexId]> {
         self.given.iter().flatten().map(|line| &**line)
     }
 
     /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each
     /// once, in order.
-    pub(super) fn lead(
+    pub(in super::super) fn lead(
         &mut self,
         arrangement: &Arrangement,
         segments: &[[u32; 2]],
@@ -142,18 +142,18 @@ impl Lines {
     }
 
     /// Forgets what was derived. After every change.
-    pub(super) fn touch(&mut self) {
+    pub(in super::super) fn touch(&mut self) {
         self.on_edges.take();
     }
 
     /// Puts down that the edge was split.
-    pub(super) fn split(&mut self, a: VertexId, b: VertexId, at: VertexId) {
+    pub(in super::super) fn split(&mut self, a: VertexId, b: VertexId, at: VertexId) {
         self.splits.insert(undirected(a, b), at);
         self.touch();
     }
 
     /// Adds the way of a segment to `chain`, without its start.
-    pub(super) fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+    pub(in super::super) fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         let mut at = a;
         let mut steps = |site: VertexId| {
             self.walk_piece(at, site, chain);
@@ -170,7 +170,7 @@ impl Lines {
     }
 
     /// The same for a piece, which is led through nothing but may have been split.
-    pub(super) fn walk_piece(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+    pub(in super::super) fn walk_piece(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         let mut at = a;
         let mut ahead = vec![b];
         while let Some(&next) = ahead.last() {
@@ -188,7 +188,7 @@ impl Lines {
     }
 
     /// Adds what this table tells of a piece to another one.
-    pub(super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
+    pub(in super::super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
         let mut pieces = vec![undirected(a, b)];
         while let Some([a, b]) = pieces.pop() {
             if let Some(&between) = self.splits.get(&[a, b]) {
@@ -301,6 +301,6 @@ mod tests {
         assert_eq!(size_of::<([VertexId; 2], Box<[VertexId]>)>(), 24, "a segment that crosses others, in the table");
         assert_eq!(size_of::<([VertexId; 2], VertexId)>(), 12, "an edge that was split, in the table");
         assert_eq!(size_of::<([VertexId; 2], LineId)>(), 12, "a line on an edge, once that was asked for");
-        assert_eq!(size_of::<super::super::Walls>(), 1, "the flags of three edges, at each triangle");
+        assert_eq!(size_of::<super::super::super::Walls>(), 1, "the flags of three edges, at each triangle");
     }
 }

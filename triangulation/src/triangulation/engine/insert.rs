@@ -5,11 +5,11 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, Zone};
 
-use super::{Location, MAX_VERTICES, Refused, Triangulation};
+use super::super::{Location, MAX_VERTICES, Refused, Triangulation};
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Checks that a point may come in.
-    pub(super) fn admit(&self, p: &G::Point) -> Result<(), Refused> {
+    pub(in super::super) fn admit(&self, p: &G::Point) -> Result<(), Refused> {
         if !self.geometry.admits(p) {
             return Err(Refused::Coordinate(self.vertex_count()));
         }
@@ -20,7 +20,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     /// A vertex that is in no cell yet.
-    pub(super) fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
+    pub(in super::super) fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
         let vertex = self.tds.add_vertex(data);
         match self.points.get_mut(vertex.index()) {
             Some(place) => *place = p, // the hole of a removed one; or a bulk construction has put it there
@@ -30,14 +30,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     /// The vertex that was removed last, with its payload and another point; in no cell yet.
-    pub(super) fn restore_vertex(&mut self, p: G::Point) -> Option<VertexId> {
+    pub(in super::super) fn restore_vertex(&mut self, p: G::Point) -> Option<VertexId> {
         let vertex = self.tds.restore_vertex()?;
         self.points[vertex.index()] = p;
         Some(vertex)
     }
 
     /// Adds a point unless its site is taken, given where it is; see [`connect`](Self::connect).
-    pub(super) fn insert_at(
+    pub(in super::super) fn insert_at(
         &mut self,
         p: G::Point,
         location: Location,
@@ -58,7 +58,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// beyond); `data` says what the cells of the star inherit, from the cell that had a facet and the facet's index.
     ///
     /// Expected time proportional to the number of cells replaced.
-    pub(super) fn connect(
+    pub(in super::super) fn connect(
         &mut self,
         vertex: VertexId,
         location: Location,
@@ -74,7 +74,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     /// The zone of a point, given where it is; `None` if it is outside of the flat that all others span. To be given
     /// back for the next time.
-    pub(super) fn collect(
+    pub(in super::super) fn collect(
         &mut self,
         location: Location,
         takes: impl Fn(&Self, CellId, usize, CellId) -> bool,
@@ -94,7 +94,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     /// Joins an added vertex outside of what the others span.
-    pub(super) fn raise_dimension(&mut self, vertex: VertexId) {
+    pub(in super::super) fn raise_dimension(&mut self, vertex: VertexId) {
         self.tds.raise_dimension(vertex);
         let finite = self.finite_cells().next();
         if let Some(cell) = finite.filter(|_| self.dimension() > 0) {

@@ -20,8 +20,8 @@ use crate::geometry::{Crossing, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
+use super::super::{ConstrainedDelaunay, Delaunay, Locate, Triangulation};
 use super::flip::{Edges, Forced, Free};
-use super::{ConstrainedDelaunay, Delaunay, Locate, Triangulation};
 
 /// The ring around what is not yet triangulated, counter-clockwise as seen from within.
 struct Ring {
@@ -60,7 +60,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     ///
     /// # Complexity
     /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.
-    pub(super) fn remove_vertex(&mut self, edges: impl Edges<C>, vertex: VertexId) {
+    pub(in super::super) fn remove_vertex(&mut self, edges: impl Edges<C>, vertex: VertexId) {
         if self.fill_low_degree(edges, vertex) {
             self.tds.remove_vertex(vertex);
         } else {
@@ -70,7 +70,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 
     /// The same without restoring the law; returns the cells that are new.
-    pub(super) fn remove_lawless(&mut self, edges: impl Edges<C>, vertex: VertexId) -> Vec<CellId> {
+    pub(in super::super) fn remove_lawless(&mut self, edges: impl Edges<C>, vertex: VertexId) -> Vec<CellId> {
         let mut cells = Vec::new();
         if self.dimension() == 2 {
             match self.line_without(vertex) {
@@ -88,7 +88,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 
     /// Whether without this vertex there are no triangles.
-    pub(super) fn is_flat_without(&self, vertex: VertexId) -> bool {
+    pub(in super::super) fn is_flat_without(&self, vertex: VertexId) -> bool {
         self.dimension() < 2 || self.line_without(vertex).is_some()
     }
 
@@ -208,9 +208,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Takes out a vertex that no constraint ends in or runs through, and returns its point; `None` if one does, or if
     /// there is no such vertex. The result is the triangulation of the other points with the same constraints. Numbers
-    /// and time as in [`Delaunay::remove`]. The tables of [lines](super::lines::Lines) must not name it any more when
+    /// and time as in [`Delaunay::remove`]. The tables of [lines](super::super::lines::paths::Lines) must not name it any more when
     /// its number is used again.
-    pub(super) fn remove_free(&mut self, vertex: VertexId) -> Option<G::Point> {
+    pub(in super::super) fn remove_free(&mut self, vertex: VertexId) -> Option<G::Point> {
         if !self.tds().is_vertex(vertex) || self.is_on_constraint(vertex) {
             return None;
         }
@@ -226,7 +226,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         Some(*self.point(vertex))
     }
 
-    pub(super) fn is_on_constraint(&self, vertex: VertexId) -> bool {
+    pub(in super::super) fn is_on_constraint(&self, vertex: VertexId) -> bool {
         self.inner.is_on_wall(vertex) || self.waiting.iter().flatten().any(|&end| end == vertex)
     }
 
@@ -235,7 +235,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     ///
     /// # Complexity
     /// Linear in the degree of `a` and in the number of flips.
-    pub(super) fn clear_wall(&mut self, a: VertexId, b: VertexId) -> bool {
+    pub(in super::super) fn clear_wall(&mut self, a: VertexId, b: VertexId) -> bool {
         let Some(sides) = self.inner.wall_down(a, b) else {
             let waiting = self.waiting.len();
             self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);

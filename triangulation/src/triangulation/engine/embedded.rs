@@ -4,16 +4,16 @@ use std::convert::Infallible;
 use crate::geometry::Geometry;
 use crate::tds::{Complex, Tds, VertexId};
 
-use super::Triangulation;
+use super::super::Triangulation;
 
 /// A complex whose vertices have points: what the editable [`Triangulation`] and the read-only
-/// [`Compact`](super::Compact) have in common. Location and the other questions are written once over this trait.
+/// [`Compact`](crate::Compact) have in common. Location and the other questions are written once over this trait.
 ///
 /// # Laws
 /// - Points that are no error are such as the geometry [admits](Geometry::admits).
 ///
 /// # Models
-/// [`Triangulation`], [`Compact`](super::Compact).
+/// [`Triangulation`], [`Compact`](crate::Compact).
 pub trait Embedded<const N: usize> {
     /// What is asked of points.
     type Geometry: Geometry<N>;

@@ -12,10 +12,10 @@ use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::bulk::{Grain, Sites};
-use super::lines::{LineVertices, segments_of, undirected};
-use super::locate::Dice;
-use super::{ConstrainedDelaunay, Refused};
+use super::super::bulk::{Grain, Sites};
+use super::super::locate::Dice;
+use super::super::{ConstrainedDelaunay, Refused};
+use super::paths::{LineVertices, segments_of, undirected};
 
 /// So many triangles may be met, for each vertex and each piece, by pieces that are joined in order; the rest is joined
 /// in random order: then all of them meet O(n log^2 n) (Shewchuk and Brown 2015; Agarwal, Arge and Yi 2005), where in
@@ -76,7 +76,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Ok((triangulation, vertices))
     }
 
-    /// Triangulates points that are all different and in [`spatial_order`](super::spatial_order) already, and lines
+    /// Triangulates points that are all different and in [`spatial_order`](super::super::spatial_order) already, and lines
     /// through them, each the numbers of its points: for those who have sorted and merged their points themselves.
     ///
     /// Returns the vertex of each point, if vertices had to be added where lines cross; else `None`: the vertex of each
@@ -152,7 +152,11 @@ fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Refu
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Puts in the pieces of an arrangement. Returns those that cross others, which are there up to the first crossing
     /// only.
-    pub(super) fn join_all(&mut self, mut pieces: Vec<[VertexId; 2]>, arrangement: &Arrangement) -> Vec<[VertexId; 2]> {
+    pub(in super::super) fn join_all(
+        &mut self,
+        mut pieces: Vec<[VertexId; 2]>,
+        arrangement: &Arrangement,
+    ) -> Vec<[VertexId; 2]> {
         self.rounding = (!arrangement.crossings().is_empty())
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         if self.dimension() < 2 {
@@ -218,7 +222,7 @@ fn find(lines: &[LineVertices], segment: [u32; 2]) -> (usize, usize) {
 }
 
 /// What the geometry makes of the sites that an arrangement has added, given the points at the others.
-pub(super) fn points_added<G: Crossing>(
+pub(in super::super) fn points_added<G: Crossing>(
     geometry: &G,
     arrangement: &Arrangement,
     segments: &[[u32; 2]],

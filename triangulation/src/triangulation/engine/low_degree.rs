@@ -18,7 +18,7 @@ use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::Triangulation;
+use super::super::Triangulation;
 use super::flip::Edges;
 
 /// The most neighbors. Of uniform points, which have 6 in the mean, fewer than one in 10 000 have more.
@@ -40,7 +40,7 @@ struct Ring<P> {
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Fills the hole that the triangles around a vertex on no wall leave. Does nothing and says so if it has too many
     /// neighbors, or infinity is one of them.
-    pub(super) fn fill_low_degree(&mut self, edges: impl Edges<C>, vertex: VertexId) -> bool {
+    pub(in super::super) fn fill_low_degree(&mut self, edges: impl Edges<C>, vertex: VertexId) -> bool {
         if self.dimension() < 2 {
             return false;
         }

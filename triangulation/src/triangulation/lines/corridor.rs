@@ -27,9 +27,9 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::locate::Dice;
-use super::segment::Side;
-use super::{Triangulation, Walls};
+use super::super::locate::Dice;
+use super::super::{Triangulation, Walls};
+use super::constrain::Side;
 
 /// No node.
 const NONE: u32 = u32::MAX;
@@ -50,7 +50,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     /// `None`, and nothing is added, if predicates contradict each other.
     ///
     /// Expected time linear in the length of the chain.
-    pub(super) fn triangulate_long(&self, side: &Side, apexes: &mut Vec<u32>) -> Option<()> {
+    pub(in super::super) fn triangulate_long(&self, side: &Side, apexes: &mut Vec<u32>) -> Option<()> {
         let count = side.chain.len();
         let (gone, neighbors) = out_in_random_order(count, |u, [p, n]| self.may_go(side, u, p, n))?;
         let mut tree = Tree {
@@ -250,8 +250,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
 mod tests {
     use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-    use super::super::segment::{Met, Scratch};
-    use super::super::{ConstrainedDelaunay, OnCrossing};
+    use super::super::super::{ConstrainedDelaunay, OnCrossing};
+    use super::super::constrain::{Met, Scratch};
     use super::*;
     use crate::geometry::Plane;
     use crate::kernel::{Adaptive, Kernel, Predicate, Range};

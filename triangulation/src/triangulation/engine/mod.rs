@@ -1,0 +1,9 @@
+//! The engine that all kinds share: insertion, removal, flips, the sides of facets and spheres, checks.
+
+pub(super) mod check;
+pub(super) mod embedded;
+pub(super) mod flip;
+pub(super) mod insert;
+pub(super) mod low_degree;
+pub(super) mod remove;
+pub(super) mod sides;
