@@ -68,6 +68,7 @@ pub mod crs;
 pub mod data;
 pub mod error;
 pub mod io;
+mod run;
 pub mod terrain;
 
 pub use breakline_triangulation as triangulation;

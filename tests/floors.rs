@@ -10,12 +10,13 @@ use std::path::{Path, PathBuf};
 const SOURCES: [&str; 2] = ["src", "triangulation/src"];
 
 /// Rooms from the ground up. Rooms on one floor do not know each other, except as [`NEIGHBORS`] says.
-const FLOORS: [&[&str]; 6] = [
+const FLOORS: [&[&str]; 7] = [
     &["error", "num"],
     &["kernel", "crs", "data"],
     &["arrangement", "geometry", "tds"],
     &["triangulation"],
     &["terrain", "io"],
+    &["run"],
     &["cli"],
 ];
 

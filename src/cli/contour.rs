@@ -5,11 +5,11 @@ use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
 use super::summary::tell_place;
 use super::talk::Talk;
-use super::units::Units;
 use super::{Exit, gather, raster};
 use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::contours::ContourSummary;
+use crate::run::units::Units;
 use crate::terrain::Levels;
 
 pub(super) const FORMATS: &[Format<()>] = &[

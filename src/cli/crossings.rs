@@ -3,11 +3,11 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::lines::Drawn;
 use super::talk::Talk;
-use super::units::{Units, neat};
 use crate::error::{Error, Result};
 use crate::io::{Output, OutputSet};
+use crate::run::lines::Drawn;
+use crate::run::units::{Units, neat};
 use crate::terrain::{CrossingHeights, TinReport};
 use crate::triangulation::Rounding;
 

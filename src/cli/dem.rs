@@ -4,9 +4,9 @@ use super::plan::SurfacePlan;
 use super::progress::Watched;
 use super::raster;
 use super::talk::Talk;
-use super::units::Units;
 use super::{Exit, gather, inputs, open};
 use crate::error::Result;
+use crate::run::units::Units;
 
 pub(super) const FORMATS: &[Format<()>] =
     &[Format { extension: "tif", kind: (), companions: &[] }, Format { extension: "tiff", kind: (), companions: &[] }];

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::talk::Talk;
-use super::units::Units;
 use crate::data::Bounds;
+use crate::run::units::Units;
 
 /// Files are far apart if the gap is so many times as wide as the widest file.
 const FAR: f64 = 100.0;

@@ -7,8 +7,6 @@ use super::args::{Corners, EdgeLength};
 use super::crossings::{self, LineNames};
 use super::extents;
 use super::inputs;
-use super::lines::{self, Rings};
-use super::memory;
 use super::open;
 use super::plan::{From, PointPlan, SurfacePlan};
 use super::point_files::PointFiles;
@@ -18,11 +16,13 @@ use super::roads::Roads;
 use super::summary::{Made, seconds};
 use super::systems::{self, Role, Stated, Systems, Wish};
 use super::talk::Talk;
-use super::units::Units;
 use crate::crs::Crs;
 use crate::data::{Bounds, Grid, Layer, Surface};
 use crate::error::{Error, Result};
 use crate::io::OutputSet;
+use crate::run::lines::{self, Rings};
+use crate::run::memory;
+use crate::run::units::Units;
 use crate::terrain::{Classes, Selection, SelectionReport, TinBuilder, TinReport, Window};
 
 /// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.

@@ -7,11 +7,11 @@ use super::progress::Watched;
 use super::raster;
 use super::summary::tell_place;
 use super::talk::Talk;
-use super::units::number;
 use super::{Exit, gather, inputs};
 use crate::crs::Crs;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
+use crate::run::units::number;
 use crate::terrain::{Hillshade, Light};
 
 pub(super) const FORMATS: &[Format<ShadeFormat>] = &[

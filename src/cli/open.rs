@@ -17,10 +17,10 @@ use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, gdal, layer, png, points, proj, raster};
 use crate::terrain::{self, Dem, GridSurface, Levels, SurfaceFlaw};
 
-use super::memory;
-use super::overlaps::overlaps;
 use super::progress::{Size, Watched};
 use super::talk::Talk;
+use crate::run::memory;
+use crate::run::overlaps::overlaps;
 
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

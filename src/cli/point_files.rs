@@ -3,16 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use super::inputs::is_read_once;
+use super::open;
 use super::progress::Size;
 use super::roads::Roads;
 use super::systems::{Role, Stated};
 use super::talk::Talk;
-use super::units::counted;
-use super::{memory, open};
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, PointBatch, PointSource};
 use crate::error::{Error, Result};
 use crate::io::points::Options;
+use crate::run::memory;
+use crate::run::units::counted;
 use crate::terrain::{Classes, Selection};
 
 /// The class of ground points in LAS.

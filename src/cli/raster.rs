@@ -5,10 +5,10 @@ use super::gather::Gathered;
 use super::open;
 use super::outputs::Outputs;
 use super::talk::Talk;
-use super::units::{Units, bytes, neat, number};
 use crate::crs::Crs;
 use crate::data::{self, Bounds, Frame, Grid, Surface};
 use crate::error::{Error, Result};
+use crate::run::units::{Units, bytes, neat, number};
 
 /// Cells are this large unless something else is said.
 const DEFAULT_RESOLUTION: f64 = 1.0;

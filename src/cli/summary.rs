@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant};
 
 use super::talk::Talk;
-use super::units::{neat, number, thousandths};
 use crate::crs::Crs;
 use crate::data::{self, Bounds, EdgeKind, Surface};
+use crate::run::units::{neat, number, thousandths};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// How a surface was made.

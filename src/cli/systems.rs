@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::talk::Talk;
-use super::units::Units;
 use crate::crs::{Crs, CrsKind};
 use crate::error::{Error, Result};
+use crate::run::units::Units;
 
 /// What the user asked for.
 #[derive(Debug, Clone, Default)]

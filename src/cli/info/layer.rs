@@ -5,9 +5,9 @@ use serde_json::{Map, json};
 
 use super::Sheet;
 use crate::cli::open;
-use crate::cli::units::counted;
 use crate::data::{Bounds, Shape, ShapeKind};
 use crate::error::Result;
+use crate::run::units::counted;
 
 pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     let layer = open::layer(path)?;

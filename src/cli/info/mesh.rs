@@ -5,9 +5,9 @@ use serde_json::json;
 use super::Sheet;
 use crate::cli::open::{self, Solid};
 use crate::cli::summary::SurfaceFacts;
-use crate::cli::units::neat;
 use crate::data::Surface;
 use crate::error::Result;
+use crate::run::units::neat;
 
 pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     if let Some(solid) = open::solid(path) {

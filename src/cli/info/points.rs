@@ -5,11 +5,11 @@ use serde_json::{Map, Value, json};
 use super::Sheet;
 use crate::cli::progress::Size;
 use crate::cli::talk::Talk;
-use crate::cli::units::counted;
 use crate::cli::{classes, open};
 use crate::data::{Bounds, Columns, Lattice, PointBatch, PointFlags, PointInfo};
 use crate::error::Result;
 use crate::io::points::Options;
+use crate::run::units::counted;
 
 /// The flags of a point, by name.
 const FLAGS: [(&str, u8); 4] = [

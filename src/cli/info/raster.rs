@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 use super::Sheet;
 use crate::cli::open;
 use crate::cli::raster::extent;
-use crate::cli::units::neat;
 use crate::data::Frame;
 use crate::error::Result;
+use crate::run::units::neat;
 
 pub(super) fn sheet(path: &Path) -> Result<Sheet> {
     let facts = open::raster_facts(path)?;

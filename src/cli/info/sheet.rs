@@ -3,9 +3,9 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::cli::escape;
-use crate::cli::units::neat;
 use crate::crs::{Crs, CrsKind};
 use crate::data::Bounds;
+use crate::run::units::neat;
 
 /// What is known of a file: every fact is stated once, for people and for programs.
 #[derive(Debug, Default)]

@@ -7,16 +7,16 @@ use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
 
 /// A polygon in plan: its rings.
-pub(super) type Rings = Vec<Vec<[f64; 2]>>;
+pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
 
 /// A line of a layer, and where it was found.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Drawn {
+pub(crate) struct Drawn {
     /// The position of its record, counted from 0 as GIS count feature ids.
-    pub(super) fid: usize,
+    pub(crate) fid: usize,
     /// Which part or ring of several, counted from 1.
-    pub(super) part: Option<usize>,
-    pub(super) points: Vec<[f64; 3]>,
+    pub(crate) part: Option<usize>,
+    pub(crate) points: Vec<[f64; 3]>,
 }
 
 /// The lines of a layer, and the rings of its polygons, each with a height at every vertex.
@@ -24,7 +24,7 @@ pub(super) struct Drawn {
 /// # Errors
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
 /// record and the vertex, counted from 1.
-pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
+pub(crate) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
     let mut lines = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
         let parts = match shape {
@@ -46,9 +46,9 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
 ///
 /// # Errors
 /// If there are none, a coordinate is not finite, or the lines leave a gap.
-pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
+pub(crate) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
-    let mut lines = Vec::new();
+    let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
         let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else { continue };
         for part in parts {
@@ -64,7 +64,9 @@ pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
         }
     }
     if !lines.is_empty() {
-        polygons.push(rings::close(&lines, path)?);
+        let flat: Vec<Vec<[f64; 2]>> =
+            lines.iter().map(|line| line.points.iter().map(|p| [p[0], p[1]]).collect()).collect();
+        polygons.push(rings::close(&flat).map_err(|gap| at_record(gap.error(), path, lines[gap.line].fid + 1))?);
     }
     if polygons.is_empty() {
         return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
@@ -114,7 +116,7 @@ fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
         .cure("repair the record or take it out")
 }
 
-pub(super) fn at_record(error: Error, path: &Path, record: usize) -> Error {
+fn at_record(error: Error, path: &Path, record: usize) -> Error {
     error.in_file(path).at(format!("record {record}"))
 }
 
@@ -164,6 +166,17 @@ mod tests {
         let line = vec![[0.0, 0.0, 1.0], [1.0, 0.0, f64::NAN]];
         let error = breaklines(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp")).unwrap_err();
         assert_eq!(error.to_string(), "l.shp: record 1: vertex 2 at 1 0 has no height, though others have");
+    }
+
+    #[test]
+    fn a_boundary_with_a_gap_names_the_record() {
+        let line = |x: f64| Shape::Lines(vec![vec![[x, 0.0, f64::NAN], [x + 1.0, 0.0, f64::NAN]]]);
+        let error = polygons(&layer(vec![line(0.0), Shape::Null, line(2.0)]), Path::new("l.shp")).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.starts_with("l.shp: record 1: the boundary is not closed: a line ends at 0 0, the next"),
+            "{text}"
+        );
     }
 
     #[test]

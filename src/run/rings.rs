@@ -1,26 +1,34 @@
-//! Rings of lines: a boundary may be drawn in pieces.
+//! Rings of lines: a boundary may come as several lines.
 
 use std::collections::HashMap;
-use std::path::Path;
 
-use super::lines::{Drawn, Rings, at_record};
 use super::units::neat;
-use crate::error::{Error, Result};
+use crate::error::Error;
 
-/// A place, to be compared bit by bit.
+/// A point, to be compared bit by bit.
 type Key = [u64; 2];
 
-/// Joins lines that meet end to end, in exactly the same place, to rings. Where more than two meet it does not matter
+/// An end at which no other line goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Gap {
+    /// The position of the line that ends there.
+    pub(super) line: usize,
+    end: [f64; 2],
+    /// The nearest other end at which no line goes on.
+    nearest: Option<[f64; 2]>,
+}
+
+/// Joins lines that meet end to end, in exactly the same point, to rings. Where more than two meet it does not matter
 /// which go together: by the even-odd rule all choices bound the same area.
 ///
 /// # Errors
-/// If there is a gap: an end at which no other line goes on. The nearest such end is told, and how far it is.
+/// If there is a gap.
 ///
 /// # Complexity
 /// Linear.
-pub(super) fn close(lines: &[Drawn], path: &Path) -> Result<Rings> {
+pub(super) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> {
     let flat: Vec<Vec<[f64; 2]>> =
-        lines.iter().map(|line| line.points.iter().map(|p| [p[0] + 0.0, p[1] + 0.0]).collect()).collect();
+        lines.iter().map(|line| line.iter().map(|p| [p[0] + 0.0, p[1] + 0.0]).collect()).collect();
     let mut at: HashMap<Key, Vec<usize>> = HashMap::new();
     for (number, line) in flat.iter().enumerate() {
         for end in ends(line) {
@@ -28,10 +36,11 @@ pub(super) fn close(lines: &[Drawn], path: &Path) -> Result<Rings> {
         }
     }
     let is_loose = |end: &[f64; 2]| at.get(&key(*end)).is_some_and(|lines| lines.len() % 2 == 1);
-    let mut loose = flat.iter().zip(lines).flat_map(|(line, drawn)| ends(line).map(move |end| (end, drawn)));
-    if let Some((end, drawn)) = loose.find(|(end, _)| is_loose(end)) {
+    let mut loose = flat.iter().enumerate().flat_map(|(line, points)| ends(points).map(move |end| (line, end)));
+    if let Some((line, end)) = loose.find(|(_, end)| is_loose(end)) {
         let others = flat.iter().flat_map(|line| ends(line)).filter(|other| is_loose(other) && *other != end);
-        return Err(at_record(gap(end, others), path, drawn.fid + 1));
+        let nearest = others.min_by(|p, q| distance(end, *p).total_cmp(&distance(end, *q)));
+        return Err(Gap { line, end, nearest });
     }
 
     // An even number of ends everywhere: who goes on as long as there is a line left ends where they began.
@@ -65,24 +74,28 @@ fn key(place: [f64; 2]) -> Key {
     place.map(f64::to_bits)
 }
 
-#[cold]
-fn gap([x, y]: [f64; 2], others: impl Iterator<Item = [f64; 2]>) -> Error {
-    let far = |p: &[f64; 2]| (p[0] - x).hypot(p[1] - y);
-    let nearest = others.min_by(|p, q| far(p).total_cmp(&far(q)));
-    let next = nearest.map(|p| format!(", the next loose end is {} away, at {} {}", neat(far(&p)), p[0], p[1]));
-    Error::format(format!("the boundary is not closed: a line ends at {x} {y}{}", next.unwrap_or_default()))
-        .cure("close the gap, so that lines end where others begin, or give polygons")
+fn distance([x, y]: [f64; 2], p: [f64; 2]) -> f64 {
+    (p[0] - x).hypot(p[1] - y)
+}
+
+impl Gap {
+    /// The error that names both ends and the distance between them.
+    #[cold]
+    pub(super) fn error(self) -> Error {
+        let [x, y] = self.end;
+        let far = |p| neat(distance(self.end, p));
+        let next = self.nearest.map(|p| format!(", the next loose end is {} away, at {} {}", far(p), p[0], p[1]));
+        Error::format(format!("the boundary is not closed: a line ends at {x} {y}{}", next.unwrap_or_default()))
+            .cure("close the gap, so that lines end where others begin, or give polygons")
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rings(lines: &[&[[f64; 2]]]) -> Result<Rings> {
-        let points = |line: &[[f64; 2]]| line.iter().map(|p| [p[0], p[1], f64::NAN]).collect();
-        let drawn: Vec<Drawn> =
-            lines.iter().enumerate().map(|(fid, line)| Drawn { fid, part: None, points: points(line) }).collect();
-        close(&drawn, Path::new("l.shp"))
+    fn rings(lines: &[&[[f64; 2]]]) -> Result<Vec<Vec<[f64; 2]>>, Gap> {
+        close(&lines.iter().map(|line| line.to_vec()).collect::<Vec<_>>())
     }
 
     #[test]
@@ -105,10 +118,10 @@ mod tests {
     fn a_gap_is_told_with_both_ends_and_its_width() {
         let error = rings(&[&[[0.0, 0.0], [4.0, 0.0]], &[[4.0, 0.5], [0.0, 4.0]], &[[0.0, 4.0], [0.0, 0.0]]]);
         assert_eq!(
-            error.unwrap_err().to_string(),
-            "l.shp: record 1: the boundary is not closed: a line ends at 4 0, the next loose end is 0.5 away, at 4 0.5"
+            error.unwrap_err().error().to_string(),
+            "the boundary is not closed: a line ends at 4 0, the next loose end is 0.5 away, at 4 0.5"
         );
         let three = rings(&[&[[0.0, 0.0], [1.0, 0.0]], &[[0.0, 0.0], [0.0, 1.0]], &[[0.0, 0.0], [-1.0, 0.0]]]);
-        assert!(three.unwrap_err().to_string().contains("ends at 0 0, the next loose end is 1 away, at 1 0"));
+        assert!(three.unwrap_err().error().to_string().contains("ends at 0 0, the next loose end is 1 away, at 1 0"));
     }
 }

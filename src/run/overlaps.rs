@@ -15,7 +15,7 @@ use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 /// A place where the faces of a surface do not fit beside each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Overlap {
+pub(crate) enum Overlap {
     /// The edge opposite this corner of the face has no neighbor, and another such edge or its end lies on it.
     Border { face: u32, corner: usize },
     /// Near this place, faces lie over each other.
@@ -24,7 +24,7 @@ pub(super) enum Overlap {
 
 impl Overlap {
     /// The vertices at which it shows, if any.
-    pub(super) fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
+    pub(crate) fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         let Overlap::Border { face, corner } = *self else { return Vec::new() };
         surface.face(face).into_iter().flat_map(|corners| [corners[ccw(corner)], corners[cw(corner)]]).collect()
     }
@@ -46,7 +46,7 @@ impl std::fmt::Display for Overlap {
 ///
 /// # Complexity
 /// O(n log n) in the edges without a neighbor.
-pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
+pub(crate) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
     let sides = data::corners(surface).flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
     let border: Vec<(u32, [u32; 3], usize)> =
         sides.filter(|&(face, _, i)| surface.neighbor(face, i).is_none()).collect();

@@ -7,14 +7,14 @@ const METRES_PER_DEGREE: f64 = 111_320.0;
 
 /// The units of a surface: of the plan, and of the heights.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Units {
+pub(crate) struct Units {
     plan: Option<Unit>,
     height: Option<Unit>,
     is_angular: bool,
 }
 
 impl Units {
-    pub(super) fn of(crs: Option<&Crs>) -> Self {
+    pub(crate) fn of(crs: Option<&Crs>) -> Self {
         let is_angular = crs.is_some_and(|crs| crs.kind == CrsKind::Geographic);
         let plan = crs.map(|crs| crs.unit.clone());
         // Heights over degrees are in metres unless the definition says otherwise.
@@ -27,17 +27,17 @@ impl Units {
     }
 
     /// `100 m`
-    pub(super) fn length(&self, value: f64) -> String {
+    pub(crate) fn length(&self, value: f64) -> String {
         with_unit(value, self.plan.as_ref())
     }
 
     /// `1 ftUS`
-    pub(super) fn height(&self, value: f64) -> String {
+    pub(crate) fn height(&self, value: f64) -> String {
         with_unit(value, self.height.as_ref())
     }
 
     /// So many metres in units of the plan; the number itself where the unit is not known.
-    pub(super) fn of_metres(&self, metres: f64) -> f64 {
+    pub(crate) fn of_metres(&self, metres: f64) -> f64 {
         match &self.plan {
             Some(_) if self.is_angular => metres / METRES_PER_DEGREE,
             Some(unit) if unit.factor > 0.0 => metres / unit.factor,
@@ -46,7 +46,7 @@ impl Units {
     }
 
     /// So many metres in units of the heights; the number itself where the unit is not known.
-    pub(super) fn height_of_metres(&self, metres: f64) -> f64 {
+    pub(crate) fn height_of_metres(&self, metres: f64) -> f64 {
         match &self.height {
             Some(unit) if unit.factor > 0.0 => metres / unit.factor,
             _ => metres,
@@ -54,12 +54,12 @@ impl Units {
     }
 
     /// Whether the plan is in angles.
-    pub(super) fn is_angular(&self) -> bool {
+    pub(crate) fn is_angular(&self) -> bool {
         self.is_angular
     }
 
     /// The two names, where lengths of the plan and heights are in different units.
-    pub(super) fn disagreement(&self) -> Option<(&str, &str)> {
+    pub(crate) fn disagreement(&self) -> Option<(&str, &str)> {
         match (&self.plan, &self.height) {
             (Some(plan), Some(height)) if self.is_angular || plan.factor != height.factor => {
                 Some((&plan.name, &height.name))
@@ -83,7 +83,7 @@ fn with_unit(value: f64, unit: Option<&Unit>) -> String {
 }
 
 /// A number for people: without what is beyond the ninth decimal.
-pub(super) fn neat(value: f64) -> String {
+pub(crate) fn neat(value: f64) -> String {
     let text = format!("{:.9}", value + 0.0);
     match text.trim_end_matches('0').trim_end_matches('.') {
         // Not zero, but smaller than that.
@@ -94,12 +94,12 @@ pub(super) fn neat(value: f64) -> String {
 }
 
 /// A number with three decimals at most.
-pub(super) fn thousandths(value: f64) -> String {
+pub(crate) fn thousandths(value: f64) -> String {
     neat((value * 1e3).round() / 1e3)
 }
 
 /// Two decimals for what is a measure of land, three digits for what is small, two for what is hardly there.
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if value.abs() >= 1.0 || value == 0.0 {
         let text = format!("{value:.2}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -113,13 +113,13 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// `1 point`, `2 points`
-pub(super) fn counted(count: u64, noun: &str) -> String {
+pub(crate) fn counted(count: u64, noun: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
     format!("{count} {noun}{ending}")
 }
 
 /// `12 kB`, `1.5 GB`
-pub(super) fn bytes(count: u64) -> String {
+pub(crate) fn bytes(count: u64) -> String {
     match count {
         0..1_000_000 => format!("{} kB", count.div_ceil(1000)),
         1_000_000..1_000_000_000 => format!("{:.0} MB", count as f64 / 1e6),
