@@ -1,33 +1,11 @@
 //! Contours to a file.
 
-use super::{Destination, geojson, shapefile};
+pub use super::contour_summary::ContourSummary;
+use super::output::Destination;
+use super::{geojson, shapefile};
 use crate::crs::Crs;
-use crate::data::{Bounds, ContourLine};
+use crate::data::ContourLine;
 use crate::error::{Error, Result};
-
-/// What was written.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct ContourSummary {
-    /// Lines.
-    pub lines: usize,
-    /// Vertices of all lines; the last of a closed line counts.
-    pub vertices: usize,
-    /// Lines that end where they begin.
-    pub closed: usize,
-    /// In plan and in height.
-    pub bounds: Bounds,
-    /// What a user should be told.
-    pub warnings: Vec<String>,
-}
-
-impl ContourSummary {
-    pub(super) fn add(&mut self, line: &ContourLine) {
-        self.lines += 1;
-        self.vertices += line.points.len();
-        self.closed += usize::from(line.is_closed());
-        line.points.iter().for_each(|&[x, y]| self.bounds.add([x, y, line.level]));
-    }
-}
 
 /// Returns an error if lines of so many vertices in all are too large for the format of `target`.
 ///

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use super::contours::ContourSummary;
-use super::layer::no_such_field;
+use super::contour_summary::ContourSummary;
+use super::field::no_such_field;
 use super::shapefile::parse_number;
 use super::{Destination, Output};
 use crate::crs::{Crs, CrsKind};

@@ -75,16 +75,6 @@ fn read_other(path: &Path, _layer: Option<&str>) -> Result<Layer> {
         .cure("build with `--features gdal` to read what GDAL reads"))
 }
 
-/// The error for an attribute that is not there.
-pub(super) fn no_such_field<'a>(name: &str, fields: impl Iterator<Item = &'a str>) -> Error {
-    let fields: Vec<&str> = fields.collect();
-    let error = Error::usage(format!("there is no field {name}"));
-    match fields[..] {
-        [] => error.cure("the file has no fields; heights can only come from its geometry"),
-        _ => error.cure(format!("name one of {}", fields.join(", "))),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -33,8 +33,10 @@
 
 mod auxiliary;
 mod contain;
+mod contour_summary;
 pub mod contours;
 mod decimal;
+mod field;
 pub mod gdal;
 pub mod geojson;
 pub mod geotiff;

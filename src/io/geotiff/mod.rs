@@ -15,6 +15,7 @@
 //! and 3, bands interleaved or apart. What is not supported is refused by name.
 
 mod block;
+mod cell_format;
 mod directory;
 mod georeference;
 mod ifd;
@@ -25,10 +26,11 @@ mod tags;
 mod tile;
 mod write;
 
+pub use cell_format::CellFormat;
 pub use ifd::ByteOrder;
 pub use layout::{SampleKind, SampleType};
 pub use read::{Extremes, GeoTiffInfo, GeoTiffReader, open};
-pub use write::{CellFormat, RasterSummary, WriteOptions, write};
+pub use write::{RasterSummary, WriteOptions, write};
 
 /// Most cells that one read brings into memory (4 GiB of values).
 pub const MAX_CELLS: usize = 1 << 29;

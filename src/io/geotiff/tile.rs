@@ -5,7 +5,7 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use super::write::CellFormat;
+use super::cell_format::{CellFormat, NO_HEIGHT};
 use crate::data::{BlockSource, Window};
 use crate::error::Result;
 
@@ -15,9 +15,6 @@ pub(super) const SIDE: usize = 256;
 /// Effort of DEFLATE. Measured on rasters of a TIN with predictor 3, one core (flate2 with
 /// miniz_oxide): level 1 packs 101 MB/s to 34 %, level 2 62 MB/s to 31 %, level 6 24 MB/s to 28 %.
 const EFFORT: u32 = 1;
-
-/// What a height that is not there is written as.
-pub(super) const NO_HEIGHT: f32 = -9999.0;
 
 /// A tile as it goes into the file.
 #[derive(Debug)]

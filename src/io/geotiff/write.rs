@@ -3,42 +3,14 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::cell_format::{CellFormat, NO_HEIGHT};
 use super::directory::{self, Offsets, Values};
-use super::tile::{NO_HEIGHT, SIDE, Scratch, Tile};
+use super::tile::{SIDE, Scratch, Tile};
 use super::{MAX_BLOCKS, tags};
 use crate::crs::GeoKeys;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
-
-/// What the cells of a raster hold, and how they are stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CellFormat {
-    /// Float32, predictor 3; nodata is -9999 (so a height of exactly -9999 reads back as nodata).
-    #[default]
-    Heights,
-    /// One byte, 1 to 255, predictor 2; nodata is 0. Values are rounded and clamped.
-    Shades,
-}
-
-impl CellFormat {
-    pub(super) fn bits(self) -> u16 {
-        match self {
-            CellFormat::Heights => 32,
-            CellFormat::Shades => 8,
-        }
-    }
-
-    /// The value that reading will give for a cell; NaN if it will be nodata.
-    pub(super) fn written(self, cell: f32) -> f32 {
-        match self {
-            _ if !cell.is_finite() => f32::NAN,
-            CellFormat::Heights if cell == NO_HEIGHT => f32::NAN,
-            CellFormat::Heights => cell,
-            CellFormat::Shades => cell.round().clamp(1.0, 255.0),
-        }
-    }
-}
 
 /// How a raster is written.
 #[derive(Clone, Copy, Default)]

@@ -1,7 +1,5 @@
 //! Multipatches: strips, fans and rings in space, to triangles.
 
-use super::record::Oddities;
-
 type Triangle = [[f64; 3]; 3];
 
 /// Rings with more vertices are left out: at worst the method's time grows with the cube, a second or so here.
@@ -16,9 +14,10 @@ const FIRST: i32 = 4;
 const RING: i32 = 5;
 
 /// The triangles of the parts. Rings are cut into triangles in the coordinate plane that shows
-/// them widest; inner rings are holes of the ring before them.
-pub(super) fn triangles(parts: &[Vec<[f64; 3]>], kinds: &[i32], odd: &mut Oddities) -> Vec<Triangle> {
+/// them widest; inner rings are holes of the ring before them. Also returns the number of parts that give none.
+pub(super) fn triangles(parts: &[Vec<[f64; 3]>], kinds: &[i32]) -> (Vec<Triangle>, usize) {
     let mut out = Vec::new();
+    let mut unfilled = 0;
     let mut i = 0;
     while i < parts.len().min(kinds.len()) {
         let part = &parts[i];
@@ -37,14 +36,14 @@ pub(super) fn triangles(parts: &[Vec<[f64; 3]>], kinds: &[i32], odd: &mut Odditi
                 }
                 match fill(part, &parts[i + 1..next]) {
                     Some(filled) => out.extend(filled),
-                    None => odd.unfilled += next - i,
+                    None => unfilled += next - i,
                 }
             }
-            _ => odd.unfilled += 1,
+            _ => unfilled += 1,
         }
         i = next;
     }
-    out
+    (out, unfilled)
 }
 
 /// Cuts a ring with holes into triangles by ear clipping (Meisters 1975), holes joined to the ring
@@ -181,8 +180,7 @@ mod tests {
     use super::*;
 
     fn run(parts: &[Vec<[f64; 3]>], kinds: &[i32]) -> (Vec<Triangle>, usize) {
-        let mut odd = Oddities::default();
-        (triangles(parts, kinds, &mut odd), odd.unfilled)
+        triangles(parts, kinds)
     }
 
     fn total(triangles: &[Triangle]) -> [f64; 3] {

@@ -85,7 +85,9 @@ pub(super) fn parse(content: &[u8], odd: &mut Oddities) -> Result<Parsed, Flaw> 
         }
         31 => {
             let (parts, kinds) = read_parts(&mut bytes, code, &mut found)?;
-            Shape::Triangles(patch::triangles(&parts, &kinds, &mut found))
+            let (triangles, unfilled) = patch::triangles(&parts, &kinds);
+            found.unfilled += unfilled;
+            Shape::Triangles(triangles)
         }
         other => return Err(Flaw::Damaged(format!("shape type {other} is not one of the format's"))),
     };

@@ -84,7 +84,7 @@ impl Table {
             .iter()
             .find(|field| field.name == name)
             .or_else(|| self.fields.iter().find(|field| field.name.eq_ignore_ascii_case(name)))
-            .ok_or_else(|| crate::io::layer::no_such_field(name, self.fields.iter().map(|f| f.name.as_str())))?;
+            .ok_or_else(|| crate::io::field::no_such_field(name, self.fields.iter().map(|f| f.name.as_str())))?;
         match (field.kind, field.width) {
             (b'N' | b'F' | b'C', _) | (b'I' | b'+', 4) | (b'B' | b'O' | b'Y', 8) => Ok(field.clone()),
             (kind, width) => Err(Error::usage(format!(

@@ -7,7 +7,7 @@ use super::{FILE_CODE, HEADER};
 use crate::crs::Crs;
 use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind};
 use crate::error::{Error, Result};
-use crate::io::contours::ContourSummary;
+use crate::io::contour_summary::ContourSummary;
 use crate::io::{Destination, Output};
 
 /// Many programs read no file of the set beyond this many bytes.
