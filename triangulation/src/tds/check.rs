@@ -1,48 +1,43 @@
+//! Checks of a complex, each in a text of its own: nothing here is used to build one.
+
 use std::collections::HashSet;
 
-use super::{CellId, Tds, VertexId};
-
-/// What is wrong with a complex of cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Flaw {
-    /// A cell names a vertex or a neighbor that does not exist, or one twice.
-    Links(CellId),
-    /// The neighbor across facet `i` does not know this cell, or has another facet there.
-    NotMutual(CellId, usize),
-    /// Two neighbors are not oriented alike.
-    NotOriented(CellId, usize),
-    /// The cell that a vertex names does not have it.
-    CellOfVertex(VertexId),
-    /// The cells around a vertex do not form one piece.
-    NotManifold(VertexId),
-    /// The numbers of vertices, edges, faces and cells are not those of a sphere; the
-    /// characteristic is given.
-    Euler(i64),
-}
+use super::{CellId, Tds, TdsError, VertexId};
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Level 1: links. Every cell has distinct, existing vertices and neighbors, neighbors know each
-    /// other and share their facet with opposite orientation, and vertices know a cell of theirs.
+    /// Returns the faults of links: level 1. In a sound complex each cell has distinct, existing vertices and neighbors,
+    /// neighbors know each other and share their facet with opposite orientation, and vertices know a cell that has
+    /// them.
+    ///
+    /// # Complexity
+    /// Expected linear time.
     #[must_use]
-    pub fn check_links(&self) -> Vec<Flaw> {
-        let mut flaws = Vec::new();
+    pub fn check_links(&self) -> Vec<TdsError> {
+        let mut faults = Vec::new();
+        let mut has_infinite = false;
         for cell in self.cells() {
-            let vertices = self.cell_vertices(cell);
+            let (vertices, neighbors) = (self.cell_vertices(cell), self.cell_neighbors(cell));
             let exists = |v: VertexId| v == VertexId::INFINITE || self.is_vertex(v);
-            let sound = vertices.iter().enumerate().all(|(i, &v)| exists(v) && !vertices[..i].contains(&v))
-                && self.cell_neighbors(cell).iter().all(|&n| self.is_used(n) && n != cell);
-            if !sound {
-                flaws.push(Flaw::Links(cell));
+            for (i, &vertex) in vertices.iter().enumerate() {
+                has_infinite |= vertex == VertexId::INFINITE;
+                if !exists(vertex) || vertices[..i].contains(&vertex) {
+                    faults.push(TdsError::Vertex { cell, vertex });
+                }
+            }
+            for (facet, &beside) in neighbors.iter().enumerate() {
+                if !self.is_used(beside) || beside == cell || neighbors[..facet].contains(&beside) {
+                    faults.push(TdsError::Neighbor { cell, facet });
+                }
             }
         }
-        if !flaws.is_empty() {
-            return flaws; // the rest would stumble
+        if !faults.is_empty() {
+            return faults; // the rest would stumble
         }
         for cell in self.cells() {
             for (i, &beside) in self.cell_neighbors(cell).iter().enumerate() {
                 match self.shared_facet(cell, i, beside) {
-                    None => flaws.push(Flaw::NotMutual(cell, i)),
-                    Some(false) => flaws.push(Flaw::NotOriented(cell, i)),
+                    None => faults.push(TdsError::NotMutual { cell, facet: i }),
+                    Some(false) => faults.push(TdsError::NotOriented { cell, facet: i }),
                     Some(true) => {}
                 }
             }
@@ -50,23 +45,21 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let mut detached = self.detached;
         let holes: HashSet<VertexId> = self.unused_vertices.iter().copied().collect();
         for vertex in (0..self.vertex_slots()).map(VertexId::new).chain([VertexId::INFINITE]) {
-            let sound = match self.cell_of(vertex) {
+            match self.cell_of(vertex) {
                 Some(cell) => {
-                    self.is_used(cell) && self.cell_vertices(cell).contains(&vertex) && !holes.contains(&vertex)
+                    if !self.is_used(cell) || !self.cell_vertices(cell).contains(&vertex) || holes.contains(&vertex) {
+                        faults.push(TdsError::CellOfVertex(vertex));
+                    }
                 }
-                None if vertex == VertexId::INFINITE => self.dimension() == -1,
-                None if holes.contains(&vertex) => true,
-                None => {
-                    let is_detached = detached > 0;
-                    detached -= usize::from(is_detached);
-                    is_detached
+                None if vertex == VertexId::INFINITE => {
+                    faults.extend(has_infinite.then_some(TdsError::CellOfVertex(vertex)))
                 }
-            };
-            if !sound {
-                flaws.push(Flaw::CellOfVertex(vertex));
+                None if holes.contains(&vertex) => {}
+                None if detached > 0 => detached -= 1,
+                None => faults.push(TdsError::Isolated(vertex)),
             }
         }
-        flaws
+        faults
     }
 
     /// Whether the facet is the same on both sides, and if so, whether the orientations fit: that of
@@ -79,30 +72,33 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                     .filter(|&k| k != j)
                     .all(|k| self.index_of(cell, self.vertex(beside, k)).is_some_and(|at| at != i))
         })?;
-        // Where each vertex of the neighbor stands in this cell; its opposite one stands for ours.
-        let mut places: Vec<usize> = (0..width)
-            .map(|k| if k == j { i } else { self.index_of(cell, self.vertex(beside, k)).unwrap_or(i) })
-            .collect();
+        // The index in this cell of each vertex of the neighbor; its opposite one stands for ours.
+        let index = |k| if k == j || k >= width { None } else { self.index_of(cell, self.vertex(beside, k)) };
+        let mut indices: [usize; N] = std::array::from_fn(|k| index(k).unwrap_or(if k == j { i } else { k }));
         let mut swaps = 0;
         for k in 0..width {
-            while places[k] != k {
-                let other = places[k];
-                places.swap(k, other);
+            while indices[k] != k {
+                let other = indices[k];
+                indices.swap(k, other);
                 swaps += 1;
             }
         }
         Some(swaps % 2 == 1 || width == 1)
     }
 
-    /// Level 2: manifold and Euler. The cells around each vertex hang together, and so do all; the
-    /// characteristic is that of a sphere. Assumes level 1.
+    /// Returns the vertices whose links are not spheres: level 2. Without any, and without faults of
+    /// [links](Self::check_links), which are assumed to be sound, the complex is a closed manifold. Links are recognized
+    /// up to dimension 2.
+    ///
+    /// # Complexity
+    /// Expected linear time.
     #[must_use]
-    pub fn check_manifold(&self) -> Vec<Flaw> {
+    pub fn check_manifold(&self) -> Vec<TdsError> {
         let width = (self.dimension() + 1) as usize;
         if width < 2 {
             return Vec::new();
         }
-        let mut flaws = Vec::new();
+        let mut faults = Vec::new();
         let mut degree = vec![0u32; self.vertex_slots() + 1];
         let slot = |v: VertexId| if v == VertexId::INFINITE { self.vertex_slots() } else { v.index() };
         for cell in self.cells() {
@@ -112,6 +108,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
         let mut reached = HashSet::new();
         let mut stack = Vec::new();
+        let mut link: HashSet<VertexId> = HashSet::new();
         for vertex in self.vertices().chain([VertexId::INFINITE]) {
             reached.clear();
             stack.extend(self.cell_of(vertex));
@@ -123,29 +120,81 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                     }
                 }
             }
-            if reached.len() as u32 != degree[slot(vertex)] {
-                flaws.push(Flaw::NotManifold(vertex));
+            let mut is_sphere = reached.len() as u32 == degree[slot(vertex)];
+            if width == 4 && !reached.is_empty() {
+                // A connected surface, of as many triangles as there are cells: a sphere by its Euler characteristic,
+                // which is smaller for others, and where vertices of the surface are one.
+                link.clear();
+                link.extend(reached.iter().flat_map(|&cell| self.cell_vertices(cell)));
+                is_sphere &= 2 * (link.len() - 1) == reached.len() + 4;
+            }
+            if !is_sphere {
+                faults.push(TdsError::Link(vertex));
             }
         }
-        let mut faces = vec![HashSet::new(); width - 1];
-        if width > 2 {
-            for cell in self.cells() {
-                let mut vertices = self.cell_vertices(cell).to_vec();
-                vertices.sort_unstable();
-                for subset in 1u32..(1 << width) - 1 {
-                    if subset.count_ones() > 1 {
-                        let face: Vec<_> = (0..width).filter(|&k| subset >> k & 1 == 1).map(|k| vertices[k]).collect();
-                        faces[face.len() - 1].insert(face);
-                    }
+        faults
+    }
+
+    /// Returns what keeps the complex from being a sphere with the infinite vertex in it, as the kinds of triangulations
+    /// need it: the faults of a [manifold](Self::check_manifold); and if there are none, a component beside the first, or
+    /// an Euler characteristic that is not that of a sphere. That of a 3-manifold is 0 always: there, nothing is shown
+    /// by it.
+    ///
+    /// # Complexity
+    /// Expected linear time.
+    #[must_use]
+    pub fn check_sphere(&self) -> Vec<TdsError> {
+        let mut faults = self.check_manifold();
+        if self.dimension() >= 0 && self.cell_of(VertexId::INFINITE).is_none() {
+            faults.push(TdsError::Isolated(VertexId::INFINITE));
+        }
+        if self.dimension() < 1 || !faults.is_empty() {
+            return faults;
+        }
+        let mut reached = vec![false; self.cell_slots()];
+        let mut stack: Vec<CellId> = self.cells().next().into_iter().collect();
+        while let Some(cell) = stack.pop() {
+            if !std::mem::replace(&mut reached[cell.index()], true) {
+                stack.extend(self.cell_neighbors(cell));
+            }
+        }
+        faults.extend(self.cells().find(|cell| !reached[cell.index()]).map(TdsError::NotConnected));
+        let euler = self.euler_characteristic();
+        if euler != 1 + sign(self.dimension() as usize) {
+            faults.push(TdsError::Euler(euler));
+        }
+        faults
+    }
+
+    /// Returns the number of vertices, less that of edges, plus that of triangles, and so on; the infinite ones included.
+    /// A connected surface of genus `g` has `2 - 2 g`; a closed 3-manifold has 0. Assumes sound
+    /// [links](Self::check_links).
+    ///
+    /// # Complexity
+    /// Expected linear time.
+    pub fn euler_characteristic(&self) -> i64 {
+        let width = (self.dimension() + 1) as usize;
+        let mut faces = vec![HashSet::new(); width.saturating_sub(1)];
+        for cell in self.cells() {
+            let mut vertices = self.cell_vertices(cell).to_vec();
+            vertices.sort_unstable();
+            for subset in 1u32..(1 << width) - 1 {
+                if subset.count_ones() > 1 {
+                    let face: Vec<_> = (0..width).filter(|&k| subset >> k & 1 == 1).map(|k| vertices[k]).collect();
+                    faces[face.len() - 1].insert(face);
                 }
             }
         }
-        let sign = |k: usize| if k.is_multiple_of(2) { 1 } else { -1 };
         let middle: i64 = faces.iter().enumerate().skip(1).map(|(k, set)| sign(k) * set.len() as i64).sum();
-        let euler = self.vertex_count() as i64 + 1 + middle + sign(width - 1) * self.cell_count() as i64;
-        if euler != 1 + sign(width - 1) {
-            flaws.push(Flaw::Euler(euler));
+        let vertices = self.vertex_count() + usize::from(self.cell_of(VertexId::INFINITE).is_some());
+        match width {
+            0 | 1 => vertices as i64,
+            _ => vertices as i64 + middle + sign(width - 1) * self.cell_count() as i64,
         }
-        flaws
     }
+}
+
+/// Of faces of a dimension in the Euler characteristic.
+fn sign(dimension: usize) -> i64 {
+    if dimension.is_multiple_of(2) { 1 } else { -1 }
 }

@@ -23,7 +23,8 @@
 //! | all edges, or one by its ends | [`Tds::edges`], [`Tds::finite_edges`], [`Tds::edge`] |
 //! | the convex hull | [`Tds::hull`] |
 //! | what does not depend on where links are kept | [`Complex`] |
-//! | whether it is a sphere | [`Tds::check_links`], [`Tds::check_manifold`] |
+//! | a complex of one's own | [`Tds::from_cells`] |
+//! | whether it is a manifold, or a sphere | [`Tds::check_links`], [`Tds::check_manifold`], [`Tds::check_sphere`] |
 //!
 //! Removed cells and vertices leave holes in the numbers, which the next ones fill: an array indexed by
 //! vertex has [`Tds::vertex_slots`] places, one by cell [`Tds::cell_slots`]. Numbers stay within 32 bits:
@@ -31,8 +32,10 @@
 //! Readers cannot change who is whose neighbor: that is left to
 //! the [kinds of triangulations](crate#reexports).
 
+mod build;
 mod check;
 mod complex;
+mod error;
 mod id;
 mod plane;
 #[cfg(feature = "serde")]
@@ -40,13 +43,13 @@ mod rebuild;
 mod remove;
 mod zone;
 
-pub use check::Flaw;
 pub use complex::Complex;
 pub(crate) use complex::{Star, edge, edges_around, face, vertices, vertices_around};
+pub use error::TdsError;
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 #[cfg(feature = "serde")]
 pub(crate) use rebuild::Parts;
-pub use zone::Zone;
+pub(crate) use zone::Zone;
 
 /// The vertices and neighbors of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,7 +110,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// A full-dimensional complex, given as its cells and a cell of each vertex; the vertices are numbered from 0 and
     /// all in use.
-    pub(crate) fn from_cells(links: Vec<Links<N>>, vertex_cell: Vec<CellId>, infinite_cell: CellId) -> Self
+    pub(crate) fn from_links(links: Vec<Links<N>>, vertex_cell: Vec<CellId>, infinite_cell: CellId) -> Self
     where
         V: Default,
     {
@@ -140,6 +143,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             detached: self.detached,
             infinite_cell: self.infinite_cell,
         }
+    }
+
+    /// Returns the same complex with these payloads of cells, asked for in order of their numbers. Linear time.
+    pub fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Tds<N, V, D> {
+        self.map_cell_data(|cell, _| data(cell))
     }
 
     /// The same complex with other payloads, of all cells in order of their numbers, given those that they had.

@@ -1,8 +1,8 @@
-//! A complex from the vertices of its cells alone: who is whose neighbor follows from the facets that they share.
+//! A complex that was saved: its cells without their numbers and neighbors, and the numbers of vertices.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
-use super::{CellId, Flaw, Links, Tds, VertexId};
+use super::{Tds, TdsError, VertexId};
 
 /// What a complex is, but for the numbers of its cells.
 pub(crate) struct Parts<V, C> {
@@ -40,63 +40,21 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     ///
     /// # Errors
     /// A cell with a vertex that is not there or is there twice, or with a facet that is not in two cells; a free
-    /// number that is not free, or told twice.
+    /// number that is not free, or given twice.
     ///
     /// # Complexity
     /// Linear.
-    pub(crate) fn from_parts(parts: Parts<V, C>) -> Result<Self, Vec<Flaw>> {
+    pub(crate) fn from_parts(parts: Parts<V, C>) -> Result<Self, TdsError> {
         let Parts { dimension, cells, cell_data, vertex_data, free } = parts;
-        let width = (dimension + 1) as usize;
-        let mut tds =
-            Tds { dimension, cell_data, vertex_cell: vec![CellId::NONE; vertex_data.len()], vertex_data, ..Tds::new() };
-        tds.links = vec![Links::UNUSED; tds.cell_data.len()];
-        let exists = |v: VertexId| v == VertexId::INFINITE || v.index() < tds.vertex_cell.len();
-        for (k, vertices) in cells.chunks_exact(width.max(1)).enumerate() {
-            if let Some(&v) = vertices.iter().find(|&&v| !exists(v)) {
-                return Err(vec![Flaw::CellOfVertex(v)]);
-            }
-            tds.links[k].vertices[..width].copy_from_slice(vertices);
-        }
-        for k in 0..tds.links.len() {
-            for i in 0..width {
-                let vertex = tds.links[k].vertices[i];
-                tds.set_cell_of(vertex, CellId::new(k));
-            }
-        }
-        tds.link_by_facets(width)?;
-        let mut told = FxHashSet::default();
+        let mut tds = Self::unlinked(dimension, cell_data, vertex_data, &cells)?;
+        tds.link_by_facets()?;
+        let mut named = FxHashSet::default();
         let is_free = |v: VertexId| v.index() < tds.vertex_slots() && !tds.is_vertex(v);
-        if let Some(&wrong) = free.iter().find(|&&v| !is_free(v) || !told.insert(v)) {
-            return Err(vec![Flaw::CellOfVertex(wrong)]);
+        if let Some(&wrong) = free.iter().find(|&&v| !is_free(v) || !named.insert(v)) {
+            return Err(TdsError::CellOfVertex(wrong));
         }
         tds.unused_vertices = free;
         tds.detached = tds.detached_vertices().len();
-        let flaws = tds.check_links();
-        if flaws.is_empty() { Ok(tds) } else { Err(flaws) }
-    }
-
-    /// Makes cells neighbors across each facet that they share, which have to be two.
-    fn link_by_facets(&mut self, width: usize) -> Result<(), Vec<Flaw>> {
-        // A facet by its vertices in order; once it has both cells, nothing is left of the first.
-        let mut open: FxHashMap<[VertexId; N], Option<(CellId, usize)>> = FxHashMap::default();
-        let mut waiting = 0;
-        for cell in (0..self.links.len()).map(CellId::new) {
-            for i in 0..width {
-                let mut facet = self.links[cell.index()].vertices;
-                facet[i] = VertexId::NONE;
-                facet.sort_unstable();
-                match open.insert(facet, Some((cell, i))) {
-                    None => waiting += 1,
-                    Some(Some((beside, j))) => {
-                        self.link(cell, i, beside, j);
-                        open.insert(facet, None);
-                        waiting -= 1;
-                    }
-                    Some(None) => return Err(vec![Flaw::NotMutual(cell, i)]),
-                }
-            }
-        }
-        let alone = open.into_values().flatten().min().filter(|_| waiting > 0);
-        alone.map_or(Ok(()), |(cell, i)| Err(vec![Flaw::NotMutual(cell, i)]))
+        tds.check_links().into_iter().next().map_or(Ok(tds), Err)
     }
 }

@@ -6,7 +6,7 @@ use super::{CellId, Tds, VertexId, ccw, cw};
 ///
 /// Kept by its owner from one insertion to the next, so that no insertion allocates.
 #[derive(Debug, Clone, Default)]
-pub struct Zone {
+pub(crate) struct Zone {
     /// The cells.
     pub(crate) cells: Vec<CellId>,
     /// The facets on its border: the cell within, and the index of the facet in it. In dimension 2 they come
@@ -22,13 +22,13 @@ pub struct Zone {
 
 impl Zone {
     /// The cells in the zone.
-    pub fn cells(&self) -> &[CellId] {
+    pub(crate) fn cells(&self) -> &[CellId] {
         &self.cells
     }
 
     /// The facets around the zone: a cell within, and the index of the facet in it. In dimension 2 they come
     /// counter-clockwise, each where the one before ends; infinity may be between.
-    pub fn border(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
+    pub(crate) fn border(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
         self.border.iter().map(|&(cell, i)| (cell, i as usize))
     }
 

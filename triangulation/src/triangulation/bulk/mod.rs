@@ -142,7 +142,7 @@ where
     // The same type, as `N` is 3, which the compiler does not know.
     let faces: Box<dyn Any> = Box::new(faces);
     let tds = match (finished, faces.downcast::<Vec<Links<N>>>()) {
-        (Some(cells), Ok(faces)) => Some(Tds::from_cells(*faces, cells.of_vertices, cells.of_infinite)),
+        (Some(cells), Ok(faces)) => Some(Tds::from_links(*faces, cells.of_vertices, cells.of_infinite)),
         _ => None,
     };
     (points, tds)

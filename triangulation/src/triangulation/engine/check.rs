@@ -26,7 +26,7 @@ pub enum Level {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flaw {
     /// Level 1 or 2.
-    Structure(tds::Flaw),
+    Structure(tds::TdsError),
     /// Level 3: a cell that is flat or turned around.
     Orientation(CellId),
     /// Level 3: beyond facet `i` of this infinite cell the hull turns inwards.
@@ -80,10 +80,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// Checks up to the level, with exact predicates, and returns all flaws of the first level that has
     /// any. The law is that of a Delaunay triangulation wherever `passes` lets it act.
     pub(in super::super) fn flaws(&self, level: Level, passes: impl Fn(CellId, usize) -> bool) -> Vec<Flaw> {
-        let structure = |flaws: Vec<tds::Flaw>| flaws.into_iter().map(Flaw::Structure).collect::<Vec<_>>();
+        let structure = |flaws: Vec<tds::TdsError>| flaws.into_iter().map(Flaw::Structure).collect::<Vec<_>>();
         let checks: [(Level, &dyn Fn() -> Vec<Flaw>); 4] = [
             (Level::Links, &|| structure(self.tds.check_links())),
-            (Level::Manifold, &|| structure(self.tds.check_manifold())),
+            (Level::Manifold, &|| structure(self.tds.check_sphere())),
             (Level::Orientation, &|| self.check_orientation()),
             (Level::Law, &|| self.check_empty_spheres(&passes)),
         ];

@@ -89,10 +89,7 @@ impl<P, V, C: Copy + Default> Owned<P, V, C> {
         let cells = cells.collect::<Result<Vec<_>, _>>()?;
         let free = removed.into_iter().map(vertex).collect::<Result<Vec<_>, _>>()?;
         let parts = Parts { dimension, cells, cell_data, vertex_data, free };
-        let tds = Tds::from_parts(parts).map_err(|flaws| match flaws.first() {
-            Some(&flaw) => Damage::Flaw(Flaw::Structure(flaw)),
-            None => Damage::Shape("cells do not fit"),
-        })?;
+        let tds = Tds::from_parts(parts).map_err(|error| Damage::Flaw(Flaw::Structure(error)))?;
         let restored = Triangulation { geometry, tds, points, zone: Zone::default(), last: None };
         first(restored.flaws(Level::Orientation, |_, _| false))?;
         if restored.is_in_order_on_line() {

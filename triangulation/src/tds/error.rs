@@ -1,0 +1,95 @@
+use std::error::Error;
+use std::fmt;
+
+use super::{CellId, VertexId};
+
+/// What is wrong with a complex of cells.
+///
+/// A facet is given by a cell that has it and the index of the vertex opposite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TdsError {
+    /// There are more vertices or cells than 32-bit numbers can count: the limit is [`Id::LIMIT`](super::Id::LIMIT).
+    TooMany,
+    /// A cell names a vertex that does not exist, or names one twice.
+    Vertex {
+        /// The cell.
+        cell: CellId,
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// A cell names a neighbor that does not exist, or names one twice: then both have the same vertices.
+    Neighbor {
+        /// The cell.
+        cell: CellId,
+        /// The index of the neighbor.
+        facet: usize,
+    },
+    /// Only one cell has this facet; in a closed complex it is two.
+    OneCell {
+        /// The cell.
+        cell: CellId,
+        /// The index of the facet in it.
+        facet: usize,
+    },
+    /// Three or more cells have this facet; in a manifold it is two.
+    ThreeCells {
+        /// The third of the cells.
+        cell: CellId,
+        /// The index of the facet in it.
+        facet: usize,
+    },
+    /// The neighbor across a facet does not know this cell, or has another facet there.
+    NotMutual {
+        /// The cell.
+        cell: CellId,
+        /// The index of the facet in it.
+        facet: usize,
+    },
+    /// The cells on both sides of a facet are not oriented alike.
+    NotOriented {
+        /// One of the cells.
+        cell: CellId,
+        /// The index of the facet in it.
+        facet: usize,
+    },
+    /// The cell that a vertex names does not have it.
+    CellOfVertex(VertexId),
+    /// A vertex is in no cell.
+    Isolated(VertexId),
+    /// The link of a vertex is not a circle (where cells are triangles) or not a sphere (where they are tetrahedra).
+    Link(VertexId),
+    /// The complex is in several components, of which this cell is in another than the first.
+    NotConnected(CellId),
+    /// The numbers of vertices, edges and so on are not those of a sphere; the Euler characteristic is given.
+    Euler(i64),
+}
+
+impl fmt::Display for TdsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TdsError::TooMany => write!(f, "more than 2^32 - 3 vertices or cells"),
+            TdsError::Vertex { cell, vertex } => {
+                write!(f, "cell {cell:?} names vertex {vertex:?}, which does not exist, or names it twice")
+            }
+            TdsError::Neighbor { cell, facet } => {
+                write!(f, "neighbor {facet} of cell {cell:?} does not exist, or has the same vertices")
+            }
+            TdsError::OneCell { cell, facet } => write!(f, "facet {facet} of cell {cell:?} is in no other cell"),
+            TdsError::ThreeCells { cell, facet } => write!(f, "facet {facet} of cell {cell:?} is in two other cells"),
+            TdsError::NotMutual { cell, facet } => {
+                write!(f, "neighbor {facet} of cell {cell:?} does not share that facet")
+            }
+            TdsError::NotOriented { cell, facet } => {
+                write!(f, "cell {cell:?} and its neighbor {facet} are not oriented alike")
+            }
+            TdsError::CellOfVertex(vertex) => write!(f, "the cell of vertex {vertex:?} does not have it"),
+            TdsError::Isolated(vertex) => write!(f, "vertex {vertex:?} is in no cell"),
+            TdsError::Link(vertex) => write!(f, "the link of vertex {vertex:?} is not a circle or sphere"),
+            TdsError::NotConnected(cell) => write!(f, "cell {cell:?} is in a component of its own"),
+            TdsError::Euler(euler) => write!(f, "the Euler characteristic is {euler}, not that of a sphere"),
+        }
+    }
+}
+
+impl Error for TdsError {}
