@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use breakline::triangulation::geometry::{Plane, Space, Weighted};
 use breakline::triangulation::kernel::Adaptive;
 use breakline::triangulation::tds::{Tds, VertexId};
-use breakline::triangulation::{Blocked, Constrained, Delaunay, Level, Regular, Triangulation, Walls};
+use breakline::triangulation::{Basic, Blocked, Constrained, Delaunay, Level, Regular, Triangulation, Walls};
 use testkit::random::Random;
 
 type Point = [f64; 2];
@@ -27,7 +27,7 @@ fn basic_ones_grow_flip_and_shrink() {
     let mut random = Random(31);
     for _ in 0..400 {
         let side = 1 + random.below(6);
-        let mut t: Triangulation<Plane, 3> = Triangulation::new(Plane::default());
+        let mut t: Basic<Plane, 3> = Basic::new(Plane::default());
         for _ in 0..40 {
             match random.below(6) {
                 0..3 => _ = t.insert(tiny(&mut random, side)).unwrap(),
@@ -61,7 +61,7 @@ fn basic_ones_in_space() {
     let mut random = Random(32);
     for _ in 0..500 {
         let side = 1 + random.below(4);
-        let mut t: Triangulation<Space, 4> = Triangulation::new(Space::default());
+        let mut t: Basic<Space, 4> = Basic::new(Space::default());
         for _ in 0..25 {
             t.insert(tiny(&mut random, side)).unwrap();
             assert_eq!(t.check(Level::Law), []);
@@ -73,7 +73,7 @@ fn basic_ones_in_space() {
 #[test]
 fn payloads_are_inherited() {
     let mut random = Random(33);
-    let mut t: Triangulation<Plane, 3, (), u8> = Triangulation::new(Plane::default());
+    let mut t: Basic<Plane, 3, (), u8> = Basic::new(Plane::default());
     for p in [[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]] {
         t.insert(p).unwrap();
     }
@@ -177,7 +177,7 @@ fn a_grid_of_twenty() {
     let mut random = Random(35);
     let mut points: Vec<Point> = (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)]).collect();
     random.shuffle(&mut points);
-    let mut basic: Triangulation<Plane, 3> = Triangulation::new(Plane::default());
+    let mut basic: Basic<Plane, 3> = Basic::new(Plane::default());
     let mut delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
     let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
     for &p in &points {

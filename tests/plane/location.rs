@@ -9,7 +9,7 @@ use breakline::triangulation::kernel::{Adaptive, Lattice, Wide};
 use breakline::triangulation::num::Sign;
 use breakline::triangulation::tds::{Tds, VertexId};
 use breakline::triangulation::{
-    Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine, Triangulation,
+    Basic, Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine, Triangulation,
 };
 use testkit::random::Random;
 
@@ -259,8 +259,7 @@ fn same_wherever_led(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
     for round in 0..40 {
         let side = 2 + round % 12;
         let (mut t, mut led) = (Free::new(Plane::default()), Delaunay::<_, 3>::new(Led(sides)));
-        let (mut lazy, mut lazy_led) =
-            (Triangulation::<Plane, 3>::new(Plane::default()), Triangulation::new(Led(sides)));
+        let (mut lazy, mut lazy_led) = (Basic::<Plane, 3>::new(Plane::default()), Basic::new(Led(sides)));
         let mut hierarchy = Hierarchy::new(Led(sides));
         for _ in 0..side * side {
             let p = tiny(&mut random, side);

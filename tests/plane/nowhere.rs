@@ -9,8 +9,8 @@ use breakline::triangulation::kernel::{Exact, Kernel, Wide};
 use breakline::triangulation::refine::{Conformity, Domain, Quality, Region};
 use breakline::triangulation::tds::{CellId, VertexId};
 use breakline::triangulation::{
-    Buckets, Compact, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Hierarchy, JumpAndWalk, Level, LineId,
-    Locate, Location, Mark, Near, Passage, Regular, StraightLine, Triangulation, VoronoiEdge,
+    Basic, Buckets, Compact, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Hierarchy, JumpAndWalk, Level,
+    LineId, Locate, Location, Mark, Near, Passage, Regular, StraightLine, Triangulation, VoronoiEdge,
 };
 
 const SQUARE: [Point; 4] = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]];
@@ -252,7 +252,7 @@ fn from_as_far_as_numbers_go() {
 #[test]
 fn the_other_kinds() {
     for points in SETS {
-        let mut basic: Triangulation<Plane, 3> = Triangulation::new(Plane::default());
+        let mut basic: Basic<Plane, 3> = Basic::new(Plane::default());
         let mut walled: Constrained<Plane> = Constrained::new(Plane::default());
         for &p in points {
             basic.insert(p).unwrap();

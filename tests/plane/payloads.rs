@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use breakline::triangulation::geometry::{Geometry, Plane, Space, Weighted};
 use breakline::triangulation::tds::{CellId, VertexId};
 use breakline::triangulation::{
-    Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation, Walls,
+    Basic, Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation, Walls,
 };
 use testkit::random::Random;
 
@@ -147,7 +147,7 @@ fn cells_without_a_law_inherit_what_they_replace() {
     let mut dice = Random(4);
     let mut flips = 0;
     for _ in 0..400 {
-        let mut t: Triangulation<Plane, 3, (), u32> = Triangulation::new(Plane::default());
+        let mut t: Basic<Plane, 3, (), u32> = Basic::new(Plane::default());
         for _ in 0..25 {
             t = t.with_cell_data(another);
             let before = seen(&t);

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use breakline::triangulation::geometry::{Plane, Weighted};
 use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Constrained, Delaunay, Level, Regular, Triangulation};
+use breakline::triangulation::{Basic, Constrained, Delaunay, Level, Regular};
 use proptest::prelude::*;
 use serde_json::Value;
 use testkit::cells::by_vertices;
@@ -171,7 +171,7 @@ pub(crate) const PLACES: [&[[f64; 2]]; 7] = [
 #[test]
 fn damage_to_the_basic_and_delaunay_kinds_is_an_error() {
     for places in PLACES {
-        let mut basic: Triangulation<Plane, 3, u8> = Triangulation::new(Plane::default());
+        let mut basic: Basic<Plane, 3, u8> = Basic::new(Plane::default());
         let mut delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
         for &p in places {
             basic.insert_with(p, 7).unwrap();

@@ -3,7 +3,7 @@
 use breakline::triangulation::geometry::{Coordinates, Mapped, Plane, Steps, Terrain};
 use breakline::triangulation::kernel::{DotProduct, Exact, Kernel, Wide};
 use breakline::triangulation::tds::{CellId, VertexId};
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, OnCrossing, Triangulation};
+use breakline::triangulation::{Basic, ConstrainedDelaunay, Delaunay, OnCrossing, Triangulation};
 use testkit::random::Random;
 
 type Point = [f64; 2];
@@ -41,7 +41,7 @@ fn tiny_grids_from_each_vertex() {
 fn without_a_law() {
     let mut dice = Random(2);
     for _ in 0..600 {
-        let mut basic: Triangulation<Plane, 3> = Triangulation::new(Plane::default());
+        let mut basic: Basic<Plane, 3> = Basic::new(Plane::default());
         for _ in 0..dice.below(40) {
             basic.insert([0; 2].map(|_| dice.below(12) as f64)).unwrap();
         }

@@ -3,12 +3,12 @@
 //! A [geometry](crate::geometry::Geometry) says what a point is and answers questions about a few of them, with the arithmetic of a
 //! [kernel](crate::kernel). A [`Tds`](crate::tds::Tds) knows which cells are neighbors, and no coordinates. One engine,
 //! [`Triangulation`], joins them: it locates points, grows the zone that a new point is in conflict with, and replaces
-//! it by the point's star. It knows neither the dimension nor the law. The kinds are thin: they own an engine and lend
-//! it for reading only.
+//! it by the point's star. It knows neither the dimension nor the law. The kinds are thin: each owns an engine, and
+//! derefs to it for reading.
 //!
 //! | kind | law | |
 //! |---|---|---|
-//! | [`Triangulation`] | none: a point splits what it lies on | plane, space |
+//! | [`Basic`] | none: a point splits what it lies on | plane, space |
 //! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere | plane, space |
 //! | [`Regular`] | the same with weights; points of too little weight are hidden | plane |
 //! | [`Constrained`] | some edges are forced, and do not cross | plane |

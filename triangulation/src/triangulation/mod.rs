@@ -15,6 +15,7 @@ pub use bulk::spatial_order;
 pub use compact::{Compact, Damaged, Law};
 pub use engine::check::{Flaw, Level};
 pub use engine::embedded::{Embedded, PointOf};
+pub use kinds::basic::Basic;
 pub use kinds::constrained::{Blocked, Constrained};
 pub use kinds::constrained_delaunay::{ConstrainedDelaunay, Walls};
 pub use kinds::delaunay::Delaunay;
@@ -91,9 +92,41 @@ impl std::error::Error for Refused {}
 /// Two cells to a vertex must be numbered.
 const MAX_VERTICES: usize = VertexId::LIMIT / 2;
 
-/// Points and cells without a law of their own: the basic kind; and, for reading, what all kinds share.
+/// Points and cells, for reading: what all kinds share.
 ///
-#[derive(Debug, Clone)]
+/// Each kind derefs to it. It cannot be made, changed or copied but by its kind, which alone knows the law and what
+/// else has to follow a change. So it has no check of a law either: the kinds have, see
+/// [`Delaunay::check`]. A copy of a kind's view would let a point into cells that hold constraints:
+///
+/// ```compile_fail
+/// use breakline_triangulation::geometry::Plane;
+/// use breakline_triangulation::{ConstrainedDelaunay, Triangulation, Walls};
+///
+/// let constrained: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
+/// let copy: Triangulation<Plane, 3, (), Walls> = (*constrained).clone();
+/// ```
+///
+/// Only what is true of all kinds can be checked of the view:
+///
+/// ```compile_fail
+/// use breakline_triangulation::geometry::Plane;
+/// use breakline_triangulation::{Delaunay, Level, Triangulation};
+///
+/// let delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
+/// let view: &Triangulation<Plane, 3> = &delaunay;
+/// assert!(view.check(Level::Law).is_empty());
+/// ```
+///
+/// ```
+/// use breakline_triangulation::geometry::Plane;
+/// use breakline_triangulation::{Delaunay, Level, Triangulation};
+///
+/// let delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
+/// let view: &Triangulation<Plane, 3> = &delaunay;
+/// assert!(view.check_tiling().is_empty());
+/// assert!(delaunay.check(Level::Law).is_empty());
+/// ```
+#[derive(Debug)]
 pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
     geometry: G,
     tds: Tds<N, V, C>,
@@ -104,7 +137,39 @@ pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
     last: Option<CellId>,
 }
 
+impl<G: Geometry<N>, const N: usize, V, C> Triangulation<G, N, V, C> {
+    fn duplicate(&self) -> Self
+    where
+        G: Clone,
+        V: Clone,
+        C: Clone,
+    {
+        let Triangulation { geometry, tds, points, zone: _, last } = self;
+        Triangulation {
+            geometry: geometry.clone(),
+            tds: tds.clone(),
+            points: points.clone(),
+            zone: Zone::default(),
+            last: *last,
+        }
+    }
+}
+
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
+    fn new(geometry: G) -> Self {
+        Triangulation { geometry, tds: Tds::new(), points: Vec::new(), zone: Zone::default(), last: None }
+    }
+
+    fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Triangulation<G, N, V, D> {
+        self.map_cell_data(|cell, _| data(cell))
+    }
+
+    /// The same triangulation with payloads of cells that follow from those that were there.
+    fn map_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId, &C) -> D) -> Triangulation<G, N, V, D> {
+        let Triangulation { geometry, tds, points, zone, last } = self;
+        Triangulation { geometry, tds: tds.map_cell_data(data), points, zone, last }
+    }
+
     /// The geometry.
     pub fn geometry(&self) -> &G {
         &self.geometry

@@ -16,7 +16,7 @@ use layout::{CELL, HEADER, Header, Offsets};
 /// The law that a file claims for its triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
-    /// None: what the basic [`Triangulation`](crate::Triangulation) wrote.
+    /// None: what a [`Basic`](crate::Basic) or [`Regular`](crate::Regular) triangulation wrote.
     None = 0,
     /// That of [`Delaunay`](crate::Delaunay).
     Delaunay = 1,

@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use crate::geometry::{Crossing, Geometry};
 use crate::tds::{CellId, Tds, VertexId};
 
-use super::super::{Constrained, ConstrainedDelaunay, Delaunay, Triangulation, Walls};
+use super::super::{Basic, Constrained, ConstrainedDelaunay, Delaunay, Regular, Triangulation, Walls};
 use super::Law;
 use super::layout::{HEADER, Header, INFINITE, NONE, padded};
 
@@ -102,10 +102,20 @@ fn bits<C>(walls: &Walls<C>) -> u8 {
     (0..3).map(|i| u8::from(walls.has(i)) << i).sum()
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Triangulation<G, 3, V, C> {
+impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Basic<G, 3, V, C> {
     /// Writes the triangulation for [`Compact`](super::Compact) to read, without payloads. Numbers of vertices and
     /// cells stay as they are, unless some have been removed: then the gaps close. In small pieces: `out` is better
     /// buffered.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
+        write(&self.inner, Law::None, |_| 0, out)
+    }
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Regular<G, V, C> {
+    /// See [`Basic::write_compact`]; without the law, and without points that are hidden.
     ///
     /// # Errors
     /// Those of `out`.
@@ -115,7 +125,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Tri
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Delaunay<G, 3, V, C> {
-    /// See [`Triangulation::write_compact`]; with its law, which makes questions for what is nearest possible.
+    /// See [`Basic::write_compact`]; with its law, which makes questions for what is nearest possible.
     ///
     /// # Errors
     /// Those of `out`.
@@ -125,7 +135,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Del
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Constrained<G, V, C> {
-    /// See [`Triangulation::write_compact`]; with the constraints.
+    /// See [`Basic::write_compact`]; with the constraints.
     ///
     /// # Errors
     /// Those of `out`.
@@ -135,7 +145,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Con
 }
 
 impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize> ConstrainedDelaunay<G, V, C> {
-    /// See [`Triangulation::write_compact`]; with the constrained edges. What is known of their lines stays behind.
+    /// See [`Basic::write_compact`]; with the constrained edges. What is known of their lines stays behind.
     ///
     /// # Errors
     /// Those of `out`.

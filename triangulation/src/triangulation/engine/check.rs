@@ -91,6 +91,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         found.into_iter().find(|flaws| !flaws.is_empty()).unwrap_or_default()
     }
 
+    /// Checks that the cells tile the convex hull, with exact predicates: [`Level::Links`], [`Level::Manifold`] and
+    /// [`Level::Orientation`], which hold for every kind. The law is not checked: that is for `check` of the kind.
+    #[must_use]
+    pub fn check_tiling(&self) -> Vec<Flaw> {
+        self.flaws(Level::Orientation, |_, _| false)
+    }
+
     fn check_orientation(&self) -> Vec<Flaw> {
         let mut flaws = Vec::new();
         if !self.is_full() {

@@ -1,4 +1,5 @@
 use crate::geometry::{Geometry, in_sphere};
+use crate::num::Sign;
 use crate::tds::{CellId, Tds, ccw, cw};
 
 use super::super::{Triangulation, Walls};
@@ -66,6 +67,22 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 unsettled.extend([cell, beside]);
             }
         }
+    }
+
+    /// Returns whether the two triangles at the edge opposite vertex `i` of a cell form a strictly convex
+    /// quadrilateral.
+    pub fn is_flippable(&self, cell: CellId, i: usize) -> bool {
+        let tds = &self.tds;
+        if self.dimension() < 2 || i > 2 || !tds.is_used(cell) {
+            return false;
+        }
+        let beside = tds.neighbor(cell, i);
+        if tds.is_infinite(cell) || tds.is_infinite(beside) {
+            return false;
+        }
+        let [a, b, c] = [i, ccw(i), cw(i)].map(|k| self.point(tds.vertex(cell, k)));
+        let d = self.point(tds.vertex(beside, tds.index_of_neighbor(beside, cell)));
+        [[a, b, d], [a, d, c]].into_iter().all(|turn| self.geometry.orientation(turn) == Sign::Positive)
     }
 
     /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.

@@ -53,6 +53,21 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         vertex
     }
 
+    /// Whether a finite cell has the point inside or on its border, or an infinite one has its facet in the point's
+    /// sight or under it.
+    pub(in super::super) fn is_split_by(&self, cell: CellId, p: &G::Point) -> bool {
+        let vertices = self.tds.cell_vertices(cell);
+        match vertices.iter().position(|&v| v == VertexId::INFINITE) {
+            None => (0..vertices.len()).all(|i| self.side_of_facet(cell, i, p) != Sign::Negative),
+            Some(_) if vertices.len() == 2 => self.in_conflict(cell, p), // the end of a line
+            Some(infinite) => match self.side_of_facet(cell, infinite, p) {
+                Sign::Positive => true,
+                Sign::Zero => self.is_split_by(self.tds.neighbor(cell, infinite), p), // in the facet or beside it
+                Sign::Negative => false,
+            },
+        }
+    }
+
     /// Makes an added vertex part of the complex, given where its point is. The zone that its star replaces grows from
     /// there over the facets that `takes` accepts (asked with the cell within, the index of the facet, and the cell
     /// beyond); `data` says what the cells of the star inherit, from the cell that had a facet and the facet's index.

@@ -10,7 +10,7 @@ use super::super::lines::constrain::{Met, Scratch, Side};
 use super::super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 
 /// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
-/// basic [`Triangulation`]; where one lies on a constraint, it splits it.
+/// [`Basic`](crate::Basic) kind; where one lies on a constraint, it splits it.
 ///
 /// Payloads are inherited as those of [`ConstrainedDelaunay`](crate::ConstrainedDelaunay) are.
 ///
@@ -29,7 +29,7 @@ use super::super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 /// assert_eq!(t.constrain(v[2], v[3]), Ok(()));
 /// assert!(t.constrained_edges().eq([[v[2], v[3]]]));
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Constrained<G: Geometry<3>, V = (), C = ()> {
     pub(in super::super) inner: Triangulation<G, 3, V, Walls<C>>,
     pub(in super::super) scratch: Scratch,
@@ -62,6 +62,12 @@ impl<G: Geometry<3>, V, C> Deref for Constrained<G, V, C> {
 
     fn deref(&self) -> &Self::Target {
         &self.inner
+    }
+}
+
+impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Constrained<G, V, C> {
+    fn clone(&self) -> Self {
+        Constrained { inner: self.inner.duplicate(), scratch: Scratch::default() }
     }
 }
 
@@ -164,7 +170,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     /// Checks up to the level: that of the law is that each edge is constrained on both sides or on none.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
-        let mut flaws = self.inner.check(level);
+        let mut flaws = self.flaws(level.min(Level::Orientation), |_, _| false);
         if flaws.is_empty() && level == Level::Law {
             flaws.extend(self.one_sided_walls());
         }

@@ -99,7 +99,7 @@ impl<C: Default> Walls<C> {
 /// assert!(t.check(Level::Law).is_empty());
 /// # Ok::<(), breakline_triangulation::Refused>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct ConstrainedDelaunay<G: Crossing, V = (), C = ()> {
     pub(in super::super) inner: Triangulation<G, 3, V, Walls<C>>,
     /// Segments among collinear points, which no triangle can hold yet.
@@ -123,6 +123,22 @@ impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
 
     fn deref(&self) -> &Self::Target {
         &self.inner
+    }
+}
+
+impl<G: Crossing + Clone, V: Clone, C: Clone> Clone for ConstrainedDelaunay<G, V, C> {
+    fn clone(&self) -> Self {
+        ConstrainedDelaunay {
+            inner: self.inner.duplicate(),
+            waiting: self.waiting.clone(),
+            crossings: self.crossings.clone(),
+            left_out: self.left_out.clone(),
+            lines: self.lines.clone(),
+            rounding: self.rounding,
+            lent: self.lent.clone(),
+            was_tangled: self.was_tangled,
+            scratch: self.scratch.clone(),
+        }
     }
 }
 

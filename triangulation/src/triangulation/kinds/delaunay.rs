@@ -31,7 +31,7 @@ use super::super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk,
 /// assert_eq!(land.finite_cells().filter(|&cell| *land.tds().cell_data(cell) == "lake").count(), 3);
 /// # Ok::<(), breakline_triangulation::Refused>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Delaunay<G: Geometry<N>, const N: usize, V = (), C = ()> {
     pub(in super::super) inner: Triangulation<G, N, V, C>,
 }
@@ -41,6 +41,12 @@ impl<G: Geometry<N>, const N: usize, V, C> Deref for Delaunay<G, N, V, C> {
 
     fn deref(&self) -> &Self::Target {
         &self.inner
+    }
+}
+
+impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Delaunay<G, N, V, C> {
+    fn clone(&self) -> Self {
+        Delaunay { inner: self.inner.duplicate() }
     }
 }
 

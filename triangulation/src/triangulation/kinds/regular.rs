@@ -43,7 +43,7 @@ use super::super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatia
 /// ```
 ///
 /// Payloads of cells are kept as in [`Delaunay`](crate::Delaunay).
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Regular<G: Geometry<3>, V = (), C = ()> {
     inner: Triangulation<G, 3, V, C>,
     hidden: Hidden,
@@ -99,6 +99,12 @@ impl<G: Geometry<3>, V, C> Deref for Regular<G, V, C> {
 
     fn deref(&self) -> &Self::Target {
         &self.inner
+    }
+}
+
+impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Regular<G, V, C> {
+    fn clone(&self) -> Self {
+        Regular { inner: self.inner.duplicate(), hidden: self.hidden.clone() }
     }
 }
 

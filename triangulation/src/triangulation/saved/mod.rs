@@ -20,7 +20,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
 use super::lines::constrain::Scratch;
-use super::{Constrained, Delaunay, Flaw, Level, MAX_VERTICES, Refused, Regular, Triangulation, Walls};
+use super::{Basic, Constrained, Delaunay, Flaw, Level, MAX_VERTICES, Refused, Regular, Triangulation, Walls};
 
 /// What is saved. Written from slices, read into vectors.
 #[derive(Serialize, Deserialize)]
@@ -166,22 +166,20 @@ where
     saved.restore().and_then(finish).map_err(D::Error::custom)
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize
-    for Triangulation<G, 3, V, C>
-{
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Basic<G, 3, V, C> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
 }
 
-impl<'de, G, V, C> Deserialize<'de> for Triangulation<G, 3, V, C>
+impl<'de, G, V, C> Deserialize<'de> for Basic<G, 3, V, C>
 where
     G: Geometry<3, Point: Deserialize<'de>> + Default,
     V: Deserialize<'de>,
     C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        read(deserializer, |t: Self| t.has_no_hidden_points().map(|()| t))
+        read(deserializer, |inner| inner.has_no_hidden_points().map(|()| Basic { inner }))
     }
 }
 
