@@ -93,3 +93,58 @@ impl fmt::Display for TdsError {
 }
 
 impl Error for TdsError {}
+
+/// Why a complex was not edited. Nothing has changed then.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EditError {
+    /// The complex is not of full dimension `N - 1`.
+    NotFull,
+    /// More vertices or cells than 32-bit numbers can count: the limit is [`Id::LIMIT`](super::Id::LIMIT).
+    TooMany,
+    /// There is no such cell.
+    Cell(CellId),
+    /// There is no such facet.
+    Facet {
+        /// The cell.
+        cell: CellId,
+        /// Not the index of a vertex of it.
+        facet: usize,
+    },
+    /// There is no such vertex.
+    Vertex(VertexId),
+    /// There is no edge between these vertices.
+    Edge([VertexId; 2]),
+    /// A face has more cells around it than a flip takes.
+    Star {
+        /// How many there are.
+        cells: usize,
+    },
+    /// The face that a flip would make is in the complex already.
+    Exists,
+    /// Cells do not form a hole that a star can fill.
+    Hole,
+    /// The links of these vertices have more in common than the link of the edge between them.
+    Links([VertexId; 2]),
+}
+
+impl fmt::Display for EditError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            EditError::NotFull => write!(f, "the complex is not of full dimension"),
+            EditError::TooMany => write!(f, "more than 2^32 - 3 vertices or cells"),
+            EditError::Cell(cell) => write!(f, "there is no cell {cell:?}"),
+            EditError::Facet { cell, facet } => write!(f, "cell {cell:?} has no facet {facet}"),
+            EditError::Vertex(vertex) => write!(f, "there is no vertex {vertex:?}"),
+            EditError::Edge([a, b]) => write!(f, "there is no edge between vertices {a:?} and {b:?}"),
+            EditError::Star { cells } => write!(f, "{cells} cells have the face, more than a flip takes"),
+            EditError::Exists => write!(f, "the face that would be made exists already"),
+            EditError::Hole => write!(f, "the cells do not form a hole that the star of a vertex can fill"),
+            EditError::Links([a, b]) => {
+                write!(f, "the links of vertices {a:?} and {b:?} have more in common than the link of their edge")
+            }
+        }
+    }
+}
+
+impl Error for EditError {}

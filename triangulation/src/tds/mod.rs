@@ -24,17 +24,21 @@
 //! | the convex hull | [`Tds::hull`] |
 //! | what does not depend on where links are kept | [`Complex`] |
 //! | a complex of one's own | [`Tds::from_cells`] |
+//! | a split, and its inverse | [`Tds::split_cell`], [`Tds::split_facet`], [`Tds::split_edge`]; [`Tds::unsplit_cell`] |
+//! | a flip of a facet or edge, a collapse, the star of a hole | [`Tds::flip`], [`Tds::flip_edge`], [`Tds::collapse`], [`Tds::star_hole`] |
 //! | whether it is a manifold, or a sphere | [`Tds::check_links`], [`Tds::check_manifold`], [`Tds::check_sphere`] |
 //!
 //! Removed cells and vertices leave holes in the numbers, which the next ones fill: an array indexed by
 //! vertex has [`Tds::vertex_slots`] places, one by cell [`Tds::cell_slots`]. Numbers stay within 32 bits:
 //! there are at most 2^32 - 3 cells. Asking for what does not exist panics, like an index.
-//! Readers cannot change who is whose neighbor: that is left to
-//! the [kinds of triangulations](crate#reexports).
+//!
+//! A complex that stands alone is any closed manifold, built and edited by calls that check. The
+//! [kinds of triangulations](crate#reexports) have one that is a sphere, and only read access to it.
 
 mod build;
 mod check;
 mod complex;
+mod edit;
 mod error;
 mod id;
 mod plane;
@@ -45,7 +49,7 @@ mod zone;
 
 pub use complex::Complex;
 pub(crate) use complex::{Star, edge, edges_around, face, vertices, vertices_around};
-pub use error::TdsError;
+pub use error::{EditError, TdsError};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 #[cfg(feature = "serde")]
 pub(crate) use rebuild::Parts;

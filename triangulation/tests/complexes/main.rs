@@ -1,5 +1,6 @@
 //! Complexes that stand alone, of any genus: built from cells, and edited. Each result is judged by counting faces.
 
+mod edits;
 mod judge;
 mod shapes;
 

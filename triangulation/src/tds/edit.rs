@@ -1,0 +1,447 @@
+//! Edits of a complex that stands alone: splits, flips, stars of holes, collapses.
+//!
+//! Each checks first whether the complex stays a closed manifold of the same kind, and returns an [`EditError`] with
+//! nothing changed if not. They look at the cells around a few vertices; none depends on the size of the complex.
+//! Coordinates play no part: whether the result can be drawn with straight edges is for the caller to see.
+//!
+//! Where a cell is split, or a hole filled, each new cell has the payload of the old one that had the facet opposite the
+//! new vertex. Cells that a flip makes have the default payload. Those that a collapse leaves keep theirs.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::{CellId, EditError, Links, Tds, VertexId};
+
+/// A facet of a cell, or another face of it: its vertices in order, and `NONE` in the rest.
+type Face<const N: usize> = [VertexId; N];
+
+impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
+    /// Splits a cell into `N`, around a new vertex in it, and returns the vertex.
+    ///
+    /// ```text
+    ///          c                    c
+    ///         / \                  /|\
+    ///        /   \                / | \
+    ///       /     \     ->       /  v  \
+    ///      /       \            / /   \ \
+    ///     /         \          //       \\
+    ///    a-----------b        a-----------b
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no such cell, or numbers are used up.
+    ///
+    /// # Complexity
+    /// O(1).
+    pub fn split_cell(&mut self, cell: CellId, data: V) -> Result<VertexId, EditError> {
+        self.ensure_cell(cell)?;
+        self.fill(&[cell], data)
+    }
+
+    /// Splits the facet opposite vertex `i` of a cell, and with it the cells on both sides, around a new vertex on it;
+    /// returns the vertex. In a surface the facet is an edge.
+    ///
+    /// ```text
+    ///          c                    c
+    ///         / \                  /|\
+    ///        /   \                / | \
+    ///       /     \              /  |  \
+    ///      a-------b    ->      a---v---b
+    ///       \     /              \  |  /
+    ///        \   /                \ | /
+    ///          d                    d
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no such facet, or numbers are used up.
+    ///
+    /// # Complexity
+    /// O(1).
+    pub fn split_facet(&mut self, cell: CellId, i: usize, data: V) -> Result<VertexId, EditError> {
+        let beside = self.across(cell, i)?;
+        self.fill(&[cell, beside], data)
+    }
+
+    /// Splits the edge between two vertices, and with it all cells around it, at a new vertex on it; returns the vertex.
+    ///
+    /// ```text
+    ///      cells around a b, in space, seen along the edge; each becomes two, one from a to v and one from v to b
+    ///
+    ///       c-------d                 c-------d
+    ///        \  .  /                   \  .  /
+    ///         \ . /                     \ . /
+    ///          a b      ->             a  v  b
+    ///         / . \                     / . \
+    ///        e-----f                   e-----f
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no such edge, or numbers are used up.
+    ///
+    /// # Complexity
+    /// Linear in the degree of the first vertex.
+    pub fn split_edge(&mut self, ends: [VertexId; 2], data: V) -> Result<VertexId, EditError> {
+        let star = self.star_of_edge(ends)?;
+        self.fill(&star, data)
+    }
+
+    /// Replaces the cells of a hole by the star of a new vertex, one cell for each facet of the hole's border; returns the
+    /// vertex. Vertices in the hole that are not on its border are removed.
+    ///
+    /// ```text
+    ///      c-------d                c-------d
+    ///     / \     / \              / \     / \
+    ///    /   \   /   \            /    \ /    \
+    ///   b-----x-----e     ->     b------v------e
+    ///    \   / \   /              \    / \    /
+    ///     \ /   \ /                \ /     \ /
+    ///      a-----f                  a-------f
+    /// ```
+    ///
+    /// The hole is connected across facets. In a surface it is a disc. Among tetrahedra its border is a sphere; whether it is
+    /// a ball is not examined: what else it holds is lost.
+    ///
+    /// # Errors
+    /// If a cell does not exist or is given twice, if the hole is not such a one, or numbers are used up.
+    ///
+    /// # Complexity
+    /// Expected time linear in the number of cells of the hole.
+    pub fn star_hole(&mut self, cells: &[CellId], data: V) -> Result<VertexId, EditError> {
+        cells.iter().try_for_each(|&cell| self.ensure_cell(cell))?;
+        let hole: FxHashSet<CellId> = cells.iter().copied().collect();
+        let mut reached = FxHashSet::from_iter(cells.first().copied());
+        let mut stack: Vec<CellId> = cells.first().copied().into_iter().collect();
+        while let Some(cell) = stack.pop() {
+            let beside = self.links[cell.index()].neighbors;
+            stack.extend(beside.into_iter().filter(|&c| hole.contains(&c) && reached.insert(c)));
+        }
+        let border = self.border(cells);
+        let facets = border.iter().map(|&(cell, i)| self.facet(cell, i)).collect::<Vec<_>>();
+        let vertices: FxHashSet<VertexId> = cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
+        // Of a disc, by Euler's relation.
+        let is_disc = || vertices.len() * 2 == cells.len() + border.len() + 2;
+        if reached.len() != cells.len() || !is_sphere(&facets) || N == 3 && !is_disc() {
+            return Err(EditError::Hole);
+        }
+        self.fill(cells, data)
+    }
+
+    /// Replaces the facet opposite vertex `i` of a cell by the edge between the vertices on both sides: two triangles become
+    /// two others, two tetrahedra three. Returns the new cells.
+    ///
+    /// ```text
+    ///          c                    c
+    ///         / \                  /|\
+    ///        /   \                / | \
+    ///       /     \              /  |  \
+    ///      a-------b    ->      a   |   b
+    ///       \     /              \  |  /
+    ///        \   /                \ | /
+    ///          d                    d
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no such facet, if there is an edge between these vertices already, or numbers are used up.
+    ///
+    /// # Complexity
+    /// Linear in the degree of vertex `i`, to see whether there is such an edge.
+    pub fn flip(&mut self, cell: CellId, i: usize) -> Result<Vec<CellId>, EditError> {
+        let beside = self.across(cell, i)?;
+        let far = self.vertex(beside, self.index_of_neighbor(beside, cell));
+        let inner: Vec<VertexId> = (0..N).filter(|&k| k != i).map(|k| self.vertex(cell, k)).collect();
+        self.exchange(&inner, &[(cell, far), (beside, self.vertex(cell, i))])
+    }
+
+    /// Replaces an edge by the face that its cells have around it: two triangles become two others, as by
+    /// [`flip`](Self::flip), and three tetrahedra two, which is the inverse. Returns the new cells.
+    ///
+    /// ```text
+    ///      three tetrahedra, seen along their edge a b; then two, on both sides of the facet c d e
+    ///
+    ///            c                      c
+    ///           /|\                    / \
+    ///          / | \                  /   \
+    ///         / a b \       ->       /     \
+    ///        / /   \ \              /       \
+    ///       d---------e            d---------e
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no such edge, if it has more cells than that, if the new face exists already, or numbers are used up.
+    ///
+    /// # Complexity
+    /// Linear in the degrees of the first vertex and of one beside the edge.
+    pub fn flip_edge(&mut self, ends: [VertexId; 2]) -> Result<Vec<CellId>, EditError> {
+        let star = self.star_of_edge(ends)?;
+        self.exchange_star(&ends, star)
+    }
+
+    /// Removes a vertex that only `N` cells have, which become one: the inverse of [`split_cell`](Self::split_cell). Returns
+    /// the cell.
+    ///
+    /// ```text
+    ///          c                    c
+    ///         /|\                  / \
+    ///        / | \                /   \
+    ///       /  v  \     ->       /     \
+    ///      / /   \ \            /       \
+    ///     //       \\          /         \
+    ///    a-----------b        a-----------b
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no such vertex, if it has more cells, or if the new cell exists already.
+    ///
+    /// # Complexity
+    /// Linear in the degrees of the vertex and of one beside it.
+    pub fn unsplit_cell(&mut self, vertex: VertexId) -> Result<CellId, EditError> {
+        let star = self.star_of(vertex)?;
+        Ok(self.exchange_star(&[vertex], star)?[0])
+    }
+
+    /// Collapses the edge between two vertices: the first becomes the second, and the cells at the edge vanish.
+    ///
+    /// ```text
+    ///       d-------c              d-------c
+    ///      / \     / \              \     / \
+    ///     /   \   /   \              \   /   \
+    ///    e---from--into     ->   e-----into   |
+    ///     \   /   \   /              /   \   /
+    ///      \ /     \ /              /     \ /
+    ///       f-------g              f-------g
+    /// ```
+    ///
+    /// The complex keeps its topological type: the edge is collapsed if the links of its ends have nothing in
+    /// common but the link of the edge (Dey, Edelsbrunner, Guha and Nekhayev 1999).
+    ///
+    /// # Errors
+    /// If there is no such edge, or the links have more in common.
+    ///
+    /// # Complexity
+    /// Expected time linear in the degrees of both vertices.
+    pub fn collapse(&mut self, from: VertexId, into: VertexId) -> Result<(), EditError> {
+        let vanishing = self.star_of_edge([from, into])?;
+        let [star, other] = [self.star_of(from)?, self.star_of(into)?];
+        let common = self.faces_without(&vanishing, &[from, into]);
+        let of_into = self.faces_without(&other, &[into]);
+        if self.faces_without(&star, &[from]).iter().any(|face| of_into.contains(face) && !common.contains(face)) {
+            return Err(EditError::Links([from, into]));
+        }
+        let mut changed: Vec<CellId> = star.into_iter().filter(|cell| !vanishing.contains(cell)).collect();
+        for cell in &changed {
+            let corners = &mut self.links[cell.index()].vertices;
+            corners.iter_mut().filter(|v| **v == from).for_each(|v| *v = into);
+        }
+        for &cell in &vanishing {
+            // Beyond the facets without `from`, and without `into`: these facets become one.
+            let beyond = [from, into].map(|v| {
+                let outside = self.neighbor(cell, self.index_of(cell, v).unwrap_or(0));
+                (outside, self.index_of_neighbor(outside, cell))
+            });
+            let [(a, i), (b, j)] = beyond;
+            self.link(a, i, b, j);
+            changed.push(a);
+        }
+        vanishing.into_iter().for_each(|cell| self.remove_cell(cell));
+        self.drop_vertex(from);
+        changed.into_iter().for_each(|cell| self.set_corners(cell, *self.corners(cell)));
+        Ok(())
+    }
+
+    fn ensure_cell(&self, cell: CellId) -> Result<(), EditError> {
+        if self.dimension + 1 != N as i32 {
+            return Err(EditError::NotFull);
+        }
+        if self.is_used(cell) { Ok(()) } else { Err(EditError::Cell(cell)) }
+    }
+
+    /// The cell across a facet.
+    fn across(&self, cell: CellId, i: usize) -> Result<CellId, EditError> {
+        self.ensure_cell(cell)?;
+        if i < N { Ok(self.neighbor(cell, i)) } else { Err(EditError::Facet { cell, facet: i }) }
+    }
+
+    /// The cells with a vertex.
+    fn star_of(&self, vertex: VertexId) -> Result<Vec<CellId>, EditError> {
+        let first = self.cell_of(vertex).ok_or(EditError::Vertex(vertex))?;
+        self.ensure_cell(first)?;
+        let (mut star, mut reached) = (vec![first], FxHashSet::from_iter([first]));
+        let mut next = 0;
+        while next < star.len() {
+            let links = self.links[star[next].index()];
+            next += 1;
+            let beside = links.vertices.into_iter().zip(links.neighbors);
+            star.extend(beside.filter(|&(v, cell)| v != vertex && reached.insert(cell)).map(|(_, cell)| cell));
+        }
+        Ok(star)
+    }
+
+    /// The cells with an edge.
+    fn star_of_edge(&self, [a, b]: [VertexId; 2]) -> Result<Vec<CellId>, EditError> {
+        let mut star = self.star_of(a)?;
+        star.retain(|&cell| a != b && self.corners(cell).contains(&b));
+        if star.is_empty() { Err(EditError::Edge([a, b])) } else { Ok(star) }
+    }
+
+    /// All faces of cells that have none of these vertices.
+    fn faces_without(&self, cells: &[CellId], vertices: &[VertexId]) -> FxHashSet<Face<N>> {
+        let mut faces = FxHashSet::default();
+        for &cell in cells {
+            for subset in 1u32..1 << N {
+                let chosen = |k: usize| subset >> k & 1 == 1;
+                let corners = self.corners(cell);
+                if !(0..N).any(|k| chosen(k) && vertices.contains(&corners[k])) {
+                    let mut face = std::array::from_fn(|k| if chosen(k) { corners[k] } else { VertexId::NONE });
+                    face.sort_unstable();
+                    faces.insert(face);
+                }
+            }
+        }
+        faces
+    }
+
+    /// The facets of cells beyond which there is none of them.
+    fn border(&self, cells: &[CellId]) -> Vec<(CellId, usize)> {
+        let hole: FxHashSet<CellId> = cells.iter().copied().collect();
+        let facets = cells.iter().flat_map(|&cell| (0..N).map(move |i| (cell, i)));
+        facets.filter(|&(cell, i)| !hole.contains(&self.neighbor(cell, i))).collect()
+    }
+
+    fn facet(&self, cell: CellId, i: usize) -> Face<N> {
+        let mut facet = *self.corners(cell);
+        facet[i] = VertexId::NONE;
+        facet.sort_unstable();
+        facet
+    }
+
+    /// Whether so many cells more, and one vertex, can be numbered.
+    fn ensure_numbers(&self, cells: usize) -> Result<(), EditError> {
+        let new_slots = cells.saturating_sub(self.unused.len());
+        let has_vertex = !self.unused_vertices.is_empty() || self.vertex_cell.len() < VertexId::LIMIT;
+        if has_vertex && self.links.len() + new_slots <= CellId::LIMIT { Ok(()) } else { Err(EditError::TooMany) }
+    }
+
+    /// Replaces cells that form a ball by the star of a new vertex.
+    fn fill(&mut self, cells: &[CellId], data: V) -> Result<VertexId, EditError> {
+        let border = self.border(cells);
+        self.ensure_numbers(border.len())?;
+        let apex = self.add_vertex(data);
+        // Those in the hole that no cell will have.
+        let mut inner: FxHashSet<VertexId> = cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
+        // New cells meet in a facet for each ridge of the border; the first of both waits.
+        let mut waiting: FxHashMap<Face<N>, (CellId, usize)> = FxHashMap::default();
+        let new_cells: Vec<(Links<N>, C, usize)> = border
+            .iter()
+            .map(|&(cell, i)| {
+                let mut links = self.links[cell.index()];
+                links.vertices[i] = apex;
+                for vertex in &links.vertices {
+                    inner.remove(vertex);
+                }
+                (links, self.cell_data[cell.index()], self.index_of_neighbor(links.neighbors[i], cell))
+            })
+            .collect();
+        cells.iter().for_each(|&cell| self.remove_cell(cell));
+        for ((links, payload, back), (_, i)) in new_cells.into_iter().zip(border) {
+            let new = self.add_cell(Links::alone(links.vertices), payload);
+            self.link(new, i, links.neighbors[i], back);
+            for ridge in (0..N).filter(|&k| k != i) {
+                if let Some((other, k)) = waiting.insert(self.facet(new, ridge), (new, ridge)) {
+                    self.link(new, ridge, other, k);
+                }
+            }
+            links.vertices.iter().for_each(|&v| self.set_cell_of(v, new));
+        }
+        inner.into_iter().for_each(|vertex| self.drop_vertex(vertex));
+        Ok(apex)
+    }
+
+    /// Flips the face of these vertices, whose star is given.
+    fn exchange_star(&mut self, inner: &[VertexId], star: Vec<CellId>) -> Result<Vec<CellId>, EditError> {
+        if star.len() != N + 1 - inner.len() {
+            return Err(EditError::Star { cells: star.len() });
+        }
+        let around: FxHashSet<VertexId> = star.iter().flat_map(|&cell| *self.corners(cell)).collect();
+        let missing = |cell: CellId| around.iter().copied().find(|v| !self.corners(cell).contains(v));
+        let star: Vec<_> = star.iter().filter_map(|&cell| Some((cell, missing(cell)?))).collect();
+        self.exchange(inner, &star)
+    }
+
+    /// A bistellar flip (Pachner 1991): of `N + 1` vertices, the `inner` ones span a face, whose star is cells that
+    /// lack one of the others each. What comes instead is the cells that lack one of the inner vertices each.
+    ///
+    /// The new cell without `a` has the facets of the old ones that lay opposite `a`, and facets with all other new ones.
+    fn exchange(&mut self, inner: &[VertexId], star: &[(CellId, VertexId)]) -> Result<Vec<CellId>, EditError> {
+        let outer: Vec<VertexId> = star.iter().map(|&(_, missing)| missing).collect();
+        let around = self.star_of(outer[0])?;
+        if around.iter().any(|&cell| outer.iter().all(|v| self.corners(cell).contains(v))) {
+            return Err(EditError::Exists);
+        }
+        self.ensure_numbers(inner.len())?;
+        let (base, gained) = (*self.corners(star[0].0), star[0].1);
+        let place = |vertex: VertexId| base.iter().position(|&v| v == vertex).unwrap_or(0);
+        // What lies beyond the facet opposite `a` of each cell of the star, which has no number of its own yet.
+        let beyond = |tds: &Self, a: VertexId| -> Vec<(CellId, usize)> {
+            let facet = |cell| tds.neighbor(cell, tds.index_of(cell, a).unwrap_or(0));
+            star.iter().map(|&(cell, _)| (facet(cell), tds.index_of_neighbor(facet(cell), cell))).collect()
+        };
+        let outside: Vec<_> = inner.iter().map(|&a| beyond(self, a)).collect();
+        star.iter().for_each(|&(cell, _)| self.remove_cell(cell));
+        let mut new_cells: Vec<CellId> = Vec::with_capacity(inner.len());
+        for (&a, outside) in inner.iter().zip(outside) {
+            let mut vertices = base;
+            vertices[place(a)] = gained;
+            let new = self.add_cell(Links::alone(vertices), C::default());
+            for (&b, (cell, back)) in outer.iter().zip(outside) {
+                self.link(new, if b == gained { place(a) } else { place(b) }, cell, back);
+            }
+            for (&other, &old) in inner.iter().zip(&new_cells) {
+                self.link(new, place(other), old, place(a));
+            }
+            vertices.into_iter().for_each(|v| self.set_cell_of(v, new));
+            new_cells.push(new);
+        }
+        if let [vertex] = *inner {
+            self.drop_vertex(vertex);
+        }
+        Ok(new_cells)
+    }
+
+    /// Takes a vertex that no cell has any more out of the complex.
+    fn drop_vertex(&mut self, vertex: VertexId) {
+        if vertex == VertexId::INFINITE {
+            self.infinite_cell = CellId::NONE;
+        } else {
+            self.remove_vertex(vertex);
+        }
+    }
+}
+
+/// Whether facets form a circle or a sphere: each ridge is in two of them, all hang together across ridges, and a
+/// surface has the Euler characteristic of a sphere.
+fn is_sphere<const N: usize>(facets: &[Face<N>]) -> bool {
+    let mut on: FxHashMap<Face<N>, Vec<usize>> = FxHashMap::default();
+    let ridges = |facet: &Face<N>| {
+        let facet = *facet;
+        (0..N).filter(move |&k| facet[k] != VertexId::NONE).map(move |k| {
+            let mut ridge = facet;
+            ridge[k] = VertexId::NONE;
+            ridge.sort_unstable();
+            ridge
+        })
+    };
+    for (k, facet) in facets.iter().enumerate() {
+        ridges(facet).for_each(|ridge| on.entry(ridge).or_default().push(k));
+    }
+    let distinct: FxHashSet<&Face<N>> = facets.iter().collect();
+    if facets.is_empty() || distinct.len() != facets.len() || on.values().any(|sides| sides.len() != 2) {
+        return false;
+    }
+    let (mut reached, mut stack) = (FxHashSet::from_iter([0]), vec![0]);
+    while let Some(k) = stack.pop() {
+        stack.extend(ridges(&facets[k]).flat_map(|ridge| &on[&ridge]).filter(|&&k| reached.insert(k)));
+    }
+    let vertices: FxHashSet<VertexId> =
+        facets.as_flattened().iter().copied().filter(|&v| v != VertexId::NONE).collect();
+    // A surface has three edges to two triangles.
+    reached.len() == facets.len() && (N != 4 || 2 * vertices.len() == facets.len() + 4)
+}
