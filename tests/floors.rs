@@ -11,7 +11,7 @@ const SOURCES: [&str; 2] = ["src", "triangulation/src"];
 
 /// Rooms from the ground up. Rooms on one floor do not know each other, except as [`NEIGHBORS`] says.
 const FLOORS: [&[&str]; 7] = [
-    &["error", "num"],
+    &["error", "num", "parallel"],
     &["kernel", "crs", "data"],
     &["arrangement", "geometry", "tds"],
     &["triangulation"],

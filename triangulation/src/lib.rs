@@ -72,6 +72,13 @@
 //! A walk starts where the last insertion was, if nothing else is said. [`Near`] a cell, [`JumpAndWalk`], [`Buckets`]
 //! and [`Hierarchy`] say from where, [`StraightLine`] which way: a place has one answer with all of them.
 //!
+//! # Features
+//!
+//! | feature | default | effect |
+//! |---|---|---|
+//! | `parallel` | yes | bulk construction and arrangements run on all threads, by rayon; the results are the same without it |
+//! | `serde` | no | triangulations are saved and read with serde |
+//!
 //! # The rooms
 //!
 //! Each module uses only those above it in this list; what stands at the root, all.
@@ -97,6 +104,7 @@ pub mod geometry;
 pub mod guide;
 pub mod kernel;
 pub mod num;
+mod parallel;
 pub mod tds;
 mod triangulation;
 

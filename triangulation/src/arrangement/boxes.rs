@@ -3,7 +3,7 @@
 //! Boxes are sorted into vertical slabs and within each by height (sort-tile-recursive: Leutenegger, Lopez and
 //! Edgington 1997), and every [`FAN`] of them in a row get a box around them, and so on up.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::FEW;
 

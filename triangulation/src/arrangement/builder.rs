@@ -2,11 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::kernel::{Kernel, Orientation2};
 use crate::num::Sign;
+use crate::parallel::*;
 
 use super::boxes::{Box2, BoxTree};
 use super::pixel::Grid;

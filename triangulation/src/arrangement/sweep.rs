@@ -17,10 +17,9 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::marker::PhantomData;
 
-use rayon::prelude::*;
-
 use crate::kernel::{CrossingSide, Kernel, Orientation2};
 use crate::num::Sign;
+use crate::parallel::*;
 
 use super::order::Order;
 use super::{Place, Segment, lexicographic};
@@ -252,10 +251,9 @@ mod tests {
         let expected = sorted(crossing_pairs::<Adaptive>(&segments));
         let places: Vec<Place> = segments.as_flattened().to_vec();
         let ends: Vec<[u32; 2]> = (0..segments.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().expect("threads");
         for _ in 0..50 {
             let arranged =
-                pool.install(|| super::super::Arrangement::new(places.len(), |i| places[i as usize], &ends, 0.0));
+                on_threads(4, || super::super::Arrangement::new(places.len(), |i| places[i as usize], &ends, 0.0));
             assert!(arranged.crossings().iter().map(|crossing| crossing.segments).eq(expected.iter().copied()));
         }
     }

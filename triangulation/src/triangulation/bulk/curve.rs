@@ -1,6 +1,6 @@
 //! Where points lie on a space filling curve.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 /// A Morton curve (Morton 1966) through the box around some points of one to three coordinates.
 #[derive(Debug, Clone)]

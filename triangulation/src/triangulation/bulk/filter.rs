@@ -32,10 +32,9 @@
 //! What is not certain is asked of the geometry, out of line, but for points on a grid: see
 //! [`in_circle_slowly`](Seen::in_circle_slowly).
 
-use rayon::prelude::*;
-
 use crate::geometry::{Coordinates, in_sphere, in_tied_circle};
 use crate::num::{Sign, lattice};
+use crate::parallel::*;
 use crate::tds::VertexId;
 
 use super::Grain;

@@ -1,7 +1,6 @@
 //! From twins of edges to neighbors of faces.
 
-use rayon::prelude::*;
-
+use crate::parallel::*;
 use crate::tds::{CellId, Links, VertexId};
 
 use super::Grain;

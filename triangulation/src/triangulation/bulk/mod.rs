@@ -56,9 +56,8 @@ mod tests;
 
 use std::any::Any;
 
-use rayon::prelude::*;
-
 use crate::geometry::Coordinates;
+use crate::parallel::*;
 use crate::tds::{Links, Tds, VertexId};
 
 use curve::Curve;
@@ -190,7 +189,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
             let mut left = Range { seen, keys, first, faces: left, offset, grain };
             let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain };
-            rayon::join(|| left.build(lo, mid, arcs), || right.build(mid, hi, arcs))
+            join(|| left.build(lo, mid, arcs), || right.build(mid, hi, arcs))
         } else {
             (self.build(lo, mid, arcs), self.build(mid, hi, arcs))
         };

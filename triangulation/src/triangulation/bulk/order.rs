@@ -19,9 +19,8 @@
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
-use rayon::prelude::*;
-
 use crate::geometry::Coordinates;
+use crate::parallel::*;
 use crate::tds::VertexId;
 
 use super::super::{MAX_VERTICES, Refused};
@@ -263,7 +262,7 @@ fn distribute<A: AsRef<[f64]>>(
     let records: Vec<AtomicU64> =
         (0..count).into_par_iter().with_min_len(grain.points).map(|_| AtomicU64::new(0)).collect();
 
-    let chunk = count.div_ceil(rayon::current_num_threads()).max(grain.points);
+    let chunk = count.div_ceil(current_num_threads()).max(grain.points);
     let range = |c: usize| c * chunk..count.min((c + 1) * chunk);
     let counted = |c: usize| {
         // `PERF:` two of each, in turn, so that points in one square need not wait for each other.

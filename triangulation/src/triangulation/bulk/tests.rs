@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use crate::geometry::{Coordinates, Geometry, Plane};
 use crate::kernel::{Adaptive, Exact, Fast, InCircle, Kernel, Orientation2, Wide};
 use crate::num::Sign;
+use crate::parallel::on_threads;
 use crate::tds::{Links, VertexId};
 use crate::triangulation::{Delaunay, Level};
 
@@ -160,20 +161,15 @@ impl Coordinates<3> for Closed {
     }
 }
 
-fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
-}
-
 #[test]
 fn bulk_is_one_by_one() {
     let mut random = Random(7);
-    let pools = [1, 2].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap());
     for round in 0..4000 {
         let mut points = points(&mut random, round);
         let expected = one_by_one(Plane::<Adaptive>::default(), &points);
-        for pool in &pools {
+        for threads in [1, 2] {
             random.shuffle(&mut points);
-            let found = pool.install(|| in_bulk(Plane::<Adaptive>::default(), &points, TINY));
+            let found = on_threads(threads, || in_bulk(Plane::<Adaptive>::default(), &points, TINY));
             assert_eq!(found, expected, "{points:?}");
         }
         assert_eq!(in_bulk(Plane::<Adaptive>::default(), &points, Grain::default()), expected, "{points:?}");
@@ -280,7 +276,7 @@ fn the_numbers_do_not_depend_on_threads() {
     for round in 0..40 {
         let points: Vec<_> = (0..20).flat_map(|_| points(&mut random, round)).collect();
         let of = |threads: usize| {
-            with_threads(threads, || {
+            on_threads(threads, || {
                 let geometry = Plane::<Adaptive>::default();
                 let (sites, vertices) = Sites::of(&geometry, &points, TINY).unwrap();
                 let (points, tds) = build::<_, 3, (), ()>(&geometry, sites, TINY);
