@@ -23,6 +23,8 @@ pub enum Kind {
     Limit,
     /// The operating system failed.
     Io,
+    /// The caller canceled the work.
+    Canceled,
 }
 
 /// What went wrong, where, and what to do about it.
@@ -72,6 +74,12 @@ impl Error {
     #[cold]
     pub fn limit(message: impl Into<String>) -> Self {
         Self::new(Kind::Limit, message.into())
+    }
+
+    /// The caller canceled the work.
+    #[cold]
+    pub fn canceled() -> Self {
+        Self::new(Kind::Canceled, "canceled".to_owned())
     }
 
     /// Something below failed: the operating system, or a library that reads for us.

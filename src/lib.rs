@@ -60,6 +60,7 @@
 //! | [`data`] | plain records between formats and algorithms |
 //! | [`terrain`] | TIN, contours, DEM, hillshade |
 //! | [`io`] | formats: LAS, GeoTIFF, shapefile, PLY and others |
+//! | [`run`] | what a verb of the program does, from a request to a product |
 //! | `cli` | the command line; not for other programs |
 
 #[doc(hidden)] // the program as a function: no part of what the library promises
@@ -68,7 +69,7 @@ pub mod crs;
 pub mod data;
 pub mod error;
 pub mod io;
-mod run;
+pub mod run;
 pub mod terrain;
 
 pub use breakline_triangulation as triangulation;

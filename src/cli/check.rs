@@ -1,41 +1,24 @@
 use super::args::CheckArgs;
 use super::outputs::{self, Existing};
-use super::plan::{From, SurfacePlan};
-use super::summary::SurfaceFacts;
-use super::systems::Degrees;
+use super::plan::SurfacePlan;
+use super::summary::tell_surface;
 use super::talk::Talk;
-use super::{Exit, gather, open, print};
+use super::{Exit, print};
 use crate::error::Result;
+use crate::run::{self, CheckProduct, SurfaceFacts};
 
 /// Lists the flaws of a TIN, or of a mesh that may be none.
 pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
-    let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
-    // Nothing that is checked is a length.
-    plan.wish.degrees = Degrees::Allow;
+    let plan = SurfacePlan::resolve(&args.surface, talk)?;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
-    let (gathered, flaws) = match &plan.from {
-        From::Mesh(path) => {
-            if !open::keeps_lines(path) {
-                talk.note(format_args!(
-                    "{}: the format does not tell breaklines from other edges: the Delaunay law is not checked",
-                    path.display()
-                ));
-            }
-            gather::mesh_with_flaws(path, &plan.wish, talk)?
-        }
-        From::Points(_) | From::Raster(_) => {
-            let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
-            let flaws = open::flaws(gathered.surface.as_ref(), talk);
-            (gathered, flaws)
-        }
-    };
-    let surface = gathered.surface.as_ref();
+    let CheckProduct { product, flaws, .. } = run::check(&plan.request, &talk.context())?;
+    outputs.add_report(&plan, &product)?;
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }
-    gathered.made.tell(surface, talk);
+    tell_surface(&product, talk);
     outputs.commit(talk)?;
-    let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = SurfaceFacts::of(surface);
+    let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = SurfaceFacts::of(product.triangles()?);
     let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", breaklines + clips);
     match flaws.len() {
         0 => {

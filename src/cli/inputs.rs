@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::talk::Talk;
 use crate::error::{Error, Result};
-
-/// The name that stands for standard input.
-pub(super) const STDIN: &str = "-";
+use crate::run::STDIN;
 
 /// Expands globs and lists, in order. A file that is named twice is used once, with a note.
 ///
@@ -92,11 +90,6 @@ fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
         })?;
     }
     Ok(())
-}
-
-/// Whether an input can be read once only: the standard input, a pipe, a device.
-pub(super) fn is_read_once(path: &Path) -> bool {
-    path.as_os_str() == STDIN || std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
 fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {

@@ -1,34 +1,25 @@
 //! The command line: one file per verb.
 //!
-//! What is typed (`args`) and what it means (`plan`, `outputs`, `systems`) are kept apart.
-//! `gather` makes a surface of files, a verb makes something of the surface, and `open` is the
-//! one place that names readers, writers and verbs of the library. Data goes to files or stdout, talk
-//! (`talk`) to stderr.
+//! What is typed (`args`) and what it means (`plan`, `outputs`) are kept apart. A verb hands a request to
+//! [`run`](crate::run), writes the product and says what came out. Data goes to files or stdout, talk (`talk`) to
+//! stderr.
 
 mod args;
 mod check;
 mod classes;
 mod contour;
-mod crossings;
 mod dem;
 mod demo;
 mod escape;
-mod extents;
-mod gather;
 mod habits;
 mod hillshade;
 mod info;
 mod inputs;
-mod open;
+mod notices;
 mod outputs;
 mod plan;
-mod point_files;
 mod progress;
-mod raster;
-mod relabeled;
-mod roads;
 mod summary;
-mod systems;
 mod talk;
 mod tin;
 mod triangulate;
@@ -96,7 +87,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
             talk.error(&error);
             match error.kind() {
                 Kind::Usage => Exit::Usage,
-                Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io => Exit::Failed,
+                Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io | Kind::Canceled => Exit::Failed,
             }
         }
     }

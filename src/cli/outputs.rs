@@ -5,9 +5,16 @@ use std::path::{Path, PathBuf};
 use super::args::OutputArgs;
 use super::inputs::identity;
 use super::plan::SurfacePlan;
+use super::summary::describe;
 use super::talk::Talk;
+use crate::data::BlockSource;
 use crate::error::{Error, Result};
-use crate::io::{self, Destination, OutputSet};
+use crate::io::{self, Destination, Output, OutputSet};
+use crate::run::units::bytes;
+use crate::run::{CellProduct, SurfaceProduct};
+
+/// DEFLATE seldom makes heights smaller than by this factor.
+const BEST_COMPRESSION: f64 = 10.0;
 
 /// A file format that a verb can write.
 #[derive(Debug)]
@@ -44,9 +51,50 @@ pub(super) struct Outputs<F> {
 impl<F> Outputs<F> {
     /// The least space that is left on a disk that is written to, in bytes, and the file to be written there; where the
     /// system tells.
-    pub(super) fn free_space(&self) -> Option<(u64, &Path)> {
+    fn free_space(&self) -> Option<(u64, &Path)> {
         let files = self.targets.iter().map(|target| target.path.as_path()).filter(|path| !io::is_stream(path));
         files.filter_map(|path| Some((free_in(folder_of(path))?, path))).min_by_key(|(free, _)| *free)
+    }
+
+    /// Adds the table of crossings, where one was asked for.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(super) fn add_report(&self, plan: &SurfacePlan, product: &SurfaceProduct) -> Result<()> {
+        let (Some(path), Some(built)) = (&plan.crossing_report, &product.built) else { return Ok(()) };
+        let mut output = Output::create(path)?;
+        let written = built.line_names.write_table(&built.tin.crossing_heights, &mut output);
+        written.map_err(|e| Error::from(e).in_file(path))?;
+        self.set.add(output);
+        Ok(())
+    }
+
+    /// Makes sure that the disk has room for cells, and says how large the outputs will be that hold them. `cell_bytes`
+    /// tells what a cell takes before compression. Of a surface, only what it covers counts.
+    ///
+    /// # Errors
+    /// If they cannot fit, however well they are compressed.
+    pub(super) fn announce(&self, cells: &CellProduct, cell_bytes: impl Fn(&F) -> u64, talk: &Talk) -> Result<()> {
+        let frame = cells.frame();
+        let a_cell: u64 = self.targets.iter().map(|target| cell_bytes(&target.kind)).sum();
+        let of = |cells: f64| (cells * a_cell as f64) as u64;
+        let most = of(frame.width as f64 * frame.height as f64);
+        talk.line(format_args!("raster      {}, {} before compression", describe(&frame, cells.crs()), bytes(most)));
+        let Some((free, target)) = self.free_space().filter(|(free, _)| *free < most) else { return Ok(()) };
+        let likely = most.min(of(cells.covered()));
+        let room = format!("{} are free on the disk", bytes(free));
+        if likely as f64 / BEST_COMPRESSION > free as f64 {
+            return Err(Error::limit(format!(
+                "the cells with a value take {} before compression, {room}",
+                bytes(likely)
+            ))
+            .in_file(target)
+            .cure("choose larger cells (--resolution), a part (--te), or another disk"));
+        }
+        if likely > free {
+            talk.warning(format_args!("it may not fit: {} before compression, {room}", bytes(likely)));
+        }
+        Ok(())
     }
 
     /// Lets all files appear, and says which.
@@ -109,7 +157,7 @@ pub(super) fn resolve_with_report<F: Copy>(
     let outputs = resolve(args, formats, &plan.inputs)?;
     resolve_report(Existing::of(args.overwrite), plan)?;
     let is_target = |report: &&Path| outputs.targets.iter().any(|target| is_same(&target.path, report));
-    match plan.crossing_report().filter(is_target) {
+    match plan.crossing_report.as_deref().filter(is_target) {
         Some(report) => Err(Error::usage("the output is named twice").in_file(report)),
         None => Ok(outputs),
     }
@@ -120,7 +168,7 @@ pub(super) fn resolve_with_report<F: Copy>(
 /// # Errors
 /// As [`resolve`].
 pub(super) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<Outputs<()>> {
-    if let Some(report) = plan.crossing_report() {
+    if let Some(report) = &plan.crossing_report {
         require_free(report, find(report, REPORTS)?, existing, &plan.inputs)?;
     }
     Ok(Outputs { targets: Vec::new(), set: OutputSet::default() })
@@ -157,7 +205,7 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
         let missing = std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
         return Err(Error::from(missing).in_file(path).cure(format!("mkdir -p {}", folder.display())));
     }
-    for file in with_companions(path, format) {
+    for (file, _) in with_companions(path, format.extension, format.companions) {
         if inputs.iter().any(|input| identity(input) == identity(&file)) {
             return Err(Error::usage("the output is one of the inputs").in_file(&file).cure("give it another name"));
         }
@@ -182,24 +230,30 @@ pub(super) fn extensions<F>(formats: &[Format<F>]) -> Vec<&'static str> {
 pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &'static [Format<F>]) -> Vec<Target<F>> {
     let format = formats.iter().find(|format| format.extension == target.extension);
     let companions = format.map_or(&[][..], |format| format.companions);
-    let beside = companions.iter().map(|&extension| {
-        let path = target.path.with_extension(extension);
-        Target { path, kind: target.kind, extension }
-    });
-    beside.chain([target.clone()]).collect()
+    let mut files = with_companions(&target.path, target.extension, companions);
+    files.rotate_left(1);
+    files.into_iter().map(|(path, extension)| Target { path, kind: target.kind, extension }).collect()
 }
 
-fn with_companions<F>(path: &Path, format: &Format<F>) -> Vec<PathBuf> {
-    let beside = format.companions.iter().map(|companion| match companion.strip_prefix(format.extension) {
-        // What is put behind the whole name, whatever its case: `A.PNG.aux.xml`.
-        Some(behind) => {
-            let mut name = path.as_os_str().to_owned();
-            name.push(behind);
-            name.into()
-        }
-        None => path.with_extension(companion),
+/// A file and those that are written beside it, each with the extension of its format.
+fn with_companions(
+    path: &Path,
+    extension: &'static str,
+    companions: &'static [&'static str],
+) -> Vec<(PathBuf, &'static str)> {
+    let beside = companions.iter().map(|&companion| {
+        let path = match companion.strip_prefix(extension) {
+            // What is put behind the whole name, whatever its case: `A.PNG.aux.xml`.
+            Some(behind) => {
+                let mut name = path.as_os_str().to_owned();
+                name.push(behind);
+                name.into()
+            }
+            None => path.with_extension(companion),
+        };
+        (path, companion)
     });
-    std::iter::once(path.to_path_buf()).chain(beside).collect()
+    std::iter::once((path.to_path_buf(), extension)).chain(beside).collect()
 }
 
 fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {

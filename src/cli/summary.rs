@@ -1,101 +1,96 @@
 //! The summary that a run ends with.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::talk::Talk;
 use crate::crs::Crs;
-use crate::data::{self, Bounds, EdgeKind, Surface};
-use crate::run::units::{neat, number, thousandths};
+use crate::data::{Bounds, Columns, Frame};
+use crate::run::units::{Units, neat, number};
+use crate::run::{BuildReport, Model, SurfaceFacts, SurfaceProduct};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
-/// How a surface was made.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Made {
-    pub(super) files: usize,
-    pub(super) points: Option<SelectionReport>,
-    /// The columns that were taken of text.
-    pub(super) columns: Option<String>,
-    /// Lines read (parts and rings count one each).
-    pub(super) breaklines: usize,
-    pub(super) tin: Option<TinReport>,
-    pub(super) duplicates: DuplicateRule,
+/// Says what went into a surface, what was dropped and what came out.
+pub(super) fn tell_surface(product: &SurfaceProduct, talk: &Talk) {
+    let (triangles, extent) = match (&product.built, &product.model) {
+        (Some(built), _) => {
+            talk.line(format_args!("points      {}", points_line(&built.points, built.sources)));
+            if !built.columns.is_empty() {
+                talk.line(format_args!("columns     {}", columns_line(&built.columns)));
+            }
+            tell_tin(built, talk);
+            (format!("{}{}", built.tin.triangles, left_out(&built.tin)), built.tin.extent)
+        }
+        (None, Model::Raster(grid)) => {
+            talk.line(format_args!("raster      {}", describe(&grid.frame, grid.crs.as_ref())));
+            return tell_place(grid.extent(), grid.crs.as_ref(), talk);
+        }
+        (None, Model::Mesh(_) | Model::Tin(_)) => {
+            let Ok(surface) = product.triangles() else { return };
+            let facts = SurfaceFacts::of(surface);
+            for (name, edges) in [("breaklines", facts.breaklines), ("clip lines", facts.clips)] {
+                if edges > 0 {
+                    talk.line(format_args!("{name}  {edges} edges"));
+                }
+            }
+            talk.line(format_args!("vertices    {}", facts.vertices));
+            (facts.triangles.to_string(), facts.extent)
+        }
+    };
+    talk.line(format_args!("triangles   {triangles}"));
+    tell_place(extent, product.crs(), talk);
 }
 
-impl Made {
-    /// Says what went in, what was dropped and what came out.
-    pub(super) fn tell(&self, surface: &dyn Surface, talk: &Talk) {
-        if let Some(points) = &self.points {
-            talk.line(format_args!("points      {}", points_line(points, self.files)));
-        }
-        if let Some(columns) = &self.columns {
-            talk.line(format_args!("columns     {columns}"));
-        }
-        if let Some(tin) = &self.tin {
-            self.tell_tin(tin, talk);
-        }
-        let (triangles, extent) = match &self.tin {
-            Some(tin) => (tin.triangles, tin.extent),
-            None => {
-                let facts = SurfaceFacts::of(surface);
-                for (name, edges) in [("breaklines", facts.breaklines), ("clip lines", facts.clips)] {
-                    if edges > 0 {
-                        talk.line(format_args!("{name}  {edges} edges"));
-                    }
-                }
-                talk.line(format_args!("vertices    {}", facts.vertices));
-                (facts.triangles, facts.extent)
-            }
+fn tell_tin(built: &BuildReport, talk: &Talk) {
+    let tin = &built.tin;
+    if tin.duplicates > 0 {
+        let rule = match built.duplicates {
+            DuplicateRule::Lowest => "the lowest is kept",
+            DuplicateRule::Highest => "the highest is kept",
+            DuplicateRule::Mean => "their mean is taken",
+            DuplicateRule::First => "the first is kept",
+            DuplicateRule::Last => "the last is kept",
         };
-        talk.line(format_args!("triangles   {triangles}{}", self.left_out()));
-        tell_place(extent, surface.crs(), talk);
+        talk.line(format_args!("            {} at the place of another point ({rule})", tin.duplicates));
     }
-
-    /// The box around the surface that was made.
-    pub(super) fn extent(&self, surface: &dyn Surface) -> Bounds {
-        self.tin.as_ref().map_or_else(|| SurfaceFacts::of(surface).extent, |tin| tin.extent)
+    if tin.points_on_breaklines > 0 {
+        let count = tin.points_on_breaklines;
+        talk.line(format_args!("            {count} at a breakline's vertex (whose height is taken)"));
     }
-
-    fn tell_tin(&self, tin: &TinReport, talk: &Talk) {
-        if tin.duplicates > 0 {
-            let rule = match self.duplicates {
-                DuplicateRule::Lowest => "the lowest is kept",
-                DuplicateRule::Highest => "the highest is kept",
-                DuplicateRule::Mean => "their mean is taken",
-                DuplicateRule::First => "the first is kept",
-                DuplicateRule::Last => "the last is kept",
-            };
-            talk.line(format_args!("            {} at the place of another point ({rule})", tin.duplicates));
-        }
-        if tin.points_on_breaklines > 0 {
-            let count = tin.points_on_breaklines;
-            talk.line(format_args!("            {count} at a breakline's vertex (whose height is taken)"));
-        }
-        if self.breaklines > 0 {
-            let crossings = match tin.crossings {
-                0 => String::new(),
-                n => format!(", {n} crossings between vertices"),
-            };
-            let (lines, edges, vertices) = (self.breaklines, tin.constrained_edges, tin.breakline_vertices);
-            talk.line(format_args!("breaklines  {lines} in, {edges} edges out, {vertices} vertices{crossings}"));
-        }
-        let parts = [
-            (tin.vertices_beyond_max_edge, "left out with triangles at the rim"),
-            (tin.vertices_clipped, "clipped"),
-            (tin.vertices_cut, "added by the clip"),
-        ];
-        talk.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
-        if tin.clip_edges > 0 {
-            talk.line(format_args!("clip lines  {} edges", tin.clip_edges));
-        }
+    if built.breaklines > 0 {
+        let crossings = match tin.crossings {
+            0 => String::new(),
+            n => format!(", {n} crossings between vertices"),
+        };
+        let (lines, edges, vertices) = (built.breaklines, tin.constrained_edges, tin.breakline_vertices);
+        talk.line(format_args!("breaklines  {lines} in, {edges} edges out, {vertices} vertices{crossings}"));
     }
+    let parts = [
+        (tin.vertices_beyond_max_edge, "left out with triangles at the rim"),
+        (tin.vertices_clipped, "clipped"),
+        (tin.vertices_cut, "added by the clip"),
+    ];
+    talk.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
+    if tin.clip_edges > 0 {
+        talk.line(format_args!("clip lines  {} edges", tin.clip_edges));
+    }
+}
 
-    fn left_out(&self) -> String {
-        let Some(tin) = &self.tin else { return String::new() };
-        listed(&[
-            (tin.faces_beyond_max_edge, "with long edges at the rim left out"),
-            (tin.faces_clipped, "clipped"),
-            (tin.faces_cut, "cut"),
-        ])
+fn left_out(tin: &TinReport) -> String {
+    listed(&[
+        (tin.faces_beyond_max_edge, "with long edges at the rim left out"),
+        (tin.faces_clipped, "clipped"),
+        (tin.faces_cut, "cut"),
+    ])
+}
+
+/// The columns that were taken of text: "x 3, y 2, z 4", and of how many files if they differ.
+fn columns_line(columns: &[(Columns, u64)]) -> String {
+    match columns {
+        [(columns, _)] => columns.to_string(),
+        several => {
+            let texts = several.iter().map(|(columns, count)| format!("{columns} ({})", counted(*count, "file")));
+            texts.collect::<Vec<_>>().join("; ")
+        }
     }
 }
 
@@ -151,57 +146,37 @@ fn points_line(report: &SelectionReport, files: usize) -> String {
     text
 }
 
-/// Counts and extent of what is really part of a surface.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct SurfaceFacts {
-    /// Vertices that a face uses.
-    pub(super) vertices: usize,
-    pub(super) triangles: usize,
-    /// Edges on breaklines.
-    pub(super) breaklines: usize,
-    /// Edges on clip lines.
-    pub(super) clips: usize,
-    pub(super) extent: Bounds,
+/// `400 x 300 cells of 1 m`
+pub(super) fn describe(frame: &Frame, crs: Option<&Crs>) -> String {
+    let t = frame.transform;
+    let (across, down) = (t[1].hypot(t[4]), t[2].hypot(t[5]));
+    let units = Units::of(crs);
+    let size = if across == down {
+        units.length(across).to_string()
+    } else {
+        format!("{} by {}", number(across), units.length(down))
+    };
+    format!("{} x {} cells of {size}", frame.width, frame.height)
 }
 
-impl SurfaceFacts {
-    /// Goes over all faces once.
-    pub(super) fn of(surface: &dyn Surface) -> Self {
-        let mut is_used = vec![false; surface.vertex_count()];
-        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, breaklines: 0, clips: 0, extent: Bounds::default() };
-        data::faces(surface).for_each(|face| {
-            facts.triangles += 1;
-            for (i, kind) in face.edges.into_iter().enumerate() {
-                let count = match kind {
-                    EdgeKind::Breakline => &mut facts.breaklines,
-                    EdgeKind::Clip => &mut facts.clips,
-                    EdgeKind::Plain | EdgeKind::Rim => continue,
-                };
-                // An edge inside is met from both sides.
-                *count += usize::from(surface.neighbor(face.number, i).is_none_or(|other| face.number < other));
-            }
-            for vertex in face.corners {
-                if !std::mem::replace(&mut is_used[vertex as usize], true) {
-                    facts.vertices += 1;
-                    facts.extent.add(surface.position(vertex));
-                }
-            }
-        });
-        facts
-    }
+/// `1 point`, `2 points`
+pub(super) fn counted(count: u64, noun: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{ending}")
+}
+
+/// A number with three decimals at most.
+fn thousandths(value: f64) -> String {
+    neat((value * 1e3).round() / 1e3)
 }
 
 /// Says how long it took and how much memory it took.
 pub(super) fn tell_cost(start: Instant, talk: &Talk) {
-    let time = seconds(start.elapsed());
+    let time = format!("{:.2} s", start.elapsed().as_secs_f64());
     match peak_memory() {
         Some(bytes) => talk.line(format_args!("done in {time}, peak memory {} MB", number(bytes as f64 / 1e6))),
         None => talk.line(format_args!("done in {time}")),
     }
-}
-
-pub(super) fn seconds(time: Duration) -> String {
-    format!("{:.2} s", time.as_secs_f64())
 }
 
 /// The most memory that this process held, where the system tells.

@@ -9,8 +9,10 @@ use indicatif::{MultiProgress, ProgressDrawTarget};
 
 use super::args::TalkArgs;
 use super::escape;
-use super::progress::{Progress, Size};
+use super::notices;
+use super::progress::Bar;
 use crate::error::Error;
+use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
 
 /// How much is said.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -77,9 +79,9 @@ impl Talk {
         }
     }
 
-    /// Shows work on a terminal until what is returned is dropped.
-    pub(super) fn progress(&self, what: &'static str, size: Size) -> Progress {
-        Progress::new(&self.bars, what, size)
+    /// What a run needs: notices and progress are shown here.
+    pub(super) fn context(&self) -> Context<'_> {
+        Context { monitor: self, ..Context::default() }
     }
 
     fn once(&self, text: String) {
@@ -94,5 +96,22 @@ impl Talk {
         self.bars.suspend(|| {
             let _ = writeln!(std::io::stderr(), "{}", escape::line(text));
         });
+    }
+}
+
+impl Monitor for Talk {
+    fn start(&self, stage: Stage, size: Size) -> Box<dyn Progress> {
+        Box::new(Bar::new(&self.bars, stage, size))
+    }
+
+    fn notice(&self, notice: &Notice) {
+        let mut lines = notices::lines(notice).into_iter();
+        let first = lines.next().unwrap_or_default();
+        match notice.severity() {
+            Severity::Detail => self.detail(first),
+            Severity::Note => self.note(first),
+            Severity::Warning => self.warning(first),
+        }
+        lines.for_each(|line| self.line(line));
     }
 }

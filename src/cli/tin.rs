@@ -1,10 +1,11 @@
+use super::Exit;
 use super::args::TinArgs;
-use super::open;
 use super::outputs::{self, Format};
 use super::plan::SurfacePlan;
+use super::summary::tell_surface;
 use super::talk::Talk;
-use super::{Exit, gather};
 use crate::error::Result;
+use crate::run;
 
 pub(super) const FORMATS: &[Format<()>] = &[
     Format { extension: "ply", kind: (), companions: &[] },
@@ -15,19 +16,19 @@ pub(super) const FORMATS: &[Format<()>] = &[
 
 /// Builds a TIN and writes it as a mesh.
 pub(super) fn run(args: &TinArgs, talk: &Talk) -> Result<Exit> {
-    let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+    let plan = SurfacePlan::resolve(&args.surface, talk)?;
     let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
-    let gathered = gather::surface(&mut plan, &outputs.set, talk)?;
-    let surface = gathered.surface.as_ref();
+    let product = run::triangles(&plan.request, &talk.context())?;
+    outputs.add_report(&plan, &product)?;
     for target in &outputs.targets {
-        let written = open::write_mesh(target.within(&outputs.set), surface, talk)?;
+        let written = run::write_mesh(product.triangles()?, target.within(&outputs.set), &talk.context())?;
         outputs::tell_lost(&target.path, written.lost_edges, ".ply keeps them", talk);
         if let Some(([x, y, z], beside)) = written.origin {
             let (mesh, beside) = (target.path.display(), beside.display());
             talk.note(format_args!("{mesh}: coordinates are relative to {x} {y} {z}, as {beside} says"));
         }
     }
-    gathered.made.tell(surface, talk);
+    tell_surface(&product, talk);
     outputs.commit(talk)?;
     Ok(Exit::Done)
 }

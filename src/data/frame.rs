@@ -102,6 +102,17 @@ impl Frame {
         Frame { width, height, transform }.checked()
     }
 
+    /// The box around all cells, corners included; without heights.
+    pub fn extent(&self) -> Bounds {
+        let mut bounds = Bounds::default();
+        let (width, height) = (self.width as f64, self.height as f64);
+        for (column, row) in [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)] {
+            let [x, y] = self.to_map(column, row);
+            bounds.add([x, y, f64::NAN]);
+        }
+        bounds
+    }
+
     /// The frame itself, if it can be worked with.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 use rayon::prelude::*;
 
-use super::{Frame, Window};
+use super::{Bounds, Frame, Window};
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 
@@ -43,6 +43,17 @@ impl Grid {
         Ok(Grid { frame, crs: source.crs().cloned(), values })
     }
 
+    /// The box around all cells, with the lowest and the highest height if there is any.
+    ///
+    /// # Complexity
+    /// Linear.
+    pub fn extent(&self) -> Bounds {
+        let mut bounds = self.frame.extent();
+        let [x, y, _] = bounds.min;
+        self.values.iter().filter(|z| !z.is_nan()).for_each(|&z| bounds.add([x, y, z]));
+        bounds
+    }
+
     #[cold]
     fn too_short(&self) -> Error {
         let Frame { width, height, .. } = self.frame;
@@ -77,6 +88,20 @@ pub trait BlockSource: Sync {
 }
 
 impl<S: BlockSource + ?Sized> BlockSource for &S {
+    fn frame(&self) -> Frame {
+        (**self).frame()
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        (**self).crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        (**self).fill(window, out)
+    }
+}
+
+impl<S: BlockSource + ?Sized> BlockSource for Box<S> {
     fn frame(&self) -> Frame {
         (**self).frame()
     }

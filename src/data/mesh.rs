@@ -60,6 +60,11 @@ impl Surface for Mesh {
 }
 
 impl Mesh {
+    /// Changes the coordinate system; no coordinate changes.
+    pub fn set_crs(&mut self, crs: Option<Crs>) {
+        self.crs = crs;
+    }
+
     /// Links triangles to their neighbors. Clockwise faces are turned; vertices may be unused.
     ///
     /// A mesh is a surface: one height per place. Folds are found where faces meet in an edge, not

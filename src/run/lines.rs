@@ -7,16 +7,16 @@ use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
 
 /// A polygon in plan: its rings.
-pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
+pub(super) type Rings = Vec<Vec<[f64; 2]>>;
 
 /// A line of a layer, and where it was found.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Drawn {
+pub(super) struct Drawn {
     /// The position of its record, counted from 0 as GIS count feature ids.
-    pub(crate) fid: usize,
+    pub(super) fid: usize,
     /// Which part or ring of several, counted from 1.
-    pub(crate) part: Option<usize>,
-    pub(crate) points: Vec<[f64; 3]>,
+    pub(super) part: Option<usize>,
+    pub(super) points: Vec<[f64; 3]>,
 }
 
 /// The lines of a layer, and the rings of its polygons, each with a height at every vertex.
@@ -24,7 +24,7 @@ pub(crate) struct Drawn {
 /// # Errors
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
 /// record and the vertex, counted from 1.
-pub(crate) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
+pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
     let mut lines = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
         let parts = match shape {
@@ -46,7 +46,7 @@ pub(crate) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
 ///
 /// # Errors
 /// If there are none, a coordinate is not finite, or the lines leave a gap.
-pub(crate) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
+pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {

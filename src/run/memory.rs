@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::notice::Notice;
 use super::units::bytes;
 use crate::error::{Error, Result};
 
@@ -28,7 +29,7 @@ struct Left {
 ///
 /// # Errors
 /// Names the need, what there is, and the cure.
-pub(crate) fn require_for_points(count: usize) -> Result<()> {
+pub(super) fn require_for_points(count: usize) -> Result<()> {
     require(count as u64 * BYTES_A_POINT, &format!("a surface of {count} points"))
         .map_err(|e| e.cure("use fewer points: a part of the area (--bounds), a class (--class), or tiles one by one"))
 }
@@ -37,7 +38,7 @@ pub(crate) fn require_for_points(count: usize) -> Result<()> {
 ///
 /// # Errors
 /// As [`require_for_points`].
-pub(crate) fn require_for_cells(count: u64) -> Result<()> {
+pub(super) fn require_for_cells(count: u64) -> Result<()> {
     require(count.saturating_mul(8), &format!("a raster of {count} cells"))
         .map_err(|e| e.cure("use a part of it: gdal_translate -srcwin or -projwin cuts one out"))
 }
@@ -46,17 +47,17 @@ pub(crate) fn require_for_cells(count: u64) -> Result<()> {
 ///
 /// # Errors
 /// As [`require_for_points`].
-pub(crate) fn require_for_mesh(path: &Path) -> Result<()> {
+pub(super) fn require_for_mesh(path: &Path) -> Result<()> {
     let length = std::fs::metadata(path).map_or(0, |data| data.len());
     require(length.saturating_mul(BYTES_A_MESH_BYTE), &format!("a mesh in a file of {}", bytes(length)))
         .map_err(|e| e.in_file(path).cure("make it of fewer points, or in parts"))
 }
 
-/// What all of so many points would take, where that is more than there is.
-pub(crate) fn excess_of(points: u64) -> Option<String> {
+/// A notice if all of so many points would take more than there is.
+pub(super) fn excess_of(points: u64) -> Option<Notice> {
     let need = points.saturating_mul(BYTES_A_POINT_READ);
     let left = left().filter(|left| need > LITTLE && need > left.bytes)?;
-    Some(format!("about {}, and {} are left {}", bytes(need), bytes(left.bytes), left.of))
+    Some(Notice::LittleMemory { need, left: left.bytes, limit: left.of })
 }
 
 fn require(need: u64, what: &str) -> Result<()> {

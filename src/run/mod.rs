@@ -1,7 +1,100 @@
-//! What a verb does between reading and writing, without a command line.
+//! What a verb does between reading and writing: from a request to a product, without a command line.
+//!
+//! The program, bindings for other languages and viewers call this. A request is a struct of options, each with a
+//! documented default; a product is a value that the caller keeps, asks or writes.
+//!
+//! | verb | request | function | product |
+//! |---|---|---|---|
+//! | build or read a surface | [`SurfaceRequest`] | [`surface()`], [`triangles`] | [`SurfaceProduct`] |
+//! | write it as a mesh | | [`write_mesh`] | |
+//! | heights at the centers of cells | [`FrameOptions`] | [`dem`] | [`CellProduct`] |
+//! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
+//! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
+//! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
+//! | tell what is in a file | a path | [`facts()`] | [`Facts`] |
+//! | triangulate Triangle's files | [`TriangulateOptions`] | [`triangulate()`] | [`TriangulateProduct`] |
+//!
+//! # A DEM of points in memory
+//!
+//! ```
+//! use breakline::data::Bounds;
+//! use breakline::run::{self, Context, FrameOptions, Input, Source, SurfaceRequest, TinRequest};
+//!
+//! let points = [[0.0, 0.0, 1.0], [10.0, 0.0, 1.0], [10.0, 10.0, 3.0], [0.0, 10.0, 3.0]];
+//! let tin = TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() };
+//! let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+//!
+//! let context = Context::default(); // nothing is reported, nobody cancels
+//! let surface = run::triangles(&request, &context)?;
+//! let cells = run::dem(&surface, &FrameOptions { resolution: Some(5.0), ..FrameOptions::default() }, &context)?;
+//! let grid = cells.collect(&context)?;
+//! assert_eq!(grid.values, [2.5, 2.5, 1.5, 1.5]);
+//! # Ok::<(), breakline::Error>(())
+//! ```
+//!
+//! # A DEM of a file
+//!
+//! ```
+//! use breakline::run::{self, Context, FrameOptions, Notice, Source, SurfaceRequest};
+//!
+//! # fn main() -> breakline::Result<()> {
+//! # let folder = tempfile::tempdir()?;
+//! # let target = folder.path().join("dem.tif");
+//! let source = Source::of_files(&["fixtures/valley.laz".into()])?;
+//! let request = SurfaceRequest { source, ..SurfaceRequest::default() };
+//! let context = Context::default();
+//! let surface = run::triangles(&request, &context)?;
+//! assert!(surface.notices.contains(&Notice::GroundUsed));
+//!
+//! let cells = run::dem(&surface, &FrameOptions::default(), &context)?;
+//! let written = cells.write(target.as_path().into(), &context)?;
+//! assert!(written.valid > 0);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Progress, notices, cancellation
+//!
+//! Every function takes a [`Context`]: a [`Monitor`], which is told of progress and of everything that is assumed or
+//! looks odd (a typed [`Notice`]), and a flag that ends the work early. A canceled run returns an error of the kind
+//! [`Canceled`](crate::error::Kind::Canceled), and nothing is written.
 
-pub(crate) mod lines;
-pub(crate) mod memory;
-pub(crate) mod overlaps;
+mod cells;
+mod check;
+mod context;
+mod contour;
+mod crossings;
+mod extents;
+mod facts;
+mod frame;
+mod input;
+mod lines;
+mod memory;
+mod notice;
+mod open;
+mod overlaps;
+mod point_files;
 mod rings;
+mod surface;
+mod systems;
+mod tin;
+mod transforms;
+mod triangulate;
 pub(crate) mod units;
+mod watched;
+
+pub use cells::{CellProduct, HillshadeOptions, LightOptions, dem, hillshade};
+pub use check::{CheckProduct, FlawKind, LocatedFlaw, check};
+pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
+pub use contour::{ContourOptions, ContourProduct, contour};
+pub use crossings::LineNames;
+pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
+pub use frame::FrameOptions;
+pub use input::{Input, MemoryPoints, STDIN};
+pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity};
+pub use overlaps::Overlap;
+pub use surface::{Model, Source, SurfaceFacts, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
+pub use systems::{Degrees, SystemOptions};
+pub use tin::{BuildReport, EdgeLimit, TinRequest};
+pub use triangulate::{Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate};
+pub use units::Quantity;

@@ -15,16 +15,26 @@ use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 /// A place where the faces of a surface do not fit beside each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Overlap {
+pub enum Overlap {
     /// The edge opposite this corner of the face has no neighbor, and another such edge or its end lies on it.
-    Border { face: u32, corner: usize },
+    Border {
+        /// The face.
+        face: u32,
+        /// Its corner.
+        corner: usize,
+    },
     /// Near this place, faces lie over each other.
-    Covered { times: i64, near: [f64; 2] },
+    Covered {
+        /// How many.
+        times: i64,
+        /// In plan.
+        near: [f64; 2],
+    },
 }
 
 impl Overlap {
     /// The vertices at which it shows, if any.
-    pub(crate) fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
+    pub(super) fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         let Overlap::Border { face, corner } = *self else { return Vec::new() };
         surface.face(face).into_iter().flat_map(|corners| [corners[ccw(corner)], corners[cw(corner)]]).collect()
     }
@@ -46,7 +56,7 @@ impl std::fmt::Display for Overlap {
 ///
 /// # Complexity
 /// O(n log n) in the edges without a neighbor.
-pub(crate) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
+pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
     let sides = data::corners(surface).flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
     let border: Vec<(u32, [u32; 3], usize)> =
         sides.filter(|&(face, _, i)| surface.neighbor(face, i).is_none()).collect();

@@ -1,5 +1,7 @@
 //! Lengths and heights with their units.
 
+use std::fmt;
+
 use crate::crs::{Crs, CrsKind, Unit};
 
 /// Metres in a degree along a meridian, about: good enough to choose defaults with.
@@ -26,14 +28,14 @@ impl Units {
         Units { plan, height, is_angular }
     }
 
-    /// `100 m`
-    pub(crate) fn length(&self, value: f64) -> String {
-        with_unit(value, self.plan.as_ref())
+    /// A length in the plane.
+    pub(crate) fn length(&self, value: f64) -> Quantity {
+        Quantity { value, unit: self.plan.clone() }
     }
 
-    /// `1 ftUS`
-    pub(crate) fn height(&self, value: f64) -> String {
-        with_unit(value, self.height.as_ref())
+    /// A height.
+    pub(crate) fn height(&self, value: f64) -> Quantity {
+        Quantity { value, unit: self.height.clone() }
     }
 
     /// So many metres in units of the plan; the number itself where the unit is not known.
@@ -69,16 +71,28 @@ impl Units {
     }
 }
 
-fn with_unit(value: f64, unit: Option<&Unit>) -> String {
-    let value = number(value);
-    match unit.map(|unit| unit.name.as_str()) {
-        None if value == "1" => "1 unit".to_owned(),
-        None => format!("{value} units"),
-        Some("metre" | "meter") => format!("{value} m"),
-        Some("foot") => format!("{value} ft"),
-        Some("US survey foot") => format!("{value} ftUS"),
-        Some("degree") => format!("{value} degrees"),
-        Some(name) => format!("{value} {name}"),
+/// A length or a height with its unit, where that is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// The number.
+    pub value: f64,
+    /// Its unit; `None` where no coordinate system is known.
+    pub unit: Option<Unit>,
+}
+
+/// As `100 m`, `1 ftUS`, `12.5 units`: without what is beyond the second decimal.
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = number(self.value);
+        match self.unit.as_ref().map(|unit| unit.name.as_str()) {
+            None if value == "1" => f.write_str("1 unit"),
+            None => write!(f, "{value} units"),
+            Some("metre" | "meter") => write!(f, "{value} m"),
+            Some("foot") => write!(f, "{value} ft"),
+            Some("US survey foot") => write!(f, "{value} ftUS"),
+            Some("degree") => write!(f, "{value} degrees"),
+            Some(name) => write!(f, "{value} {name}"),
+        }
     }
 }
 
@@ -93,11 +107,6 @@ pub(crate) fn neat(value: f64) -> String {
     }
 }
 
-/// A number with three decimals at most.
-pub(crate) fn thousandths(value: f64) -> String {
-    neat((value * 1e3).round() / 1e3)
-}
-
 /// Two decimals for what is a measure of land, three digits for what is small, two for what is hardly there.
 pub(crate) fn number(value: f64) -> String {
     if value.abs() >= 1.0 || value == 0.0 {
@@ -110,12 +119,6 @@ pub(crate) fn number(value: f64) -> String {
         let scale = 10f64.powi(digits);
         format!("{}", (value * scale).round() / scale)
     }
-}
-
-/// `1 point`, `2 points`
-pub(crate) fn counted(count: u64, noun: &str) -> String {
-    let ending = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{ending}")
 }
 
 /// `12 kB`, `1.5 GB`
@@ -147,10 +150,10 @@ mod tests {
     #[test]
     fn a_hundred_metres_are_328_feet() {
         let feet = Units::of(Some(&crs(CrsKind::Projected, ("foot", 0.3048), None)));
-        assert_eq!(feet.length(feet.of_metres(100.0)), "328.08 ft");
+        assert_eq!(feet.length(feet.of_metres(100.0)).to_string(), "328.08 ft");
         assert_eq!(feet.disagreement(), None);
         let unknown = Units::of(None);
-        assert_eq!(unknown.length(unknown.of_metres(100.0)), "100 units");
+        assert_eq!(unknown.length(unknown.of_metres(100.0)).to_string(), "100 units");
     }
 
     #[test]
@@ -158,14 +161,14 @@ mod tests {
         let mixed =
             Units::of(Some(&crs(CrsKind::Projected, ("metre", 1.0), Some(("US survey foot", 1200.0 / 3937.0)))));
         assert_eq!(mixed.disagreement(), Some(("metre", "US survey foot")));
-        assert_eq!(mixed.height(2.5), "2.5 ftUS");
+        assert_eq!(mixed.height(2.5).to_string(), "2.5 ftUS");
     }
 
     #[test]
     fn degrees_have_heights_in_metres() {
         let degrees = Units::of(Some(&crs(CrsKind::Geographic, ("degree", 0.0174), None)));
         assert_eq!(degrees.disagreement(), Some(("degree", "metre")));
-        assert_eq!(degrees.length(degrees.of_metres(100.0)), "0.000898 degrees");
+        assert_eq!(degrees.length(degrees.of_metres(100.0)).to_string(), "0.000898 degrees");
     }
 
     #[test]

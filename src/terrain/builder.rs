@@ -1,3 +1,5 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
@@ -157,14 +159,16 @@ impl TinBuilder {
     /// # Complexity
     /// O(n log n) in practice; about 80 bytes a point beside the input.
     pub fn build(self) -> Result<Tin> {
-        self.build_named(&|line| format!("breakline {line}"))
+        self.build_named(&|line| format!("breakline {line}"), &AtomicBool::new(false))
     }
 
-    /// Makes the TIN; errors call a breakline what `name` says of its position among those that were added.
+    /// Like [`build`](TinBuilder::build), but ends early once `cancel` is set, and errors call a breakline what `name`
+    /// says of its position among those that were added.
     ///
     /// # Errors
-    /// Those of [`build`](TinBuilder::build).
-    pub fn build_named(mut self, name: &dyn Fn(usize) -> String) -> Result<Tin> {
+    /// Those of [`build`](TinBuilder::build), and one of the kind [`Canceled`](crate::error::Kind::Canceled).
+    pub fn build_named(mut self, name: &dyn Fn(usize) -> String, cancel: &AtomicBool) -> Result<Tin> {
+        let go_on = || if cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) };
         let mut report =
             TinReport { points: self.points.len(), breaklines: self.line_ends.len(), ..Default::default() };
         let geometry: Terrain = Terrain::default();
@@ -179,6 +183,7 @@ impl TinBuilder {
 
         // One vertex for each place, in spatial order.
         let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
+        go_on()?;
         let lines = lines_of(&line_vertices, &self.line_ends);
         let (mut triangulation, renumbered) =
             ConstrainedDelaunay::from_sorted_lines(geometry, vertices, &lines, self.on_crossing)
@@ -205,6 +210,7 @@ impl TinBuilder {
         if self.crossing_heights == CrossingRule::Refuse {
             refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
         }
+        go_on()?;
         let mut tin = Tin::new(triangulation, self.crs.take());
         let all = tin.triangulation.vertex_count();
         if let Some(limit) = self.max_edge {
@@ -217,6 +223,7 @@ impl TinBuilder {
             left = Some(if report.faces_beyond_max_edge > 0 { tin.count().old_vertices } else { all });
             (report.faces_clipped, report.faces_cut) = clip.apply(&mut tin)?;
         }
+        go_on()?;
         if let (Some(bounds), Some(window)) = (&self.bounds, &self.window) {
             report.uncertain = uncertain(&tin.triangulation, bounds, window, self.max_edge, tin.replaced());
         }

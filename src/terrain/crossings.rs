@@ -155,6 +155,7 @@ mod tests {
     use super::*;
     use crate::data::Surface;
     use crate::terrain::{Tin, TinBuilder};
+    use std::sync::atomic::AtomicBool;
 
     type Line<'a> = &'a [[f64; 3]];
 
@@ -226,7 +227,7 @@ mod tests {
             let mut builder = builder(&STAR);
             builder.crossing_heights = CrossingRule::Refuse;
             builder.crossing_tolerance = tolerance;
-            builder.build_named(&|line| format!("road {}", ["A", "B", "C"][line]))
+            builder.build_named(&|line| format!("road {}", ["A", "B", "C"][line]), &AtomicBool::new(false))
         };
         let message = "breaklines meet with different heights at 0 0: 1 of road A, 4 of road B, expected within 0.5";
         assert_eq!(refuse(0.5).unwrap_err().to_string(), message);

@@ -10,7 +10,7 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, Parser, Subcommand};
 
-pub(super) use parse::{Corners, EdgeLength, finite};
+pub(super) use parse::{EdgeLength, finite};
 pub(super) use reading::ReadArgs;
 pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
 pub(super) use switches::expand_switches;

@@ -33,12 +33,9 @@ impl FromStr for Corners {
 }
 
 impl Corners {
-    /// The box, as tall as can be, grown on all sides.
-    pub(in crate::cli) fn grown(self, by: f64) -> Bounds {
-        Bounds {
-            min: [self.min[0] - by, self.min[1] - by, f64::NEG_INFINITY],
-            max: [self.max[0] + by, self.max[1] + by, f64::INFINITY],
-        }
+    /// The box, unbounded in z.
+    pub(in crate::cli) fn bounds(self) -> Bounds {
+        Bounds { min: [self.min[0], self.min[1], f64::NEG_INFINITY], max: [self.max[0], self.max[1], f64::INFINITY] }
     }
 }
 

@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::parse::{Corners, altitude, finite, positive, smallest_angle};
 use super::{ReadArgs, SurfaceArgs};
+use crate::triangulation::OnCrossing;
 
 /// Where the result goes.
 #[derive(Debug, Clone, Args)]
@@ -154,6 +155,15 @@ pub(in crate::cli) enum OnCrossingArg {
     Split,
     /// End with an error that names both
     Reject,
+}
+
+impl From<OnCrossingArg> for OnCrossing {
+    fn from(arg: OnCrossingArg) -> Self {
+        match arg {
+            OnCrossingArg::Split => OnCrossing::Split,
+            OnCrossingArg::Reject => OnCrossing::Reject,
+        }
+    }
 }
 
 /// The arithmetic of the predicates.

@@ -13,12 +13,10 @@ use std::path::{Path, PathBuf};
 
 use self::sheet::Sheet;
 use super::args::InfoArgs;
-use super::open::{self, Content};
-use super::progress::Size;
 use super::talk::Talk;
 use super::{Exit, escape, inputs, print};
 use crate::error::Result;
-use crate::io::points::Options;
+use crate::run::{self, Facts};
 
 /// Tells what is in files. A file that cannot be read does not keep the others from being told.
 pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
@@ -29,8 +27,8 @@ pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
     let mut objects = Vec::new();
     for (i, path) in files.iter().enumerate() {
         let name = path.display().to_string();
-        let sheet = match sheet(path, options, talk) {
-            Ok(sheet) => sheet,
+        let sheet = match run::facts(path, options, &talk.context()) {
+            Ok(facts) => sheet(path, &facts),
             Err(error) => {
                 talk.error(&error.in_file(path));
                 exit = Exit::Failed;
@@ -77,17 +75,14 @@ fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
     });
 }
 
-fn sheet(path: &Path, options: Options, talk: &Talk) -> Result<Sheet> {
-    let read = |sheet: fn(&Path) -> Result<Sheet>| {
-        let _reading = talk.progress("reading", Size::Uncounted);
-        sheet(path)
-    };
-    match open::content(path) {
-        Content::Points => points::sheet(path, options, talk),
-        Content::Layer => read(layer::sheet),
-        Content::Raster => read(raster::sheet),
-        Content::Mesh => read(mesh::sheet),
-        Content::Picture => read(picture::sheet),
-        Content::Plane => read(plane::sheet),
+fn sheet(path: &Path, facts: &Facts) -> Sheet {
+    match facts {
+        Facts::Points(facts) => points::sheet(facts),
+        Facts::Layer(facts) => layer::sheet(facts),
+        Facts::Raster(facts) => raster::sheet(facts),
+        Facts::Mesh(facts) => mesh::sheet(path, facts),
+        Facts::Solid(solid) => mesh::of_solid(solid),
+        Facts::Picture(picture) => picture::sheet(picture),
+        Facts::Plane(facts) => plane::sheet(path, facts),
     }
 }

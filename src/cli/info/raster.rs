@@ -1,26 +1,21 @@
-use std::path::Path;
-
 use serde_json::{Value, json};
 
 use super::Sheet;
-use crate::cli::open;
-use crate::cli::raster::extent;
 use crate::data::Frame;
-use crate::error::Result;
+use crate::run::RasterFacts;
 use crate::run::units::neat;
 
-pub(super) fn sheet(path: &Path) -> Result<Sheet> {
-    let facts = open::raster_facts(path)?;
+pub(super) fn sheet(facts: &RasterFacts) -> Sheet {
     let frame = facts.frame;
-    let mut sheet = Sheet::with_warnings(facts.warnings);
+    let mut sheet = Sheet::with_warnings(facts.warnings.clone());
     sheet.silent("kind", "raster");
-    sheet.plain("format", facts.format);
-    if let Some(sample) = facts.sample {
-        sheet.plain("sample", sample);
+    sheet.plain("format", facts.format.as_str());
+    if let Some(sample) = &facts.sample {
+        sheet.plain("sample", sample.as_str());
     }
     sheet.row("size", format!("{} x {} cells", frame.width, frame.height), json!([frame.width, frame.height]));
     sheet.row("cell", cell(&frame), json!(frame.transform));
-    sheet.bounds(extent(&frame));
+    sheet.bounds(frame.extent());
     sheet.crs(facts.crs.as_ref());
     match facts.nodata {
         Some(nodata) if nodata.is_finite() => sheet.plain("nodata", nodata),
@@ -38,7 +33,7 @@ pub(super) fn sheet(path: &Path) -> Result<Sheet> {
         sheet.plain("min", low);
         sheet.plain("max", high);
     }
-    Ok(sheet)
+    sheet
 }
 
 pub(super) fn cell(frame: &Frame) -> String {

@@ -114,6 +114,18 @@ impl<'a> Destination<'a> {
         }
     }
 
+    /// Runs a writer and takes what it has written, unless it fails: also where a writer is stopped by its source, and
+    /// does not know it.
+    ///
+    /// # Errors
+    /// Those of the writer and of [`OutputSet::commit`].
+    pub(crate) fn put_whole<T>(self, write: impl FnOnce(Destination) -> Result<T>) -> Result<T> {
+        let own = OutputSet::default();
+        let written = write(Destination { set: Some(self.set.unwrap_or(&own)), ..self })?;
+        own.commit()?;
+        Ok(written)
+    }
+
     /// Takes an output that is complete.
     ///
     /// # Errors

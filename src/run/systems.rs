@@ -2,26 +2,31 @@
 
 use std::path::{Path, PathBuf};
 
-use super::talk::Talk;
+use super::context::Journal;
+use super::notice::Notice;
+use super::units::Units;
 use crate::crs::{Crs, CrsKind};
 use crate::error::{Error, Result};
-use crate::run::units::Units;
 
-/// What the user asked for.
+/// How coordinate systems of the input are brought together. By default all files that state a system state the same,
+/// files that state none are in it, and nothing is reprojected.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Wish {
-    /// Takes the place of what the files say.
-    pub(super) assign: Option<Crs>,
-    /// Everything is reprojected to this.
-    pub(super) target: Option<Crs>,
-    pub(super) degrees: Degrees,
+pub struct SystemOptions {
+    /// The system of all input, whatever the files state.
+    pub assign: Option<Crs>,
+    /// The system of the result: points and lines are reprojected to it, which needs the feature `proj`.
+    pub target: Option<Crs>,
+    /// What becomes of coordinates in degrees.
+    pub degrees: Degrees,
 }
 
-/// What to do about coordinates in degrees.
+/// What becomes of coordinates in degrees, which are no lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum Degrees {
+pub enum Degrees {
+    /// They are an error.
     #[default]
     Refuse,
+    /// They are taken as lengths.
     Allow,
 }
 
@@ -59,32 +64,20 @@ pub(super) struct Systems {
     pub(super) crs: Option<Crs>,
 }
 
-/// Parses what was typed for an option.
-pub(super) fn parse(option: &str, typed: Option<&str>) -> Result<Option<Crs>> {
-    let Some(text) = typed else { return Ok(None) };
-    Crs::from_user(text).map(Some).map_err(|e| {
-        let error = Error::usage(format!("{option} {text}: {e}"));
-        match e.cure_text() {
-            Some(cure) => error.cure(cure),
-            None => error,
-        }
-    })
-}
-
 /// Brings the systems of all files together.
 ///
 /// # Errors
 /// If two files state different systems, the result would be in degrees or geocentric, or there is
 /// nothing to reproject from.
-pub(super) fn reconcile(files: &[Stated], wish: &Wish, talk: &Talk) -> Result<Systems> {
-    let stated = assigned(files, wish, talk);
-    let systems = match &wish.target {
-        Some(target) => reproject(&stated, target, talk)?,
-        None => Systems { from: vec![None; stated.len()], crs: agree(&stated, talk)? },
+pub(super) fn reconcile(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
+    let stated = assigned(files, options, journal);
+    let systems = match &options.target {
+        Some(target) => reproject(&stated, target, journal)?,
+        None => Systems { from: vec![None; stated.len()], crs: agree(&stated, journal)? },
     };
     match &systems.crs {
-        Some(crs) => judge(crs, &stated, wish.degrees, talk)?,
-        None => talk.note("no coordinate system is stated: lengths are in the units of the data"),
+        Some(crs) => judge(crs, &stated, options.degrees, journal)?,
+        None => journal.add(Notice::NoSystem),
     }
     Ok(systems)
 }
@@ -93,22 +86,22 @@ pub(super) fn reconcile(files: &[Stated], wish: &Wish, talk: &Talk) -> Result<Sy
 ///
 /// # Errors
 /// As [`reconcile`].
-pub(super) fn reconcile_some(files: &[Option<Stated>], wish: &Wish, talk: &Talk) -> Result<Systems> {
+pub(super) fn reconcile_some(files: &[Option<Stated>], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
     let asked: Vec<Stated> = files.iter().flatten().cloned().collect();
-    let Systems { from, crs } = reconcile(&asked, wish, talk)?;
+    let Systems { from, crs } = reconcile(&asked, options, journal)?;
     let mut from = from.into_iter();
     let from = files.iter().map(|file| file.as_ref().and_then(|_| from.next().flatten())).collect();
     Ok(Systems { from, crs })
 }
 
-fn assigned(files: &[Stated], wish: &Wish, talk: &Talk) -> Vec<Stated> {
-    let Some(assign) = &wish.assign else { return files.to_vec() };
+fn assigned(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Vec<Stated> {
+    let Some(assign) = &options.assign else { return files.to_vec() };
     files
         .iter()
         .map(|file| {
             if let Some(crs) = file.crs.as_ref().filter(|crs| !crs.is_same(assign)) {
-                let path = file.path.display();
-                talk.note(format_args!("{path} states {crs}; {assign} is taken, as --a-srs says"));
+                let (stated, assigned) = (Box::new(crs.clone()), Box::new(assign.clone()));
+                journal.add(Notice::Reassigned { path: file.path.clone(), stated, assigned });
             }
             Stated { crs: Some(assign.clone()), ..file.clone() }
         })
@@ -116,7 +109,7 @@ fn assigned(files: &[Stated], wish: &Wish, talk: &Talk) -> Vec<Stated> {
 }
 
 /// The one system of all files that state any.
-fn agree(files: &[Stated], talk: &Talk) -> Result<Option<Crs>> {
+fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
     let mut known = files.iter().filter_map(|file| file.crs.as_ref().map(|crs| (file, crs)));
     let Some(mut best) = known.next() else { return Ok(None) };
     for (file, crs) in known {
@@ -130,10 +123,7 @@ fn agree(files: &[Stated], talk: &Talk) -> Result<Option<Crs>> {
     }
     let best = best.1;
     for file in files.iter().filter(|file| file.crs.is_none()) {
-        talk.note(format_args!(
-            "{} states no coordinate system; {best} is taken, as in the others",
-            file.path.display()
-        ));
+        journal.add(Notice::SystemOfOthers(file.path.clone(), Box::new(best.clone())));
     }
     Ok(Some(best.clone()))
 }
@@ -151,9 +141,9 @@ fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Erro
     .cure(format!("{REPROJECT}; or say with --a-srs CRS what all files are in"))
 }
 
-fn reproject(files: &[Stated], target: &Crs, talk: &Talk) -> Result<Systems> {
+fn reproject(files: &[Stated], target: &Crs, journal: &Journal) -> Result<Systems> {
     let mut from = Vec::with_capacity(files.len());
-    let common = if files.iter().any(|file| file.crs.is_none()) { agree(files, talk)? } else { None };
+    let common = if files.iter().any(|file| file.crs.is_none()) { agree(files, journal)? } else { None };
     for file in files {
         let Some(crs) = file.crs.as_ref().or(common.as_ref()) else {
             return Err(Error::unsupported("the file states no coordinate system to reproject from")
@@ -166,7 +156,7 @@ fn reproject(files: &[Stated], target: &Crs, talk: &Talk) -> Result<Systems> {
 }
 
 /// Refuses systems whose coordinates are no lengths in a plane.
-fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, talk: &Talk) -> Result<()> {
+fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, journal: &Journal) -> Result<()> {
     let file = files.iter().find(|file| file.crs.is_some());
     let in_file = |error: Error| match file {
         Some(file) => error.in_file(&file.path),
@@ -197,7 +187,7 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, talk: &Talk) -> Result<(
         _ => {}
     }
     if let Some((plan, height)) = Units::of(Some(crs)).disagreement() {
-        talk.note(format_args!("the plan is in units of the {plan}, heights are in units of the {height}"));
+        journal.add(Notice::DifferentUnits(plan.to_owned(), height.to_owned()));
     }
     Ok(())
 }
@@ -210,6 +200,7 @@ fn is_geojson(path: &Path) -> bool {
 mod tests {
     use super::*;
     use crate::crs::Unit;
+    use crate::run::context::Context;
 
     fn crs(code: u32, kind: CrsKind) -> Crs {
         let unit = Unit { name: "metre".to_owned(), factor: 1.0 };
@@ -235,20 +226,21 @@ mod tests {
             .collect()
     }
 
-    fn quiet() -> Talk {
-        Talk::new(&super::super::args::TalkArgs { quiet: true, verbose: false, threads: None })
+    fn quiet() -> Journal<'static> {
+        Journal::new(&Context::default())
     }
 
     #[test]
     fn a_file_without_a_system_takes_that_of_the_others() {
-        let systems = reconcile(&files(&[None, Some(25832), None]), &Wish::default(), &quiet()).unwrap();
+        let systems = reconcile(&files(&[None, Some(25832), None]), &SystemOptions::default(), &quiet()).unwrap();
         assert_eq!(systems.crs.unwrap().epsg, Some(25832));
         assert_eq!(systems.from, [None, None, None]);
     }
 
     #[test]
     fn two_systems_are_an_error_that_names_both_and_the_files() {
-        let error = reconcile(&files(&[None, Some(25832), Some(3005)]), &Wish::default(), &quiet()).unwrap_err();
+        let error =
+            reconcile(&files(&[None, Some(25832), Some(3005)]), &SystemOptions::default(), &quiet()).unwrap_err();
         let text = error.to_string();
         for part in ["f1", "EPSG:25832", "f2", "EPSG:3005"] {
             assert!(text.contains(part), "{text}");
@@ -256,27 +248,27 @@ mod tests {
     }
 
     #[test]
-    fn what_is_assigned_takes_the_place_of_what_is_stated() {
-        let wish = Wish { assign: Some(crs(1, CrsKind::Projected)), ..Wish::default() };
-        let systems = reconcile(&files(&[None, Some(25832), Some(3005)]), &wish, &quiet()).unwrap();
-        assert_eq!(systems.crs, wish.assign);
+    fn what_is_assigned_stands_for_what_is_stated() {
+        let options = SystemOptions { assign: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
+        let systems = reconcile(&files(&[None, Some(25832), Some(3005)]), &options, &quiet()).unwrap();
+        assert_eq!(systems.crs, options.assign);
     }
 
     #[test]
     fn a_target_makes_different_systems_one() {
-        let wish = Wish { target: Some(crs(25832, CrsKind::Projected)), ..Wish::default() };
-        let systems = reconcile(&files(&[Some(25832), Some(3005)]), &wish, &quiet()).unwrap();
-        assert_eq!(systems.crs, wish.target);
+        let options = SystemOptions { target: Some(crs(25832, CrsKind::Projected)), ..SystemOptions::default() };
+        let systems = reconcile(&files(&[Some(25832), Some(3005)]), &options, &quiet()).unwrap();
+        assert_eq!(systems.crs, options.target);
         assert_eq!(systems.from, [None, Some(crs(3005, CrsKind::Projected))]);
-        assert!(reconcile(&files(&[None]), &wish, &quiet()).is_err(), "nothing to reproject from");
-        assert!(reconcile(&files(&[None, Some(1), Some(2)]), &wish, &quiet()).is_err(), "which of the two?");
+        assert!(reconcile(&files(&[None]), &options, &quiet()).is_err(), "nothing to reproject from");
+        assert!(reconcile(&files(&[None, Some(1), Some(2)]), &options, &quiet()).is_err(), "which of the two?");
     }
 
     #[test]
     fn degrees_and_geocentric_are_refused() {
         let of = |kind, degrees| {
             let stated = [Stated { path: "f".into(), crs: Some(crs(1, kind)), role: Role::Ground }];
-            reconcile(&stated, &Wish { degrees, ..Wish::default() }, &quiet())
+            reconcile(&stated, &SystemOptions { degrees, ..SystemOptions::default() }, &quiet())
         };
         assert!(of(CrsKind::Geographic, Degrees::Refuse).unwrap_err().cure_text().unwrap().contains("--force-degrees"));
         assert!(of(CrsKind::Geographic, Degrees::Allow).is_ok());

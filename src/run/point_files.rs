@@ -1,19 +1,15 @@
 //! Files of points: opened, asked for their systems, then read.
 
-use std::path::{Path, PathBuf};
-
-use super::inputs::is_read_once;
-use super::open;
-use super::progress::Size;
-use super::roads::Roads;
+use super::context::{Journal, Size, Stage};
+use super::input::{Input, MemoryPoints};
+use super::notice::Notice;
 use super::systems::{Role, Stated};
-use super::talk::Talk;
+use super::transforms::Transforms;
+use super::{memory, open};
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, PointBatch, PointSource};
 use crate::error::{Error, Result};
 use crate::io::points::Options;
-use crate::run::memory;
-use crate::run::units::counted;
 use crate::terrain::{Classes, Selection};
 
 /// The class of ground points in LAS.
@@ -27,11 +23,34 @@ const ASK_EVERY: usize = 1 << 20;
 
 /// A file of points.
 struct PointFile {
+    input: Input<MemoryPoints>,
     stated: Stated,
     source: Option<Box<dyn PointSource + Send>>,
     count: Option<u64>,
     has_classes: bool,
     columns: Option<Columns>,
+}
+
+impl PointFile {
+    /// Returns true if the file has points of these classes; read until one is found.
+    fn has_any(&self, options: Options, classes: &Classes, journal: &Journal) -> Result<bool> {
+        let path = self.input.path();
+        let mut source = self.reopen(options)?;
+        let mut selection = Selection::new(classes.clone(), None);
+        let mut batch = PointBatch::default();
+        loop {
+            journal.context.check()?;
+            source.read(&mut batch).map_err(|e| e.in_file(path))?;
+            selection.add(&batch).map_err(|e| e.in_file(path))?;
+            if batch.is_empty() || selection.report().used > 0 {
+                return Ok(!batch.is_empty());
+            }
+        }
+    }
+
+    fn reopen(&self, options: Options) -> Result<Box<dyn PointSource + Send>> {
+        open::points(&self.input, options).map_err(|e| e.in_file(self.input.path()))
+    }
 }
 
 /// The files of points of a run.
@@ -41,22 +60,24 @@ pub(super) struct PointFiles {
 }
 
 impl PointFiles {
-    /// Opens them all, and says what is to be said of them.
-    pub(super) fn open(paths: &[PathBuf], options: Options, talk: &Talk) -> Result<Self> {
-        let mut files = Vec::with_capacity(paths.len());
-        for path in paths {
-            let source = open::points(path, options).map_err(|e| e.in_file(path))?;
+    /// Opens them all, with notices of what they are.
+    pub(super) fn open(inputs: &[Input<MemoryPoints>], options: Options, journal: &Journal) -> Result<Self> {
+        let mut files = Vec::with_capacity(inputs.len());
+        for input in inputs {
+            let path = input.path();
+            let source = open::points(input, options).map_err(|e| e.in_file(path))?;
             let info = source.info();
-            talk.detail(format_args!("{}: {}", path.display(), info.format));
-            info.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
-            if !info.has_classes && paths.len() > 1 {
-                talk.detail(format_args!("{}: no classes, all points are used", path.display()));
+            journal.add(Notice::Opened(path.to_path_buf(), info.format.clone()));
+            info.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+            if !info.has_classes && inputs.len() > 1 {
+                journal.add(Notice::WithoutClasses(path.to_path_buf()));
             }
-            let stated = Stated { path: path.clone(), crs: info.crs.clone(), role: Role::Ground };
+            let stated = Stated { path: path.to_path_buf(), crs: info.crs.clone(), role: Role::Ground };
             let (count, columns) = (info.count, info.columns);
-            let keep = paths.len() <= FILES_KEPT_OPEN || is_read_once(path);
+            let keep = inputs.len() <= FILES_KEPT_OPEN || input.is_read_once();
             let has_classes = info.has_classes;
-            files.push(PointFile { stated, count, has_classes, columns, source: Some(source).filter(|_| keep) });
+            let (input, source) = (input.clone(), Some(source).filter(|_| keep));
+            files.push(PointFile { input, stated, count, has_classes, columns, source });
         }
         if options.columns.is_some() && files.iter().all(|file| file.columns.is_none()) {
             return Err(Error::usage("--columns and --parse name columns of text, but no input is text"));
@@ -72,7 +93,7 @@ impl PointFiles {
     ///
     /// # Errors
     /// If a file cannot be read; all are read on until a point of it is used, if they state different systems.
-    pub(super) fn stated(&self, classes: &Classes) -> Result<Vec<Option<Stated>>> {
+    pub(super) fn stated(&self, classes: &Classes, journal: &Journal) -> Result<Vec<Option<Stated>>> {
         let mut stated: Vec<Option<Stated>> = self.files.iter().map(|file| Some(file.stated.clone())).collect();
         let is_same = |a: &Option<Crs>, b: &Option<Crs>| match (a, b) {
             (Some(a), Some(b)) => a.is_same(b),
@@ -81,7 +102,7 @@ impl PointFiles {
         };
         let is_one = self.files.iter().all(|file| is_same(&file.stated.crs, &self.files[0].stated.crs));
         // What comes through a pipe is read once.
-        if is_one || self.files.iter().any(|file| is_read_once(&file.stated.path)) {
+        if is_one || self.files.iter().any(|file| file.input.is_read_once()) {
             return Ok(stated);
         }
         let (wanted, or_all) = match classes {
@@ -90,7 +111,7 @@ impl PointFiles {
         };
         let mut has_wanted = false;
         for (file, stated) in self.files.iter().zip(&mut stated) {
-            if self.has_any(&file.stated.path, &wanted)? {
+            if file.has_any(self.options, &wanted, journal)? {
                 has_wanted |= file.has_classes;
             } else {
                 *stated = None;
@@ -102,26 +123,8 @@ impl PointFiles {
         Ok(stated)
     }
 
-    /// Whether a file has points of these classes; read until one is found.
-    fn has_any(&self, path: &Path, classes: &Classes) -> Result<bool> {
-        let mut source = self.reopen(path)?;
-        let mut selection = Selection::new(classes.clone(), None);
-        let mut batch = PointBatch::default();
-        loop {
-            source.read(&mut batch).map_err(|e| e.in_file(path))?;
-            selection.add(&batch).map_err(|e| e.in_file(path))?;
-            if batch.is_empty() || selection.report().used > 0 {
-                return Ok(!batch.is_empty());
-            }
-        }
-    }
-
-    fn reopen(&self, path: &Path) -> Result<Box<dyn PointSource + Send>> {
-        open::points(path, self.options).map_err(|e| e.in_file(path))
-    }
-
-    /// Which columns of text were taken, and of how many files: "x 3, y 2, z 4 (2 files)".
-    pub(super) fn columns_line(&self) -> Option<String> {
+    /// The columns that were taken of text, and of how many files.
+    pub(super) fn columns(&self) -> Vec<(Columns, u64)> {
         let mut counts: Vec<(Columns, u64)> = Vec::new();
         for columns in self.files.iter().filter_map(|file| file.columns) {
             match counts.iter_mut().find(|(known, _)| *known == columns) {
@@ -129,14 +132,7 @@ impl PointFiles {
                 None => counts.push((columns, 1)),
             }
         }
-        match counts.as_slice() {
-            [] => None,
-            [(columns, _)] => Some(columns.to_string()),
-            several => {
-                let texts = several.iter().map(|(columns, count)| format!("{columns} ({})", counted(*count, "file")));
-                Some(texts.collect::<Vec<_>>().join("; "))
-            }
-        }
+        counts
     }
 
     /// Reads them all; their points in the system of the result go to the selection. Returns the extents of the files, if
@@ -144,22 +140,23 @@ impl PointFiles {
     pub(super) fn read(
         &mut self,
         by_file: &[Option<usize>],
-        roads: &Roads,
+        transforms: &Transforms,
         selection: &mut Selection,
-        talk: &Talk,
+        journal: &Journal,
     ) -> Result<Vec<Bounds>> {
         let length = self.files.iter().map(|file| file.count).sum::<Option<u64>>();
         if let Some(excess) = length.and_then(memory::excess_of) {
-            talk.warning(format_args!("memory may not suffice: if all points are used they take {excess}"));
+            journal.add(excess);
         }
         let mut asked = 0;
-        let progress = talk.progress("reading points", length.map_or(Size::Unknown, Size::Items));
+        let progress = journal.start(Stage::ReadingPoints, length.map_or(Size::Unknown, Size::Items))?;
         let mut batch = PointBatch::default();
         let mut extents = Vec::new();
-        for (i, road) in (0..self.files.len()).zip(by_file) {
-            let source = self.files[i].source.take();
-            let path = &self.files[i].stated.path;
-            let mut source = source.map_or_else(|| self.reopen(path), Ok)?;
+        let are_several = self.files.len() > 1;
+        for (file, transform) in self.files.iter_mut().zip(by_file) {
+            let source = file.source.take();
+            let path = file.input.path();
+            let mut source = source.map_or_else(|| file.reopen(self.options), Ok)?;
             selection.next_source();
             let mut count = 0;
             let mut extent = Bounds::default();
@@ -168,34 +165,27 @@ impl PointFiles {
                 if batch.is_empty() {
                     break;
                 }
-                roads.take_batch(*road, &mut batch).map_err(|e| e.in_file(path))?;
+                transforms.apply_to_batch(*transform, &mut batch).map_err(|e| e.in_file(path))?;
                 selection.add(&batch).map_err(|e| e.in_file(path))?;
                 if selection.certain() >= asked + ASK_EVERY {
                     asked = selection.certain();
                     memory::require_for_points(asked)?;
                 }
                 count += batch.len() as u64;
-                progress.add(batch.len() as u64);
-                if self.files.len() > 1 {
+                progress.add(batch.len() as u64)?;
+                if are_several {
                     (0..batch.len()).for_each(|i| extent.add([batch.x[i], batch.y[i], batch.z[i]]));
                 }
             }
             extents.push(extent);
-            talk.detail(format_args!("{}: {count} points read", path.display()));
-            source.warnings().iter().for_each(|text| talk.warning(format_args!("{}: {text}", path.display())));
+            journal.add(Notice::PointsRead(path.to_path_buf(), count));
+            source.warnings().iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
         }
-        drop(progress);
-        if self.files.len() > 1 {
-            let why = match selection.report().classes {
-                Some(classes) => {
-                    let classes: Vec<String> = classes.iter().map(u8::to_string).collect();
-                    format!("it has none of class {}", classes.join(" or "))
-                }
-                None => "it has none".to_owned(),
-            };
+        progress.end()?;
+        if are_several {
+            let classes = selection.report().classes;
             for i in selection.unused_sources() {
-                let path = self.files[i].stated.path.display();
-                talk.warning(format_args!("{path}: no point of it is used: {why}"));
+                journal.add(Notice::NoPointUsed(self.files[i].stated.path.clone(), classes.clone()));
             }
         }
         Ok(extents)

@@ -59,8 +59,8 @@ fn flood(faces: &[Face], starts: impl Iterator<Item = u32>, mut takes: impl FnMu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::triangulate::build::build;
     use crate::io::triangle::{Hole, Region};
+    use crate::run::triangulate::build::build;
     use crate::triangulation::OnCrossing;
     use crate::triangulation::kernel::Adaptive;
 

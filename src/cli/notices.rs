@@ -1,0 +1,126 @@
+//! Notices in words.
+
+use crate::run::units::{bytes, neat, number};
+use crate::run::{CrossingNote, Notice, Quantity, Seed, SeedFlaw};
+
+/// The text of a notice, and lines that are printed below it.
+pub(super) fn lines(notice: &Notice) -> Vec<String> {
+    let mut lines = vec![text(notice)];
+    if let Notice::CrossingHeights { count, first, .. } = notice {
+        lines.extend(first.iter().map(|CrossingNote { at, low, high, chosen }| {
+            let [x, y] = at.map(neat);
+            let [low, high] = [low, high].map(|(z, line)| format!("{} of {line}", neat(*z)));
+            format!("            {x} {y}: {low}, {high}; {} stands", neat(*chosen))
+        }));
+        if *count > first.len() {
+            lines.push(format!("            and {} more (--crossing-report FILE.csv)", count - first.len()));
+        }
+    }
+    lines
+}
+
+fn text(notice: &Notice) -> String {
+    match notice {
+        Notice::Opened(path, format) => format!("{}: {format}", path.display()),
+        Notice::WithoutClasses(path) => format!("{}: no classes, all points are used", path.display()),
+        Notice::LayerRead { path, format, records } => format!("{}: {format}, {records} records", path.display()),
+        Notice::PointsRead(path, count) => format!("{}: {count} points read", path.display()),
+        Notice::Reader(path, text) => format!("{}: {text}", path.display()),
+        Notice::LittleMemory { need, left, limit } => format!(
+            "memory may not suffice: if all points are used they take about {}, and {} are left {limit}",
+            bytes(*need),
+            bytes(*left)
+        ),
+        Notice::NoPointUsed(path, classes) => {
+            let why = match classes {
+                Some(classes) => {
+                    let classes: Vec<String> = classes.iter().map(u8::to_string).collect();
+                    format!("it has none of class {}", classes.join(" or "))
+                }
+                None => "it has none".to_owned(),
+            };
+            format!("{}: no point of it is used: {why}", path.display())
+        }
+        Notice::NoPointOfClass(class) => format!("no point is of class {class}"),
+        Notice::GroundUsed => "class 2 (ground) is used".to_owned(),
+        Notice::PointsWithoutClassUsed(count) => format!("{count} points of files without classes are used too"),
+        Notice::AllClassesUsed => "no point is of class 2 (ground): all classes are used (--class chooses)".to_owned(),
+        Notice::Reassigned { path, stated, assigned } => {
+            format!("{} states {stated}; {assigned} is taken, as --a-srs says", path.display())
+        }
+        Notice::SystemOfOthers(path, crs) => {
+            format!("{} states no coordinate system; {crs} is taken, as in the others", path.display())
+        }
+        Notice::NoSystem => "no coordinate system is stated: lengths are in the units of the data".to_owned(),
+        Notice::DifferentUnits(plan, height) => {
+            format!("the plan is in units of the {plan}, heights are in units of the {height}")
+        }
+        Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}"),
+        Notice::Transform(text) => text.clone(),
+        Notice::FarApart(before, after, gap) => format!(
+            "{} and {} are {gap} apart, with nothing between them: are their coordinates in one system?",
+            before.display(),
+            after.display()
+        ),
+        Notice::BreaklinesApart(gap) => {
+            format!("the breaklines lie {gap} away from the points: are they in the same coordinate system?")
+        }
+        Notice::BreaklinesBeyond(reach) => format!(
+            "breaklines reach {reach} beyond the points: the surface there rests on them alone (--bounds clips it)"
+        ),
+        Notice::EdgeLimit(length) => {
+            format!("triangles at the rim with edges over {length} are left out (--max-edge)")
+        }
+        Notice::NoEdgeLimit => "the whole convex hull is kept (--max-edge none)".to_owned(),
+        Notice::BoundsBuffer(buffer) => {
+            let how_far = match buffer {
+                None => "all points are used".to_owned(),
+                Some(buffer) => format!("points up to {buffer} outside of the bounds are used"),
+            };
+            format!("{how_far}, so that the surface within is that of all points")
+        }
+        Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()),
+        Notice::Uncertain(count, buffer) => {
+            format!("{count} triangles within the bounds may change with points further out than {buffer}")
+        }
+        Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid),
+        Notice::CrossingHeights { count, largest, at, .. } => {
+            let places = if *count == 1 { "1 place" } else { &format!("{count} places") };
+            let [x, y] = at.map(neat);
+            format!("breaklines meet with different heights at {places}, by up to {largest} (at {x} {y})")
+        }
+        Notice::ExtentApart => "the rectangle of --te does not touch the surface".to_owned(),
+        Notice::DefaultResolution(width) => format!("cells are {width} wide (--resolution)"),
+        Notice::DefaultInterval(height) => format!("contours are {height} apart (--interval)"),
+        Notice::HeightFactor(factor) => {
+            format!("heights are multiplied by {} to match the plan (--z-factor)", number(*factor))
+        }
+        Notice::DelaunayUnchecked(path) => format!(
+            "{}: the format does not tell breaklines from other edges: the Delaunay law is not checked",
+            path.display()
+        ),
+        Notice::RegionAreasUnused(path) => {
+            format!("{}: largest areas of regions are not used: no vertex is added for them without -a", path.display())
+        }
+        Notice::SeedUnused { path, line, seed, why } => {
+            let what = match seed {
+                Seed::Hole => "hole",
+                Seed::Region => "region",
+            };
+            let why = match why {
+                SeedFlaw::OnSegment => "lies on a segment, and which side is meant cannot be told",
+                SeedFlaw::OutsideHull => "lies outside of the convex hull",
+            };
+            format!("{}: line {line}: the {what} {why}; it is not used", path.display())
+        }
+    }
+}
+
+fn rounded([x, y]: &[Quantity; 2], on_grid: bool) -> String {
+    let unit = if x == y { x.to_string() } else { format!("{x} in x and {y} in y") };
+    let bound = match on_grid {
+        true => "no line is moved by more than half of that on each axis",
+        false => "some vertices are finer, so that no bound is proven where lines cross close by them",
+    };
+    format!("crossings of breaklines are rounded to {unit}; {bound}")
+}

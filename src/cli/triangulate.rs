@@ -1,0 +1,152 @@
+//! Triangle's files in, and out.
+
+use super::args::{KernelArg, TriangulateArgs};
+use super::outputs::{self, Format, Target};
+use super::talk::Talk;
+use super::{Exit, inputs};
+use crate::error::{Error, Result};
+use crate::io::{Destination, OutputSet};
+use crate::run::{self, Arithmetic, TriangulateOptions, TriangulateProduct};
+use crate::triangulation::refine::Shortfall;
+
+/// Whose format an output has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Family {
+    Triangle,
+    Mesh,
+}
+
+const MESHES: [Format<Family>; 3] = [
+    Format { extension: "off", kind: Family::Mesh, companions: &[] },
+    Format { extension: "obj", kind: Family::Mesh, companions: &[] },
+    Format { extension: "ply", kind: Family::Mesh, companions: &[] },
+];
+
+/// What is written of a `.poly`: as Triangle does, an `.ele` comes with the segments.
+const OF_POLY: &[Format<Family>] = &formats(&["node", "poly"]);
+const OF_NODE: &[Format<Family>] = &formats(&["node"]);
+
+const fn formats(beside_ele: &'static [&'static str]) -> [Format<Family>; 8] {
+    let [off, obj, ply] = MESHES;
+    let kind = Family::Triangle;
+    [
+        Format { extension: "node", kind, companions: &[] },
+        Format { extension: "ele", kind, companions: beside_ele },
+        Format { extension: "poly", kind, companions: &["node"] },
+        Format { extension: "edge", kind, companions: &["node"] },
+        Format { extension: "neigh", kind, companions: &[] },
+        off,
+        obj,
+        ply,
+    ]
+}
+
+/// Triangulates what a `.node` or `.poly` file holds.
+pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
+    let path = &args.input;
+    inputs::require([path])?;
+    let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
+    let formats = if is_poly { OF_POLY } else { OF_NODE };
+    // A .poly may have its vertices beside it.
+    let mut read = vec![path.clone()];
+    read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
+    let outputs = outputs::resolve(&args.output, formats, &read)?;
+    let product = run::triangulate(path, &options(args), &talk.context())?;
+    if product.report.triangles_built == 0
+        && let Some(mesh) = outputs.targets.iter().find(|target| target.kind == Family::Mesh)
+    {
+        return Err(Error::format("all vertices are on one line or at one place: there is no triangle to write")
+            .in_file(&mesh.path)
+            .cure("add a vertex beside the line; .node, .poly and .ele hold vertices without triangles, too"));
+    }
+    let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
+    write(&outputs.set, &meshes, &files, &product, talk)?;
+    tell(&product, args.max_added, talk);
+    outputs.commit(talk)?;
+    Ok(Exit::Done)
+}
+
+fn options(args: &TriangulateArgs) -> TriangulateOptions {
+    TriangulateOptions {
+        convex: args.convex,
+        on_crossing: args.on_crossing.into(),
+        min_angle: args.min_angle,
+        max_area: args.max_area,
+        region_areas: args.region_areas,
+        max_added: args.max_added,
+        arithmetic: match args.kernel {
+            KernelArg::Adaptive => Arithmetic::Adaptive,
+            KernelArg::Exact => Arithmetic::Exact,
+            KernelArg::Fast => Arithmetic::Fast,
+        },
+    }
+}
+
+/// All files of a family that are written, with what comes with them; each once.
+fn files(targets: &[Target<Family>], formats: &'static [Format<Family>], family: Family) -> Vec<Target<Family>> {
+    let mut files: Vec<Target<Family>> = Vec::new();
+    for target in targets.iter().filter(|target| target.kind == family) {
+        for file in outputs::files_of(target, formats) {
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+    }
+    files
+}
+
+/// Adds all files to the outputs.
+fn write(
+    outputs: &OutputSet,
+    meshes: &[Target<Family>],
+    files: &[Target<Family>],
+    product: &TriangulateProduct,
+    talk: &Talk,
+) -> Result<()> {
+    if !meshes.is_empty() {
+        let mesh = product.to_mesh()?;
+        for target in meshes {
+            let written = run::write_mesh(&mesh, target.within(outputs), &talk.context())?;
+            outputs::tell_lost(&target.path, written.lost_edges, ".ply and .poly keep them", talk);
+        }
+    }
+    let files: Vec<Destination> = files.iter().map(|file| file.within(outputs)).collect();
+    product.write(&files, &talk.context())
+}
+
+/// Says what went in and what came out.
+fn tell(product: &TriangulateProduct, max_added: Option<usize>, talk: &Talk) {
+    let (report, triangulated) = (&product.report, &product.triangulated);
+    let (given, between) = (report.vertices_given, report.vertices_for_quality);
+    let refined = if between > 0 { format!(", {between} for angles and areas") } else { String::new() };
+    talk.line(format_args!(
+        "vertices    {} ({given} in, {} added where segments cross{refined})",
+        triangulated.nodes.points.len(),
+        report.vertices_at_crossings
+    ));
+    if report.duplicates > 0 {
+        talk.line(format_args!("            {} at the place of an earlier one, without a triangle", report.duplicates));
+    }
+    let edges = triangulated.segments.len();
+    talk.line(format_args!(
+        "segments    {} in, {edges} constrained edges out, the boundary among them",
+        report.segments_given
+    ));
+    let (all, kept) = (report.triangles_built, triangulated.triangles.len());
+    let eaten = if kept < all { format!(" ({} outside or in holes eaten away)", all - kept) } else { String::new() };
+    talk.line(format_args!("triangles   {kept}{eaten}"));
+    let limit = format!("left when {} vertices had been added (--max-added)", max_added.unwrap_or_default());
+    for (why, text) in [
+        (Shortfall::SmallAngle, "at small angles between segments"),
+        (Shortfall::Limit, &limit),
+        (Shortfall::Coordinates, "too small for the coordinates to tell more vertices"),
+    ] {
+        let count = report.shortfall.iter().filter(|&&other| other == why).count();
+        if count > 0 {
+            talk.warning(format_args!("{count} triangles are not as asked for: {text}"));
+        }
+    }
+    if all == 0 {
+        talk.warning("all vertices are on one line or at one place: there is no triangle");
+    }
+}

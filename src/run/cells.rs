@@ -1,0 +1,190 @@
+//! Rasters of a surface: heights, and their shade.
+
+use super::context::{Context, Journal, Stage};
+use super::frame::{self, FrameOptions};
+use super::notice::Notice;
+use super::surface::{Model, SurfaceProduct};
+use super::watched::Watched;
+use crate::crs::Crs;
+use crate::data::{BlockSource, Frame, Grid, Surface, Window};
+use crate::error::{Error, Result};
+use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
+use crate::io::{Destination, png};
+use crate::terrain::{Dem, Hillshade, Light};
+
+/// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightOptions {
+    /// Where the light comes from, in degrees clockwise from north.
+    pub azimuth: f64,
+    /// How high it stands above the horizon, in degrees.
+    pub altitude: f64,
+    /// What heights are multiplied by; if it is `None`, what brings them to the units of the plane.
+    pub z_factor: Option<f64>,
+}
+
+impl Default for LightOptions {
+    fn default() -> Self {
+        let Light { azimuth, altitude, .. } = Light::default();
+        LightOptions { azimuth, altitude, z_factor: None }
+    }
+}
+
+/// How a surface is shaded.
+#[derive(Debug, Clone, Default)]
+pub struct HillshadeOptions {
+    /// Size and position of the cells; a raster keeps its own.
+    pub frame: FrameOptions,
+    /// Where the light comes from.
+    pub light: LightOptions,
+}
+
+/// The cells of a raster, computed when they are asked for: so it may be larger than memory.
+pub struct CellProduct<'a> {
+    source: Box<dyn BlockSource + 'a>,
+    /// The triangles that cells are computed from, if they are.
+    surface: Option<&'a dyn Surface>,
+    cells: CellFormat,
+    /// What was assumed and what looks odd, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// Prepares a DEM: the heights of a surface at the centers of cells, linear on its triangles, NaN where there is none.
+///
+/// # Errors
+/// If the surface is a raster, the frame cannot be chosen (see [`FrameOptions`]), or the run is canceled.
+///
+/// # Complexity
+/// Linear in the triangles.
+pub fn dem<'a>(product: &'a SurfaceProduct, options: &FrameOptions, context: &Context) -> Result<CellProduct<'a>> {
+    let journal = Journal::new(context);
+    let surface = product.triangles()?;
+    let source = heights(product, surface, options, &journal)?;
+    Ok(CellProduct { source, surface: Some(surface), cells: CellFormat::Heights, notices: journal.take() })
+}
+
+/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (facing the light), NaN where there is no height.
+///
+/// # Errors
+/// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; if a number of the light is not
+/// finite, or the run is canceled.
+///
+/// # Complexity
+/// Linear in the triangles.
+pub fn hillshade<'a>(
+    product: &'a SurfaceProduct,
+    options: &HillshadeOptions,
+    context: &Context,
+) -> Result<CellProduct<'a>> {
+    let journal = Journal::new(context);
+    let (source, surface): (Box<dyn BlockSource>, _) = match &product.model {
+        Model::Raster(grid) => {
+            refuse_frame(&options.frame)?;
+            (Box::new(grid.as_ref()), None)
+        }
+        Model::Tin(_) | Model::Mesh(_) => {
+            let surface = product.triangles()?;
+            (heights(product, surface, &options.frame, &journal)?, Some(surface))
+        }
+    };
+    let light = light(&options.light, product.crs(), &journal);
+    let source = Box::new(Hillshade::new(source, light)?);
+    Ok(CellProduct { source, surface, cells: CellFormat::Shades, notices: journal.take() })
+}
+
+fn heights<'a>(
+    product: &SurfaceProduct,
+    surface: &'a dyn Surface,
+    options: &FrameOptions,
+    journal: &Journal,
+) -> Result<Box<dyn BlockSource + 'a>> {
+    journal.context.check()?;
+    let frame = frame::choose(options, surface, product.extent(), journal)?;
+    Ok(Box::new(Dem::new(surface, frame)?))
+}
+
+fn refuse_frame(options: &FrameOptions) -> Result<()> {
+    if options.resolution.is_none() && options.extent.is_none() && options.align_to.is_none() {
+        return Ok(());
+    }
+    Err(Error::usage("--resolution, --te and --align-to are for a TIN; a DEM keeps its own cells"))
+}
+
+fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light {
+    let z_factor = options.z_factor.unwrap_or_else(|| {
+        let factor = Light::for_crs(crs).z_factor;
+        if factor != 1.0 {
+            journal.add(Notice::HeightFactor(factor));
+        }
+        factor
+    });
+    Light { azimuth: options.azimuth, altitude: options.altitude, z_factor }
+}
+
+impl CellProduct<'_> {
+    /// The number of cells that have a value, about. Of a raster, all count.
+    ///
+    /// # Complexity
+    /// Linear in the triangles.
+    pub fn covered(&self) -> f64 {
+        let Frame { width, height, .. } = self.frame();
+        let all = width as f64 * height as f64;
+        self.surface.map_or(all, |surface| all.min(frame::cells_on(surface, &self.frame())))
+    }
+
+    /// Computes all cells, by all cores.
+    ///
+    /// # Errors
+    /// If they do not fit into memory, or the run is canceled.
+    pub fn collect(&self, context: &Context) -> Result<Grid> {
+        Grid::collect(&self.watched(context)?)
+    }
+
+    /// Computes all cells, by all cores, and writes them as GeoTIFF: heights as 32-bit floats, shades as bytes.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or the run is canceled.
+    pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
+        geotiff::write(target, &self.watched(context)?, WriteOptions { cells: self.cells, progress: None })
+    }
+
+    /// Computes all cells, by all cores, and writes them as a gray picture in PNG, 0 to 255.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or the run is canceled.
+    pub fn write_picture(&self, target: Destination, context: &Context) -> Result<()> {
+        png::write_gray(target, &self.watched(context)?)
+    }
+
+    fn watched<'b>(&'b self, context: &Context<'b>) -> Result<Watched<'b, dyn BlockSource + 'b>> {
+        let stage = match self.cells {
+            CellFormat::Heights => Stage::WritingCells,
+            CellFormat::Shades => Stage::ShadingCells,
+        };
+        Watched::cells(self.source.as_ref(), stage, context)
+    }
+}
+
+/// Counts no progress, and goes on when the run is canceled.
+impl BlockSource for CellProduct<'_> {
+    fn frame(&self) -> Frame {
+        self.source.frame()
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.source.crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.source.fill(window, out)
+    }
+}
+
+impl std::fmt::Debug for CellProduct<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CellProduct")
+            .field("frame", &self.frame())
+            .field("notices", &self.notices)
+            .finish_non_exhaustive()
+    }
+}

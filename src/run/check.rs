@@ -1,0 +1,141 @@
+//! Flaws of a surface, and where they are.
+
+use std::fmt;
+use std::path::Path;
+
+use super::context::{Context, Journal, Stage};
+use super::notice::Notice;
+use super::open;
+use super::overlaps::{Overlap, overlaps};
+use super::surface::{self, Source, SurfaceProduct, SurfaceRequest};
+use super::systems::{Degrees, SystemOptions};
+use super::watched::Watched;
+use crate::data::{LinkFlaw, Mesh, Surface, Triangles};
+use crate::error::Result;
+use crate::terrain::{self, SurfaceFlaw};
+
+/// A flaw of a surface, and where it shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocatedFlaw {
+    /// What is wrong.
+    pub flaw: FlawKind,
+    /// The vertices at which it shows, in plan; none where it is about no vertex.
+    pub at: Vec<[f64; 2]>,
+}
+
+/// What is wrong with a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum FlawKind {
+    /// Faces and edges that cannot be linked.
+    Link(LinkFlaw),
+    /// A law that faces break.
+    Surface(SurfaceFlaw),
+    /// Faces that lie over each other.
+    Overlap(Overlap),
+}
+
+impl fmt::Display for FlawKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            FlawKind::Link(flaw) => flaw.fmt(f),
+            FlawKind::Surface(flaw) => flaw.fmt(f),
+            FlawKind::Overlap(flaw) => flaw.fmt(f),
+        }
+    }
+}
+
+/// As `face 3: clockwise, at (0 0) (1 0) (0 1)`.
+impl fmt::Display for LocatedFlaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.flaw.fmt(f)?;
+        for (i, [x, y]) in self.at.iter().enumerate() {
+            let before = if i == 0 { ", at " } else { " " };
+            write!(f, "{before}({x} {y})")?;
+        }
+        Ok(())
+    }
+}
+
+/// A surface, and all its flaws.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct CheckProduct {
+    /// The surface; a mesh as far as it can be linked.
+    pub product: SurfaceProduct,
+    /// Its flaws, none if it is sound.
+    pub flaws: Vec<LocatedFlaw>,
+}
+
+/// Checks a surface: links, orientation, overlaps, and Delaunay between lines. Coordinates in degrees are allowed, since
+/// nothing that is checked is a length.
+///
+/// # Errors
+/// Those of [`triangles`](surface::triangles), except for a mesh that is no surface.
+pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct> {
+    let systems = SystemOptions { degrees: Degrees::Allow, ..request.systems.clone() };
+    if let Source::Mesh(path) = &request.source {
+        return check_mesh(path, &systems, context);
+    }
+    let product = surface::triangles(&SurfaceRequest { source: request.source.clone(), systems }, context)?;
+    let watched = checked(product.triangles()?, context)?;
+    let flaws = flaws_beside(&[], &terrain::surface_flaws(&watched), &watched);
+    watched.end()?;
+    Ok(CheckProduct { product, flaws })
+}
+
+fn check_mesh(path: &Path, systems: &SystemOptions, context: &Context) -> Result<CheckProduct> {
+    let journal = Journal::new(context);
+    let keeps_lines = open::keeps_lines(path);
+    if !keeps_lines {
+        journal.add(Notice::DelaunayUnchecked(path.to_path_buf()));
+    }
+    // Formats that keep no lines are not asked for the Delaunay law.
+    let find = if keeps_lines { terrain::surface_flaws } else { terrain::shape_flaws };
+    let triangles = open::mesh_triangles(path, &journal)?;
+    let (mesh, flaws) = flaws_by(find, triangles, context).map_err(|e| e.in_file(path))?;
+    let model = surface::mesh_model(path, mesh, systems, &journal)?;
+    Ok(CheckProduct { product: SurfaceProduct { model, built: None, notices: journal.take() }, flaws })
+}
+
+/// The first flaw of triangles in memory.
+pub(super) fn first_flaw(triangles: Triangles, context: &Context) -> Result<Option<LocatedFlaw>> {
+    Ok(flaws_by(terrain::surface_flaws, triangles, context)?.1.into_iter().next())
+}
+
+fn flaws_by(
+    find: fn(&dyn Surface) -> Vec<SurfaceFlaw>,
+    triangles: Triangles,
+    context: &Context,
+) -> Result<(Mesh, Vec<LocatedFlaw>)> {
+    let (mesh, links) = Mesh::link(triangles)?;
+    let of_link = |flaw: &LinkFlaw| located(FlawKind::Link(*flaw), &flaw.vertices(&mesh), &mesh);
+    let mut flaws: Vec<LocatedFlaw> = links.iter().map(of_link).collect();
+    let watched = checked(&mesh as &dyn Surface, context)?;
+    flaws.extend(flaws_beside(&links, &find(&watched), &watched));
+    watched.end()?;
+    Ok((mesh, flaws))
+}
+
+/// The surface, for a check that asks for its faces once for each of five laws, and for overlaps.
+fn checked<'a>(surface: &'a dyn Surface, context: &Context<'a>) -> Result<Watched<'a, dyn Surface + 'a>> {
+    Watched::faces(surface, 6, Stage::CheckingFaces, context)
+}
+
+/// What was found, and overlaps, where these can be told: of faces that are linked and turn the right way.
+fn flaws_beside(links: &[LinkFlaw], found: &[SurfaceFlaw], surface: &dyn Surface) -> Vec<LocatedFlaw> {
+    let of_surface = |flaw: &SurfaceFlaw| located(FlawKind::Surface(*flaw), &flaw.vertices(surface), surface);
+    let mut flaws: Vec<LocatedFlaw> = found.iter().map(of_surface).collect();
+    let is_folded = links.iter().any(|flaw| matches!(flaw, LinkFlaw::Folded { .. }));
+    if !is_folded && found.iter().all(|flaw| matches!(flaw, SurfaceFlaw::NotDelaunay(..))) {
+        let of_overlap = |flaw: &Overlap| located(FlawKind::Overlap(*flaw), &flaw.vertices(surface), surface);
+        flaws.extend(overlaps(surface).iter().map(of_overlap));
+    }
+    flaws
+}
+
+fn located(flaw: FlawKind, vertices: &[u32], surface: &dyn Surface) -> LocatedFlaw {
+    let there = vertices.iter().filter(|&&v| (v as usize) < surface.vertex_count());
+    let at = there.map(|&v| surface.position(v)).map(|[x, y, _]| [x, y]).collect();
+    LocatedFlaw { flaw, at }
+}

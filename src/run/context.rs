@@ -1,0 +1,189 @@
+//! What surrounds a run: who is told of progress and notices, and the flag that ends it early.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::notice::Notice;
+use crate::error::{Error, Result};
+
+/// A flag that nobody sets.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+/// The monitor of a run and the flag that ends it early. By default nothing is reported, and a run goes on to its end.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// Told of progress and of notices, as they come.
+    pub monitor: &'a dyn Monitor,
+    /// Set to true by any thread, it ends a run within a fraction of a second, with an error of the kind
+    /// [`Canceled`](crate::error::Kind::Canceled) and without an output.
+    pub cancel: &'a AtomicBool,
+}
+
+/// Receives what a run reports on the way.
+///
+/// ```
+/// use breakline::run::{Monitor, Notice, Progress, Size, Stage};
+///
+/// /// Prints every notice; progress is not shown.
+/// struct Print;
+///
+/// impl Monitor for Print {
+///     fn start(&self, _stage: Stage, _size: Size) -> Box<dyn Progress> {
+///         Box::new(())
+///     }
+///
+///     fn notice(&self, notice: &Notice) {
+///         eprintln!("{notice:?}");
+///     }
+/// }
+/// ```
+pub trait Monitor: Sync {
+    /// Called when a stage of the work begins. What is returned counts its items, and is dropped at its end.
+    fn start(&self, stage: Stage, size: Size) -> Box<dyn Progress>;
+
+    /// Called with everything that was assumed or looks odd, as it is found.
+    fn notice(&self, notice: &Notice);
+}
+
+/// Counts the items of a stage that are done. `()` counts nothing.
+pub trait Progress: Send + Sync {
+    /// Adds items that are done; called from many threads, some times a second to some thousand times.
+    fn add(&self, items: u64);
+}
+
+/// A stage of the work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Points are read; counted in points.
+    ReadingPoints,
+    /// A raster is read.
+    ReadingCells,
+    /// A mesh is read.
+    ReadingTriangles,
+    /// A file is read of which no items are counted.
+    Reading,
+    /// Points and lines are triangulated.
+    Triangulating,
+    /// The surface is checked; counted in faces, once for each law.
+    CheckingFaces,
+    /// A mesh is written; counted in faces.
+    WritingFaces,
+    /// A raster is computed and written; counted in cells.
+    WritingCells,
+    /// A hillshade is computed and written; counted in cells.
+    ShadingCells,
+    /// The triangles that contours cross are found.
+    FindingContours,
+    /// Contours are drawn and written; counted in edges of contours.
+    DrawingContours,
+    /// Files are written of which no items are counted.
+    Writing,
+}
+
+/// The number of items of a stage, as far as it is known when it begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Size {
+    /// So many items.
+    Items(u64),
+    /// Items are counted, but how many come is not known.
+    Unknown,
+    /// Nothing is counted.
+    Uncounted,
+}
+
+/// A [`Monitor`] that ignores everything.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Monitor for Silent {
+    fn start(&self, _stage: Stage, _size: Size) -> Box<dyn Progress> {
+        Box::new(())
+    }
+
+    fn notice(&self, _notice: &Notice) {}
+}
+
+impl Progress for () {
+    fn add(&self, _items: u64) {}
+}
+
+impl Default for Context<'_> {
+    fn default() -> Self {
+        Context { monitor: &Silent, cancel: &NEVER }
+    }
+}
+
+impl std::fmt::Debug for Context<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Context").field("cancel", &self.cancel).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Context<'a> {
+    /// Returns an error once the flag is set.
+    ///
+    /// # Errors
+    /// Of the kind [`Canceled`](crate::error::Kind::Canceled).
+    pub fn check(&self) -> Result<()> {
+        if self.cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) }
+    }
+
+    /// Begins a stage, unless the run was canceled before.
+    pub(super) fn start(&self, stage: Stage, size: Size) -> Result<Work<'a>> {
+        self.check()?;
+        Ok(Work { progress: self.monitor.start(stage, size), context: *self })
+    }
+}
+
+/// A stage that goes on until this is dropped.
+pub(super) struct Work<'a> {
+    progress: Box<dyn Progress>,
+    context: Context<'a>,
+}
+
+impl<'a> Work<'a> {
+    /// A stage that nobody is told of.
+    pub(super) fn silent(context: &Context<'a>) -> Self {
+        Work { progress: Box::new(()), context: *context }
+    }
+
+    /// Counts items that are done; returns an error once the run is canceled.
+    pub(super) fn add(&self, items: u64) -> Result<()> {
+        self.progress.add(items);
+        self.context.check()
+    }
+
+    /// Ends the stage; returns an error if the run was canceled meanwhile.
+    pub(super) fn end(self) -> Result<()> {
+        self.context.check()
+    }
+}
+
+/// The context of a run that keeps its notices for the report.
+pub(super) struct Journal<'a> {
+    pub(super) context: Context<'a>,
+    notices: Mutex<Vec<Notice>>,
+}
+
+impl<'a> Journal<'a> {
+    pub(super) fn new(context: &Context<'a>) -> Self {
+        Journal { context: *context, notices: Mutex::default() }
+    }
+
+    /// Hands a notice to the monitor and keeps it.
+    pub(super) fn add(&self, notice: Notice) {
+        self.context.monitor.notice(&notice);
+        self.notices.lock().unwrap_or_else(PoisonError::into_inner).push(notice);
+    }
+
+    /// Begins a stage, see [`Context::start`].
+    pub(super) fn start(&self, stage: Stage, size: Size) -> Result<Work<'a>> {
+        self.context.start(stage, size)
+    }
+
+    /// The notices so far; leaves none.
+    pub(super) fn take(&self) -> Vec<Notice> {
+        std::mem::take(&mut self.notices.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}

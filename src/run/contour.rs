@@ -1,0 +1,121 @@
+//! Contours of a surface.
+
+use super::context::{Context, Journal, Size, Stage};
+use super::notice::Notice;
+use super::surface::{Model, SurfaceProduct};
+use super::units::Units;
+use super::watched::Watched;
+use crate::data::{ContourLine, Surface};
+use crate::error::Result;
+use crate::io::Destination;
+use crate::io::contours::{self, ContourSummary};
+use crate::terrain::{self, GridSurface, Levels};
+
+/// Height between contours unless something else is said.
+const DEFAULT_INTERVAL: f64 = 1.0;
+
+/// The heights at which contours are drawn, in the units of the heights. By default every whole unit.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ContourOptions {
+    /// The height between contours; 1 if it is `None`.
+    pub interval: Option<f64>,
+    /// A height that contours are counted from.
+    pub base: f64,
+    /// These heights instead, unless there are none.
+    pub levels: Vec<f64>,
+}
+
+impl ContourOptions {
+    /// The heights as a rule.
+    ///
+    /// # Errors
+    /// Those of [`Levels::every`] and [`Levels::listed`].
+    pub fn to_levels(&self) -> Result<Levels> {
+        match self.levels.as_slice() {
+            [] => Levels::every(self.interval.unwrap_or(DEFAULT_INTERVAL), self.base),
+            levels => Levels::listed(levels),
+        }
+    }
+}
+
+/// The contours of a surface, drawn when they are asked for.
+#[derive(Debug)]
+pub struct ContourProduct<'a> {
+    product: &'a SurfaceProduct,
+    levels: Levels,
+    /// What was assumed, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// Prepares contours: straight from the triangles; of a raster, between the centers of its cells.
+///
+/// # Errors
+/// If a level or the interval is no height, or the run is canceled.
+pub fn contour<'a>(
+    product: &'a SurfaceProduct,
+    options: &ContourOptions,
+    context: &Context,
+) -> Result<ContourProduct<'a>> {
+    let journal = Journal::new(context);
+    context.check()?;
+    let levels = options.to_levels()?;
+    if options.interval.is_none() && options.levels.is_empty() {
+        journal.add(Notice::DefaultInterval(Units::of(product.crs()).height(DEFAULT_INTERVAL)));
+    }
+    Ok(ContourProduct { product, levels, notices: journal.take() })
+}
+
+impl ContourProduct<'_> {
+    /// Draws all lines, by level and then by their points; high ground is on the right.
+    ///
+    /// # Errors
+    /// If there are too many levels (see [`Levels::within`]), or the run is canceled.
+    pub fn collect(&self, context: &Context) -> Result<Vec<ContourLine>> {
+        self.draw(context, |lines, _| Ok(lines.collect()))
+    }
+
+    /// Draws all lines and writes them as they come, in the format that the extension of `target` names: `.shp`,
+    /// `.geojson` or `.json`.
+    ///
+    /// # Errors
+    /// If there are too many levels or lines, the file cannot be written, or the run is canceled.
+    pub fn write(&self, target: Destination, context: &Context) -> Result<ContourSummary> {
+        target.put_whole(|target| {
+            self.draw(context, |lines, count| {
+                contours::foresee(target, count)?;
+                contours::write(target, lines, self.product.crs())
+            })
+        })
+    }
+
+    fn draw<T>(
+        &self,
+        context: &Context,
+        take: impl FnOnce(&mut dyn Iterator<Item = ContourLine>, u64) -> Result<T>,
+    ) -> Result<T> {
+        match &self.product.model {
+            Model::Raster(grid) => draw(&GridSurface::new(grid)?, &self.levels, context, take),
+            Model::Tin(_) | Model::Mesh(_) => draw(self.product.triangles()?, &self.levels, context, take),
+        }
+    }
+}
+
+/// Hands the lines to `take`, with the number of their edges.
+fn draw<S: Surface + ?Sized, T>(
+    surface: &S,
+    levels: &Levels,
+    context: &Context,
+    take: impl FnOnce(&mut dyn Iterator<Item = ContourLine>, u64) -> Result<T>,
+) -> Result<T> {
+    let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
+    let polled = Watched::polled(surface, context)?;
+    let lines = terrain::contours(&polled, levels)?;
+    finding.end()?;
+    let count = lines.piece_count() as u64;
+    let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
+    let is_wanted = |line: &ContourLine| drawing.add(line.points.len().saturating_sub(1) as u64).is_ok();
+    let taken = take(&mut lines.take_while(is_wanted), count);
+    drawing.end()?;
+    polled.end()?;
+    taken
+}

@@ -1,0 +1,51 @@
+//! Notices about files and lines that lie apart.
+
+use std::path::Path;
+
+use super::context::Journal;
+use super::notice::Notice;
+use super::units::Units;
+use crate::data::Bounds;
+
+/// Files are far apart if the gap is so many times as wide as the widest file.
+const FAR: f64 = 100.0;
+
+/// Adds a notice if files lie far apart, on two continents, say: one of them is perhaps in another coordinate system.
+pub(super) fn compare_files(files: &[&Path], extents: &[Bounds], units: &Units, journal: &Journal) {
+    let width = |bounds: &Bounds| (bounds.max[0] - bounds.min[0]).hypot(bounds.max[1] - bounds.min[1]);
+    let mut known: Vec<(&Path, &Bounds)> =
+        files.iter().copied().zip(extents).filter(|(_, extent)| !extent.is_empty()).collect();
+    let widest = known.iter().map(|(_, extent)| width(extent)).fold(0.0, f64::max);
+    for axis in 0..2 {
+        known.sort_by(|(_, a), (_, b)| a.min[axis].total_cmp(&b.min[axis]));
+        let mut last: Option<(&Path, f64)> = None;
+        for &(file, extent) in &known {
+            if let Some((before, end)) = last.filter(|(_, end)| extent.min[axis] - end > FAR * widest) {
+                let gap = units.length(extent.min[axis] - end);
+                return journal.add(Notice::FarApart(before.to_path_buf(), file.to_path_buf(), gap));
+            }
+            if last.is_none_or(|(_, end)| end < extent.max[axis]) {
+                last = Some((file, extent.max[axis]));
+            }
+        }
+    }
+}
+
+/// Adds a notice if lines lie apart from the points, or reach far beyond them, as those of a whole district over the
+/// points of one tile: the extent is then not what one expects. How far lines may reach beyond the points is given by `buffer`.
+pub(super) fn compare_lines(points: &[[f64; 3]], lines: Bounds, buffer: f64, units: &Units, journal: &Journal) {
+    let mut extent = Bounds::default();
+    points.iter().for_each(|&point| extent.add(point));
+    if extent.is_empty() || lines.is_empty() {
+        return;
+    }
+    let gap = (0..2).map(|i| (extent.min[i] - lines.max[i]).max(lines.min[i] - extent.max[i])).fold(0.0, f64::max);
+    if gap > buffer {
+        return journal.add(Notice::BreaklinesApart(units.length(gap)));
+    }
+    let reach = (0..2).flat_map(|i| [extent.min[i] - lines.min[i], lines.max[i] - extent.max[i]]);
+    let furthest = reach.fold(0.0, f64::max);
+    if furthest > buffer {
+        journal.add(Notice::BreaklinesBeyond(units.length(furthest)));
+    }
+}

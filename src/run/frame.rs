@@ -1,0 +1,116 @@
+//! Size and position of a raster over a surface.
+
+use std::path::PathBuf;
+
+use super::context::Journal;
+use super::notice::Notice;
+use super::open;
+use super::units::{Units, neat, number};
+use crate::crs::Crs;
+use crate::data::{self, Bounds, Frame, Surface};
+use crate::error::{Error, Result};
+
+/// Cells are this large unless something else is said.
+const DEFAULT_RESOLUTION: f64 = 1.0;
+
+/// Rasters of fewer cells may be as empty as they like.
+const MANY_CELLS: f64 = 1e8;
+
+/// The share of cells on the surface below which a large raster is taken for a mistake.
+const MOSTLY_EMPTY: f64 = 0.01;
+
+/// Size and position of a raster. By default cells are 1 unit wide and start at multiples of it, so that neighboring
+/// rasters fit together, and cover the surface.
+#[derive(Debug, Clone, Default)]
+pub struct FrameOptions {
+    /// The width of a cell, in the units of the coordinate system; 1 if it is `None`. There is no default in degrees.
+    pub resolution: Option<f64>,
+    /// The extent, grown outward to whole cells; heights are ignored. That of the surface if it is `None`.
+    pub extent: Option<Bounds>,
+    /// A raster whose cells are matched, continued beyond its edges. The resolution is ignored then.
+    pub align_to: Option<PathBuf>,
+}
+
+/// Chooses the frame of a raster over a surface.
+///
+/// # Errors
+/// If the raster to align to cannot be read or is in another system, no cell would be there, or nearly all of very many
+/// would be empty and no extent is given.
+pub(super) fn choose(
+    options: &FrameOptions,
+    surface: &dyn Surface,
+    extent: Bounds,
+    journal: &Journal,
+) -> Result<Frame> {
+    let frame = placed(options, extent, surface.crs(), journal)?;
+    let cells = frame.width as f64 * frame.height as f64;
+    if options.extent.is_none() && cells > MANY_CELLS {
+        let share = cells_on(surface, &frame) / cells;
+        if share < MOSTLY_EMPTY {
+            return Err(mostly_empty(&frame, share, &extent));
+        }
+    }
+    Ok(frame)
+}
+
+#[cold]
+fn mostly_empty(frame: &Frame, share: f64, extent: &Bounds) -> Error {
+    let Frame { width, height, .. } = frame;
+    let [x0, y0, x1, y1] = [extent.min[0], extent.min[1], extent.max[0], extent.max[1]].map(neat);
+    Error::usage(format!(
+        "the raster would have {width} x {height} cells, and {} % of them a value: the surface is scattered",
+        number(100.0 * share)
+    ))
+    .cure(format!(
+        "leave out files that lie far away (`breakline info` tells the extent of each), or write a part with --te; \
+         --te {x0},{y0},{x1},{y1} writes it all the same"
+    ))
+}
+
+/// The number of cells that the surface covers, about; those outside of the frame count, too.
+pub(super) fn cells_on(surface: &dyn Surface, frame: &Frame) -> f64 {
+    let doubled = data::corners(surface).map(|(_, corners)| {
+        let [[ax, ay, _], [bx, by, _], [cx, cy, _]] = corners.map(|vertex| surface.position(vertex));
+        (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    });
+    let t = &frame.transform;
+    doubled.sum::<f64>() / 2.0 / (t[1] * t[5] - t[2] * t[4]).abs()
+}
+
+fn placed(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, journal: &Journal) -> Result<Frame> {
+    let units = Units::of(crs);
+    if extent.is_empty() {
+        return Err(Error::format("the surface has no triangle, so there is no raster of it"));
+    }
+    let extent = match options.extent {
+        Some(given) => {
+            if (0..2).any(|i| given.max[i] <= extent.min[i] || given.min[i] >= extent.max[i]) {
+                journal.add(Notice::ExtentApart);
+            }
+            given
+        }
+        None => extent,
+    };
+    if let Some(path) = &options.align_to {
+        let (frame, theirs) = open::raster_frame(path)?;
+        if let (Some(theirs), Some(ours)) = (theirs, crs)
+            && !theirs.is_same(ours)
+        {
+            return Err(Error::unsupported(format!("the raster is in {theirs}, the surface in {ours}"))
+                .in_file(path)
+                .cure("build the surface of points in the raster's system, or match another raster"));
+        }
+        return Frame::aligned_to(&frame, &extent);
+    }
+    let resolution = match options.resolution {
+        Some(resolution) => resolution,
+        None if units.is_angular() => {
+            return Err(Error::usage("there is no default resolution in degrees").cure("add --resolution"));
+        }
+        None => {
+            journal.add(Notice::DefaultResolution(units.length(DEFAULT_RESOLUTION)));
+            DEFAULT_RESOLUTION
+        }
+    };
+    Frame::snapped(&extent, resolution)
+}

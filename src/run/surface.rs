@@ -1,0 +1,234 @@
+//! Surfaces: built from points, or read as they are.
+
+use std::path::{Path, PathBuf};
+
+use super::context::{Context, Journal, Stage};
+use super::input::{Input, MemoryPoints};
+use super::notice::Notice;
+use super::open::{self, Content, content};
+use super::systems::{self, Role, Stated, SystemOptions};
+use super::tin::{self, BuildReport, TinRequest};
+use super::watched::Watched;
+use crate::crs::Crs;
+use crate::data::{self, Bounds, EdgeKind, Grid, Mesh, Surface};
+use crate::error::{Error, Result};
+use crate::io::Destination;
+use crate::io::mesh::{self, MeshSummary};
+use crate::terrain::Tin;
+
+/// The surface that a verb works on.
+#[derive(Debug, Clone, Default)]
+pub struct SurfaceRequest {
+    /// Where it comes from.
+    pub source: Source,
+    /// How coordinate systems are brought together.
+    pub systems: SystemOptions,
+}
+
+/// Where a surface comes from.
+#[derive(Debug, Clone)]
+pub enum Source {
+    /// It is built from points and lines.
+    Points(Box<TinRequest>),
+    /// It is read from a file of triangles, as it is.
+    Mesh(PathBuf),
+    /// It is read from a raster of heights, as it is.
+    Raster(PathBuf),
+}
+
+impl Default for Source {
+    /// Points, of which there are none.
+    fn default() -> Self {
+        Source::Points(Box::default())
+    }
+}
+
+impl Source {
+    /// Files of points, or one file that is a mesh or a raster: their first bytes and extensions decide.
+    ///
+    /// # Errors
+    /// If a mesh or a raster is given with other files.
+    pub fn of_files(files: &[PathBuf]) -> Result<Self> {
+        let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));
+        match ready {
+            None => {
+                let points = files.iter().cloned().map(Input::<MemoryPoints>::File).collect();
+                Ok(Source::Points(Box::new(TinRequest { points, ..TinRequest::default() })))
+            }
+            Some(path) if files.len() > 1 => {
+                Err(Error::usage("the file is a whole surface, and other files are given with it")
+                    .in_file(path)
+                    .cure("give one .ply or one raster alone, or points only"))
+            }
+            Some(path) if content(path) == Content::Mesh => Ok(Source::Mesh(path.clone())),
+            Some(path) => Ok(Source::Raster(path.clone())),
+        }
+    }
+}
+
+/// A surface, and how it came to be.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct SurfaceProduct {
+    /// The surface.
+    pub model: Model,
+    /// What it was built of; `None` if it was read as it is.
+    pub built: Option<Box<BuildReport>>,
+    /// What was assumed and what looks odd, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// A surface of one of three kinds.
+#[derive(Debug)]
+pub enum Model {
+    /// Built from points and lines.
+    Tin(Box<Tin>),
+    /// Triangles from a file.
+    Mesh(Box<Mesh>),
+    /// Cells from a raster.
+    Raster(Box<Grid>),
+}
+
+impl SurfaceProduct {
+    /// The triangles.
+    ///
+    /// # Errors
+    /// If the surface is a raster.
+    pub fn triangles(&self) -> Result<&dyn Surface> {
+        match &self.model {
+            Model::Tin(tin) => Ok(tin.as_ref()),
+            Model::Mesh(mesh) => Ok(mesh.as_ref()),
+            Model::Raster(_) => Err(Error::usage("the surface is a raster; points or a .ply are needed")),
+        }
+    }
+
+    /// The coordinate system, if it is known.
+    pub fn crs(&self) -> Option<&Crs> {
+        match &self.model {
+            Model::Tin(tin) => tin.crs(),
+            Model::Mesh(mesh) => mesh.crs(),
+            Model::Raster(grid) => grid.crs.as_ref(),
+        }
+    }
+
+    /// The box around the surface; of a raster around all cells, with the heights of those that have one.
+    ///
+    /// # Complexity
+    /// Linear, unless the surface is a TIN.
+    pub fn extent(&self) -> Bounds {
+        match &self.model {
+            Model::Tin(tin) => tin.report().extent,
+            Model::Mesh(mesh) => SurfaceFacts::of(mesh.as_ref()).extent,
+            Model::Raster(grid) => grid.extent(),
+        }
+    }
+}
+
+/// Writes a mesh, in the format that the extension of `target` names: `.ply`, `.obj`, `.off` or `.stl`.
+///
+/// # Errors
+/// If the extension names no such format, the surface is too large for it, the file cannot be written, or the run is
+/// canceled.
+pub fn write_mesh(surface: &dyn Surface, target: Destination, context: &Context) -> Result<MeshSummary> {
+    target.put_whole(|target| {
+        // Numbered, then listed.
+        let watched = Watched::faces(surface, 2, Stage::WritingFaces, context)?;
+        let written = mesh::write(target, &watched);
+        watched.end()?;
+        written
+    })
+}
+
+/// Reads what the request names, and builds the TIN where there is none yet.
+///
+/// # Errors
+/// If something cannot be read or is refused, or the run is canceled.
+pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+    let journal = Journal::new(context);
+    let (model, built) = match &request.source {
+        Source::Points(points) => {
+            let (tin, report) = tin::build(points, &request.systems, &journal)?;
+            (Model::Tin(Box::new(tin)), Some(Box::new(report)))
+        }
+        Source::Mesh(path) => {
+            let mesh = open::mesh(path, &journal)?;
+            (mesh_model(path, mesh, &request.systems, &journal)?, None)
+        }
+        Source::Raster(path) => {
+            let (mut grid, warnings) = open::raster(path, &journal)?;
+            warnings.into_iter().for_each(|text| journal.add(Notice::Reader(path.clone(), text)));
+            grid.crs = one_system(path, grid.crs.as_ref(), &request.systems, &journal)?;
+            (Model::Raster(Box::new(grid)), None)
+        }
+    };
+    Ok(SurfaceProduct { model, built, notices: journal.take() })
+}
+
+/// Like [`surface`], for verbs that need triangles.
+///
+/// # Errors
+/// Those of [`surface`]; also if the input is a raster, which is not read then.
+pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+    if let Source::Raster(path) = &request.source {
+        return Err(Error::usage("the input is a raster; points or a .ply are needed")
+            .in_file(path)
+            .cure("`contour` and `hillshade` take rasters"));
+    }
+    surface(request, context)
+}
+
+/// A mesh under the system that it states or is assigned.
+pub(super) fn mesh_model(path: &Path, mut mesh: Mesh, options: &SystemOptions, journal: &Journal) -> Result<Model> {
+    mesh.set_crs(one_system(path, mesh.crs(), options, journal)?);
+    Ok(Model::Mesh(Box::new(mesh)))
+}
+
+fn one_system(path: &Path, crs: Option<&Crs>, options: &SystemOptions, journal: &Journal) -> Result<Option<Crs>> {
+    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), role: Role::Whole }];
+    Ok(systems::reconcile(&stated, options, journal)?.crs)
+}
+
+/// Counts and extent of a surface, without vertices that no face uses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceFacts {
+    /// Vertices that a face uses.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Edges on breaklines.
+    pub breaklines: usize,
+    /// Edges on clip lines.
+    pub clips: usize,
+    /// The box around these vertices.
+    pub extent: Bounds,
+}
+
+impl SurfaceFacts {
+    /// Counts over all faces of a surface.
+    ///
+    /// # Complexity
+    /// Linear.
+    pub fn of(surface: &dyn Surface) -> Self {
+        let mut is_used = vec![false; surface.vertex_count()];
+        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, breaklines: 0, clips: 0, extent: Bounds::default() };
+        data::faces(surface).for_each(|face| {
+            facts.triangles += 1;
+            for (i, kind) in face.edges.into_iter().enumerate() {
+                let count = match kind {
+                    EdgeKind::Breakline => &mut facts.breaklines,
+                    EdgeKind::Clip => &mut facts.clips,
+                    EdgeKind::Plain | EdgeKind::Rim => continue,
+                };
+                // An edge inside is met from both sides.
+                *count += usize::from(surface.neighbor(face.number, i).is_none_or(|other| face.number < other));
+            }
+            for vertex in face.corners {
+                if !std::mem::replace(&mut is_used[vertex as usize], true) {
+                    facts.vertices += 1;
+                    facts.extent.add(surface.position(vertex));
+                }
+            }
+        });
+        facts
+    }
+}

@@ -1,0 +1,74 @@
+//! Reprojection of the input: the transform of each file.
+
+use rayon::prelude::*;
+
+use super::context::Journal;
+use super::notice::Notice;
+use crate::crs::{Crs, Transform};
+use crate::data::PointBatch;
+use crate::error::Result;
+use crate::io::proj;
+
+/// Points that one core reprojects at a time: enough to keep all cores at it.
+const REPROJECTED_AT_ONCE: usize = 4096;
+
+/// The transforms in use, and for each file the number of its own.
+pub(super) struct Transforms {
+    transforms: Vec<Box<dyn Transform>>,
+    pub(super) by_file: Vec<Option<usize>>,
+}
+
+impl Transforms {
+    pub(super) fn new(from: &[Option<Crs>], to: Option<&Crs>, journal: &Journal) -> Result<Self> {
+        let mut known: Vec<&Crs> = Vec::new();
+        let mut transforms = Transforms { transforms: Vec::new(), by_file: Vec::with_capacity(from.len()) };
+        for from in from {
+            let number = match (from, to) {
+                (Some(from), Some(to)) => Some(match known.iter().position(|crs| *crs == from) {
+                    Some(number) => number,
+                    None => {
+                        let transform = proj::transform(from, to)?;
+                        journal.add(Notice::Reprojecting(Box::new(from.clone()), Box::new(to.clone())));
+                        known.push(from);
+                        transforms.transforms.push(transform);
+                        known.len() - 1
+                    }
+                }),
+                _ => None,
+            };
+            transforms.by_file.push(number);
+        }
+        Ok(transforms)
+    }
+
+    /// Adds the notices of the transforms: which operations, how good. Complete when they are done.
+    pub(super) fn warn(&self, journal: &Journal) {
+        self.transforms
+            .iter()
+            .flat_map(|transform| transform.warnings())
+            .for_each(|text| journal.add(Notice::Transform(text)));
+    }
+
+    pub(super) fn apply(&self, number: Option<usize>, points: &mut [[f64; 3]]) -> Result<()> {
+        match number {
+            Some(number) => {
+                let transform = &self.transforms[number];
+                points.par_chunks_mut(REPROJECTED_AT_ONCE).try_for_each(|chunk| transform.transform(chunk))
+            }
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn apply_to_batch(&self, number: Option<usize>, batch: &mut PointBatch) -> Result<()> {
+        if number.is_none() {
+            return Ok(());
+        }
+        let mut points: Vec<[f64; 3]> =
+            batch.x.iter().zip(&batch.y).zip(&batch.z).map(|((&x, &y), &z)| [x, y, z]).collect();
+        self.apply(number, &mut points)?;
+        for (i, [x, y, z]) in points.into_iter().enumerate() {
+            (batch.x[i], batch.y[i], batch.z[i]) = (x, y, z);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,287 @@
+//! Triangle's files in, their triangulation out.
+
+mod assemble;
+mod build;
+mod eaten;
+
+use std::path::Path;
+
+use self::build::{Built, Place};
+use self::eaten::Outside;
+use super::check;
+use super::context::{Context, Journal, Size, Stage};
+use super::notice::{Notice, Seed, SeedFlaw};
+use super::open;
+use crate::data::{Mesh, Triangles};
+use crate::error::{Error, Result};
+use crate::io::triangle::{self, LineGraph, Triangulated};
+use crate::io::{Destination, contain};
+use crate::triangulation::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
+use crate::triangulation::refine::{Domain, Quality, Region, Shortfall};
+use crate::triangulation::{OnCrossing, Refused};
+
+/// How points and segments of the plane are triangulated. By default nothing is refined, and what lies outside of the
+/// outer boundary or in a hole is left out.
+#[derive(Debug, Clone, Default)]
+pub struct TriangulateOptions {
+    /// Whether the whole convex hull is kept; holes are left out all the same.
+    pub convex: bool,
+    /// What to do where segments cross between their ends.
+    pub on_crossing: OnCrossing,
+    /// Vertices are added until no angle is smaller, in degrees.
+    pub min_angle: Option<f64>,
+    /// Vertices are added until no triangle is larger.
+    pub max_area: Option<f64>,
+    /// Whether triangles in a region are no larger than the region says.
+    pub region_areas: bool,
+    /// Refinement stops after so many added vertices; if it is `None`, it is an error if 1 000 000 are not enough.
+    pub max_added: Option<usize>,
+    /// The arithmetic of the predicates.
+    pub arithmetic: Arithmetic,
+}
+
+/// The arithmetic that decides on which side a point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Arithmetic {
+    /// Exact, as fast as floating point where that is certain.
+    #[default]
+    Adaptive,
+    /// Exact, with numbers of any length, and slow.
+    Exact,
+    /// Plain floating point, for experiments: a wrong result is an error, and it may not come to an end.
+    Fast,
+}
+
+/// A triangulation, as Triangle's files have it.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct TriangulateProduct {
+    /// Vertices, triangles, edges and segments.
+    pub triangulated: Triangulated,
+    /// What went in and what came out.
+    pub report: TriangulateReport,
+    /// What was assumed and what looks odd, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// Counts of a triangulation of points and segments.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TriangulateReport {
+    /// Vertices of the input.
+    pub vertices_given: usize,
+    /// Vertices added where segments cross.
+    pub vertices_at_crossings: usize,
+    /// Vertices added for angles and areas.
+    pub vertices_for_quality: usize,
+    /// Vertices at the position of an earlier one, which have no triangle.
+    pub duplicates: usize,
+    /// Segments of the input.
+    pub segments_given: usize,
+    /// Triangles, those included that were left out.
+    pub triangles_built: usize,
+    /// For each triangle that is not as asked for, why.
+    pub shortfall: Vec<Shortfall>,
+}
+
+/// Triangulates the points and segments of a `.node` or `.poly` file.
+///
+/// # Errors
+/// If it cannot be read, segments cross where that is refused, a refinement does not end, no triangle is left, or the
+/// run is canceled.
+pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context) -> Result<TriangulateProduct> {
+    let journal = Journal::new(context);
+    let reading = context.start(Stage::Reading, Size::Uncounted)?;
+    let graph = open::line_graph(path)?;
+    reading.end()?;
+    graph.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+    if !options.region_areas
+        && graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute))
+    {
+        journal.add(Notice::RegionAreasUnused(path.to_path_buf()));
+    }
+
+    let built = build(&graph, options, path, context)?;
+    if options.max_added.is_none() && built.shortfall.contains(&Shortfall::Limit) {
+        return Err(unfinished(&built).in_file(path));
+    }
+    note_seeds(&built, &graph, path, &journal);
+    let keeps_hull = options.convex || graph.segments.is_empty();
+    // Refined, the hull is a constraint, beyond which there may be less than a rounding.
+    let outside = if keeps_hull && quality(options, &graph, context).is_none() { Outside::Keep } else { Outside::Eat };
+    let is_kept = eaten::kept(&built, &graph, outside);
+    let attributes = eaten::attributes(&built, &graph, &is_kept);
+    let triangulated = assemble::assemble(&graph, &built, &is_kept, &attributes);
+    if triangulated.triangles.is_empty() && !built.faces.is_empty() {
+        return Err(Error::format("no triangle is left: all can be reached from outside or from a hole")
+            .in_file(path)
+            .cure("close the outer boundary with segments, or add --convex to keep the hull"));
+    }
+    let given = graph.nodes.points.len();
+    let added = triangulated.nodes.points.len() - given;
+    let for_quality = built.between.len();
+    let report = TriangulateReport {
+        vertices_given: given,
+        vertices_at_crossings: added - for_quality.min(added),
+        vertices_for_quality: for_quality,
+        duplicates: given + added - built.vertices.len(),
+        segments_given: graph.segments.len(),
+        triangles_built: built.faces.len(),
+        shortfall: built.shortfall,
+    };
+    Ok(TriangulateProduct { triangulated, report, notices: journal.take() })
+}
+
+impl TriangulateProduct {
+    /// The triangles as a surface of height 0, which can be written as a mesh.
+    ///
+    /// # Errors
+    /// If they are no surface.
+    pub fn to_mesh(&self) -> Result<Mesh> {
+        flat_mesh(&self.triangulated)
+    }
+
+    /// Writes Triangle's files, each in the format of its extension.
+    ///
+    /// # Errors
+    /// If one cannot be written, or the run is canceled.
+    pub fn write(&self, targets: &[Destination], context: &Context) -> Result<()> {
+        let writing = context.start(Stage::Writing, Size::Uncounted)?;
+        triangle::write(targets, &self.triangulated)?;
+        writing.end()
+    }
+}
+
+/// Triangulates with the arithmetic that was asked for.
+fn build(graph: &LineGraph, options: &TriangulateOptions, path: &Path, context: &Context) -> Result<Built> {
+    let triangulating = context.start(Stage::Triangulating, Size::Uncounted)?;
+    let built = match options.arithmetic {
+        Arithmetic::Adaptive if is_ordinary(graph) => build_with::<Adaptive>(graph, options, context),
+        Arithmetic::Adaptive => build_with::<Wide>(graph, options, context),
+        Arithmetic::Exact => build_with::<Exact>(graph, options, context),
+        Arithmetic::Fast => contain(|| build_with::<Fast>(graph, options, context)).ok_or_else(|| {
+            Error::limit("plain floating point contradicts itself on these points")
+                .in_file(path)
+                .cure("leave out --kernel fast")
+        })?,
+    };
+    triangulating.end()?;
+    let built = built.map_err(|refused| explained(refused, graph, path))?;
+    if options.arithmetic == Arithmetic::Fast {
+        refuse_flaws(&built, context).map_err(|e| e.in_file(path))?;
+    }
+    Ok(built)
+}
+
+/// Returns true if no coordinate is so large or small that the default arithmetic would need wider numbers.
+fn is_ordinary(graph: &LineGraph) -> bool {
+    graph.nodes.points.as_flattened().iter().all(|&x| Adaptive::RANGE.admits(x))
+}
+
+fn build_with<K: Kernel>(
+    graph: &LineGraph,
+    options: &TriangulateOptions,
+    context: &Context,
+) -> std::result::Result<Built, Refused> {
+    let segments: Vec<[u32; 2]> = graph.segments.iter().map(|segment| segment.ends).collect();
+    let holes = graph.holes.iter().map(|hole| hole.at);
+    let seeds: Vec<[f64; 2]> = holes.chain(graph.regions.iter().map(|region| region.at)).collect();
+    let quality = quality(options, graph, context);
+    build::build::<K>(&graph.nodes.points, &segments, &seeds, options.on_crossing, quality.as_ref())
+}
+
+/// What triangles are to be, if anything is asked for.
+fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, _context: &Context<'a>) -> Option<Quality<'a>> {
+    if options.min_angle.is_none() && options.max_area.is_none() && !options.region_areas {
+        return None;
+    }
+    let holes = graph.holes.iter().map(|hole| hole.at).collect();
+    let is_hull = options.convex || graph.segments.is_empty();
+    let bounds = graph.regions.iter().filter(|_| options.region_areas);
+    Some(Quality {
+        min_angle: options.min_angle.unwrap_or(0.0),
+        max_area: options.max_area.unwrap_or(f64::INFINITY),
+        regions: bounds.filter_map(|region| Some(Region { seed: region.at, max_area: region.max_area? })).collect(),
+        domain: if is_hull { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
+        max_added: options.max_added.unwrap_or(Quality::MAX_ADDED),
+        ..Quality::default()
+    })
+}
+
+/// The error of a refinement that nobody had bounded, with how far it came.
+#[cold]
+fn unfinished(built: &Built) -> Error {
+    let (added, all, short) = (Quality::MAX_ADDED, built.faces.len(), built.shortfall.len());
+    Error::limit(format!("{added} vertices were added, and {short} of {all} triangles are still not as asked for"))
+        .cure(
+            "ask for a smaller angle (33 degrees are nearly always reached) or a larger area, or set a limit with \
+             --max-added and get what is there then",
+        )
+}
+
+/// With the numbers and lines of the file.
+#[cold]
+fn explained(refused: Refused, graph: &LineGraph, path: &Path) -> Error {
+    match refused {
+        Refused::Coordinate(i) => {
+            let ([x, y], Range { min, max }) = (graph.nodes.points[i], Fast::RANGE);
+            let number = i + graph.nodes.first_number as usize;
+            let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
+            Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
+                .in_file(&graph.node_file)
+                .at(format!("line {}", graph.node_lines[i]))
+                .cure("leave out --kernel fast: the others take any finite coordinate")
+        }
+        Refused::Crossing { segments, place: [x, y] } => {
+            let mut positions = segments.map(|(line, _)| line);
+            positions.sort_unstable();
+            let [one, other] = positions.map(|i| &graph.segments[i]);
+            Error::format(format!("segments {} and {} cross at {x:?} {y:?}", one.number, other.number))
+                .in_file(path)
+                .at(format!("lines {} and {}", one.line, other.line))
+                .cure("divide both at a vertex there, or use --on-crossing split")
+        }
+        _ => Error::limit(refused.to_string()).in_file(&graph.node_file),
+    }
+}
+
+/// What is not exact may come out wrong.
+fn refuse_flaws(built: &Built, context: &Context) -> Result<()> {
+    let triangles = Triangles {
+        vertices: built.vertices.iter().map(|&[x, y]| [x, y, 0.0]).collect(),
+        faces: built.faces.iter().map(|face| face.corners).collect(),
+        constrained_edges: built
+            .chains
+            .iter()
+            .flat_map(|chain| chain.windows(2).map(|pair| [pair[0], pair[1]]))
+            .collect(),
+        ..Triangles::default()
+    };
+    match check::first_flaw(triangles, context)? {
+        None => Ok(()),
+        Some(flaw) => Err(Error::limit(format!("plain floating point gave a wrong triangulation ({flaw})"))
+            .cure("leave out --kernel fast")),
+    }
+}
+
+/// Adds notices of holes and regions that are not used.
+fn note_seeds(built: &Built, graph: &LineGraph, path: &Path, journal: &Journal) {
+    let holes = graph.holes.iter().map(|hole| (Seed::Hole, hole.line));
+    let listed = holes.chain(graph.regions.iter().map(|region| (Seed::Region, region.line)));
+    for ((seed, line), place) in listed.zip(&built.places) {
+        let why = match place {
+            Place::Face(_) => continue,
+            Place::Wall => SeedFlaw::OnSegment,
+            Place::Outside => SeedFlaw::OutsideHull,
+        };
+        journal.add(Notice::SeedUnused { path: path.to_path_buf(), line, seed, why });
+    }
+}
+
+/// The triangles as a surface of height 0.
+fn flat_mesh(triangulated: &Triangulated) -> Result<Mesh> {
+    let vertices = triangulated.nodes.points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+    let edges: Vec<[u32; 2]> = triangulated.segments.iter().map(|edge| edge.ends).collect();
+    let edges = if triangulated.triangles.is_empty() { &[] } else { edges.as_slice() };
+    Mesh::new(vertices, triangulated.triangles.clone(), edges, None)
+}

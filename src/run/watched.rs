@@ -1,0 +1,222 @@
+//! Sources that count what is taken from them, and give no more once the run is canceled.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::context::{Context, Size, Stage, Work};
+use crate::crs::Crs;
+use crate::data::{BlockSource, EdgeKind, Face, Frame, Surface, Window};
+use crate::error::Result;
+
+/// A source whose progress shows while a writer or a check takes from it.
+///
+/// A canceled source of cells returns an error. A canceled surface has no more faces in its batches, so that whoever
+/// goes over them is soon done; [`end`](Self::end) returns the error then.
+pub(super) struct Watched<'a, S: ?Sized> {
+    source: &'a S,
+    work: Work<'a>,
+    /// Kept here, so that nobody sees faces again if the flag is cleared.
+    is_canceled: AtomicBool,
+}
+
+impl<'a, S: ?Sized> Watched<'a, S> {
+    fn new(source: &'a S, stage: Stage, size: Size, context: &Context<'a>) -> Result<Self> {
+        Ok(Watched { source, work: context.start(stage, size)?, is_canceled: AtomicBool::new(false) })
+    }
+
+    /// Ends the stage.
+    ///
+    /// # Errors
+    /// If the run was canceled; what was taken is to be thrown away then.
+    pub(super) fn end(self) -> Result<()> {
+        if self.is_canceled.into_inner() { Err(crate::error::Error::canceled()) } else { self.work.end() }
+    }
+
+    /// Counts faces; returns false once the run is canceled.
+    fn goes_on(&self, faces: usize) -> bool {
+        if self.work.add(faces as u64).is_err() {
+            self.is_canceled.store(true, Ordering::Relaxed);
+        }
+        !self.is_canceled.load(Ordering::Relaxed)
+    }
+}
+
+impl<'a, S: BlockSource + ?Sized> Watched<'a, S> {
+    /// Counts cells.
+    pub(super) fn cells(source: &'a S, stage: Stage, context: &Context<'a>) -> Result<Self> {
+        let Frame { width, height, .. } = source.frame();
+        Self::new(source, stage, Size::Items(width as u64 * height as u64), context)
+    }
+}
+
+impl<'a, S: Surface + ?Sized> Watched<'a, S> {
+    /// Counts faces, each of which is asked for so many times.
+    pub(super) fn faces(source: &'a S, times: u64, stage: Stage, context: &Context<'a>) -> Result<Self> {
+        Self::new(source, stage, Size::Items(times * source.face_count() as u64), context)
+    }
+
+    /// Is part of a stage that was begun before, and counts nothing.
+    pub(super) fn polled(source: &'a S, context: &Context<'a>) -> Result<Self> {
+        context.check()?;
+        Ok(Watched { source, work: Work::silent(context), is_canceled: AtomicBool::new(false) })
+    }
+}
+
+impl<S: BlockSource + ?Sized> BlockSource for Watched<'_, S> {
+    fn frame(&self) -> Frame {
+        self.source.frame()
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.source.crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.source.fill(window, out)?;
+        self.work.add(window.width as u64 * window.height as u64)
+    }
+}
+
+impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
+    fn vertex_count(&self) -> usize {
+        self.source.vertex_count()
+    }
+
+    fn position(&self, vertex: u32) -> [f64; 3] {
+        self.source.position(vertex)
+    }
+
+    fn face_count(&self) -> usize {
+        self.source.face_count()
+    }
+
+    fn face(&self, face: u32) -> Option<[u32; 3]> {
+        self.source.face(face)
+    }
+
+    fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
+        self.source.neighbor(face, i)
+    }
+
+    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
+        self.source.edge_kind(face, i)
+    }
+
+    fn has_lines(&self) -> bool {
+        self.source.has_lines()
+    }
+
+    fn is_piece(&self, face: u32) -> bool {
+        self.source.is_piece(face)
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.source.crs()
+    }
+
+    fn corners_in(&self, numbers: Range<u32>, faces: &mut Vec<(u32, [u32; 3])>) {
+        if self.goes_on(numbers.len()) {
+            self.source.corners_in(numbers, faces);
+        }
+    }
+
+    fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
+        if self.goes_on(numbers.len()) {
+            self.source.faces_in(numbers, faces);
+        }
+    }
+
+    fn heights_in(&self, numbers: Range<u32>, is_wanted: &dyn Fn(f64, f64) -> bool, faces: &mut Vec<(u32, [f64; 3])>) {
+        if self.goes_on(numbers.len()) {
+            self.source.heights_in(numbers, is_wanted, faces);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Grid, Mesh};
+    use crate::error::Kind;
+    use crate::io::{geotiff, mesh};
+    use crate::run::context::{Monitor, Progress};
+    use crate::run::notice::Notice;
+    use crate::terrain;
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicU64;
+
+    /// Counts what is done of the last stage.
+    #[derive(Default)]
+    struct Counter(Arc<AtomicU64>);
+
+    impl Monitor for Counter {
+        fn start(&self, _: Stage, _: Size) -> Box<dyn Progress> {
+            self.0.store(0, Ordering::Relaxed);
+            Box::new(Items(self.0.clone()))
+        }
+
+        fn notice(&self, _: &Notice) {}
+    }
+
+    struct Items(Arc<AtomicU64>);
+
+    impl Progress for Items {
+        fn add(&self, items: u64) {
+            self.0.fetch_add(items, Ordering::Relaxed);
+        }
+    }
+
+    fn square() -> Mesh {
+        let corners = vec![[0.0, 0.0, 1.0], [9.0, 0.0, 2.0], [9.0, 9.0, 3.0], [0.0, 9.0, 5.0]];
+        Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]], &[], None).unwrap()
+    }
+
+    #[test]
+    fn all_items_are_counted_when_the_work_is_done() {
+        let folder = tempfile::tempdir().unwrap();
+        let counter = Counter::default();
+        let context = Context { monitor: &counter, ..Context::default() };
+        let done = || counter.0.load(Ordering::Relaxed);
+        let square = square();
+        for name in ["a.ply", "a.obj", "a.off", "a.stl"] {
+            let watched = Watched::faces(&square, 2, Stage::WritingFaces, &context).unwrap();
+            mesh::write(folder.path().join(name).as_path(), &watched).unwrap();
+            assert_eq!(done(), 4, "{name}");
+        }
+        let watched = Watched::faces(&square, 5, Stage::CheckingFaces, &context).unwrap();
+        assert_eq!(terrain::surface_flaws(&watched), []);
+        assert_eq!(done(), 10);
+
+        let frame = Frame::north_up(0.0, 0.0, 1.0, 300, 20);
+        let grid = Grid { frame, crs: None, values: vec![1.0; 6000] };
+        let watched = Watched::cells(&grid, Stage::WritingCells, &context).unwrap();
+        geotiff::write(folder.path().join("a.tif").as_path(), &watched, geotiff::WriteOptions::default()).unwrap();
+        assert_eq!(done(), 6000);
+    }
+
+    #[test]
+    fn a_canceled_source_gives_no_more_and_stays_canceled() {
+        let cancel = AtomicBool::new(false);
+        let context = Context { cancel: &cancel, ..Context::default() };
+        let square = square();
+        let watched = Watched::faces(&square, 1, Stage::WritingFaces, &context).unwrap();
+        let faces = || {
+            let mut faces = Vec::new();
+            watched.corners_in(0..2, &mut faces);
+            faces.len()
+        };
+        assert_eq!(faces(), 2);
+        cancel.store(true, Ordering::Relaxed);
+        assert_eq!(faces(), 0);
+        cancel.store(false, Ordering::Relaxed);
+        assert_eq!(faces(), 0);
+        assert_eq!(watched.end().unwrap_err().kind(), Kind::Canceled);
+
+        let grid = Grid { frame: Frame::north_up(0.0, 0.0, 1.0, 2, 2), crs: None, values: vec![1.0; 4] };
+        let watched = Watched::cells(&grid, Stage::WritingCells, &context).unwrap();
+        cancel.store(true, Ordering::Relaxed);
+        let error = watched.fill(grid.frame.window(), &mut [0.0; 4]).unwrap_err();
+        assert_eq!(error.kind(), Kind::Canceled);
+        assert!(Watched::cells(&grid, Stage::WritingCells, &context).is_err());
+    }
+}
