@@ -9,7 +9,7 @@ use crate::io::Output;
 const LINES: usize = 1 << 14;
 
 /// Writes one line for each item, on all threads, in order.
-pub(super) fn write_lines<T: Copy + Sync>(
+pub(in crate::io) fn write_lines<T: Copy + Sync>(
     output: &mut Output,
     mut items: impl Iterator<Item = T>,
     line: impl Fn(&mut Vec<u8>, T) -> std::io::Result<()> + Sync,

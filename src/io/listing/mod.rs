@@ -1,3 +1,9 @@
+//! What the mesh formats share: the vertices and faces of a surface, as files list them.
+
+pub(super) mod crs_text;
+pub(super) mod polygon;
+pub(super) mod text;
+
 use crate::data::{self, EdgeKind, Surface};
 
 const UNUSED: u32 = u32::MAX;

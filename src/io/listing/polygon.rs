@@ -10,7 +10,7 @@ use crate::triangulation::num::Sign;
 /// # Errors
 /// If there are fewer than three corners, a corner is no vertex, one of four or more has no place in plan, or no fan fits:
 /// one does for every polygon that is convex in plan, and for some others.
-pub(super) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Vec<[u32; 3]>) -> Result<()> {
+pub(in crate::io) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Vec<[u32; 3]>) -> Result<()> {
     let count = corners.len();
     if count < 3 {
         return Err(Error::format(format!("a face has {count} corners, expected 3 or more")));

@@ -26,21 +26,12 @@
 //! readers take no line over 1024 bytes, so that WKT of 1000 bytes and more is cut into lines `comment crs PART`, to be
 //! joined. The comments of OBJ and OFF are alike, with `#`.
 
-mod crs_text;
-mod listing;
-mod obj;
-mod off;
-mod ply;
-mod polygon;
-mod stl;
-mod text;
-
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use listing::Listing;
-pub use stl::Solid;
-
+use super::listing::Listing;
+pub use super::stl::Solid;
+use super::{obj, off, ply, stl};
 use crate::data::{Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
 use crate::io::{Destination, triangle};

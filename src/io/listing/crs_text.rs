@@ -11,7 +11,7 @@ const PART: usize = 200;
 
 /// The comments that say a coordinate system: `crs: EPSG:25832` or `crs: WKT`, as QGIS reads it; of a long definition
 /// `crs PART`, one comment a part.
-pub(super) fn comments(crs: Option<&Crs>) -> Vec<String> {
+pub(in crate::io) fn comments(crs: Option<&Crs>) -> Vec<String> {
     let Some(crs) = crs else { return Vec::new() };
     if let Some(code) = code(crs) {
         return vec![format!("crs: {code}")];
@@ -48,12 +48,12 @@ fn parts(text: &str) -> Vec<String> {
 }
 
 /// What a comment says of the coordinate system, in whole or in part; `None` if it is about something else.
-pub(super) fn said(comment: &str) -> Option<&str> {
+pub(in crate::io) fn said(comment: &str) -> Option<&str> {
     comment.strip_prefix("crs:").or_else(|| comment.strip_prefix("crs "))
 }
 
 /// The coordinate system that is said in all comments, joined; `None` if there are none.
-pub(super) fn parse(joined: &str) -> Result<Option<Crs>> {
+pub(in crate::io) fn parse(joined: &str) -> Result<Option<Crs>> {
     if joined.is_empty() {
         return Ok(None);
     }

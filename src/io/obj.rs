@@ -2,9 +2,8 @@
 
 use std::io::Write;
 
-use super::listing::Listing;
-use super::text::write_lines;
-use super::{crs_text, polygon};
+use super::listing::text::write_lines;
+use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};

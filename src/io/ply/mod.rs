@@ -12,8 +12,7 @@ use std::io::Write;
 use body::Body;
 use header::{Element, Header, Property, Scalar};
 
-use super::listing::Listing;
-use super::{crs_text, polygon};
+use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};

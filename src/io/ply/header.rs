@@ -1,5 +1,5 @@
 use crate::error::{Error, Result};
-use crate::io::mesh::crs_text;
+use crate::io::listing::crs_text;
 
 /// How values are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
