@@ -1,25 +1,20 @@
 use super::Exit;
 use super::args::ContourArgs;
-use super::outputs::{self, Format};
+use super::outputs;
 use super::plan::SurfacePlan;
 use super::summary::tell_surface;
 use super::talk::Talk;
 use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::contours::ContourSummary;
+use crate::io::formats::Product;
 use crate::run::units::Units;
 use crate::run::{self, ContourOptions};
-
-pub(super) const FORMATS: &[Format<()>] = &[
-    Format { extension: "shp", kind: (), companions: &["shx", "dbf", "prj", "cpg"] },
-    Format { extension: "geojson", kind: (), companions: &[] },
-    Format { extension: "json", kind: (), companions: &[] },
-];
 
 /// Draws contours of a TIN or of a DEM.
 pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
     let plan = SurfacePlan::resolve(&args.surface, talk)?;
-    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Contours, |_| ()), &plan)?;
     let options = ContourOptions { interval: args.interval, base: args.base, levels: args.levels.clone() };
     // What is wrong with them is known before anything is read.
     options.to_levels()?;

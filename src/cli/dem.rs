@@ -1,21 +1,19 @@
 use super::Exit;
 use super::args::DemArgs;
-use super::outputs::{self, Format};
+use super::outputs;
 use super::plan::SurfacePlan;
 use super::summary::tell_surface;
 use super::talk::Talk;
 use crate::error::Result;
+use crate::io::formats::Product;
 use crate::run;
 use crate::run::units::Units;
-
-pub(super) const FORMATS: &[Format<()>] =
-    &[Format { extension: "tif", kind: (), companions: &[] }, Format { extension: "tiff", kind: (), companions: &[] }];
 
 /// Writes heights of a TIN as a raster.
 pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     let frame = plan.add_frame(&args.frame)?;
-    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), &plan)?;
     let product = run::triangles(&plan.request, &talk.context())?;
     outputs.add_report(&plan, &product)?;
     let cells = run::dem(&product, &frame, &talk.context())?;

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 
 use super::args::{Cli, expand_switches, finite};
-use super::{contour, dem, hillshade, outputs, tin};
 use crate::error::{Error, Result};
+use crate::io::formats::{self, Product};
 
 /// A word, and what it means.
 struct Habit {
@@ -97,10 +97,6 @@ const VERBS: &[(&str, &str)] = &[
 
 /// What `gdaldem` makes of a raster, and this program does not.
 const OF_RASTERS: &[&str] = &["slope", "aspect", "color-relief", "roughness", "TRI", "TPI"];
-
-/// Formats as GDAL calls them, with the extensions of those that are written.
-const FORMATS: &[(&str, &[&str])] =
-    &[("GTiff", &["tif", "tiff"]), ("PNG", &["png"]), ("ESRI Shapefile", &["shp"]), ("GeoJSON", &["geojson", "json"])];
 
 /// How a GeoTIFF is written whatever is asked for.
 const AS_WRITTEN: &[&str] = &[
@@ -312,18 +308,18 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
 /// The extensions of what a verb writes.
 fn written(verb: &str) -> Vec<&'static str> {
     match verb {
-        "tin" => outputs::extensions(tin::FORMATS),
-        "dem" => outputs::extensions(dem::FORMATS),
-        "contour" => outputs::extensions(contour::FORMATS),
-        "hillshade" => outputs::extensions(hillshade::FORMATS),
+        "tin" => formats::extensions(Product::Surface),
+        "dem" => formats::extensions(Product::Heights),
+        "contour" => formats::extensions(Product::Contours),
+        "hillshade" => formats::extensions(Product::Shades),
         _ => Vec::new(),
     }
 }
 
 /// Makes sure that the outputs are of a format.
 fn confirm(format: &str, targets: &[PathBuf]) -> Result<()> {
-    let known = FORMATS.iter().find(|(name, _)| name.eq_ignore_ascii_case(format));
-    let extensions = known.map_or(&[][..], |(_, extensions)| extensions);
+    let is_named = |known: &&formats::Format| known.gdal_name.is_some_and(|name| name.eq_ignore_ascii_case(format));
+    let extensions = formats::FORMATS.iter().find(is_named).map_or(&[][..], |known| known.extensions);
     let is_of = |target: &PathBuf| {
         extensions.iter().any(|known| target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(known)))
     };

@@ -1,31 +1,30 @@
 use super::Exit;
 use super::args::HillshadeArgs;
-use super::outputs::{self, Format};
+use super::outputs;
 use super::plan::SurfacePlan;
 use super::summary::{tell_place, tell_surface};
 use super::talk::Talk;
 use crate::error::Result;
+use crate::io::formats::{Content, Product};
 use crate::run::{self, HillshadeOptions, LightOptions, Model};
 
 /// The file formats of a hillshade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ShadeFormat {
+enum ShadeFormat {
     GeoTiff,
     Png,
 }
-
-pub(super) const FORMATS: &[Format<ShadeFormat>] = &[
-    Format { extension: "tif", kind: ShadeFormat::GeoTiff, companions: &[] },
-    Format { extension: "tiff", kind: ShadeFormat::GeoTiff, companions: &[] },
-    Format { extension: "png", kind: ShadeFormat::Png, companions: &["pgw", "png.aux.xml"] },
-];
 
 /// Shades a TIN or a DEM.
 pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
     let frame = plan.add_frame(&args.frame)?;
     let light = LightOptions { azimuth: args.azimuth, altitude: args.altitude, z_factor: args.z_factor };
-    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    let formats = outputs::formats_of(Product::Shades, |format| match format.content {
+        Content::Picture => ShadeFormat::Png,
+        _ => ShadeFormat::GeoTiff,
+    });
+    let outputs = outputs::resolve_with_report(&args.output, &formats, &plan)?;
     let product = run::surface(&plan.request, &talk.context())?;
     outputs.add_report(&plan, &product)?;
     let cells = run::hillshade(&product, &HillshadeOptions { frame, light }, &talk.context())?;

@@ -9,6 +9,7 @@ use super::summary::describe;
 use super::talk::Talk;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
+use crate::io::formats::{self, Product};
 use crate::io::{self, Destination, Output, OutputSet};
 use crate::run::units::bytes;
 use crate::run::{CellProduct, SurfaceProduct};
@@ -23,6 +24,15 @@ pub(super) struct Format<F: 'static> {
     pub(super) kind: F,
     /// Extensions of the files that are written beside it.
     pub(super) companions: &'static [&'static str],
+}
+
+/// The formats that a product is written in, one for each extension.
+pub(super) fn formats_of<F>(product: Product, kind: impl Fn(&formats::Format) -> F) -> Vec<Format<F>> {
+    let formats = formats::FORMATS.iter().filter(|format| format.writes(product));
+    let by_extension = formats.flat_map(|format| format.extensions.iter().map(move |extension| (format, extension)));
+    by_extension
+        .map(|(format, extension)| Format { extension, kind: kind(format), companions: format.beside })
+        .collect()
 }
 
 /// A file to write.
@@ -127,11 +137,7 @@ const REPORTS: &[Format<()>] = &[Format { extension: "csv", kind: (), companions
 /// # Errors
 /// If an extension is not among the formats, an output is an input or named twice, its folder does
 /// not exist, or it exists and may not be replaced.
-pub(super) fn resolve<F: Copy>(
-    args: &OutputArgs,
-    formats: &'static [Format<F>],
-    inputs: &[PathBuf],
-) -> Result<Outputs<F>> {
+pub(super) fn resolve<F: Copy>(args: &OutputArgs, formats: &[Format<F>], inputs: &[PathBuf]) -> Result<Outputs<F>> {
     let existing = Existing::of(args.overwrite);
     let mut targets: Vec<Target<F>> = Vec::new();
     for path in &args.output {
@@ -151,7 +157,7 @@ pub(super) fn resolve<F: Copy>(
 /// As [`resolve`].
 pub(super) fn resolve_with_report<F: Copy>(
     args: &OutputArgs,
-    formats: &'static [Format<F>],
+    formats: &[Format<F>],
     plan: &SurfacePlan,
 ) -> Result<Outputs<F>> {
     let outputs = resolve(args, formats, &plan.inputs)?;
@@ -221,13 +227,8 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
     Ok(())
 }
 
-/// The extensions of formats.
-pub(super) fn extensions<F>(formats: &[Format<F>]) -> Vec<&'static str> {
-    formats.iter().map(|format| format.extension).collect()
-}
-
 /// The files that come with a target, and then itself.
-pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &'static [Format<F>]) -> Vec<Target<F>> {
+pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
     let format = formats.iter().find(|format| format.extension == target.extension);
     let companions = format.map_or(&[][..], |format| format.companions);
     let mut files = with_companions(&target.path, target.extension, companions);

@@ -1,23 +1,17 @@
 use super::Exit;
 use super::args::TinArgs;
-use super::outputs::{self, Format};
+use super::outputs;
 use super::plan::SurfacePlan;
 use super::summary::tell_surface;
 use super::talk::Talk;
 use crate::error::Result;
+use crate::io::formats::Product;
 use crate::run;
-
-pub(super) const FORMATS: &[Format<()>] = &[
-    Format { extension: "ply", kind: (), companions: &[] },
-    Format { extension: "obj", kind: (), companions: &[] },
-    Format { extension: "off", kind: (), companions: &[] },
-    Format { extension: "stl", kind: (), companions: &["stl.origin.txt"] },
-];
 
 /// Builds a TIN and writes it as a mesh.
 pub(super) fn run(args: &TinArgs, talk: &Talk) -> Result<Exit> {
     let plan = SurfacePlan::resolve(&args.surface, talk)?;
-    let outputs = outputs::resolve_with_report(&args.output, FORMATS, &plan)?;
+    let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Surface, |_| ()), &plan)?;
     let product = run::triangles(&plan.request, &talk.context())?;
     outputs.add_report(&plan, &product)?;
     for target in &outputs.targets {

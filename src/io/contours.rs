@@ -1,8 +1,8 @@
 //! Contours to a file.
 
 pub use super::contour_summary::ContourSummary;
+use super::formats::{self, Product, Writers};
 use super::output::Destination;
-use super::{geojson, shapefile};
 use crate::crs::Crs;
 use crate::data::ContourLine;
 use crate::error::{Error, Result};
@@ -13,12 +13,11 @@ use crate::error::{Error, Result};
 /// With the size that they would have at least.
 pub fn foresee<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
     let target = target.into();
-    let is_shapefile = target.format_path().extension().is_some_and(|e| e.eq_ignore_ascii_case("shp"));
-    if is_shapefile { shapefile::foresee(vertices).map_err(|e| e.in_file(target.path())) } else { Ok(()) }
+    let foresee = formats::of_name(&target.format_path()).and_then(|format| format.writers.foresee);
+    foresee.map_or(Ok(()), |foresee| foresee(vertices).map_err(|e| e.in_file(target.path())))
 }
 
-/// Writes contours in the format that the extension of `target` names: `.shp`, `.geojson` or
-/// `.json`.
+/// Writes contours in the format that the extension of `target` names, see [`FORMATS`](formats::FORMATS).
 ///
 /// # Errors
 /// If the extension is another, or a file cannot be written.
@@ -28,11 +27,11 @@ pub fn write<'a>(
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
     let target = target.into();
-    let path = target.format_path();
-    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    match extension.as_deref() {
-        Some("shp") => shapefile::write_contours(target, lines, crs),
-        Some("geojson" | "json") => geojson::write_contours(target, lines, crs),
-        _ => Err(Error::usage("contours are written as .shp, .geojson or .json").in_file(target.path())),
+    match formats::of_name(&target.format_path()).map(|format| format.writers) {
+        Some(Writers { contours: Some(write), .. }) => write(target, lines, crs),
+        _ => {
+            let known = formats::extensions_or(Product::Contours);
+            Err(Error::usage(format!("contours are written as {known}")).in_file(target.path()))
+        }
     }
 }

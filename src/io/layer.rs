@@ -1,16 +1,14 @@
 //! Vector layers of any format.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::{geojson, shapefile};
+use super::formats::{self, Reader};
 use crate::data::Layer;
 use crate::error::{Error, Result};
 
 /// Reads `FILE` or `FILE:FIELD`, by extension and, where that says nothing, by its first bytes.
-/// `FIELD` names the attribute that holds the heights; see [`shapefile::read_layer`] and
-/// [`geojson::read_layer`].
+/// `FIELD` names the attribute that holds the heights; see [`shapefile::read_layer`](super::shapefile::read_layer) and
+/// [`geojson::read_layer`](super::geojson::read_layer).
 ///
 /// # Errors
 /// If the file is not there or is of another format.
@@ -19,10 +17,17 @@ pub fn read(spec: &str) -> Result<Layer> {
     if field == Some("") {
         return Err(Error::usage(format!("{spec}: no field behind the colon")).cure("write FILE or FILE:FIELD"));
     }
-    match format(&path)? {
-        Format::Shapefile => shapefile::read_layer(&path, field),
-        Format::GeoJson => geojson::read_layer(&path, field),
-        Format::Other => read_other(&path, field),
+    if let Some((whole, part)) = formats::whole_of(&path) {
+        let whole_path = path.with_extension(whole.extensions[0]);
+        return Err(Error::usage(format!("a .{part} is a part of {}", whole.noun)).in_file(&path).cure(format!(
+            "name its .{}: {}",
+            whole.extensions[0],
+            whole_path.display()
+        )));
+    }
+    match formats::detect_file(&path)?.map(|format| format.reader) {
+        Some(Reader::Layer(read)) => read(&path, field),
+        _ => Err(unsupported(&path)),
     }
 }
 
@@ -39,40 +44,11 @@ pub fn split(spec: &str) -> (PathBuf, Option<&str>) {
     }
 }
 
-enum Format {
-    Shapefile,
-    GeoJson,
-    Other,
-}
-
-fn format(path: &Path) -> Result<Format> {
-    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    Ok(match extension.as_deref() {
-        Some("shp") => Format::Shapefile,
-        Some("geojson" | "json") => Format::GeoJson,
-        // Named by a part that holds no shapes.
-        Some(part @ ("shx" | "dbf" | "prj" | "cpg")) => {
-            return Err(Error::usage(format!("a .{part} is a part of a shapefile"))
-                .in_file(path)
-                .cure(format!("name its .shp: {}", path.with_extension("shp").display())));
-        }
-        _ => {
-            let mut first = [0; 4];
-            let read =
-                File::open(path).and_then(|mut file| file.read(&mut first)).map_err(|e| Error::from(e).in_file(path));
-            match read? {
-                4 if first == [0, 0, 0x27, 0x0A] => Format::Shapefile,
-                _ => Format::Other,
-            }
-        }
-    })
-}
-
-/// Formats that GDAL reads; what follows the colon then names a layer, not a field.
-fn read_other(path: &Path, _layer: Option<&str>) -> Result<Layer> {
-    Err(Error::unsupported("not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)")
+/// The error for formats that GDAL may read; what follows the colon then names a layer, not a field.
+fn unsupported(path: &Path) -> Error {
+    Error::unsupported("not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)")
         .in_file(path)
-        .cure("build with `--features gdal` to read what GDAL reads"))
+        .cure("build with `--features gdal` to read what GDAL reads")
 }
 
 #[cfg(test)]

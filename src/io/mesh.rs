@@ -26,50 +26,14 @@
 //! readers take no line over 1024 bytes, so that WKT of 1000 bytes and more is cut into lines `comment crs PART`, to be
 //! joined. The comments of OBJ and OFF are alike, with `#`.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use super::formats::{self, Content, Holding, Product, Reader};
 use super::listing::Listing;
+use super::output::Destination;
 pub use super::stl::Solid;
-use super::{obj, off, ply, stl};
 use crate::data::{Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
-use crate::io::{Destination, triangle};
-
-/// A mesh format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Polygon file format, `.ply`.
-    Ply,
-    /// Wavefront, `.obj`.
-    Obj,
-    /// Object file format, `.off`.
-    Off,
-    /// Stereolithography, `.stl`.
-    Stl,
-    /// Elements of Triangle, `.ele`.
-    Ele,
-}
-
-impl Format {
-    /// The format that a file's extension names.
-    pub fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        match extension.as_str() {
-            "ply" => Some(Format::Ply),
-            "obj" => Some(Format::Obj),
-            "off" => Some(Format::Off),
-            "stl" => Some(Format::Stl),
-            "ele" => Some(Format::Ele),
-            _ => None,
-        }
-    }
-
-    /// Whether a file tells which edges lie on lines. Without that, the Delaunay law cannot be asked of it.
-    pub fn keeps_lines(self) -> bool {
-        matches!(self, Format::Ply | Format::Ele)
-    }
-}
 
 /// What was written.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,8 +44,8 @@ pub struct MeshSummary {
     pub faces: usize,
     /// Edges on breaklines and clip lines.
     pub constrained_edges: usize,
-    /// How many of these cannot be told from others in the file: all, unless the format [keeps
-    /// lines](Format::keeps_lines).
+    /// How many of these cannot be told from others in the file: all, unless the format has
+    /// [edges](Holding::Edges).
     pub lost_edges: usize,
     /// What was subtracted from all coordinates, and the file beside the mesh that says so.
     pub origin: Option<([f64; 3], PathBuf)>,
@@ -94,31 +58,43 @@ pub struct MeshSummary {
 /// be written.
 pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> Result<MeshSummary> {
     let target = target.into();
-    let format = Format::of(&target.format_path()).ok_or_else(|| unknown(target.path()))?;
-    let mesh = Listing::new(surface);
-    let origin = match format {
-        Format::Ply => ply::write(target, &mesh, surface.crs()).map(|()| None),
-        Format::Obj => obj::write(target, &mesh, surface.crs()).map(|()| None),
-        Format::Off => off::write(target, &mesh, surface.crs()).map(|()| None),
-        Format::Stl => stl::write(target, &mesh).map(Some),
-        Format::Ele => Err(Error::unsupported("a surface is not written as .ele, which has no heights")
-            .cure("use .ply, .obj, .off or .stl")),
+    let format = formats::of_name(&target.format_path()).filter(|format| format.content == Content::Mesh);
+    let format = format.ok_or_else(|| unknown(target.path()))?;
+    let Some(write) = format.writers.surface else {
+        return Err(Error::unsupported(format!(
+            "a surface is not written as .{}, which has no heights",
+            format.extensions[0]
+        ))
+        .in_file(target.path())
+        .cure(format!("use {}", formats::extensions_or(Product::Surface))));
     };
+    let mesh = Listing::new(surface);
+    let origin = write(target, &mesh, surface.crs());
     Ok(MeshSummary {
         vertices: mesh.vertex_count,
         faces: mesh.face_count,
         constrained_edges: mesh.constrained_edges,
-        lost_edges: if format.keeps_lines() { 0 } else { mesh.constrained_edges },
+        lost_edges: if format.can_hold(Holding::Edges) { 0 } else { mesh.constrained_edges },
         origin: origin.map_err(|e| e.in_file(target.path()))?,
     })
 }
 
-/// Reads what a binary STL file holds: it has no exact coordinates, and is not read as a surface.
+/// Reads what a file of single triangles without exact coordinates holds (STL), which is not read as a surface. `None`
+/// for a file of another format.
 ///
 /// # Errors
 /// If it is damaged or text, or the file with its origin is.
-pub fn describe_stl(path: &Path) -> Result<Solid> {
-    stl::describe(path).map_err(|e| e.in_file(path))
+pub fn describe_solid(path: &Path) -> Option<Result<Solid>> {
+    match formats::of_name(path)?.reader {
+        Reader::Solid(describe) => Some(describe(path).map_err(|e| e.in_file(path))),
+        _ => None,
+    }
+}
+
+/// Returns true if a file of this name tells which edges lie on breaklines. Without that, the Delaunay law cannot be
+/// asked of it.
+pub fn keeps_lines(path: &Path) -> bool {
+    formats::of_name(path).is_some_and(|format| format.can_hold(Holding::Edges))
 }
 
 /// Reads a mesh that is a surface, own or foreign, of any format but STL. Polygons are divided into triangles.
@@ -137,27 +113,21 @@ pub fn read(path: &Path) -> Result<Mesh> {
 /// # Errors
 /// As [`read`], but for what is no surface.
 pub fn read_triangles(path: &Path) -> Result<Triangles> {
-    let read = || {
-        let format = Format::of(path).ok_or_else(|| unknown(path))?;
-        if format == Format::Stl {
-            return Err(Error::unsupported("STL meshes are not read: they have no exact coordinates")
+    let read = match formats::of_name(path).map(|format| (format, format.reader)) {
+        Some((_, Reader::Mesh(read))) => read,
+        Some((format, Reader::Solid(_))) => {
+            let name = format.name;
+            return Err(Error::unsupported(format!("{name} meshes are not read: they have no exact coordinates"))
+                .in_file(path)
                 .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
         }
-        if format == Format::Ele {
-            return triangle::read_triangles(path);
-        }
-        let mut bytes = Vec::new();
-        std::fs::File::open(path)?.read_to_end(&mut bytes)?;
-        match format {
-            Format::Ply => ply::read(&bytes),
-            Format::Off => off::read(&bytes),
-            _ => obj::read(&bytes),
-        }
+        _ => return Err(unknown(path)),
     };
-    read().map_err(|e: Error| e.in_file(path))
+    read(path).map_err(|e| e.in_file(path))
 }
 
 #[cold]
 fn unknown(path: &Path) -> Error {
-    Error::usage("the file's extension names no mesh format").in_file(path).cure("use .ply, .obj, .off or .stl")
+    let known = formats::extensions_or(Product::Surface);
+    Error::usage("the file's extension names no mesh format").in_file(path).cure(format!("use {known}"))
 }

@@ -12,6 +12,8 @@
 //! | to write other shapes | | [`shapefile::write_layer`] |
 //! | other coordinates | | [`proj::transform`] |
 //!
+//! All formats, and what can be read and written of each, are in one table: [`formats`].
+//!
 //! # Conventions
 //!
 //! - x is the easting or longitude, y the northing or latitude, whatever the axis order of the coordinate
@@ -37,6 +39,7 @@ mod contour_summary;
 pub mod contours;
 mod decimal;
 mod field;
+pub mod formats;
 pub mod gdal;
 pub mod geojson;
 pub mod geotiff;
@@ -49,6 +52,7 @@ mod off;
 mod output;
 mod ply;
 pub mod png;
+mod point_options;
 pub mod points;
 pub mod proj;
 pub mod raster;

@@ -10,24 +10,13 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::{las, text};
-use crate::data::{Columns, Layer, PointBatch, PointInfo, PointSource, Shape};
+use super::formats::{self, Format, HEAD, Reader};
+pub use super::point_options::Options;
+use crate::data::{Layer, PointBatch, PointInfo, PointSource, Shape};
 use crate::error::{Error, Result};
 
 /// Points in a batch.
 const BATCH: usize = 1 << 16;
-
-/// Bytes that are enough to tell what a file is.
-const HEAD: usize = 1024;
-
-/// How points are read, where a file leaves that open.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Options {
-    /// The columns of text; without them a header or the first three are taken.
-    pub columns: Option<Columns>,
-    /// What becomes of LAS and LAZ files that were cut.
-    pub cut: las::Cut,
-}
 
 /// Opens a file of points; `-` is the standard input (LAS, LAZ or text).
 ///
@@ -53,11 +42,10 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
         return open_stream(file, path, options);
     }
     let head = head(&mut file).map_err(named)?;
-    match Kind::of(&head, path) {
-        Kind::Las => Ok(Box::new(las::open_with(path, options.cut)?)),
-        Kind::Shapefile => shapefile(path),
-        Kind::Text => Ok(Box::new(text::open(path, options.columns)?)),
-        Kind::Other(other) => Err(other.refuse(path)),
+    match formats::detect(&head, path).map(|format| format.reader) {
+        Some(Reader::Points { file, .. }) => file(path, options),
+        Some(Reader::Layer(read)) => Ok(Box::new(from_layer(read(path, None)?).map_err(|e| e.in_file(path))?)),
+        _ => Err(refusal(&head, path)),
     }
 }
 
@@ -68,15 +56,14 @@ fn open_stream(
     options: Options,
 ) -> Result<Box<dyn PointSource + Send>> {
     let head = head(&mut stream).map_err(|error| Error::from(error).in_file(name))?;
-    let kind = Kind::of(&head, name);
-    let whole = io::Cursor::new(head).chain(stream);
-    match kind {
-        Kind::Las => Ok(Box::new(las::from_stream_with(whole, name, options.cut)?)),
-        Kind::Text => Ok(Box::new(text::from_stream(whole, name, options.columns)?)),
-        Kind::Shapefile => Err(Error::unsupported("a shapefile cannot be read from a stream")
+    let known = formats::detect(&head, name).map(|format| format.reader);
+    let whole = io::Cursor::new(head.clone()).chain(stream);
+    match known {
+        Some(Reader::Points { stream, .. }) => stream(Box::new(whole), name, options),
+        Some(Reader::Layer(_)) => Err(Error::unsupported("a shapefile cannot be read from a stream")
             .in_file(name)
             .cure("give its path: it is a set of files")),
-        Kind::Other(other) => Err(other.refuse(name)),
+        _ => Err(refusal(&head, name)),
     }
 }
 
@@ -86,96 +73,15 @@ fn head(source: &mut impl Read) -> io::Result<Vec<u8>> {
     Ok(head)
 }
 
-/// What a file is.
-enum Kind {
-    Las,
-    Shapefile,
-    Text,
-    Other(Other),
-}
-
-/// A file that has no points for us.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Other {
-    /// Its name, and what to do.
-    Known(&'static str, &'static str),
-    Unknown,
-}
-
-const WITH_GDAL: &str = "build with the feature `gdal` to read it: cargo build --release --features gdal";
-const AS_RASTER: &str = "this is a raster: points are expected here";
-
-const TRIANGULATE: &str = "`breakline triangulate` reads it and writes its triangulation, to .ele, .ply or .obj";
-
-/// First bytes of files that are often given for points.
-const KNOWN: &[(&[u8], &str, &str)] = &[
-    (b"II*\0", "a TIFF file", AS_RASTER),
-    (b"MM\0*", "a TIFF file", AS_RASTER),
-    (b"II+\0", "a BigTIFF file", AS_RASTER),
-    (b"MM\0+", "a BigTIFF file", AS_RASTER),
-    (b"\x89PNG", "a PNG picture", AS_RASTER),
-    (b"ncols", "an ESRI ASCII grid", AS_RASTER),
-    (b"NCOLS", "an ESRI ASCII grid", AS_RASTER),
-    (b"ply", "a PLY mesh", "save its vertices as text or LAS"),
-    (b"ASTM-E57", "an E57 scan", "save it as LAS or LAZ"),
-    (b"PK\x03\x04", "a ZIP archive", "unpack it"),
-    (b"\x1f\x8b", "a gzip archive", "unpack it"),
-    (b"SQLite format 3\0", "a GeoPackage or another SQLite database", WITH_GDAL),
-    (b"fgb\x03fgb", "a FlatGeobuf file", WITH_GDAL),
-    (b"AC10", "a DWG drawing", WITH_GDAL),
-    (b"\x89HDF", "an HDF5 file", WITH_GDAL),
-    (b"<?xml", "an XML file (GML, KML, LandXML)", WITH_GDAL),
-    (b"{", "a JSON file", WITH_GDAL),
-];
-
-/// Text that is no list of points, by extension.
-const NAMED: &[(&str, &str, &str)] = &[
-    ("dxf", "a DXF drawing", WITH_GDAL),
-    ("node", "a .node file of Triangle", TRIANGULATE),
-    ("poly", "a .poly file of Triangle", TRIANGULATE),
-];
-
-impl Kind {
-    fn of(head: &[u8], path: &Path) -> Self {
-        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-        let is = |known: &str| extension.eq_ignore_ascii_case(known);
-        if head.starts_with(b"LASF") || is("las") || is("laz") {
-            return Kind::Las;
-        }
-        // File code 9994, big endian.
-        if head.starts_with(&[0, 0, 0x27, 0x0a]) || is("shp") {
-            return Kind::Shapefile;
-        }
-        if let Some(&(_, name, cure)) = KNOWN.iter().find(|(magic, ..)| head.starts_with(magic)) {
-            return Kind::Other(Other::Known(name, cure));
-        }
-        if let Some(&(_, name, cure)) = NAMED.iter().find(|(known, ..)| is(known)) {
-            return Kind::Other(Other::Known(name, cure));
-        }
-        // UTF-16 has zeros too; the reader of text refuses it by name.
-        let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
-        if head.contains(&0) && !is_utf16 {
-            return Kind::Other(Other::Unknown);
-        }
-        Kind::Text
-    }
-}
-
-impl Other {
-    fn refuse(self, path: &Path) -> Error {
-        const SUPPORTED: &str = "points are read from LAS, LAZ, COPC, shapefiles and text (x y z)";
-        let error = match self {
-            Other::Known(name, cure) => Error::unsupported(format!("{name}; {SUPPORTED}")).cure(cure),
-            Other::Unknown => Error::unsupported(format!("a binary file of an unknown kind; {SUPPORTED}"))
-                .cure(format!("if GDAL knows it: {WITH_GDAL}")),
-        };
-        error.in_file(path)
-    }
-}
-
-fn shapefile(path: &Path) -> Result<Box<dyn PointSource + Send>> {
-    let layer = super::shapefile::read_layer(path, None)?;
-    Ok(Box::new(from_layer(layer).map_err(|e| e.in_file(path))?))
+/// The error for a file that has no points for us.
+fn refusal(head: &[u8], path: &Path) -> Error {
+    const SUPPORTED: &str = "points are read from LAS, LAZ, COPC, shapefiles and text (x y z)";
+    let error = match formats::named(head, path) {
+        Some(Format { noun, cure, .. }) => Error::unsupported(format!("{noun}; {SUPPORTED}")).cure(*cure),
+        None => Error::unsupported(format!("a binary file of an unknown kind; {SUPPORTED}"))
+            .cure(format!("if GDAL knows it: {}", formats::WITH_GDAL)),
+    };
+    error.in_file(path)
 }
 
 /// The points of a vector layer; shapes of other kinds are left out with a warning.

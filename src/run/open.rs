@@ -1,7 +1,6 @@
 //! Files of any kind, opened by their first bytes and extension.
 
 use std::borrow::Cow;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -11,67 +10,31 @@ use super::memory;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointSource, Triangles};
 use crate::error::{Error, Kind, Result};
+pub(super) use crate::io::formats::Content;
+use crate::io::formats::{self, Format, Holding};
 use crate::io::geotiff::GeoTiffReader;
+pub(super) use crate::io::mesh::keeps_lines;
 use crate::io::mesh::{self, Solid};
 use crate::io::png::{self, Picture};
 use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph};
 use crate::io::{gdal, layer, points, raster};
 
-/// What a file holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Content {
-    Points,
-    Layer,
-    Raster,
-    Mesh,
-    /// A picture: shades, but no heights.
-    Picture,
-    /// A file of Triangle's without triangles.
-    Plane,
-}
-
-/// What LAS, LAZ and COPC begin with.
-const LIDAR: &[u8] = b"LASF";
-
 /// Returns true if a file is LAS, LAZ or COPC.
 pub(super) fn is_lidar(path: &Path) -> bool {
-    first_bytes(path).is_some_and(|head| head.starts_with(LIDAR))
+    format(path).is_some_and(|format| format.can_hold(Holding::Attributes))
 }
 
 /// What the first bytes and the extension say. What neither knows are points: text comes under any
 /// name.
 pub(super) fn content(path: &Path) -> Content {
-    let head = first_bytes(path).unwrap_or_default();
-    if head.starts_with(LIDAR) {
-        return Content::Points;
-    }
-    if raster::is_tiff(&head) {
-        return Content::Raster;
-    }
-    let file = layer::split(&path.to_string_lossy()).0;
-    let extension = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    match extension.as_str() {
-        "ply" | "obj" | "off" | "stl" | "ele" => Content::Mesh,
-        "png" => Content::Picture,
-        "node" | "poly" | "edge" | "neigh" => Content::Plane,
-        "tif" | "tiff" | "vrt" | "img" | "hgt" | "dem" | "dt0" | "dt1" | "dt2" => Content::Raster,
-        // Points as text, or a grid.
-        "asc" if head.to_ascii_lowercase().starts_with(b"ncols") => Content::Raster,
-        "shp" | "geojson" | "json" | "gpkg" | "fgb" | "kml" | "gml" | "dxf" => Content::Layer,
-        _ => Content::Points,
-    }
+    format(path).map_or(Content::Points, |format| format.content)
 }
 
-fn first_bytes(path: &Path) -> Option<Vec<u8>> {
-    let file = std::fs::File::open(path).ok()?;
-    // Reading from a pipe would take away what it holds.
-    if !file.metadata().ok()?.is_file() {
-        return None;
-    }
-    let mut head = Vec::new();
-    file.take(16).read_to_end(&mut head).ok()?;
-    Some(head)
+fn format(path: &Path) -> Option<&'static Format> {
+    let file = layer::split(&path.to_string_lossy()).0;
+    // What is not there yet is known by its name.
+    formats::detect_file(&file).unwrap_or_else(|_| formats::of_name(&file))
 }
 
 /// Points in memory, or of a file of any format.
@@ -185,7 +148,7 @@ pub(super) fn linked_mesh(path: &Path) -> Result<(Mesh, Vec<LinkFlaw>)> {
 
 /// What an STL file holds; `None` if it is another mesh.
 pub(super) fn solid(path: &Path) -> Option<Result<Solid>> {
-    (mesh::Format::of(path) == Some(mesh::Format::Stl)).then(|| mesh::describe_stl(path))
+    mesh::describe_solid(path)
 }
 
 /// What a picture is, and where it lies.
@@ -209,9 +172,4 @@ pub(super) fn mesh_triangles(path: &Path, journal: &Journal) -> Result<Triangles
     let triangles = mesh::read_triangles(path)?;
     reading.end()?;
     Ok(triangles)
-}
-
-/// Returns true if a mesh of this name can tell which edges are constrained.
-pub(super) fn keeps_lines(path: &Path) -> bool {
-    mesh::Format::of(path).is_some_and(mesh::Format::keeps_lines)
 }

@@ -10,6 +10,8 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::io::formats;
+
 pub(super) use parse::{EdgeLength, finite};
 pub(super) use reading::ReadArgs;
 pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
@@ -27,7 +29,7 @@ pub(super) use verbs::{
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong usage.
 #[derive(Debug, Parser)]
-#[command(name = "breakline", version, max_term_width = 100, after_long_help = EXAMPLES)]
+#[command(name = "breakline", version, max_term_width = 100, after_long_help = examples())]
 pub(super) struct Cli {
     #[command(flatten)]
     pub(super) talk: TalkArgs,
@@ -35,7 +37,7 @@ pub(super) struct Cli {
     pub(super) verb: Verb,
 }
 
-const EXAMPLES: &str = "\
+const EXAMPLES: &str = "
 Examples:
   breakline info tile.laz
   breakline tin tiles/*.laz --breaklines edges.shp -o ground.ply
@@ -44,6 +46,11 @@ Examples:
   breakline demo
 
 `breakline VERB --help` tells defaults, interplay and an example of each verb.";
+
+/// The formats of the table, and examples.
+fn examples() -> String {
+    formats::help() + EXAMPLES
+}
 
 /// How much is said, and how many cores work.
 #[derive(Debug, Clone, Default, Args)]

@@ -16,6 +16,7 @@ use super::args::InfoArgs;
 use super::talk::Talk;
 use super::{Exit, escape, inputs, print};
 use crate::error::Result;
+use crate::io::formats;
 use crate::run::{self, Facts};
 
 /// Tells what is in files. A file that cannot be read does not keep the others from being told.
@@ -49,22 +50,14 @@ pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
     Ok(exit)
 }
 
-/// Files that are told with another: extensions, after that of the other.
-const PARTS: [(&str, &[&str]); 3] = [
-    ("shp", &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"]),
-    ("png", &["pgw", "png.aux.xml"]),
-    ("stl", &["stl.origin.txt"]),
-];
-
 /// `FOLDER/*` names the parts of shapefiles and the like, too; they are told with the `.shp`.
 fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
     // Names are compared in lower case: `A.SHP` has `A.DBF`.
     let lower = |path: &Path| path.to_string_lossy().to_lowercase();
     let mut parts: HashSet<String> = HashSet::new();
     for path in files.iter() {
-        let of_path = PARTS.iter().filter(|(main, _)| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(main)));
-        let extensions = of_path.flat_map(|(_, extensions)| extensions.iter());
-        parts.extend(extensions.map(|extension| lower(&path.with_extension(extension))));
+        let extensions = formats::of_name(path).map_or(&[][..], |format| format.parts);
+        parts.extend(extensions.iter().map(|extension| lower(&path.with_extension(extension))));
     }
     files.retain(|path| {
         let is_part = parts.contains(&lower(path));

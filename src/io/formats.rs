@@ -1,0 +1,724 @@
+//! The file formats: what tells each, what it holds, and who reads and writes it.
+//!
+//! [`FORMATS`] is the only place that names them all. Readers of any format, the verbs' lists of outputs, the help of
+//! the program and the table in `docs/formats.md` come from it. A format is a row here and a file or folder beside this
+//! one; see `docs/how-to-add-a-format.md`.
+
+use std::fmt::Write;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::contour_summary::ContourSummary;
+use super::geotiff::{CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
+use super::listing::Listing;
+use super::output::Destination;
+use super::point_options::Options;
+use super::triangle::Triangulated;
+use super::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, text, triangle};
+use crate::crs::Crs;
+use crate::data::{BlockSource, ContourLine, Layer, PointSource, Triangles};
+use crate::error::{Error, Result};
+
+/// What a file is read as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Content {
+    /// Points.
+    Points,
+    /// Lines, polygons and points of a vector layer.
+    Layer,
+    /// Heights in cells.
+    Raster,
+    /// Triangles.
+    Mesh,
+    /// Shades in cells, but no heights.
+    Picture,
+    /// Points and segments in the plane, or a part of their triangulation.
+    Plane,
+}
+
+/// What a file can hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Holding {
+    /// Points with heights.
+    Points,
+    /// Lines.
+    Lines,
+    /// Polygons.
+    Polygons,
+    /// Cells.
+    Raster,
+    /// Triangles.
+    Mesh,
+    /// Classes, returns, times and what else a lidar point says of itself.
+    Attributes,
+    /// Which edges of triangles lie on breaklines.
+    Edges,
+    /// A coordinate system, in the file or in one beside it.
+    Crs,
+    /// Compressed data.
+    Compression,
+}
+
+/// What can be written to a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Product {
+    /// A surface, as a mesh.
+    Surface,
+    /// Contours.
+    Contours,
+    /// Heights in cells.
+    Heights,
+    /// Shades in cells.
+    Shades,
+    /// Points and segments in the plane, and their triangulation.
+    Plane,
+}
+
+/// How a file is recognized.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum KnownBy {
+    /// By its first bytes, whatever its name; by its extension if these are others.
+    Bytes,
+    /// By its extension; by its first bytes if no format has that extension.
+    Name,
+    /// By its extension. Its first bytes only name it in messages: other formats begin alike.
+    NameAlone,
+    /// By its extension and first bytes together: other formats have the same extension.
+    NameAndBytes,
+    /// By neither: it is what is left.
+    Rest,
+}
+
+/// First bytes of a file.
+#[derive(Debug, Clone, Copy)]
+enum Magic {
+    /// These bytes, at this position.
+    At(usize, &'static [u8]),
+    /// This word, in any case.
+    Word(&'static str),
+}
+
+impl Magic {
+    fn matches(self, head: &[u8]) -> bool {
+        match self {
+            Magic::At(at, bytes) => head.get(at..).is_some_and(|rest| rest.starts_with(bytes)),
+            Magic::Word(word) => {
+                head.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
+            }
+        }
+    }
+}
+
+type Points = Result<Box<dyn PointSource + Send>>;
+
+/// Reads a file.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Reader {
+    Points {
+        file: fn(&Path, Options) -> Points,
+        /// Reads what can be read only once; the path is its name in messages.
+        stream: fn(Box<dyn Read + Send>, &Path, Options) -> Points,
+    },
+    Layer(fn(&Path, Option<&str>) -> Result<Layer>),
+    Raster(fn(&Path) -> Result<GeoTiffReader>),
+    Mesh(fn(&Path) -> Result<Triangles>),
+    /// Triangles without exact coordinates: counted, and not read.
+    Solid(fn(&Path) -> Result<stl::Solid>),
+    /// Points and segments of the plane, see [`triangle::read`].
+    Own,
+    /// Not read, but `info` tells what it is.
+    Told,
+    /// By GDAL, in a build with the feature `gdal`.
+    Gdal,
+    /// Nobody reads it.
+    Nobody,
+}
+
+/// Local coordinates: what was subtracted from all of them, and the file that says so.
+pub(super) type Origin = Option<([f64; 3], PathBuf)>;
+
+type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Origin>;
+type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
+type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
+type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
+type WriteContours = fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
+
+/// What writes each product; `None` for a product that is not written in the format.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Writers {
+    pub(super) surface: Option<WriteSurface>,
+    pub(super) contours: Option<WriteContours>,
+    /// Returns an error if contours of so many vertices are too large for the format.
+    pub(super) foresee: Option<fn(u64) -> Result<()>>,
+    pub(super) heights: Option<WriteHeights>,
+    pub(super) shades: Option<WriteShades>,
+    /// Several files together, see [`triangle::write`].
+    pub(super) plane: Option<WritePlane>,
+}
+
+/// A file format; all of them are in [`FORMATS`].
+#[derive(Debug)]
+pub struct Format {
+    /// What it is called in lists: "GeoTIFF".
+    pub name: &'static str,
+    /// What a file of it is called in a sentence: "a TIFF file".
+    pub noun: &'static str,
+    /// Extensions in lower case without the dot, the usual one first.
+    pub extensions: &'static [&'static str],
+    magic: &'static [Magic],
+    known_by: KnownBy,
+    /// What a file is read as.
+    pub content: Content,
+    /// What a file can hold.
+    pub holds: &'static [Holding],
+    /// Extensions of the files that are written with it; of one that begins with its own extension, the rest is put
+    /// behind the whole name.
+    pub beside: &'static [&'static str],
+    /// Extensions of files that belong to it, whoever wrote them.
+    pub parts: &'static [&'static str],
+    /// What GDAL calls it, for those formats that are written.
+    pub gdal_name: Option<&'static str>,
+    pub(super) reader: Reader,
+    pub(super) writers: Writers,
+    /// What to do with a file where points are expected.
+    pub(super) cure: &'static str,
+    /// What is read or written of it, in one line.
+    pub help: &'static str,
+}
+
+impl Format {
+    /// Returns true if a file can hold this.
+    pub fn can_hold(&self, holding: Holding) -> bool {
+        self.holds.contains(&holding)
+    }
+
+    /// Returns true if this product is written in the format.
+    pub fn writes(&self, product: Product) -> bool {
+        match product {
+            Product::Surface => self.writers.surface.is_some(),
+            Product::Contours => self.writers.contours.is_some(),
+            Product::Heights => self.writers.heights.is_some(),
+            Product::Shades => self.writers.shades.is_some(),
+            Product::Plane => self.writers.plane.is_some(),
+        }
+    }
+
+    /// Returns true if it is read without GDAL.
+    pub fn is_read(&self) -> bool {
+        !matches!(self.reader, Reader::Gdal | Reader::Nobody)
+    }
+
+    fn has_extension(&self, path: &Path) -> bool {
+        let extension = path.extension().unwrap_or_default();
+        self.extensions.iter().any(|known| extension.eq_ignore_ascii_case(known))
+    }
+
+    fn begins_like(&self, head: &[u8]) -> bool {
+        self.magic.iter().any(|magic| magic.matches(head))
+    }
+}
+
+/// Bytes that are enough to recognize a file.
+pub(super) const HEAD: usize = 1024;
+
+/// Returns the format that a file's extension names, read or not; not those that share it with another.
+pub fn of_name(path: &Path) -> Option<&'static Format> {
+    FORMATS
+        .iter()
+        .find(|format| !matches!(format.known_by, KnownBy::Rest | KnownBy::NameAndBytes) && format.has_extension(path))
+}
+
+/// Returns the format that a file is to be read as, by its first bytes (1024 are enough) and its name. `None` for a
+/// binary file that none is known to begin like, and for one that only its first bytes name.
+pub fn detect(head: &[u8], path: &Path) -> Option<&'static Format> {
+    let find = |rule: KnownBy, matches: &dyn Fn(&Format) -> bool| {
+        FORMATS.iter().find(|format| format.known_by == rule && matches(format))
+    };
+    find(KnownBy::Bytes, &|format| format.begins_like(head))
+        .or_else(|| find(KnownBy::NameAndBytes, &|format| format.has_extension(path) && format.begins_like(head)))
+        .or_else(|| of_name(path))
+        .or_else(|| find(KnownBy::Name, &|format| format.begins_like(head)))
+        .or_else(|| find(KnownBy::Rest, &|_| !is_binary(head) && of_bytes(head).is_none()))
+}
+
+/// Like [`detect`], but opens the file. What cannot be read twice (a pipe) is known by its name only.
+///
+/// # Errors
+/// If the file cannot be opened.
+pub fn detect_file(path: &Path) -> Result<Option<&'static Format>> {
+    let read = || -> std::io::Result<Vec<u8>> {
+        let file = File::open(path)?;
+        let mut head = Vec::new();
+        if file.metadata()?.is_file() {
+            file.take(HEAD as u64).read_to_end(&mut head)?;
+        }
+        Ok(head)
+    };
+    let head = read().map_err(|error| Error::from(error).in_file(path))?;
+    Ok(detect(&head, path))
+}
+
+/// Returns the format that first bytes name, whether they decide or not.
+pub(super) fn of_bytes(head: &[u8]) -> Option<&'static Format> {
+    FORMATS.iter().find(|format| format.begins_like(head))
+}
+
+/// Returns the format that first bytes or a name tell, to be named in a message.
+pub(super) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
+    of_bytes(head).or_else(|| of_name(path))
+}
+
+/// Returns the format of the layer that a file is only a part of, and the extension that says so: `.dbf`, say.
+pub(super) fn whole_of(path: &Path) -> Option<(&'static Format, &'static str)> {
+    let extension = path.extension()?;
+    FORMATS.iter().filter(|format| matches!(format.reader, Reader::Layer(_))).find_map(|format| {
+        let part = format.parts.iter().find(|part| extension.eq_ignore_ascii_case(part))?;
+        Some((format, *part))
+    })
+}
+
+/// Returns true for bytes that are not text. UTF-16 has zeros, too; the reader of text refuses it by name.
+fn is_binary(head: &[u8]) -> bool {
+    let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
+    head.contains(&0) && !is_utf16
+}
+
+/// The extensions of files that a product is written to.
+pub fn extensions(product: Product) -> Vec<&'static str> {
+    FORMATS.iter().filter(|format| format.writes(product)).flat_map(|format| format.extensions).copied().collect()
+}
+
+/// The extensions of files that a product is written to, in a sentence: ".shp, .geojson or .json".
+pub(super) fn extensions_or(product: Product) -> String {
+    let all: Vec<String> = extensions(product).iter().map(|extension| format!(".{extension}")).collect();
+    match &all[..] {
+        [most @ .., last] if !most.is_empty() => format!("{} or {last}", most.join(", ")),
+        _ => all.join(", "),
+    }
+}
+
+impl Holding {
+    const fn name(self) -> &'static str {
+        match self {
+            Holding::Points => "points",
+            Holding::Lines => "lines",
+            Holding::Polygons => "polygons",
+            Holding::Raster => "cells",
+            Holding::Mesh => "triangles",
+            Holding::Attributes => "attributes",
+            Holding::Edges => "edges on breaklines",
+            Holding::Crs => "coordinate system",
+            Holding::Compression => "compressed",
+        }
+    }
+}
+
+impl Product {
+    const ALL: [Product; 5] = [Product::Surface, Product::Contours, Product::Heights, Product::Shades, Product::Plane];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Product::Surface => "surface",
+            Product::Contours => "contours",
+            Product::Heights => "heights",
+            Product::Shades => "hillshade",
+            Product::Plane => "triangulation",
+        }
+    }
+}
+
+impl Reader {
+    const fn name(self) -> &'static str {
+        match self {
+            Reader::Points { .. } => "points",
+            Reader::Layer(_) => "lines, polygons, points",
+            Reader::Raster(_) => "heights",
+            Reader::Mesh(_) => "surface",
+            Reader::Own => "points and segments",
+            Reader::Solid(_) | Reader::Told => "by `info` only",
+            Reader::Gdal => "with `gdal`",
+            Reader::Nobody => "",
+        }
+    }
+}
+
+/// The formats that are read or written by this crate, a line each, for the help of the program.
+pub fn help() -> String {
+    let mut text = String::from("Formats, by extension (more are read with the feature `gdal`):\n");
+    for format in FORMATS.iter().filter(|format| format.is_read()) {
+        let extensions: Vec<String> = format.extensions.iter().map(|extension| format!(".{extension}")).collect();
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "  {:<28} {}", extensions.join(" "), format.help);
+    }
+    text
+}
+
+/// The table of formats in `docs/formats.md`, in Markdown.
+pub fn markdown() -> String {
+    let mut text = String::from("| format | extensions | read | written | can hold |\n|---|---|---|---|---|\n");
+    for format in FORMATS.iter().filter(|format| !format.extensions.is_empty()) {
+        let extensions: Vec<String> = format.extensions.iter().map(|extension| format!("`.{extension}`")).collect();
+        let written: Vec<_> =
+            Product::ALL.into_iter().filter(|&product| format.writes(product)).map(Product::name).collect();
+        let holds: Vec<_> = format.holds.iter().map(|holding| holding.name()).collect();
+        let cells = [format.name, &extensions.join(", "), format.reader.name(), &written.join(", "), &holds.join(", ")];
+        let _ = writeln!(text, "| {} |", cells.join(" | ").replace("|  |", "| |"));
+    }
+    text
+}
+
+const NOT_WRITTEN: Writers =
+    Writers { surface: None, contours: None, foresee: None, heights: None, shades: None, plane: None };
+
+pub(super) const WITH_GDAL: &str = "build with the feature `gdal` to read it: cargo build --release --features gdal";
+const AS_RASTER: &str = "this is a raster: points are expected here";
+const AS_PLANE: &str = "`breakline triangulate` reads it and writes its triangulation, to .ele, .ply or .obj";
+const AS_MESH: &str = "save its vertices as text or LAS";
+const UNPACK: &str = "unpack it";
+
+/// A format that GDAL may read and nobody here; rows name what differs.
+const ROW: Format = Format {
+    name: "",
+    noun: "",
+    extensions: &[],
+    magic: &[],
+    known_by: KnownBy::NameAlone,
+    content: Content::Points,
+    holds: &[],
+    beside: &[],
+    parts: &[],
+    gdal_name: None,
+    reader: Reader::Gdal,
+    writers: NOT_WRITTEN,
+    cure: WITH_GDAL,
+    help: "",
+};
+
+const LIDAR: Reader = Reader::Points {
+    file: |path, options| Ok(Box::new(las::open_with(path, options.cut)?)),
+    stream: |stream, name, options| Ok(Box::new(las::from_stream_with(stream, name, options.cut)?)),
+};
+
+const fn raster(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    magic: &'static [Magic],
+) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        magic,
+        content: Content::Raster,
+        holds: &[Holding::Raster],
+        cure: AS_RASTER,
+        ..ROW
+    }
+}
+
+const fn vector(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    magic: &'static [Magic],
+) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        magic,
+        content: Content::Layer,
+        holds: &[Holding::Points, Holding::Lines, Holding::Polygons],
+        ..ROW
+    }
+}
+
+/// A file of Triangle.
+const fn plane(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    help: &'static str,
+) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        content: Content::Plane,
+        reader: Reader::Own,
+        writers: Writers { plane: Some(triangle::write), ..NOT_WRITTEN },
+        cure: AS_PLANE,
+        help,
+        ..ROW
+    }
+}
+
+/// All formats, in the order of lists.
+pub static FORMATS: &[Format] = &[
+    Format {
+        name: "LAS",
+        noun: "a LAS file",
+        extensions: &["las"],
+        magic: &[Magic::At(0, b"LASF")],
+        known_by: KnownBy::Bytes,
+        holds: &[Holding::Points, Holding::Attributes, Holding::Crs],
+        reader: LIDAR,
+        help: "lidar points",
+        ..ROW
+    },
+    Format {
+        name: "LAZ, COPC",
+        noun: "a LAZ file",
+        extensions: &["laz"],
+        magic: &[Magic::At(0, b"LASF")],
+        known_by: KnownBy::Bytes,
+        holds: &[Holding::Points, Holding::Attributes, Holding::Crs, Holding::Compression],
+        reader: LIDAR,
+        help: "lidar points, compressed",
+        ..ROW
+    },
+    Format {
+        name: "text",
+        noun: "a text file",
+        extensions: &["xyz", "txt", "csv", "asc", "pts"],
+        known_by: KnownBy::Rest,
+        holds: &[Holding::Points],
+        reader: Reader::Points {
+            file: |path, options| Ok(Box::new(text::open(path, options.columns)?)),
+            stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options.columns)?)),
+        },
+        help: "points, one a line; under any other name, too",
+        ..ROW
+    },
+    Format {
+        name: "shapefile",
+        noun: "a shapefile",
+        extensions: &["shp"],
+        // File code 9994, big endian.
+        magic: &[Magic::At(0, &[0, 0, 0x27, 0x0a])],
+        known_by: KnownBy::Name,
+        content: Content::Layer,
+        holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
+        beside: &["shx", "dbf", "prj", "cpg"],
+        parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
+        gdal_name: Some("ESRI Shapefile"),
+        reader: Reader::Layer(shapefile::read_layer),
+        writers: Writers {
+            contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
+            foresee: Some(shapefile::foresee),
+            ..NOT_WRITTEN
+        },
+        help: "lines, polygons and points; contours",
+        ..ROW
+    },
+    Format {
+        name: "GeoJSON",
+        noun: "a JSON file",
+        extensions: &["geojson", "json"],
+        magic: &[Magic::At(0, b"{")],
+        content: Content::Layer,
+        holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
+        gdal_name: Some("GeoJSON"),
+        reader: Reader::Layer(geojson::read_layer),
+        writers: Writers {
+            contours: Some(|target, lines, crs| geojson::write_contours(target, lines, crs)),
+            ..NOT_WRITTEN
+        },
+        help: "lines, polygons and points; contours",
+        ..ROW
+    },
+    Format {
+        name: "GeoTIFF",
+        noun: "a TIFF file",
+        extensions: &["tif", "tiff"],
+        // TIFF and BigTIFF, in both byte orders.
+        magic: &[Magic::At(0, b"II*\0"), Magic::At(0, b"MM\0*"), Magic::At(0, b"II+\0"), Magic::At(0, b"MM\0+")],
+        known_by: KnownBy::Bytes,
+        content: Content::Raster,
+        holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
+        gdal_name: Some("GTiff"),
+        reader: Reader::Raster(|path| geotiff::open(path)),
+        writers: Writers {
+            heights: Some(|target, source| geotiff::write(target, source, with_cells(CellFormat::Heights))),
+            shades: Some(|target, source| geotiff::write(target, source, with_cells(CellFormat::Shades)).map(drop)),
+            ..NOT_WRITTEN
+        },
+        cure: AS_RASTER,
+        help: "heights in cells; hillshade",
+        ..ROW
+    },
+    Format {
+        name: "PNG",
+        noun: "a PNG picture",
+        extensions: &["png"],
+        magic: &[Magic::At(0, b"\x89PNG")],
+        content: Content::Picture,
+        holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
+        beside: &["pgw", "png.aux.xml"],
+        parts: &["pgw", "png.aux.xml"],
+        gdal_name: Some("PNG"),
+        reader: Reader::Told,
+        writers: Writers { shades: Some(|target, source| png::write_gray(target, source)), ..NOT_WRITTEN },
+        cure: AS_RASTER,
+        help: "hillshade",
+        ..ROW
+    },
+    Format {
+        name: "PLY",
+        noun: "a PLY mesh",
+        extensions: &["ply"],
+        magic: &[Magic::At(0, b"ply")],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        reader: Reader::Mesh(|path| ply::read(&std::fs::read(path)?)),
+        writers: Writers {
+            surface: Some(|target, mesh, crs| ply::write(target, mesh, crs).map(|()| None)),
+            ..NOT_WRITTEN
+        },
+        cure: AS_MESH,
+        help: "triangles with breaklines and coordinate system",
+        ..ROW
+    },
+    Format {
+        name: "OBJ",
+        noun: "an OBJ mesh",
+        extensions: &["obj"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Crs],
+        reader: Reader::Mesh(|path| obj::read(&std::fs::read(path)?)),
+        writers: Writers {
+            surface: Some(|target, mesh, crs| obj::write(target, mesh, crs).map(|()| None)),
+            ..NOT_WRITTEN
+        },
+        cure: AS_MESH,
+        help: "triangles",
+        ..ROW
+    },
+    Format {
+        name: "OFF",
+        noun: "an OFF mesh",
+        extensions: &["off"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Crs],
+        reader: Reader::Mesh(|path| off::read(&std::fs::read(path)?)),
+        writers: Writers {
+            surface: Some(|target, mesh, crs| off::write(target, mesh, crs).map(|()| None)),
+            ..NOT_WRITTEN
+        },
+        cure: AS_MESH,
+        help: "triangles",
+        ..ROW
+    },
+    Format {
+        name: "STL",
+        noun: "an STL mesh",
+        extensions: &["stl"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh],
+        beside: &["stl.origin.txt"],
+        parts: &["stl.origin.txt"],
+        reader: Reader::Solid(stl::describe),
+        writers: Writers { surface: Some(|target, mesh, _| stl::write(target, mesh).map(Some)), ..NOT_WRITTEN },
+        cure: AS_MESH,
+        help: "triangles in 32-bit floats from a local origin; written only",
+        ..ROW
+    },
+    Format {
+        reader: Reader::Mesh(triangle::read_triangles),
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges],
+        ..plane("Triangle .ele", "an .ele file of Triangle", &["ele"], "triangles in the plane (Triangle)")
+    },
+    Format {
+        holds: &[Holding::Points],
+        ..plane("Triangle .node", "a .node file of Triangle", &["node"], "points in the plane (Triangle)")
+    },
+    Format {
+        holds: &[Holding::Points, Holding::Lines],
+        ..plane("Triangle .poly", "a .poly file of Triangle", &["poly"], "points and segments in the plane (Triangle)")
+    },
+    Format {
+        reader: Reader::Told,
+        ..plane(
+            "Triangle .edge",
+            "an .edge file of Triangle",
+            &["edge"],
+            "edges of a triangulation in the plane (Triangle)",
+        )
+    },
+    Format {
+        reader: Reader::Told,
+        ..plane(
+            "Triangle .neigh",
+            "a .neigh file of Triangle",
+            &["neigh"],
+            "neighbors in a triangulation in the plane (Triangle)",
+        )
+    },
+    // Read by GDAL, or named in messages.
+    Format {
+        known_by: KnownBy::NameAndBytes,
+        ..raster("Esri ASCII grid", "an ESRI ASCII grid", &["asc"], &[Magic::Word("ncols"), Magic::Word("nrows")])
+    },
+    raster("GDAL virtual raster", "a GDAL virtual raster", &["vrt"], &[Magic::At(0, b"<VRTDataset")]),
+    raster("Erdas Imagine", "an Erdas Imagine file", &["img"], &[Magic::At(0, b"EHFA_HEADER_TAG")]),
+    raster("SRTM height file (HGT)", "an SRTM height file", &["hgt"], &[]),
+    raster("USGS DEM", "a USGS DEM", &["dem"], &[]),
+    raster(
+        "DTED",
+        "a DTED file",
+        &["dt0", "dt1", "dt2"],
+        &[Magic::At(0, b"UHL1"), Magic::At(0, b"HDR1"), Magic::At(80, b"UHL1")],
+    ),
+    raster("raw raster (BIL, FLT)", "a raw raster", &["bil", "flt"], &[]),
+    raster("Surfer grid", "a Surfer grid", &[], &[Magic::At(0, b"DSAA"), Magic::At(0, b"DSBB"), Magic::At(0, b"DSRB")]),
+    raster(
+        "netCDF or HDF",
+        "an HDF5 or netCDF file",
+        &[],
+        &[Magic::At(0, b"CDF\x01"), Magic::At(0, b"CDF\x02"), Magic::At(0, b"\x89HDF")],
+    ),
+    raster("GRIB", "a GRIB file", &[], &[Magic::At(0, b"GRIB")]),
+    raster("JPEG", "a JPEG picture", &[], &[Magic::At(0, b"\xff\xd8\xff")]),
+    raster("JPEG 2000", "a JPEG 2000 picture", &[], &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")]),
+    vector(
+        "GeoPackage (SQLite)",
+        "a GeoPackage or another SQLite database",
+        &["gpkg"],
+        &[Magic::At(0, b"SQLite format 3\0")],
+    ),
+    vector("FlatGeobuf", "a FlatGeobuf file", &["fgb"], &[Magic::At(0, b"fgb\x03fgb")]),
+    vector("XML (GML, KML)", "an XML file (GML, KML, LandXML)", &["kml", "gml"], &[Magic::At(0, b"<?xml")]),
+    vector("DXF", "a DXF drawing", &["dxf"], &[]),
+    vector("DWG", "a DWG drawing", &[], &[Magic::At(0, b"AC10")]),
+    Format {
+        name: "E57",
+        noun: "an E57 scan",
+        magic: &[Magic::At(0, b"ASTM-E57")],
+        reader: Reader::Nobody,
+        cure: "save it as LAS or LAZ",
+        ..ROW
+    },
+    Format {
+        name: "ZIP",
+        noun: "a ZIP archive",
+        magic: &[Magic::At(0, b"PK\x03\x04")],
+        reader: Reader::Nobody,
+        cure: UNPACK,
+        ..ROW
+    },
+    Format {
+        name: "gzip",
+        noun: "a gzip archive",
+        magic: &[Magic::At(0, b"\x1f\x8b")],
+        reader: Reader::Nobody,
+        cure: UNPACK,
+        ..ROW
+    },
+];
+
+fn with_cells(cells: CellFormat) -> WriteOptions<'static> {
+    WriteOptions { cells, progress: None }
+}
