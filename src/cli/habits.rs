@@ -85,6 +85,8 @@ const HABITS: &[Habit] = &[
 
 /// Programs, and the verb that does what they do.
 const VERBS: &[(&str, &str)] = &[
+    ("lasmerge", "points"),
+    ("las2las", "points"),
     ("las2tin", "tin"),
     ("las2dem", "dem"),
     ("blast2dem", "dem"),
@@ -308,6 +310,7 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
 /// The extensions of what a verb writes.
 fn written(verb: &str) -> Vec<&'static str> {
     match verb {
+        "points" => formats::extensions(Product::Points),
         "tin" => formats::extensions(Product::Surface),
         "dem" => formats::extensions(Product::Heights),
         "contour" => formats::extensions(Product::Contours),

@@ -18,6 +18,7 @@ mod inputs;
 mod notices;
 mod outputs;
 mod plan;
+mod points;
 mod progress;
 mod summary;
 mod talk;
@@ -96,6 +97,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
 fn dispatch(verb: &Verb, how: &TalkArgs, talk: &Talk) -> Result<Exit> {
     match verb {
         Verb::Info(args) => info::run(args, talk),
+        Verb::Points(args) => points::run(args, talk),
         Verb::Tin(args) => tin::run(args, talk),
         Verb::Triangulate(args) => triangulate::run(args, talk),
         Verb::Dem(args) => dem::run(args, talk),

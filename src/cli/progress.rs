@@ -41,6 +41,7 @@ impl Progress for Bar {
 fn title(stage: Stage) -> &'static str {
     match stage {
         Stage::ReadingPoints => "reading points",
+        Stage::WritingPoints => "writing points",
         Stage::ReadingCells => "reading cells",
         Stage::ReadingTriangles => "reading triangles",
         Stage::Reading => "reading",

@@ -7,7 +7,7 @@
 //!
 //! | what | record | stream |
 //! |---|---|---|
-//! | points | [`PointBatch`] (columns), [`PointInfo`], [`Columns`], [`Lattice`] | [`PointSource`] |
+//! | points | [`PointBatch`] (columns), [`PointInfo`], [`Columns`], [`Lattice`], [`LasHead`] | [`PointSource`], [`PointSink`] |
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], with its place: [`Frame`] | [`BlockSource`], asked by [`Window`] |
@@ -25,6 +25,7 @@ mod contour_line;
 mod frame;
 pub mod geo;
 mod grid;
+mod las_head;
 mod lattice;
 mod mesh;
 mod points;
@@ -36,10 +37,11 @@ pub use bounds::Bounds;
 pub use contour_line::ContourLine;
 pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
 pub use grid::{BlockSource, Grid};
+pub use las_head::LasHead;
 pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{not_finite, orientation};
-pub use points::{Columns, PointBatch, PointFlags, PointInfo, PointSource};
+pub use points::{Columns, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
 pub use shape::{Layer, Shape, ShapeKind};
 pub use surface::{EdgeKind, Face, Surface};
 pub(crate) use surface::{corners, faces};

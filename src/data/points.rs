@@ -1,6 +1,6 @@
 use std::fmt;
 
-use super::{Bounds, Lattice};
+use super::{Bounds, LasHead, Lattice};
 use crate::crs::Crs;
 use crate::error::Result;
 
@@ -41,6 +41,9 @@ pub struct PointBatch {
     pub flags: Vec<PointFlags>,
     /// Return numbers, or empty.
     pub return_number: Vec<u8>,
+    /// The records of the points as LAS has them, one after the other, all of one length; empty unless the source was
+    /// asked for them.
+    pub records: Vec<u8>,
 }
 
 impl PointBatch {
@@ -62,7 +65,36 @@ impl PointBatch {
         self.class.clear();
         self.flags.clear();
         self.return_number.clear();
+        self.records.clear();
     }
+
+    /// Keeps the points that are marked, in order.
+    ///
+    /// # Complexity
+    /// Linear.
+    pub fn retain(&mut self, keep: &[bool]) {
+        let stride = self.records.len().checked_div(self.len()).unwrap_or(0);
+        if stride > 0 {
+            let mut end = 0;
+            for (i, _) in keep.iter().enumerate().filter(|(_, keep)| **keep) {
+                self.records.copy_within(i * stride..(i + 1) * stride, end);
+                end += stride;
+            }
+            self.records.truncate(end);
+        }
+        retain(&mut self.x, keep);
+        retain(&mut self.y, keep);
+        retain(&mut self.z, keep);
+        retain(&mut self.class, keep);
+        retain(&mut self.flags, keep);
+        retain(&mut self.return_number, keep);
+    }
+}
+
+/// Keeps the items that are marked; a column that is not there stays empty.
+fn retain<T: Copy>(column: &mut Vec<T>, keep: &[bool]) {
+    let mut marks = keep.iter();
+    column.retain(|_| marks.next().is_some_and(|keep| *keep));
 }
 
 /// Which columns of a table are taken for the coordinates, counted from 1.
@@ -104,6 +136,8 @@ pub struct PointInfo {
     pub columns: Option<Columns>,
     /// The lattice of the coordinates, for formats that have one.
     pub lattice: Option<Lattice>,
+    /// The head of a LAS file, if the source was asked for the records of its points.
+    pub head: Option<LasHead>,
     /// What a user should be told: a disagreement, a guess, something ignored.
     pub warnings: Vec<String>,
 }
@@ -122,5 +156,55 @@ pub trait PointSource {
     /// What came up while reading (a file that ends early, say); complete after the last batch.
     fn warnings(&self) -> &[String] {
         &[]
+    }
+}
+
+/// What was written: points, counted.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PointSummary {
+    /// Points.
+    pub count: u64,
+    /// The box around them, as they read back.
+    pub bounds: Bounds,
+}
+
+/// Takes points in batches and writes them; nothing is there before [`finish`](Self::finish).
+pub trait PointSink {
+    /// Says that the points that follow come from this source.
+    ///
+    /// # Errors
+    /// If its points cannot be written with those before.
+    fn next_source(&mut self, info: &PointInfo) -> Result<()>;
+
+    /// Writes points.
+    ///
+    /// # Errors
+    /// If a point cannot be written without a loss, or the system fails.
+    fn write(&mut self, batch: &PointBatch) -> Result<()>;
+
+    /// Writes what is left, and lets the file appear.
+    ///
+    /// # Errors
+    /// If the system fails; then there is no file.
+    fn finish(self: Box<Self>) -> Result<PointSummary>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marked_points_stay_with_their_records() {
+        let mut batch = PointBatch {
+            x: vec![1.0, 2.0, 3.0],
+            y: vec![4.0, 5.0, 6.0],
+            z: vec![7.0, 8.0, 9.0],
+            class: vec![1, 2, 3],
+            records: b"aabbcc".to_vec(),
+            ..PointBatch::default()
+        };
+        batch.retain(&[true, false, true]);
+        assert_eq!((batch.x, batch.z, batch.class), (vec![1.0, 3.0], vec![7.0, 9.0], vec![1, 3]));
+        assert_eq!((batch.records, batch.flags.len()), (b"aacc".to_vec(), 0));
     }
 }

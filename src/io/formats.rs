@@ -11,13 +11,14 @@ use std::path::{Path, PathBuf};
 
 use super::contour_summary::ContourSummary;
 use super::geotiff::{CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
+use super::las::{Detail, Packing, Rounding};
 use super::listing::Listing;
 use super::output::Destination;
 use super::point_options::Options;
 use super::triangle::Triangulated;
 use super::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, text, triangle};
 use crate::crs::Crs;
-use crate::data::{BlockSource, ContourLine, Layer, PointSource, Triangles};
+use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
 use crate::error::{Error, Result};
 
 /// What a file is read as.
@@ -63,6 +64,8 @@ pub enum Holding {
 /// What can be written to a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Product {
+    /// Points, from LAS with all that they have there.
+    Points,
     /// A surface, as a mesh.
     Surface,
     /// Contours.
@@ -144,9 +147,20 @@ type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
 type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
 type WriteContours = fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
 
+type Sink<'a> = Result<Box<dyn PointSink + 'a>>;
+
+/// Writes points.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PointWriter {
+    /// What it needs to be read of them.
+    pub(super) detail: Detail,
+    pub(super) create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
+}
+
 /// What writes each product; `None` for a product that is not written in the format.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Writers {
+    pub(super) points: Option<PointWriter>,
     pub(super) surface: Option<WriteSurface>,
     pub(super) contours: Option<WriteContours>,
     /// Returns an error if contours of so many vertices are too large for the format.
@@ -196,6 +210,7 @@ impl Format {
     /// Returns true if this product is written in the format.
     pub fn writes(&self, product: Product) -> bool {
         match product {
+            Product::Points => self.writers.points.is_some(),
             Product::Surface => self.writers.surface.is_some(),
             Product::Contours => self.writers.contours.is_some(),
             Product::Heights => self.writers.heights.is_some(),
@@ -217,6 +232,11 @@ impl Format {
     fn begins_like(&self, head: &[u8]) -> bool {
         self.magic.iter().any(|magic| magic.matches(head))
     }
+}
+
+/// Returns the format that a product is written in, by the extension of the target.
+pub fn for_output(path: &Path, product: Product) -> Option<&'static Format> {
+    FORMATS.iter().find(|format| format.writes(product) && format.has_extension(path))
 }
 
 /// Bytes that are enough to recognize a file.
@@ -315,10 +335,12 @@ impl Holding {
 }
 
 impl Product {
-    const ALL: [Product; 5] = [Product::Surface, Product::Contours, Product::Heights, Product::Shades, Product::Plane];
+    const ALL: [Product; 6] =
+        [Product::Points, Product::Surface, Product::Contours, Product::Heights, Product::Shades, Product::Plane];
 
     const fn name(self) -> &'static str {
         match self {
+            Product::Points => "points",
             Product::Surface => "surface",
             Product::Contours => "contours",
             Product::Heights => "heights",
@@ -369,7 +391,7 @@ pub fn markdown() -> String {
 }
 
 const NOT_WRITTEN: Writers =
-    Writers { surface: None, contours: None, foresee: None, heights: None, shades: None, plane: None };
+    Writers { points: None, surface: None, contours: None, foresee: None, heights: None, shades: None, plane: None };
 
 pub(super) const WITH_GDAL: &str = "build with the feature `gdal` to read it: cargo build --release --features gdal";
 const AS_RASTER: &str = "this is a raster: points are expected here";
@@ -396,9 +418,18 @@ const ROW: Format = Format {
 };
 
 const LIDAR: Reader = Reader::Points {
-    file: |path, options| Ok(Box::new(las::open_with(path, options.cut)?)),
-    stream: |stream, name, options| Ok(Box::new(las::from_stream_with(stream, name, options.cut)?)),
+    file: |path, options| Ok(Box::new(las::open_with(path, options.las())?)),
+    stream: |stream, name, options| Ok(Box::new(las::from_stream_with(stream, name, options.las())?)),
 };
+
+const TEXT: Reader = Reader::Points {
+    file: |path, options| Ok(Box::new(text::open(path, options.columns)?)),
+    stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options.columns)?)),
+};
+
+const fn lidar_writer(create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>) -> Writers {
+    Writers { points: Some(PointWriter { detail: Detail::Records, create }), ..NOT_WRITTEN }
+}
 
 const fn raster(
     name: &'static str,
@@ -465,6 +496,9 @@ pub static FORMATS: &[Format] = &[
         known_by: KnownBy::Bytes,
         holds: &[Holding::Points, Holding::Attributes, Holding::Crs],
         reader: LIDAR,
+        writers: lidar_writer(|target, sources, rounding| {
+            Ok(Box::new(las::create(target, sources, Packing::Plain, rounding)?))
+        }),
         help: "lidar points",
         ..ROW
     },
@@ -476,20 +510,37 @@ pub static FORMATS: &[Format] = &[
         known_by: KnownBy::Bytes,
         holds: &[Holding::Points, Holding::Attributes, Holding::Crs, Holding::Compression],
         reader: LIDAR,
+        writers: lidar_writer(|target, sources, rounding| {
+            Ok(Box::new(las::create(target, sources, Packing::Compressed, rounding)?))
+        }),
         help: "lidar points, compressed",
         ..ROW
     },
     Format {
         name: "text",
         noun: "a text file",
-        extensions: &["xyz", "txt", "csv", "asc", "pts"],
+        extensions: &["xyz", "txt", "csv"],
         known_by: KnownBy::Rest,
         holds: &[Holding::Points],
-        reader: Reader::Points {
-            file: |path, options| Ok(Box::new(text::open(path, options.columns)?)),
-            stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options.columns)?)),
+        reader: TEXT,
+        writers: Writers {
+            points: Some(PointWriter {
+                detail: Detail::Columns,
+                create: |target, sources, _| Ok(Box::new(text::create(target, sources)?)),
+            }),
+            ..NOT_WRITTEN
         },
-        help: "points, one a line; under any other name, too",
+        help: "points, one a line; read under any other name, too",
+        ..ROW
+    },
+    Format {
+        name: "text, by others",
+        noun: "a text file",
+        extensions: &["asc", "pts"],
+        known_by: KnownBy::Rest,
+        holds: &[Holding::Points],
+        reader: TEXT,
+        help: "points, one a line",
         ..ROW
     },
     Format {

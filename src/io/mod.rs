@@ -3,6 +3,7 @@
 //! | I have, or want | of any format | one format |
 //! |---|---|---|
 //! | points | [`points::open`] | [`las::open`], [`text::open`], [`points::from_layer`] |
+//! | to write points | [`points::create`] | [`las::create`], [`text::create`] |
 //! | lines and polygons | [`layer::read`] | [`shapefile::read_layer`], [`geojson::read_layer`], [`gdal::read_layer`] |
 //! | a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
 //! | to write a raster | | [`geotiff::write()`]; a picture: [`png::write_gray`] |

@@ -10,9 +10,11 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::formats::{self, Format, HEAD, Reader};
+use super::formats::{self, Format, HEAD, PointWriter, Product, Reader};
+use super::las::{Detail, Rounding};
+use super::output::Destination;
 pub use super::point_options::Options;
-use crate::data::{Layer, PointBatch, PointInfo, PointSource, Shape};
+use crate::data::{Layer, PointBatch, PointInfo, PointSink, PointSource, Shape};
 use crate::error::{Error, Result};
 
 /// Points in a batch.
@@ -65,6 +67,36 @@ fn open_stream(
             .cure("give its path: it is a set of files")),
         _ => Err(refusal(&head, name)),
     }
+}
+
+/// What has to be read of points that are to be written to this target.
+///
+/// # Errors
+/// If its extension names no format that points are written in.
+pub fn detail_for<'a>(target: impl Into<Destination<'a>>) -> Result<Detail> {
+    writer(target.into()).map(|writer| writer.detail)
+}
+
+/// Starts to write points of these sources, in the format that the extension of the target names.
+///
+/// # Errors
+/// If the extension names no format that points are written in, the points cannot be written there without a loss, or the
+/// target cannot be written.
+pub fn create<'a>(
+    target: impl Into<Destination<'a>>,
+    sources: &[&PointInfo],
+    rounding: Rounding,
+) -> Result<Box<dyn PointSink + 'a>> {
+    let target = target.into();
+    (writer(target)?.create)(target, sources, rounding)
+}
+
+fn writer(target: Destination) -> Result<PointWriter> {
+    let format = formats::for_output(&target.format_path(), Product::Points);
+    format.and_then(|format| format.writers.points).ok_or_else(|| {
+        let known = formats::extensions_or(Product::Points);
+        Error::usage(format!("points are written as {known}")).in_file(target.path())
+    })
 }
 
 fn head(source: &mut impl Read) -> io::Result<Vec<u8>> {

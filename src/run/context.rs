@@ -57,6 +57,8 @@ pub trait Progress: Send + Sync {
 pub enum Stage {
     /// Points are read; counted in points.
     ReadingPoints,
+    /// Points are read and written; counted in points read.
+    WritingPoints,
     /// A raster is read.
     ReadingCells,
     /// A mesh is read.

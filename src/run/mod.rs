@@ -10,6 +10,7 @@
 //! | heights at the centers of cells | [`FrameOptions`] | [`dem`] | [`CellProduct`] |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
+//! | select, clip and merge points | [`PointsRequest`] | [`write_points`] | [`PointsReport`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | tell what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate Triangle's files | [`TriangulateOptions`] | [`triangulate()`] | [`TriangulateProduct`] |
@@ -74,6 +75,7 @@ mod notice;
 mod open;
 mod overlaps;
 mod point_files;
+mod points;
 mod rings;
 mod surface;
 mod systems;
@@ -93,6 +95,7 @@ pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
 pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity};
 pub use overlaps::Overlap;
+pub use points::{PointsReport, PointsRequest, Withheld, write_points};
 pub use surface::{Model, Source, SurfaceFacts, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
 pub use systems::{Degrees, SystemOptions};
 pub use tin::{BuildReport, EdgeLimit, TinRequest};

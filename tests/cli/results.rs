@@ -1,6 +1,6 @@
 //! What runs leave and say.
 
-use super::{SLOPE, bytes, files_of, fixture, folder_with, geojson, run_in, run_with};
+use super::{SLOPE, bytes, files_of, fixture, folder_with, geojson, lidar, run_in, run_with};
 
 #[test]
 fn a_run_ends_with_a_summary_on_stderr_and_nothing_on_stdout() {
@@ -376,4 +376,34 @@ fn the_tasks_of_the_readme_run_on_what_the_demo_leaves() {
         assert_eq!(run.code, 0, "{command}:\n{}", run.stderr);
         assert!(!run.stderr.contains("warning: "), "{command}:\n{}", run.stderr);
     }
+}
+
+#[test]
+fn points_are_selected_clipped_and_merged() {
+    let ring = "[[[0,0],[2,0],[2,2],[0,2],[0,0]]]";
+    let folder = folder_with(&[("site.geojson", &geojson(25832, "Polygon", ring))]);
+    let write = |name: &str, points: &[([f64; 3], u8)]| {
+        std::fs::write(folder.path().join(name), lidar::las(points, Some(25832))).unwrap();
+    };
+    write("a.las", &lidar::tile([0.0, 0.0], 2));
+    write("b.las", &lidar::tile([10.0, 0.0], 5));
+    let run = run_in(&folder, &["points", "a.las", "b.las", "-o", "c.laz"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("points      32 points of 32\n"), "{}", run.stderr);
+    let info = run_in(&folder, &["info", "c.laz"]);
+    for part in ["LAS 1.2, point format 0, LAZ", "32 points", "2 (ground): 16", "25832"] {
+        assert!(info.stdout.contains(part), "{part}: {}", info.stdout);
+    }
+    let run = run_in(&folder, &["points", "a.las", "b.las", "--boundary", "site.geojson", "-o", "d.csv"]);
+    assert!(run.stderr.contains("points      9 points of 32, 23 outside\n"), "{}", run.stderr);
+    assert!(String::from_utf8(bytes(&folder, "d.csv")).unwrap().starts_with("x,y,z,class\n0,0,0,2\n1,0,1,2\n"));
+    let run = run_in(&folder, &["points", "a.las", "--class", "9", "-o", "e.las"]);
+    assert_ne!(run.code, 0);
+    assert!(run.stderr.contains("no point is left of 16 read"), "{}", run.stderr);
+    assert!(!folder.path().join("e.las").exists());
+    let run = run_in(&folder, &["points", "a.las", "-o", "a.tif"]);
+    assert!(run.stderr.contains(".las, .laz, .xyz, .txt, .csv"), "{}", run.stderr);
+    // What LAStools' users type.
+    let run = run_in(&folder, &["las2las", "-i", "b.las", "-keep_class", "5", "-o", "f.las"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
 }

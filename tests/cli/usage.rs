@@ -7,7 +7,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
     let folder = folder_with(&[]);
     let run = run_in(&folder, &["--help"]);
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
-    for verb in ["info", "tin", "triangulate", "dem", "contour", "hillshade", "check", "demo"] {
+    for verb in ["info", "points", "tin", "triangulate", "dem", "contour", "hillshade", "check", "demo"] {
         assert!(run.stdout.contains(&format!("\n  {verb} ")), "{verb}");
         let long = run_in(&folder, &[verb, "--help"]);
         assert_eq!(long.code, 0);

@@ -18,7 +18,7 @@ pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
 pub(super) use switches::expand_switches;
 pub(super) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OnCrossingArg,
-    OutputArgs, TinArgs, TriangulateArgs,
+    OutputArgs, PointsArgs, TinArgs, TriangulateArgs,
 };
 
 /// Lidar and breaklines to TIN, DEM, contours and mesh
@@ -41,6 +41,7 @@ const EXAMPLES: &str = "
 Examples:
   breakline info tile.laz
   breakline tin tiles/*.laz --breaklines edges.shp -o ground.ply
+  breakline points tiles/*.laz --class ground --bounds 500,200,700,400 -o part.laz
   breakline dem ground.ply --resolution 0.5 -o dem.tif
   breakline contour ground.ply --interval 1 -o contours.shp
   breakline demo
@@ -73,6 +74,7 @@ pub(super) struct TalkArgs {
 #[derive(Debug, Subcommand)]
 pub(super) enum Verb {
     Info(InfoArgs),
+    Points(PointsArgs),
     Tin(TinArgs),
     Triangulate(TriangulateArgs),
     Dem(DemArgs),

@@ -35,7 +35,7 @@ impl ReadArgs {
     /// What readers are to be told.
     pub(in crate::cli) fn options(&self) -> Options {
         let cut = if self.partial { Cut::Accept } else { Cut::Refuse };
-        Options { columns: self.columns.or(self.parse), cut }
+        Options { columns: self.columns.or(self.parse), cut, ..Options::default() }
     }
 }
 

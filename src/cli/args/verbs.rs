@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::parse::{Corners, altitude, finite, positive, smallest_angle};
 use super::{ReadArgs, SurfaceArgs};
+use crate::cli::classes;
 use crate::triangulation::OnCrossing;
 
 /// Where the result goes.
@@ -64,6 +65,61 @@ pub(in crate::cli) struct InfoArgs {
     /// Print a JSON array, one object a file, with exact numbers
     #[arg(long)]
     pub(in crate::cli) json: bool,
+
+    #[command(flatten)]
+    pub(in crate::cli) read: ReadArgs,
+}
+
+/// Select, clip and merge points, with all that their files say of them
+///
+/// Points come in the order of the files. From LAS and LAZ to LAS and LAZ every byte of a point record stays: times, colors,
+/// extra bytes; coordinate system and other records of the first file come along. Files of different point formats, extra
+/// bytes, kinds of GPS time or coordinate systems do not go into one, nor do waveforms. Of different scales and offsets the
+/// first is taken that has the points of all; where there is none, `--round` is needed. To .xyz, .txt and .csv go the
+/// coordinates, to .csv the class, too.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline points tiles/*.laz --class ground,water --boundary site.shp -o site.laz
+  breakline points a.las b.las -o merged.laz")]
+pub(in crate::cli) struct PointsArgs {
+    /// Files, globs, `@list.txt` or `-` (stdin)
+    ///
+    /// Points from LAS, LAZ, COPC, text (x y z) and vector layers; LAS and LAZ are written from LAS, LAZ and COPC only.
+    #[arg(required = true, value_name = "IN")]
+    pub(in crate::cli) inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(in crate::cli) output: OutputArgs,
+
+    /// Classes to write, as `2,8` or `ground` [default: all]
+    ///
+    /// Points of formats without classes are always written.
+    #[arg(long, value_name = "CLASS,..", value_parser = classes::parse, value_delimiter = ',', help_heading = "Selection")]
+    pub(in crate::cli) class: Vec<u8>,
+
+    /// Return numbers to write, as `1,2` [default: all]
+    #[arg(long = "return", value_name = "N,..", value_delimiter = ',', help_heading = "Selection")]
+    pub(in crate::cli) returns: Vec<u8>,
+
+    /// Leave out points that are marked as withheld
+    #[arg(long, help_heading = "Selection")]
+    pub(in crate::cli) drop_withheld: bool,
+
+    /// Clip to a rectangle, its border included
+    #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Selection")]
+    pub(in crate::cli) bounds: Option<Corners>,
+
+    /// Clip to polygons, their borders included (repeatable)
+    ///
+    /// What is inside of any polygon stays. Lines are taken for one polygon if they close to rings.
+    #[arg(long, value_name = "FILE", help_heading = "Selection")]
+    pub(in crate::cli) boundary: Vec<PathBuf>,
+
+    /// Move coordinates to the nearest step of the first file's scale
+    ///
+    /// For files whose scales and offsets do not go together; by half a step at most.
+    #[arg(long, help_heading = "Selection")]
+    pub(in crate::cli) round: bool,
 
     #[command(flatten)]
     pub(in crate::cli) read: ReadArgs,

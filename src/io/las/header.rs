@@ -5,7 +5,7 @@ use crate::data::Bounds;
 use crate::error::{Error, Result};
 
 /// Bytes of a record of point formats 0 to 10 without extra bytes.
-const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
+pub(super) const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 
 /// Bits of the point format byte that LASzip takes for itself.
 const COMPRESSED: u8 = 0x80;

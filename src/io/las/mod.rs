@@ -28,9 +28,12 @@
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
 
 mod cut;
+mod head;
 mod header;
 mod input;
 mod laz;
+mod merge;
+mod options;
 mod plain;
 mod raw;
 mod reader;
@@ -39,7 +42,11 @@ mod records;
 mod reference;
 #[cfg(test)]
 mod tests;
+mod write;
 
 pub use cut::Cut;
 pub use header::{Header, RecordInfo};
+pub use merge::Rounding;
+pub use options::{Detail, ReadOptions};
 pub use reader::{LasReader, from_stream, from_stream_with, open, open_with};
+pub use write::{LasWriter, Packing, create};

@@ -5,6 +5,7 @@ use std::io::{Read, Seek, SeekFrom};
 use super::cut::Cut;
 use super::header::Header;
 use super::input::Input;
+use super::options::ReadOptions;
 use super::record::RecordLayout;
 use crate::data::PointBatch;
 use crate::error::Result;
@@ -25,8 +26,13 @@ pub(super) struct Plain {
 
 impl Plain {
     /// Finds out how many records there are, whatever the header says.
-    pub(super) fn new(mut input: Input, header: &Header, cut: Cut, warnings: &mut Vec<String>) -> Result<Self> {
-        let layout = RecordLayout::new(header);
+    pub(super) fn new(
+        mut input: Input,
+        header: &Header,
+        ReadOptions { cut, detail }: ReadOptions,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self> {
+        let layout = RecordLayout::new(header, detail);
         let start = header.layout.points_start;
         let bytes = header.layout.points_end - start;
         let room = bytes / layout.stride as u64;

@@ -1,13 +1,13 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::cut::Cut;
 use super::header::Header;
 use super::input::Input;
 use super::laz::Laz;
+use super::options::{Detail, ReadOptions};
 use super::plain::Plain;
 use super::raw::LONGEST_HEADER;
-use super::{records, reference};
+use super::{head, records, reference};
 use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
 use crate::error::Result;
 
@@ -30,22 +30,26 @@ enum Points {
 }
 
 impl LasReader {
-    pub(super) fn new(input: Input, cut: Cut) -> Result<Self> {
+    pub(super) fn new(input: Input, options: ReadOptions) -> Result<Self> {
         let name = input.name.clone();
-        Self::start(input, cut).map_err(|error| error.in_file(name))
+        Self::start(input, options).map_err(|error| error.in_file(name))
     }
 
-    fn start(mut input: Input, cut: Cut) -> Result<Self> {
+    fn start(mut input: Input, options: ReadOptions) -> Result<Self> {
         let name = input.name.clone();
         let mut warnings = Vec::new();
         let bytes = input.bytes(0, LONGEST_HEADER)?;
         let mut header = Header::check(&bytes, input.length, &mut warnings)?;
         let payloads = records::read(&input, &mut header, &mut warnings)?;
         let crs = reference::choose(&payloads, header.says_wkt, &mut warnings);
+        let head = match options.detail {
+            Detail::Columns => None,
+            Detail::Records => Some(head::read(&mut input, &header)?),
+        };
         let points = match header.is_compressed {
-            false => Points::Plain(Plain::new(input, &header, cut, &mut warnings)?),
+            false => Points::Plain(Plain::new(input, &header, options, &mut warnings)?),
             true => {
-                let laz = Laz::new(input, &header, payloads.laszip.as_deref(), cut, &mut warnings)?;
+                let laz = Laz::new(input, &header, payloads.laszip.as_deref(), options, &mut warnings)?;
                 Points::Compressed(Box::new(laz))
             }
         };
@@ -57,6 +61,7 @@ impl LasReader {
             crs,
             has_classes: true,
             lattice: Some(Lattice { scale: header.scale, offset: header.offset }),
+            head,
             warnings,
         };
         Ok(LasReader { name, header, info, points, warnings: Vec::new() })
@@ -99,15 +104,15 @@ impl PointSource for LasReader {
 /// # Errors
 /// If the file cannot be read, was cut, or its header is damaged beyond what the [module](super) lists.
 pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
-    open_with(path, Cut::default())
+    open_with(path, ReadOptions::default())
 }
 
-/// Like [`open`], but does with a file that was cut what `cut` says.
+/// Like [`open`], but reads as the options say; a [`Cut`](super::Cut) alone is enough.
 ///
 /// # Errors
 /// As [`open`].
-pub fn open_with(path: impl AsRef<Path>, cut: Cut) -> Result<LasReader> {
-    LasReader::new(Input::open(path.as_ref())?, cut)
+pub fn open_with(path: impl AsRef<Path>, options: impl Into<ReadOptions>) -> Result<LasReader> {
+    LasReader::new(Input::open(path.as_ref())?, options.into())
 }
 
 /// Reads a stream, by way of a temporary file; `name` is for messages.
@@ -115,13 +120,17 @@ pub fn open_with(path: impl AsRef<Path>, cut: Cut) -> Result<LasReader> {
 /// # Errors
 /// As [`open`].
 pub fn from_stream(stream: impl Read, name: impl AsRef<Path>) -> Result<LasReader> {
-    from_stream_with(stream, name, Cut::default())
+    from_stream_with(stream, name, ReadOptions::default())
 }
 
-/// Like [`from_stream`], but does with a file that was cut what `cut` says.
+/// Like [`from_stream`], but reads as the options say; a [`Cut`](super::Cut) alone is enough.
 ///
 /// # Errors
 /// As [`open`].
-pub fn from_stream_with(stream: impl Read, name: impl AsRef<Path>, cut: Cut) -> Result<LasReader> {
-    LasReader::new(Input::spool(stream, name.as_ref())?, cut)
+pub fn from_stream_with(
+    stream: impl Read,
+    name: impl AsRef<Path>,
+    options: impl Into<ReadOptions>,
+) -> Result<LasReader> {
+    LasReader::new(Input::spool(stream, name.as_ref())?, options.into())
 }

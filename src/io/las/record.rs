@@ -1,6 +1,7 @@
 //! From packed point records to columns.
 
 use super::header::Header;
+use super::options::Detail;
 use super::raw::{u16_at, u32_at};
 use crate::data::{PointBatch, PointFlags};
 
@@ -9,6 +10,8 @@ use crate::data::{PointBatch, PointFlags};
 pub(super) struct RecordLayout {
     /// Bytes from one record to the next.
     pub(super) stride: usize,
+    /// What is taken of each.
+    pub(super) detail: Detail,
     kind: RecordKind,
     scale: [f64; 3],
     offset: [f64; 3],
@@ -24,9 +27,10 @@ enum RecordKind {
 }
 
 impl RecordLayout {
-    pub(super) fn new(header: &Header) -> Self {
+    pub(super) fn new(header: &Header, detail: Detail) -> Self {
         RecordLayout {
             stride: header.record_length.into(),
+            detail,
             kind: if header.point_format < 6 { RecordKind::Legacy } else { RecordKind::Extended },
             scale: header.scale,
             offset: header.offset,
@@ -41,6 +45,9 @@ impl RecordLayout {
     /// Appends whole records to the columns. A coordinate is `X * scale + offset` in f64, rounded
     /// after each of the two operations.
     pub(super) fn append(&self, records: &[u8], batch: &mut PointBatch) {
+        if self.detail == Detail::Records {
+            batch.records.extend_from_slice(records);
+        }
         let records = || records.chunks_exact(self.stride);
         let axis = |i: usize| {
             let (scale, offset) = (self.scale[i], self.offset[i]);

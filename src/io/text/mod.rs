@@ -23,6 +23,7 @@
 mod columns;
 mod numbering;
 mod separator;
+mod write;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -31,6 +32,7 @@ use std::path::{Path, PathBuf};
 use self::columns::{Layout, Point};
 use self::numbering::{Guess, Numbering};
 use self::separator::Separator;
+pub use self::write::{TextWriter, create};
 use crate::data::{Columns, PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result};
 

@@ -9,6 +9,7 @@ use super::compression::{Compression, Order, POINT14, POINT14_LAYERS};
 use super::table::layer_sizes;
 use crate::data::PointBatch;
 use crate::io::contain::contain;
+use crate::io::las::options::Detail;
 use crate::io::las::raw::u32_at;
 use crate::io::las::record::RecordLayout;
 
@@ -53,7 +54,7 @@ fn decode_pointwise(
     }
 }
 
-/// Only the layers that are used are decoded, and of other fields than those of format 6 nothing:
+/// For columns only the layers that are used are decoded, and of other fields than those of format 6 nothing:
 /// the chunk is handed to the decoder as if it had no more.
 fn decode_layered(
     bytes: &[u8],
@@ -75,6 +76,11 @@ fn decode_layered(
     let total = head as u64 + layer_sizes(sizes).sum::<u64>();
     if total != bytes.len() as u64 {
         return Err(format!("its layers take {total} bytes together, but it has {}", bytes.len()));
+    }
+    if layout.detail == Detail::Records {
+        let mut decoder = LayeredPointRecordDecompressor::new(Cursor::new(bytes));
+        decoder.set_fields_from(&compression.items).map_err(|error| error.to_string())?;
+        return decode_records(&mut decoder, points, layout, batch);
     }
     let used: u64 = layer_sizes(sizes).take(LAYERS_USED).sum();
     let mut reduced = Vec::with_capacity(POINT14 + 4 + 4 * POINT14_LAYERS + used as usize);

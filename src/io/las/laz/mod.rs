@@ -16,9 +16,9 @@ use rayon::prelude::*;
 use self::compression::{ChunkSize, Compression, Order};
 use self::stream::Stream;
 use self::table::Chunk;
-use super::cut::Cut;
 use super::header::Header;
 use super::input::Input;
+use super::options::ReadOptions;
 use super::record::RecordLayout;
 use crate::data::PointBatch;
 use crate::error::{Error, Result};
@@ -52,7 +52,7 @@ impl Laz {
         mut input: Input,
         header: &Header,
         payload: Option<&[u8]>,
-        cut: Cut,
+        options: ReadOptions,
         warnings: &mut Vec<String>,
     ) -> Result<Self> {
         let compression = Compression::check(payload, header)?;
@@ -63,7 +63,7 @@ impl Laz {
             ChunkSize::Variable => false,
         };
         if is_streamed {
-            return Ok(Laz::Stream(Stream::new(input, compression, header, cut)?));
+            return Ok(Laz::Stream(Stream::new(input, compression, header, options)?));
         }
         let chunks = match table::read(&mut input, &compression, header) {
             Ok(chunks) => chunks,
@@ -82,7 +82,7 @@ impl Laz {
             }
             Err(reason) => {
                 warnings.push(format!("{reason}; the points are decoded one after the other"));
-                return Ok(Laz::Stream(Stream::new(input, compression, header, cut)?));
+                return Ok(Laz::Stream(Stream::new(input, compression, header, options)?));
             }
         };
         let found = chunks.last().map_or(0, |chunk| chunk.first + chunk.points);
@@ -92,7 +92,7 @@ impl Laz {
                  is wrong",
                 header.count
             );
-            cut.tell(text, input.length, warnings)?;
+            options.cut.tell(text, input.length, warnings)?;
         }
         if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > LARGEST_CHUNK) {
             return Err(Error::limit(format!(
@@ -103,7 +103,7 @@ impl Laz {
             .cure("compress the file again with chunks of 50000 points"));
         }
         Ok(Laz::Chunks(Chunks {
-            layout: RecordLayout::new(header),
+            layout: RecordLayout::new(header, options.detail),
             input,
             compression,
             waiting: chunks.into(),

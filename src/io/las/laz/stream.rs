@@ -14,6 +14,7 @@ use crate::io::contain::contain;
 use crate::io::las::cut::Cut;
 use crate::io::las::header::Header;
 use crate::io::las::input::Input;
+use crate::io::las::options::ReadOptions;
 use crate::io::las::record::RecordLayout;
 
 /// Blocks in a batch.
@@ -48,7 +49,7 @@ enum Stop {
 }
 
 impl Stream {
-    pub(super) fn new(input: Input, compression: Compression, header: &Header, cut: Cut) -> Result<Self> {
+    pub(super) fn new(input: Input, compression: Compression, header: &Header, options: ReadOptions) -> Result<Self> {
         let length = input.length;
         let start = header.layout.points_start;
         let (start, chunk_size) = match compression.chunks {
@@ -60,7 +61,7 @@ impl Stream {
         file.seek(SeekFrom::Start(start))?;
         let mut decoder = SequentialPointRecordDecompressor::new(BufReader::with_capacity(1 << 16, file));
         decoder.set_fields_from(&compression.items).map_err(|error| Error::format(error.to_string()))?;
-        let layout = RecordLayout::new(header);
+        let layout = RecordLayout::new(header, options.detail);
         let block = vec![0; BLOCK * layout.stride];
         Ok(Stream {
             decoder,
@@ -70,7 +71,7 @@ impl Stream {
             in_chunk: 0,
             done: 0,
             total: header.count,
-            cut,
+            cut: options.cut,
             length,
             block,
         })

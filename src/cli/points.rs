@@ -1,0 +1,45 @@
+use super::args::PointsArgs;
+use super::summary::{counted, tell_place};
+use super::talk::Talk;
+use super::{Exit, inputs, outputs};
+use crate::error::{Error, Result};
+use crate::io::formats::Product;
+use crate::io::las::Rounding;
+use crate::run::{PointsRequest, Withheld, write_points};
+
+/// Selects, clips and merges points.
+pub(super) fn run(args: &PointsArgs, talk: &Talk) -> Result<Exit> {
+    let files = inputs::expand(&args.inputs, talk)?;
+    inputs::require(&args.boundary)?;
+    let all: Vec<_> = files.iter().chain(&args.boundary).cloned().collect();
+    let outputs = outputs::resolve(&args.output, &outputs::formats_of(Product::Points, |_| ()), &all)?;
+    let [target] = outputs.targets.as_slice() else {
+        return Err(
+            Error::usage("several outputs are named, but points are read once").cure("run it once for each output")
+        );
+    };
+    let request = PointsRequest {
+        files,
+        read: args.read.options(),
+        classes: args.class.clone(),
+        returns: args.returns.clone(),
+        withheld: if args.drop_withheld { Withheld::Drop } else { Withheld::Keep },
+        bounds: args.bounds.map(|bounds| bounds.bounds()),
+        boundary: args.boundary.clone(),
+        rounding: if args.round { Rounding::Nearest } else { Rounding::Refuse },
+    };
+    let report = write_points(&request, target.within(&outputs.set), &talk.context())?;
+    let left_out = [
+        (report.withheld, "withheld"),
+        (report.other_class, "of other classes"),
+        (report.other_return, "of other returns"),
+        (report.outside, "outside"),
+    ];
+    let left_out = left_out.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!(", {count} {why}"));
+    let left_out: String = left_out.collect();
+    let count = counted(report.written.count, "point");
+    talk.line(format_args!("points      {count} of {}{left_out}", report.read));
+    tell_place(report.written.bounds, report.crs.as_ref(), talk);
+    outputs.commit(talk)?;
+    Ok(Exit::Done)
+}

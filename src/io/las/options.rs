@@ -1,0 +1,27 @@
+use super::cut::Cut;
+
+/// How a LAS or LAZ file is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadOptions {
+    /// What becomes of a file that was cut.
+    pub cut: Cut,
+    /// What is read of each point.
+    pub detail: Detail,
+}
+
+impl From<Cut> for ReadOptions {
+    fn from(cut: Cut) -> Self {
+        ReadOptions { cut, ..Self::default() }
+    }
+}
+
+/// What is read of each point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Detail {
+    /// Coordinates, class, flags and return number. Compressed points of formats 6 to 10 are then decoded in part.
+    #[default]
+    Columns,
+    /// These, and the whole [record](crate::data::PointBatch::records) of each point, with the
+    /// [head](crate::data::PointInfo::head) of the file.
+    Records,
+}

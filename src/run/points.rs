@@ -1,0 +1,212 @@
+//! Points from files to a file: selected, clipped, merged.
+
+use std::path::{Path, PathBuf};
+
+use super::context::{Context, Journal, Size, Stage};
+use super::input::is_read_once;
+use super::notice::Notice;
+use super::{lines, open};
+use crate::crs::Crs;
+use crate::data::{Bounds, PointBatch, PointFlags, PointInfo, PointSource, PointSummary};
+use crate::error::{Error, Result};
+use crate::io::Destination;
+use crate::io::las::Rounding;
+use crate::io::points::{self, Options};
+use crate::terrain::Inside;
+
+/// Most files that are open at a time; of more, each is opened twice.
+const MOST_OPEN: usize = 100;
+
+/// Which points of which files are written; all of them, unless something is said.
+#[derive(Debug, Clone, Default)]
+pub struct PointsRequest {
+    /// Files of points, in the order of the output.
+    pub files: Vec<PathBuf>,
+    /// How they are read.
+    pub read: Options,
+    /// Classes to write; all if there is none. Points of formats without classes are always written.
+    pub classes: Vec<u8>,
+    /// Return numbers to write; all if there is none. Points of formats without returns are always written.
+    pub returns: Vec<u8>,
+    /// What becomes of points that are marked as withheld.
+    pub withheld: Withheld,
+    /// The box in plan that points are in, its border included.
+    pub bounds: Option<Bounds>,
+    /// Layers with polygons that points are in, as `FILE`, their borders included.
+    pub boundary: Vec<PathBuf>,
+    /// What becomes of coordinates that the lattice of a LAS output does not have.
+    pub rounding: Rounding,
+}
+
+/// What becomes of points that are marked as withheld.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Withheld {
+    /// They are written, with their mark.
+    #[default]
+    Keep,
+    /// They are left out.
+    Drop,
+}
+
+/// What was written, and what was not.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PointsReport {
+    /// Points read.
+    pub read: u64,
+    /// Points written, and the box around them.
+    pub written: PointSummary,
+    /// Points left out because they are withheld.
+    pub withheld: u64,
+    /// Points left out because of their class.
+    pub other_class: u64,
+    /// Points left out because of their return number.
+    pub other_return: u64,
+    /// Points left out because they are outside of the bounds or the boundary.
+    pub outside: u64,
+    /// The coordinate system of all files.
+    pub crs: Option<Crs>,
+    /// What was assumed and what looks odd, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// Reads points file after file, and writes those that are asked for, in their order.
+///
+/// Memory is that of some chunks of points, whatever the size of the files.
+///
+/// # Errors
+/// If a file cannot be read, the files are in different coordinate systems, their points cannot be written together
+/// without a loss (see [`las::create`](crate::io::las::create)), none is left, or the run is canceled. There is no output
+/// then.
+pub fn write_points(request: &PointsRequest, target: Destination, context: &Context) -> Result<PointsReport> {
+    let journal = Journal::new(context);
+    let options = Options { detail: points::detail_for(target)?, ..request.read };
+    let open = |path: &Path| open::points_of_file(path, options).map_err(|e| e.in_file(path));
+    let mut sources: Vec<Option<Box<dyn PointSource + Send>>> = Vec::new();
+    let mut infos: Vec<PointInfo> = Vec::new();
+    let mut crs = None;
+    for path in &request.files {
+        let source = open(path)?;
+        let info = source.info().clone();
+        tell(&journal, path, &info.warnings);
+        one_system(&mut crs, info.crs.as_ref(), path)?;
+        infos.push(info);
+        let keep = request.files.len() <= MOST_OPEN || is_read_once(path);
+        sources.push(Some(source).filter(|_| keep));
+    }
+    let inside = boundary(request, crs.as_ref(), &journal)?;
+    let all: Vec<&PointInfo> = infos.iter().collect();
+    let mut report = PointsReport::default();
+    let mut sink = points::create(target, &all, request.rounding)?;
+    let count = infos.iter().map(|info| info.count).sum::<Option<u64>>();
+    let work = journal.start(Stage::WritingPoints, count.map_or(Size::Unknown, Size::Items))?;
+    let mut batch = PointBatch::default();
+    for ((path, info), source) in request.files.iter().zip(&infos).zip(sources) {
+        let mut source = source.map_or_else(|| open(path), Ok)?;
+        sink.next_source(info).map_err(|e| e.in_file(path))?;
+        loop {
+            source.read(&mut batch).map_err(|e| e.in_file(path))?;
+            if batch.is_empty() {
+                break;
+            }
+            let count = batch.len() as u64;
+            report.read += count;
+            select(&mut batch, request, inside.as_ref(), &mut report);
+            sink.write(&batch).map_err(|e| e.in_file(path))?;
+            work.add(count)?;
+        }
+        tell(&journal, path, source.warnings());
+    }
+    if report.read == report.withheld + report.other_class + report.other_return + report.outside {
+        return Err(nothing_left(&report, &request.files));
+    }
+    report.written = sink.finish()?;
+    work.end()?;
+    report.crs = crs;
+    report.notices = journal.take();
+    Ok(report)
+}
+
+fn tell(journal: &Journal, path: &Path, warnings: &[String]) {
+    warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+}
+
+/// Leaves out what is not asked for, and counts it.
+fn select(batch: &mut PointBatch, request: &PointsRequest, inside: Option<&Inside>, report: &mut PointsReport) {
+    let is_listed = |list: &[u8], column: &[u8], i: usize| {
+        list.is_empty() || column.get(i).is_none_or(|value| list.contains(value))
+    };
+    let is_withheld = |flags: Option<&PointFlags>| flags.is_some_and(|flags| flags.is_withheld());
+    let mut keep = Vec::with_capacity(batch.len());
+    for i in 0..batch.len() {
+        let p = [batch.x[i], batch.y[i]];
+        let left_out = if request.withheld == Withheld::Drop && is_withheld(batch.flags.get(i)) {
+            Some(&mut report.withheld)
+        } else if !is_listed(&request.classes, &batch.class, i) {
+            Some(&mut report.other_class)
+        } else if !is_listed(&request.returns, &batch.return_number, i) {
+            Some(&mut report.other_return)
+        } else if request.bounds.is_some_and(|bounds| !is_within(&bounds, p))
+            || inside.is_some_and(|inside| !inside.contains(p))
+        {
+            Some(&mut report.outside)
+        } else {
+            None
+        };
+        keep.push(left_out.is_none());
+        if let Some(count) = left_out {
+            *count += 1;
+        }
+    }
+    if keep.contains(&false) {
+        batch.retain(&keep);
+    }
+}
+
+fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {
+    (0..2).all(|k| bounds.min[k] <= p[k] && p[k] <= bounds.max[k])
+}
+
+/// The polygons that points are clipped to, in the system of the points.
+fn boundary(request: &PointsRequest, crs: Option<&Crs>, journal: &Journal) -> Result<Option<Inside>> {
+    let mut polygons = Vec::new();
+    for path in &request.boundary {
+        let layer = open::layer(path)?;
+        tell(journal, path, &layer.warnings);
+        one_system(&mut crs.cloned(), layer.crs.as_ref(), path)?;
+        polygons.extend(lines::polygons(&layer, path)?);
+    }
+    Ok((!request.boundary.is_empty()).then(|| Inside::new(&polygons)))
+}
+
+/// Points are not reprojected: that would round them.
+fn one_system(all: &mut Option<Crs>, stated: Option<&Crs>, path: &Path) -> Result<()> {
+    match (&all, stated) {
+        (Some(known), Some(stated)) if !known.is_same(stated) => {
+            Err(Error::usage(format!("the file is in {stated}, the files before it are in {known}"))
+                .in_file(path)
+                .cure("bring all files into one coordinate system first: `points` does not reproject"))
+        }
+        (None, Some(stated)) => {
+            *all = Some(stated.clone());
+            Ok(())
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cold]
+fn nothing_left(report: &PointsReport, files: &[PathBuf]) -> Error {
+    let PointsReport { read, withheld, other_class, other_return, outside, .. } = report;
+    let error = match read {
+        0 => Error::format("no points in the input").cure("pass files that contain points"),
+        _ => Error::usage(format!(
+            "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {other_return} of \
+             other returns, {outside} outside of the bounds or the boundary"
+        ))
+        .cure("`breakline info` shows classes, returns and extent of each file"),
+    };
+    match files {
+        [file] => error.in_file(file),
+        _ => error,
+    }
+}

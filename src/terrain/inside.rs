@@ -1,0 +1,159 @@
+//! Points in polygons.
+
+use crate::data::orientation;
+use crate::triangulation::num::Sign;
+
+type Edge = [[f64; 2]; 2];
+
+/// Polygons in plan, to be asked whether a point lies in any of them.
+///
+/// Each polygon is a list of closed rings, by the even-odd rule. A point on a ring is in the polygon. Exact for all
+/// finite coordinates.
+#[derive(Debug, Clone)]
+pub struct Inside {
+    /// The edges of each band of equal height, with the numbers of their polygons, in order.
+    bands: Vec<Vec<(usize, Edge)>>,
+    low: f64,
+    height: f64,
+}
+
+/// Most bands.
+const MOST: f64 = 65_536.0;
+
+impl Inside {
+    /// Prepares polygons. A ring that does not end where it begins is closed.
+    ///
+    /// # Complexity
+    /// Linear in the number of edges, in time and memory.
+    pub fn new(polygons: &[Vec<Vec<[f64; 2]>>]) -> Self {
+        let mut edges: Vec<(usize, Edge)> = Vec::new();
+        for (number, ring) in polygons.iter().enumerate().flat_map(|(i, rings)| rings.iter().map(move |ring| (i, ring)))
+        {
+            let closed = ring.iter().chain(ring.first()).copied().collect::<Vec<_>>();
+            edges.extend(closed.windows(2).map(|pair| (number, [pair[0], pair[1]])));
+        }
+        let ys = || edges.iter().flat_map(|(_, edge)| edge.map(|p| p[1]));
+        let (low, high) = (ys().fold(f64::INFINITY, f64::min), ys().fold(f64::NEG_INFINITY, f64::max));
+        // As high as an edge on average: then an edge is in two or three bands on average.
+        let average = edges.iter().map(|(_, [a, b])| (a[1] - b[1]).abs() / edges.len() as f64).sum::<f64>();
+        let height = average.max((high - low) / MOST);
+        let mut inside = Inside { bands: Vec::new(), low, height };
+        inside.bands.resize_with(if edges.is_empty() { 0 } else { inside.band(high) + 1 }, Vec::new);
+        for (number, edge) in edges {
+            let [a, b] = edge.map(|p| inside.band(p[1]));
+            inside.bands[a.min(b)..=a.max(b)].iter_mut().for_each(|band| band.push((number, edge)));
+        }
+        inside
+    }
+
+    /// The band of a height; does not fall where the height rises.
+    fn band(&self, y: f64) -> usize {
+        if self.height > 0.0 { ((y - self.low) / self.height).clamp(0.0, 2.0 * MOST) as usize } else { 0 }
+    }
+
+    /// Returns true if a point lies in a polygon or on one of its rings.
+    pub fn contains(&self, p: [f64; 2]) -> bool {
+        if p[1] < self.low || !p.iter().all(|c| c.is_finite()) {
+            return false;
+        }
+        let Some(band) = self.bands.get(self.band(p[1])) else { return false };
+        let mut number = usize::MAX;
+        let mut is_odd = false;
+        for &(polygon, [a, b]) in band {
+            if polygon != number {
+                if is_odd {
+                    return true;
+                }
+                number = polygon;
+            }
+            let [low, high] = if a[1] <= b[1] { [a, b] } else { [b, a] };
+            if p[1] < low[1] || p[1] > high[1] {
+                continue;
+            }
+            if p[0] < a[0].min(b[0]) {
+                // The edge is to the right: a ray in that direction meets it, unless it ends at the ray from below.
+                is_odd ^= p[1] < high[1];
+                continue;
+            }
+            if p[0] > a[0].max(b[0]) {
+                continue;
+            }
+            match orientation([low, high, p].map(|[x, y]| [x, y, 0.0])) {
+                Sign::Zero => return true,
+                // To the left of an edge that goes up.
+                Sign::Positive => is_odd ^= p[1] < high[1],
+                Sign::Negative => {}
+            }
+        }
+        is_odd
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All edges, one after the other, in whole numbers.
+    fn naive(polygons: &[Vec<Vec<[i64; 2]>>], [x, y]: [i64; 2]) -> bool {
+        polygons.iter().any(|rings| {
+            let mut is_odd = false;
+            for ring in rings {
+                for i in 0..ring.len() {
+                    let ([ax, ay], [bx, by]) = (ring[i], ring[(i + 1) % ring.len()]);
+                    let turn = (bx - ax) * (y - ay) - (by - ay) * (x - ax);
+                    let within = |a: i64, b: i64, c: i64| a.min(b) <= c && c <= a.max(b);
+                    if turn == 0 && within(ax, bx, x) && within(ay, by, y) {
+                        return true;
+                    }
+                    if (ay > y) != (by > y) && (turn > 0) == (by > ay) {
+                        is_odd = !is_odd;
+                    }
+                }
+            }
+            is_odd
+        })
+    }
+
+    #[test]
+    fn random_polygons_agree_with_all_edges_one_after_the_other() {
+        let mut state = 1_u64;
+        let mut next = |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % n) as i64
+        };
+        for _ in 0..300 {
+            let mut polygons = Vec::new();
+            for _ in 0..next(4) {
+                let mut rings: Vec<Vec<[i64; 2]>> = Vec::new();
+                for _ in 0..next(4) {
+                    rings.push((0..next(7)).map(|_| [next(7), next(7)]).collect());
+                }
+                polygons.push(rings);
+            }
+            let floats: Vec<Vec<Vec<[f64; 2]>>> = polygons
+                .iter()
+                .map(|rings| rings.iter().map(|ring| ring.iter().map(|p| p.map(|c| c as f64)).collect()).collect())
+                .collect();
+            let inside = Inside::new(&floats);
+            for x in -1..8 {
+                for y in -1..8 {
+                    assert_eq!(inside.contains([x as f64, y as f64]), naive(&polygons, [x, y]), "{polygons:?} {x} {y}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_off_any_polygon_are_outside() {
+        let inside = Inside::new(&[]);
+        assert!(!inside.contains([0.0, 0.0]));
+        let ring = vec![[0.0, 0.0], [1e300, 0.0], [0.0, 1e300], [0.0, 0.0]];
+        let inside = Inside::new(&[vec![ring]]);
+        assert!(inside.contains([1e299, 1e299]) && inside.contains([5e299, 0.0]));
+        for odd in
+            [[f64::NAN, 0.0], [0.0, f64::NAN], [f64::INFINITY, 1.0], [1.0, f64::INFINITY], [-1.0, 1.0], [1.0, -1.0]]
+        {
+            assert!(!inside.contains(odd), "{odd:?}");
+        }
+    }
+}
