@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::kernel::{RANGE, Range};
 use crate::triangulation::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing, Refused, Rounding, spatial_order};
+use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, Rounding, spatial_order};
 
 use super::clip::Clip;
 use super::crossings::{Pass, refuse, settle_heights};
@@ -313,14 +313,14 @@ fn lines_of<'a>(vertices: &'a [u32], line_ends: &[usize]) -> Vec<&'a [u32]> {
 }
 
 #[cold]
-fn not_built(refused: Refused, name: &dyn Fn(usize) -> String) -> Error {
-    match refused {
-        Refused::Crossing { segments: [(line, _), (other, _)], place: [x, y] } => {
+fn not_built(error: InputError, name: &dyn Fn(usize) -> String) -> Error {
+    match error {
+        InputError::Crossing { segments: [(line, _), (other, _)], at: [x, y] } => {
             let (line, other) = (name(line), name(other));
             Error::format(format!("{line} and {other} cross at {x} {y} without a common vertex"))
                 .cure("mend the lines, or let them be split there with --on-crossing split")
         }
-        refused => Error::limit(refused.to_string()),
+        error => Error::limit(error.to_string()),
     }
 }
 

@@ -4,7 +4,7 @@ use breakline_triangulation::geometry::Plane;
 use breakline_triangulation::kernel::{Adaptive, Exact, Filter, Filtered, Kernel, Predicate, RANGE, Range};
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{ConstrainedDelaunay, OnCrossing, Refused, Rounding};
+use breakline_triangulation::{ConstrainedDelaunay, InputError, OnCrossing, Rounding};
 
 use super::case::Case;
 
@@ -37,7 +37,7 @@ pub struct Built {
     pub rounding: Option<Rounding>,
 }
 
-pub fn build(case: &Case) -> Result<Built, Refused> {
+pub fn build(case: &Case) -> Result<Built, InputError> {
     let (triangulation, vertices) =
         Subject::from_lines(Plane::default(), &case.points, &case.lines, OnCrossing::Split)?;
     let chains = triangulation.lines().map(|line| triangulation.chain(line)).collect();

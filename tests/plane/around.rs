@@ -18,7 +18,7 @@ fn random(random: &mut Random, round: usize) -> Free {
     let mut t = build(&points);
     for v in t.tds().vertices().collect::<Vec<_>>() {
         if random.below(4) == 0 {
-            t.remove(v);
+            let _ = t.remove(v);
         }
     }
     t

@@ -211,7 +211,7 @@ fn gaps_close() {
         for _ in 0..dice.below(6) {
             let slots = t.tds().vertex_slots();
             if slots > 0 {
-                t.remove(VertexId::new(dice.index(slots)));
+                let _ = t.remove(VertexId::new(dice.index(slots)));
             }
         }
         let bytes = bytes(&t);

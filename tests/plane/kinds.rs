@@ -4,8 +4,11 @@ use std::collections::BTreeSet;
 
 use breakline::triangulation::geometry::{Plane, Space, Weighted};
 use breakline::triangulation::kernel::Adaptive;
-use breakline::triangulation::tds::{Tds, VertexId};
-use breakline::triangulation::{Basic, Blocked, Constrained, Delaunay, Level, Regular, Triangulation, Walls};
+use breakline::triangulation::tds::{CellId, Tds, VertexId};
+use breakline::triangulation::{
+    Basic, Constrained, ConstraintError, Delaunay, Inserted, Level, MoveError, PointError, Regular, RemovalError,
+    Triangulation, Walls,
+};
 use testkit::random::Random;
 
 type Point = [f64; 2];
@@ -45,8 +48,8 @@ fn basic_ones_grow_flip_and_shrink() {
                     let vertices: Vec<VertexId> = t.tds().vertices().collect();
                     if !vertices.is_empty() {
                         let vertex = random.pick(&vertices);
-                        assert_eq!(t.remove(vertex), Some(*t.point(vertex)));
-                        assert_eq!(t.remove(vertex), None);
+                        assert_eq!(t.remove(vertex), Ok(*t.point(vertex)));
+                        assert_eq!(t.remove(vertex), Err(RemovalError::NoVertex));
                     }
                 }
             }
@@ -73,7 +76,7 @@ fn basic_ones_in_space() {
 #[test]
 fn payloads_are_inherited() {
     let mut random = Random(33);
-    let mut t: Basic<Plane, 3, (), u8> = Basic::new(Plane::default());
+    let mut t = Basic::<Plane, 3>::new(Plane::default()).with_cell_data(|_| 0u8);
     for p in [[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]] {
         t.insert(p).unwrap();
     }
@@ -144,7 +147,7 @@ fn constraints_hold() {
                 let vertex = random.pick(&vertices);
                 let is_end = walls.iter().flatten().any(|&v| v == vertex);
                 let removed = t.remove(vertex);
-                assert!(removed.is_none() || !is_end);
+                assert!(removed.is_err() || !is_end);
             } else if random.below(8) == 0 && !walls.is_empty() {
                 let ends = walls.pop_first().unwrap();
                 assert!(t.release(ends[0], ends[1]));
@@ -160,8 +163,10 @@ fn constraints_hold() {
                             walls.insert([pair[0].min(pair[1]), pair[0].max(pair[1])]);
                         }
                     }
-                    Err(Blocked::Wall(ends)) => assert!(blocks.contains(&ends), "{ends:?} not in {blocks:?}"),
-                    Err(Blocked::Nowhere) => assert!(t.dimension() < 2),
+                    Err(ConstraintError::Crosses(ends)) => {
+                        assert!(blocks.contains(&ends), "{ends:?} not in {blocks:?}")
+                    }
+                    Err(error) => assert_eq!((error, t.dimension() < 2), (ConstraintError::NoTriangles, true)),
                 }
             }
             assert_eq!(t.check(Level::Law), []);
@@ -218,7 +223,67 @@ fn what_is_not_there_is_answered() {
         t.insert(p).unwrap();
     }
     let (there, absent) = (VertexId::new(0), VertexId::new(9));
-    assert!(!t.release(absent, there) && !t.release(there, absent) && t.remove(absent).is_none());
-    assert_eq!(t.constrain(there, absent), Err(Blocked::Nowhere));
-    assert_eq!(Blocked::Nowhere.to_string(), "there are no triangles, or not both vertices");
+    assert!(!t.release(absent, there) && !t.release(there, absent) && t.remove(absent).is_err());
+    assert_eq!(t.constrain(there, absent), Err(ConstraintError::NoVertex(absent)));
+    assert_eq!(ConstraintError::NoTriangles.to_string(), "there are no triangles to hold a constraint");
+}
+
+/// Inserts, inserts again at the same site, moves, and moves onto another site, alike in all kinds.
+macro_rules! judge_insertions {
+    ($new:expr, $at:expr) => {{
+        let (mut t, at) = ($new, $at);
+        let sites = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0], [4.0, 3.0]].map(at);
+        for (k, p) in sites.into_iter().enumerate() {
+            assert_eq!(t.insert_with(p, k).map(|inserted| inserted.is_new()), Ok(true));
+        }
+        let there = t.insert_with(sites[4], 70).unwrap();
+        assert_eq!((there.is_new(), there.unused, *t.tds().vertex_data(there.vertex)), (false, Some(70), 4));
+        let near = t.tds().cell_of(there.vertex);
+        assert_eq!(t.insert_near(sites[4], 71, near), Ok(Inserted { vertex: there.vertex, unused: Some(71) }));
+        assert_eq!(t.insert_near(at([f64::NAN, 0.0]), 72, near), Err(PointError::Coordinate));
+
+        assert_eq!(t.move_to(there.vertex, at([5.0, 6.0])), Ok(there.vertex));
+        assert_eq!((*t.point(there.vertex), *t.tds().vertex_data(there.vertex)), (at([5.0, 6.0]), 4));
+        assert_eq!(t.check(Level::Law), []);
+        let corner = t.insert_with(sites[3], 73).unwrap().vertex;
+        assert_eq!(t.move_to(there.vertex, sites[3]), Ok(corner));
+        assert_eq!((t.vertex_count(), t.check(Level::Law)), (4, vec![]));
+        let gone = Err(MoveError::Vertex(RemovalError::NoVertex));
+        assert_eq!(t.move_to(there.vertex, at([1.0, 1.0])), gone);
+        assert_eq!(t.remove(there.vertex), Err(RemovalError::NoVertex));
+    }};
+}
+
+#[test]
+fn insertion_gives_back_a_payload_that_it_does_not_use() {
+    let plane = |p: [f64; 2]| p;
+    judge_insertions!(Basic::<Plane, 3, usize>::new(Plane::default()), plane);
+    judge_insertions!(Delaunay::<Plane, 3, usize>::with_capacity(Plane::default(), 9), plane);
+    judge_insertions!(Regular::<Weighted, usize>::new(Weighted::default()), |[x, y]: [f64; 2]| [x, y, 2.0]);
+    judge_insertions!(Constrained::<Plane, usize>::new(Plane::default()), plane);
+}
+
+/// A vertex that moves onto a constraint splits it; one on a constraint stays.
+#[test]
+fn a_vertex_moves_onto_a_constraint() {
+    let points = [[0.0, 0.0], [8.0, 0.0], [4.0, 6.0], [4.0, -6.0], [6.0, 2.0]];
+    let (mut t, v) = Constrained::<Plane>::from_points_with(Plane::default(), &points, |k| k).unwrap();
+    t.constrain(v[0], v[1]).unwrap();
+    assert_eq!(t.move_to(v[4], [2.0, 0.0]), Ok(v[4]));
+    let halves = [[v[0], v[4]], [v[4], v[1]]].map(|[a, b]| [a.min(b), a.max(b)]);
+    assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), BTreeSet::from(halves));
+    assert_eq!(t.check(Level::Law), []);
+    let held = Err(MoveError::Vertex(RemovalError::Constraint));
+    assert_eq!((t.move_to(v[4], [6.0, 2.0]), t.move_to(v[0], [-1.0, 0.0])), (held, held));
+    assert!((0..5).all(|k| *t.tds().vertex_data(v[k]) == k));
+}
+
+/// Each message says its own part; the rest of the chain is told by the source.
+#[test]
+fn errors_do_not_repeat_their_source() {
+    let error = MoveError::from(RemovalError::Constraint);
+    let source = std::error::Error::source(&error).unwrap().to_string();
+    assert_eq!(error.to_string(), "the vertex cannot be moved from where it is");
+    assert_eq!(source, "a constraint needs the vertex");
+    assert_eq!(PointError::TooMany.to_string(), "more than 2147483646 points");
 }

@@ -89,13 +89,13 @@ fn tiny_grids_that_grow_and_shrink() {
         for _ in 0..60 {
             let p = tiny(&mut random, side);
             if random.below(3) > 0 {
-                let vertex = t.insert_by(&mut hierarchy, p, ()).unwrap();
+                let vertex = t.insert_by(&mut hierarchy, p, ()).unwrap().vertex;
                 buckets.inserted(t.geometry(), vertex, &p);
             } else if let Location::Vertex(vertex) = t.locate(&p, None) {
                 // Half of the time the hierarchy is not told.
                 let told = random.below(2) == 0;
                 let removed = if told { t.remove_by(&mut hierarchy, vertex) } else { t.remove(vertex) };
-                assert_eq!(removed, Some(p));
+                assert_eq!(removed, Ok(p));
             }
             for _ in 0..4 {
                 let q = tiny(&mut random, 2 * side + 1).map(|x| x - 0.5 * side as f64);
@@ -140,13 +140,13 @@ fn numbers_used_again() {
     for _ in 0..5 {
         let mut vertices: Vec<VertexId> = (0..3000)
             .map(|_| [random.unit(), random.unit()])
-            .map(|p| t.insert_by(&mut hierarchy, p, ()).unwrap())
+            .map(|p| t.insert_by(&mut hierarchy, p, ()).unwrap().vertex)
             .collect();
         random.shuffle(&mut vertices);
         for vertex in vertices {
             let p = *t.point(vertex);
             assert_eq!(hierarchy.locate(&t, &p), Location::Vertex(vertex));
-            assert_eq!(t.remove_by(&mut hierarchy, vertex), Some(p));
+            assert_eq!(t.remove_by(&mut hierarchy, vertex), Ok(p));
         }
         assert_eq!(hierarchy.sample_sizes().sum::<usize>(), 0);
     }
@@ -263,7 +263,7 @@ fn same_wherever_led(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
         let mut hierarchy = Hierarchy::new(Led(sides));
         for _ in 0..side * side {
             let p = tiny(&mut random, side);
-            assert_eq!(led.insert_by(&mut hierarchy, p, ()), t.insert(p));
+            assert_eq!(led.insert_by(&mut hierarchy, p, ()).map(|inserted| inserted.vertex), t.insert(p));
             assert_eq!(lazy_led.insert(p), lazy.insert(p));
         }
         assert_eq!(led.check(Level::Law), []);

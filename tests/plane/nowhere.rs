@@ -338,7 +338,7 @@ fn weighted_points() {
             t.insert([x, y, k as f64]).unwrap();
         }
         let gone = [[6.0, 6.0, 1.0], [-6.0, 7.0, 0.0], [2.0, -7.0, 0.0]].map(|p| t.insert(p).unwrap());
-        gone.into_iter().for_each(|v| assert!(t.remove(v).is_some() && t.remove(v).is_none()));
+        gone.into_iter().for_each(|v| assert!(t.remove(v).is_ok() && t.remove(v).is_err()));
         assert_eq!(t.check(Level::Law), []);
         let cells = (0..t.tds().cell_slots() + 3).map(CellId::new).chain([CellId::new(CellId::LIMIT - 1)]);
         for cell in cells {

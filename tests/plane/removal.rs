@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use breakline::triangulation::geometry::Plane;
 use breakline::triangulation::kernel::Adaptive;
 use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Delaunay, Level, Refused};
+use breakline::triangulation::{Delaunay, Level, MoveError, PointError, RemovalError};
 use testkit::random::{Random, ulps};
 
 type Point = [f64; 2];
@@ -38,7 +38,7 @@ fn empties_and_fills(points: &[Point], order: &[usize]) {
     for &at in order {
         let was_there = left.contains(&points[at]);
         left.retain(|p| *p != points[at]);
-        assert_eq!(t.remove(vertices[at]), was_there.then_some(points[at]));
+        assert_eq!(t.remove(vertices[at]).ok(), was_there.then_some(points[at]));
         assert!(!t.tds().is_vertex(vertices[at]));
         same_as_fresh(&t, &left);
     }
@@ -58,7 +58,7 @@ fn every_vertex_of_every_subset_of_a_tiny_grid() {
             (0..9).filter(|k| subset >> k & 1 == 1).map(|k| [f64::from(k % 3), f64::from(k / 3)]).collect();
         for at in 0..points.len() {
             let (mut t, vertices): (Free, _) = Delaunay::from_points(Plane::default(), &points).unwrap();
-            assert_eq!(t.remove(vertices[at]), Some(points[at]));
+            assert_eq!(t.remove(vertices[at]), Ok(points[at]));
             let mut left = points.clone();
             left.remove(at);
             same_as_fresh(&t, &left);
@@ -186,7 +186,7 @@ fn fans() {
     for (points, p) in cases {
         let mut t = fresh(&points);
         let v = t.insert(p).unwrap();
-        assert_eq!(t.remove(v), Some(p));
+        assert_eq!(t.remove(v), Ok(p));
         same_as_fresh(&t, &points);
     }
 }
@@ -195,10 +195,10 @@ fn fans() {
 fn what_is_not_there_cannot_be_removed() {
     let mut t = fresh(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
     let v = t.tds().vertices().next().unwrap();
-    assert_eq!(t.remove(VertexId::INFINITE), None);
-    assert_eq!(t.remove(VertexId::new(3)), None);
-    assert!(t.remove(v).is_some());
-    assert_eq!(t.remove(v), None);
+    assert_eq!(t.remove(VertexId::INFINITE), Err(RemovalError::NoVertex));
+    assert_eq!(t.remove(VertexId::new(3)), Err(RemovalError::NoVertex));
+    assert!(t.remove(v).is_ok());
+    assert_eq!(t.remove(v), Err(RemovalError::NoVertex));
     assert_eq!((t.vertex_count(), t.tds().vertex_slots(), t.tds().vertices().count()), (2, 3, 2));
 }
 
@@ -220,16 +220,16 @@ fn vertices_move() {
         for at in 0..20 {
             let (v, p) = (vertices[at % 9], place());
             let there = places.iter().find(|(_, q)| **q == p).map(|(&w, _)| w);
-            let moved = t.move_to(v, p).unwrap();
+            let moved = t.move_to(v, p);
             if places.contains_key(&v) {
-                assert_eq!(moved, Some(there.unwrap_or(v)));
+                assert_eq!(moved, Ok(there.unwrap_or(v)));
                 places.remove(&v);
                 if there.is_some_and(|w| w != v) {
                     payloads.remove(&v);
                 }
                 places.entry(moved.unwrap()).or_insert(p);
             } else {
-                assert_eq!(moved, None);
+                assert_eq!(moved, Err(MoveError::Vertex(RemovalError::NoVertex)));
             }
             assert_eq!(t.check(Level::Law), []);
             assert_eq!(t.tds().vertices().map(|v| (v, *t.point(v))).collect::<BTreeMap<_, _>>(), places);
@@ -238,6 +238,6 @@ fn vertices_move() {
             let key = |p: Point| p.map(f64::to_bits);
             assert_eq!(testkit::cells::cells(&t, key), testkit::cells::cells(&fresh(&left), key));
         }
-        assert_eq!(t.move_to(vertices[0], [f64::NAN, 0.0]), Err(Refused::Coordinate(t.vertex_count())));
+        assert_eq!(t.move_to(vertices[0], [f64::NAN, 0.0]), Err(MoveError::Point(PointError::Coordinate)));
     }
 }

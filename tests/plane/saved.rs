@@ -178,20 +178,20 @@ fn damage_to_the_basic_and_delaunay_kinds_is_an_error() {
             delaunay.insert(p).unwrap();
         }
         if places.len() > 2 {
-            basic.remove(VertexId::new(1));
-            delaunay.remove(VertexId::new(1));
+            let _ = basic.remove(VertexId::new(1));
+            let _ = delaunay.remove(VertexId::new(1));
         }
         read_damaged(&basic, |mut t| {
             let is_sound = t.check(Level::Law).is_empty();
             t.insert_with([0.25, 1.0], 1).unwrap();
-            t.remove(VertexId::new(0));
+            let _ = t.remove(VertexId::new(0));
             is_sound && t.check(Level::Law).is_empty()
         });
         read_damaged(&delaunay, |mut t| {
             let is_sound = t.check(Level::Law).is_empty();
             t.insert([0.25, 1.0]).unwrap();
             t.insert([1.25, 1.0]).unwrap();
-            t.remove(VertexId::new(0));
+            let _ = t.remove(VertexId::new(0));
             is_sound && t.check(Level::Law).is_empty()
         });
     }
@@ -211,13 +211,13 @@ fn damage_to_regular_and_constrained_kinds_is_an_error() {
             let (fresh, _) = Regular::<Weighted>::from_points(Weighted::default(), t.points()).unwrap();
             let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
             t.insert([0.25, 1.0, 0.5]).unwrap();
-            t.remove(VertexId::new(0));
+            let _ = t.remove(VertexId::new(0));
             is_sound && t.check(Level::Law).is_empty()
         });
         read_damaged(&constrained, |mut t| {
             let is_sound = t.check(Level::Law).is_empty();
             t.insert([0.25, 1.0]).unwrap();
-            t.remove(VertexId::new(0));
+            let _ = t.remove(VertexId::new(0));
             is_sound && t.check(Level::Law).is_empty()
         });
     }

@@ -13,7 +13,7 @@ use crate::chosen::{Chosen, plane, weighted};
 use breakline::triangulation::geometry::Coordinates;
 use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide};
 use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Kept, Level, LineId, Regular, Triangulation};
+use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, LineId, Regular, RemovalError, Triangulation};
 use testkit::random::Random;
 
 fn sequences() -> u64 {
@@ -57,7 +57,7 @@ fn delaunay(random: &mut Random, geometry: Chosen<2>) {
         match at {
             Some(at) if random.below(4) > 0 => {
                 points.swap_remove(at);
-                assert_eq!(t.remove(vertex), Some(p));
+                assert_eq!(t.remove(vertex), Ok(p));
             }
             Some(_) => {}
             None => points.push(p),
@@ -84,7 +84,7 @@ fn regular(random: &mut Random, geometry: Chosen<3>) {
             }
         } else {
             let (p, vertex) = points.swap_remove(random.index(points.len()));
-            assert_eq!(t.remove(vertex), Some(p));
+            assert_eq!(t.remove(vertex), Ok(p));
         }
     }
     assert_eq!(t.check(Level::Law), []);
@@ -141,9 +141,9 @@ fn constrained(random: &mut Random, geometry: Chosen<2>) {
                         assert!(gone == p && users.is_empty());
                         assert!(points.remove(&key(p)), "it was given as a point");
                     }
-                    Err(Kept::Line(id)) => assert!(users.contains(&id)),
-                    Err(Kept::Crossing) => assert!(!points.contains(&key(p))),
-                    Err(Kept::Absent) => unreachable!(),
+                    Err(RemovalError::Line(id)) => assert!(users.contains(&id)),
+                    Err(RemovalError::Crossing) => assert!(!points.contains(&key(p))),
+                    Err(_) => unreachable!(),
                 }
             }
         }

@@ -15,9 +15,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use breakline_triangulation::geometry::Plane;
-use breakline_triangulation::{Delaunay, Hierarchy, Locate, Location, Refused};
+use breakline_triangulation::{Delaunay, Hierarchy, Locate, Location};
 
-fn run(stem: &str, points: &[[f64; 2]]) -> Result<(), Refused> {
+fn run(stem: &str, points: &[[f64; 2]]) -> Result<(), Box<dyn std::error::Error>> {
     let timed = |name: &str, start: Instant, done: usize| {
         let seconds = start.elapsed().as_secs_f64();
         println!("breakline_{name} {stem} {} 1 {seconds:.4} 0 0 {done} {seconds:.4}", points.len());
@@ -28,7 +28,7 @@ fn run(stem: &str, points: &[[f64; 2]]) -> Result<(), Refused> {
 
     let start = Instant::now();
     for &p in points {
-        vertices.push(t.insert_by(&mut hierarchy, p, ())?);
+        vertices.push(t.insert_by(&mut hierarchy, p, ())?.vertex);
     }
     timed("insert", start, t.finite_cells().count());
 
@@ -48,7 +48,7 @@ fn run(stem: &str, points: &[[f64; 2]]) -> Result<(), Refused> {
 
     let start = Instant::now();
     for &vertex in vertices.iter().step_by(2) {
-        t.remove_by(&mut hierarchy, vertex);
+        t.remove_by(&mut hierarchy, vertex)?;
     }
     timed("remove", start, t.finite_cells().count());
     Ok(())

@@ -17,6 +17,7 @@
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 
+use std::error::Error;
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -27,7 +28,7 @@ use breakline_triangulation::kernel::{
     Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnFineLattice, OnLattice, Predicate, Range,
 };
 use breakline_triangulation::num::Sign;
-use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Refused};
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing};
 
 /// The stages of [`Adaptive`], but for the pairs of doubles, each counting what it is asked.
 type Counting = Filtered<Counted<0, ErrorBound>, Filtered<Counted<1, OnLattice>, OnFineGrid>>;
@@ -122,10 +123,10 @@ fn processor_seconds() -> f64 {
 }
 
 /// Times a construction; prints its line, given how to count the cells.
-fn time<T>(
+fn time<T, E: std::fmt::Display>(
     options: &Options,
     count: usize,
-    build: impl FnOnce() -> Result<T, Refused>,
+    build: impl FnOnce() -> Result<T, E>,
     cells: impl Fn(&T) -> usize,
 ) -> Result<(), String> {
     // The peak so far does not count. Where that cannot be told, nothing is lost.
@@ -160,7 +161,7 @@ fn asked() -> [u64; 4] {
     [0, 1, 2, 3].map(|stage: usize| ASKED[stage].load(Relaxed))
 }
 
-fn plane<K: Kernel>(points: &[[f64; 2]], one_by_one: bool) -> Result<(Delaunay<Plane<K>, 3>, usize), Refused> {
+fn plane<K: Kernel>(points: &[[f64; 2]], one_by_one: bool) -> Result<(Delaunay<Plane<K>, 3>, usize), Box<dyn Error>> {
     if !one_by_one {
         let (t, vertices) = Delaunay::from_points(Plane::default(), points)?;
         return Ok((t, vertices.len()));

@@ -1,7 +1,7 @@
 //! Attach colors to vertices, and read them back through a Voronoi cell.
 
+use breakline_triangulation::Delaunay;
 use breakline_triangulation::geometry::Plane;
-use breakline_triangulation::{Delaunay, Refused};
 
 #[derive(Debug, PartialEq)]
 enum Color {
@@ -10,7 +10,7 @@ enum Color {
     Blue,
 }
 
-fn main() -> Result<(), Refused> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut t = Delaunay::new(Plane::<breakline_triangulation::kernel::Adaptive>::default());
     for (place, color) in [([1.0, 1.0], Color::Red), ([5.0, 1.0], Color::Green), ([3.0, 5.0], Color::Blue)] {
         t.insert_with(place, color)?;

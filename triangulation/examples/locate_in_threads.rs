@@ -1,9 +1,9 @@
 //! Locate a million points from four threads.
 
 use breakline_triangulation::geometry::Plane;
-use breakline_triangulation::{Delaunay, Location, Refused};
+use breakline_triangulation::{Delaunay, Location};
 
-fn main() -> Result<(), Refused> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let places = |n: u32, step: f64| (0..n * n).map(move |k| [k % n, k / n].map(|i| f64::from(i) * step));
     let corners: Vec<[f64; 2]> = places(100, 1.0).collect();
     let (t, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &corners)?;

@@ -1,7 +1,7 @@
 //! Triangulate records of one's own, as they are: a name and a place.
 
 use breakline_triangulation::geometry::{Geometry, Plane};
-use breakline_triangulation::{Delaunay, Refused, num::Sign};
+use breakline_triangulation::{Delaunay, num::Sign};
 
 #[derive(Debug, Clone, Copy)]
 struct Tree(&'static str, [f64; 2]);
@@ -16,7 +16,7 @@ impl Geometry<3> for Forest {
     fn side_of_sphere(&self, s: [&Tree; 3], q: &Tree) -> Sign { self.0.side_of_sphere(s.map(|p| &p.1), &q.1) }
 }
 
-fn main() -> Result<(), Refused> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut trees = Delaunay::new(Forest(Plane::default()));
     let forest = [Tree("oak", [0.0, 0.0]), Tree("elm", [9.0, 1.0]), Tree("ash", [4.0, 7.0])];
     forest.into_iter().try_for_each(|tree| trees.insert(tree).map(drop))?;

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use breakline_triangulation::geometry::{Plane, Weighted};
 use breakline_triangulation::tds::{CellId, VertexId};
-use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Mark, OnCrossing, Passage, Refused, Regular};
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, InputError, Mark, OnCrossing, Passage, Regular};
 
 type Place = [f64; 2];
 
 /// To the text of an SVG file.
-type Draw = fn() -> Result<String, Refused>;
+type Draw = fn() -> Result<String, Box<dyn std::error::Error>>;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("the folder for the pictures is missing")?;
@@ -34,19 +34,19 @@ fn spread(count: u32) -> Vec<Place> {
     (1..=count).map(|k| [at(k, 0.754_877_666), at(k, 0.569_840_291)].map(f64::round)).collect()
 }
 
-fn delaunay(count: u32) -> Result<Delaunay<Plane, 3>, Refused> {
+fn delaunay(count: u32) -> Result<Delaunay<Plane, 3>, InputError> {
     Ok(Delaunay::from_points(Plane::default(), &spread(count))?.0)
 }
 
 /// The triangles that a new point would destroy, and the border of its star.
-fn conflict_zone() -> Result<String, Refused> {
+fn conflict_zone() -> Result<String, Box<dyn std::error::Error>> {
     let (t, q) = (delaunay(24)?, [40.0, 36.0]);
     let zone = t.conflict_zone(&q, None).expect("it is inside of the hull, and no vertex");
     Ok(t.svg(&[Mark::Cells(&zone.cells), Mark::Edges(&zone.border), Mark::Line(&[q])]))
 }
 
 /// The triangles that a straight line meets.
-fn walk() -> Result<String, Refused> {
+fn walk() -> Result<String, Box<dyn std::error::Error>> {
     let (t, ends) = (delaunay(30)?, [[14.0, 12.0], [88.0, 79.0]]);
     let face = |passage| if let Passage::Face(cell) = passage { Some(cell) } else { None };
     let met: Vec<CellId> = t.along([&ends[0], &ends[1]], None).filter_map(face).collect();
@@ -54,7 +54,7 @@ fn walk() -> Result<String, Refused> {
 }
 
 /// The Voronoi cell of the vertex in the middle, and those of its neighbors.
-fn voronoi_cell() -> Result<String, Refused> {
+fn voronoi_cell() -> Result<String, Box<dyn std::error::Error>> {
     let t = delaunay(20)?;
     let sheet = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]];
     let middle = t.nearest(&[50.0, 50.0], None).expect("there are vertices");
@@ -71,7 +71,7 @@ fn closed(ring: &[Place]) -> Vec<Place> {
 }
 
 /// Weighted points; the hidden ones as dots without edges, in the triangles that hide them.
-fn regular() -> Result<String, Refused> {
+fn regular() -> Result<String, Box<dyn std::error::Error>> {
     let weighted = |(k, [x, y]): (usize, Place)| [x, y, if k % 5 == 2 { 1200.0 } else { 0.0 }];
     let points: Vec<[f64; 3]> = spread(28).into_iter().enumerate().map(weighted).collect();
     let (t, _) = Regular::<Weighted>::from_points(Weighted::default(), &points)?;
@@ -82,7 +82,7 @@ fn regular() -> Result<String, Refused> {
 }
 
 /// A plate with a hole and a crack that crosses its rim: filled is what lies at an odd level.
-fn constrained() -> Result<String, Refused> {
+fn constrained() -> Result<String, Box<dyn std::error::Error>> {
     let mut points = vec![[0.0, 0.0], [100.0, 10.0], [90.0, 100.0], [10.0, 90.0]];
     points.extend([[35.0, 35.0], [65.0, 40.0], [60.0, 70.0], [30.0, 60.0]]);
     points.extend([[15.0, 75.0], [50.0, 50.0], [80.0, 25.0]]);

@@ -29,7 +29,7 @@
 //! assert_eq!(t.nearest(&[3.5, 0.0], None), Some(v[1]));
 //! t.remove(middle);
 //! assert!(t.check(Level::Law).is_empty());
-//! # Ok::<(), breakline_triangulation::Refused>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear, 2 in the plane or
@@ -41,7 +41,7 @@
 //!
 //! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among the triangulations,
 //! so that each is a function of the set of points (and constraints): the order of insertion does not show in the
-//! cells. The core cannot fail on points that it admitted; [`Refused`] says which are not.
+//! cells. The core cannot fail on points that it admitted; [`PointError`] and [`InputError`] say which are not.
 //!
 //! | to | use |
 //! |---|---|

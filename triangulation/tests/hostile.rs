@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use breakline_triangulation::Refused;
+use breakline_triangulation::InputError;
 use testkit::case::{Case, Point};
 use testkit::judge;
 use testkit::random::{Random, ulps};
@@ -140,9 +140,9 @@ fn behavior(case: &Case) -> Result<String, String> {
     Ok(format!("{} vertices, {triangles} triangles, {} constrained", t.vertex_count(), t.constrained_edges().count()))
 }
 
-fn judge_refusal(refused: Refused, point: Option<usize>, line: Option<usize>) -> Result<String, String> {
+fn judge_refusal(refused: InputError, point: Option<usize>, line: Option<usize>) -> Result<String, String> {
     let is_right = match refused {
-        Refused::Coordinate(at) => Some(at) == point,
+        InputError::Coordinate(at) => Some(at) == point,
         _ => line.is_some(),
     };
     if is_right { Ok(format!("refused: {refused}")) } else { Err(format!("refused: {refused}")) }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use breakline_triangulation::geometry::{Plane, distance_to_segment};
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing, Refused};
+use breakline_triangulation::{ConstrainedDelaunay, GapError, InputError, Level, LineId, OnCrossing};
 use testkit::random::{Random, ulps};
 
 type Point = [f64; 2];
@@ -171,11 +171,11 @@ fn a_crossing_is_rejected_by_name() {
     let points = [[0.0, 0.0], [4.0, 4.0], [9.0, 9.0], [0.0, 4.0], [4.0, 0.0]];
     let lines: [&[u32]; 2] = [&[3, 4], &[2, 1, 0]];
     let refused = Constrained::from_lines(Plane::default(), &points, &lines, OnCrossing::Reject).unwrap_err();
-    let Refused::Crossing { mut segments, place } = refused else { panic!("{refused}") };
+    let InputError::Crossing { mut segments, at: place } = refused else { panic!("{refused}") };
     segments.sort_unstable();
     assert_eq!((segments, place), ([(0, 0), (1, 1)], [2.0, 2.0]));
     let out = Constrained::from_lines(Plane::default(), &points, &[[0, 9]], OnCrossing::Split).unwrap_err();
-    assert_eq!(out, Refused::Index { line: 0, index: 9 });
+    assert_eq!(out, InputError::Index { line: 0, index: 9 });
     // Touching is not crossing, and where there is a point already nothing is split that would not be anyway.
     for points in [&points[..], &[[0.0, 0.0], [2.0, 2.0], [9.0, 9.0], [0.0, 4.0], [4.0, 0.0]]] {
         let lines: [&[u32]; 2] = [&[0, 1, 2], &[3, 1]];
@@ -253,7 +253,7 @@ fn nesting_counts_the_lines_from_outside() {
     }
     assert!(t.nesting_of([ids[1]]).unwrap().iter().all(|&level| level <= 1));
     let (t, ids) = built(&[], &[vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]], vec![[4.0, 4.0], [0.5, 0.0]]]);
-    assert!(matches!(t.nesting_of(ids), Err(Refused::Open { gap: [_, _], .. })));
+    assert!(matches!(t.nesting_of(ids), Err(GapError { ends: [_, _], .. })));
 }
 
 /// Edits leave what building anew would have given, also below the plane, and with a point where lines cross.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use breakline_triangulation::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
 use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Kernel};
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, Refused, Triangulation};
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, InputError, Level, PointError, Triangulation};
 use testkit::random::Random;
 
 /// The finite cells as sorted points, in whole steps of 1/1024.
@@ -109,10 +109,10 @@ fn dimensions_grow_one_by_one() {
 #[test]
 fn refused_points_are_named() {
     let points = [[0.0, 0.0], [1.0, f64::NAN]];
-    assert_eq!(Delaunay::from_points(Plane::<Adaptive>::default(), &points).err(), Some(Refused::Coordinate(1)));
+    assert_eq!(Delaunay::from_points(Plane::<Adaptive>::default(), &points).err(), Some(InputError::Coordinate(1)));
     let mut t = Delaunay::new(Plane::<Adaptive>::default());
-    assert_eq!(t.insert([f64::INFINITY, 0.0]), Err(Refused::Coordinate(0)));
-    assert_eq!(t.insert([1e300, 0.0]), Err(Refused::Coordinate(0)));
+    assert_eq!(t.insert([f64::INFINITY, 0.0]), Err(PointError::Coordinate));
+    assert_eq!(t.insert([1e300, 0.0]), Err(PointError::Coordinate));
     let mut t = Delaunay::new(Plane::<Exact>::default());
     for p in [[1e300, 0.0], [1e-310, 1e-310], [-1e300, 5.0], [0.0, -1e300]] {
         t.insert(p).unwrap();

@@ -6,7 +6,7 @@ use crate::triangulation::geometry::Plane;
 use crate::triangulation::kernel::{Kernel, twice_area};
 use crate::triangulation::refine::{Quality, Shortfall};
 use crate::triangulation::tds::{CellId, VertexId};
-use crate::triangulation::{ConstrainedDelaunay, LineId, Location, OnCrossing, Refused};
+use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, Location, OnCrossing};
 
 /// A triangulation of points and segments, as plain lists. Vertices have numbers of their own.
 #[derive(Debug, Default)]
@@ -55,7 +55,7 @@ pub(super) fn build<K: Kernel>(
     places: &[[f64; 2]],
     on_crossing: OnCrossing,
     quality: Option<&Quality<'_>>,
-) -> Result<Built, Refused> {
+) -> Result<Built, InputError> {
     // Zero has one sign only: places are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
     let (coarse, vertices) =

@@ -18,7 +18,7 @@ use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, contain};
 use crate::triangulation::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
 use crate::triangulation::refine::{Domain, Quality, Region, Shortfall};
-use crate::triangulation::{OnCrossing, Refused};
+use crate::triangulation::{InputError, OnCrossing};
 
 /// How points and segments of the plane are triangulated. By default nothing is refined, and what lies outside of the
 /// outer boundary or in a hole is left out.
@@ -166,7 +166,7 @@ fn build(graph: &LineGraph, options: &TriangulateOptions, path: &Path, context: 
         })?,
     };
     triangulating.end()?;
-    let built = built.map_err(|refused| explained(refused, graph, path))?;
+    let built = built.map_err(|error| explained(error, graph, path))?;
     if options.arithmetic == Arithmetic::Fast {
         refuse_flaws(&built, context).map_err(|e| e.in_file(path))?;
     }
@@ -182,7 +182,7 @@ fn build_with<K: Kernel>(
     graph: &LineGraph,
     options: &TriangulateOptions,
     context: &Context,
-) -> std::result::Result<Built, Refused> {
+) -> std::result::Result<Built, InputError> {
     let segments: Vec<[u32; 2]> = graph.segments.iter().map(|segment| segment.ends).collect();
     let holes = graph.holes.iter().map(|hole| hole.at);
     let seeds: Vec<[f64; 2]> = holes.chain(graph.regions.iter().map(|region| region.at)).collect();
@@ -221,9 +221,9 @@ fn unfinished(built: &Built) -> Error {
 
 /// With the numbers and lines of the file.
 #[cold]
-fn explained(refused: Refused, graph: &LineGraph, path: &Path) -> Error {
-    match refused {
-        Refused::Coordinate(i) => {
+fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
+    match error {
+        InputError::Coordinate(i) => {
             let ([x, y], Range { min, max }) = (graph.nodes.points[i], Fast::RANGE);
             let number = i + graph.nodes.first_number as usize;
             let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
@@ -232,7 +232,7 @@ fn explained(refused: Refused, graph: &LineGraph, path: &Path) -> Error {
                 .at(format!("line {}", graph.node_lines[i]))
                 .cure("leave out --kernel fast: the others take any finite coordinate")
         }
-        Refused::Crossing { segments, place: [x, y] } => {
+        InputError::Crossing { segments, at: [x, y] } => {
             let mut positions = segments.map(|(line, _)| line);
             positions.sort_unstable();
             let [one, other] = positions.map(|i| &graph.segments[i]);
@@ -241,7 +241,7 @@ fn explained(refused: Refused, graph: &LineGraph, path: &Path) -> Error {
                 .at(format!("lines {} and {}", one.line, other.line))
                 .cure("divide both at a vertex there, or use --on-crossing split")
         }
-        _ => Error::limit(refused.to_string()).in_file(&graph.node_file),
+        _ => Error::limit(error.to_string()).in_file(&graph.node_file),
     }
 }
 

@@ -39,7 +39,7 @@ use crate::num::Sign;
 /// let points = [[0.0, 0.0], [5.0, 1.0], [0.0, 2.0], [-5.0, 1.0]];
 /// let (delaunay, v) = Delaunay::from_points(anisotropic, &points)?;
 /// assert!(delaunay.tds().edge(v[1], v[3]).is_some(), "its ends are 10 apart, those of the other diagonal 20");
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy)]
 pub struct Mapped<P, F, K = Adaptive> {
@@ -72,7 +72,7 @@ impl<P, F: Fn(&P) -> [f64; 2]> Mapped<P, F> {
 /// let roof = [[0.0, 0.0, 5.0], [9.0, 0.0, 5.0], [9.0, 4.0, 8.0], [0.0, 4.0, 8.0], [4.5, 2.0, 6.5]];
 /// let geometry = Mapped::new(seen_along([0.0, -3.0, 4.0]).expect("a direction"));
 /// assert_eq!(Delaunay::from_points(geometry, &roof)?.0.finite_cells().count(), 4);
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn seen_along(normal: [f64; 3]) -> Option<impl Fn(&[f64; 3]) -> [f64; 2] + Copy + Send + Sync> {
     let [u, v] = axes_across(normal)?;

@@ -52,7 +52,7 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// let by_distance: Vec<Pixel> = t.nearest_first(&[0, 0], None).map(|v| *t.point(v)).collect();
 /// assert_eq!(by_distance, [[0, 0], [300, 400], [0, 501]]);
 /// assert_eq!(t.within(&[0, 0], &[500, 0]).count(), 2, "a point on the rim is within");
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Metric: Geometry<3> {
     /// Whether `a` is nearer to `q` than `b` is (`Less`), or further away.

@@ -92,7 +92,7 @@ use crate::num::Sign;
 /// }
 /// assert_eq!(delaunay.finite_cells().count(), 3);
 /// assert!(delaunay.geometry().circles.get() < 4);
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Geometry<const N: usize> {
     /// What is triangulated.
@@ -195,7 +195,7 @@ pub trait Geometry<const N: usize> {
 /// assert_eq!(forest.point(v[1]).kind, "elm");
 /// let field = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
 /// assert_eq!(forest.voronoi_cell(v[0], &field).area, 3.0);
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     /// The coordinates, up to three of them.
@@ -265,7 +265,7 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 /// let (t, _) = ConstrainedDelaunay::<_>::from_lines(Site(Plane::default()), &stations, &lines, OnCrossing::Split)?;
 /// let made: Vec<_> = t.points().iter().filter(|p| !p.is_surveyed).map(|p| p.at).collect();
 /// assert_eq!(made, [[2.0, 2.0]]);
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Crossing: Coordinates<3> {
     /// The point's coordinates in the plane, exactly.

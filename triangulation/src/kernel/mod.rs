@@ -186,7 +186,7 @@ impl Range {
 /// let grid: Vec<[f64; 2]> = (0..25).map(|k| [k % 5, k / 5].map(|i| f64::from(i) * 0.1)).collect();
 /// let (t, _) = Delaunay::<Plane<Watched>, 3>::from_points(Plane::default(), &grid)?;
 /// assert_eq!(t.vertex_count(), 25);
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Kernel: Copy + Default + Debug + Send + Sync + 'static {
     /// The coordinates it is proven for.

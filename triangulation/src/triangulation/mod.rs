@@ -3,6 +3,7 @@
 mod bulk;
 mod compact;
 mod engine;
+mod error;
 mod kinds;
 mod lines;
 mod locate;
@@ -15,82 +16,23 @@ pub use bulk::spatial_order;
 pub use compact::{Compact, Damaged, Law};
 pub use engine::check::{Flaw, Level};
 pub use engine::embedded::{Embedded, PointOf};
+pub use engine::insert::Inserted;
+pub use error::{GapError, InputError, MoveError, PointError, RemovalError};
 pub use kinds::basic::Basic;
-pub use kinds::constrained::{Blocked, Constrained};
+pub use kinds::constrained::{Constrained, ConstraintError};
 pub use kinds::constrained_delaunay::{ConstrainedDelaunay, Walls};
 pub use kinds::delaunay::Delaunay;
 pub use kinds::regular::Regular;
 pub use lines::build::{OnCrossing, Rounding};
-pub use lines::edit::Kept;
 pub use lines::paths::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
-
-use std::fmt;
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Tds, VertexId, Zone};
 
-/// A point that a triangulation cannot take.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Refused {
-    /// The point at this position has a coordinate that is not finite, or whose magnitude is outside
-    /// of what the arithmetic is proven for (see [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
-    Coordinate(usize),
-    /// The point at this position lies before the one before it in [`spatial_order`], or at the same place, where points
-    /// have to come in order.
-    Unsorted(usize),
-    /// There are more points than 32-bit numbers can count with their cells: the limit is 2^31 - 2.
-    TooMany,
-    /// A line names a point that does not exist.
-    Index {
-        /// The line, by its position.
-        line: usize,
-        /// The number it names.
-        index: u32,
-    },
-    /// Two segments cross, and [`OnCrossing::Reject`] was asked for.
-    Crossing {
-        /// Each line by its position, and the segment in it.
-        segments: [(usize, usize); 2],
-        /// Where, rounded.
-        place: [f64; 2],
-    },
-    /// The ends of a ring are apart.
-    Open {
-        /// The ring, by its position.
-        ring: usize,
-        /// Its first and its last point.
-        gap: [[f64; 2]; 2],
-    },
-}
-
-impl fmt::Display for Refused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Refused::Coordinate(index) => {
-                write!(f, "point {index} has a coordinate that is not finite or too large or small to compute with")
-            }
-            Refused::Unsorted(index) => {
-                write!(f, "point {index} is not in spatial order, or where the one before it is")
-            }
-            Refused::TooMany => write!(f, "more than {MAX_VERTICES} points"),
-            Refused::Index { line, index } => write!(f, "line {line} names point {index}, which does not exist"),
-            Refused::Crossing { segments: [(line, segment), (other, crossed)], place: [x, y] } => {
-                write!(f, "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}")
-            }
-            Refused::Open { ring, gap: [[x0, y0], [x1, y1]] } => {
-                write!(f, "ring {ring} is not closed: it begins at {x0} {y0} and ends at {x1} {y1}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for Refused {}
-
-/// Two cells to a vertex must be numbered.
-const MAX_VERTICES: usize = VertexId::LIMIT / 2;
+use error::MAX_VERTICES;
 
 /// Points and cells, for reading: what all kinds share.
 ///
@@ -160,14 +102,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         Triangulation { geometry, tds: Tds::new(), points: Vec::new(), zone: Zone::default(), last: None }
     }
 
-    fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Triangulation<G, N, V, D> {
-        self.map_cell_data(|cell, _| data(cell))
-    }
-
-    /// The same triangulation with payloads of cells that follow from those that were there.
-    fn map_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId, &C) -> D) -> Triangulation<G, N, V, D> {
-        let Triangulation { geometry, tds, points, zone, last } = self;
-        Triangulation { geometry, tds: tds.map_cell_data(data), points, zone, last }
+    fn with_capacity(geometry: G, vertices: usize) -> Self {
+        let mut triangulation = Triangulation::new(geometry);
+        triangulation.reserve(vertices);
+        triangulation
     }
 
     /// The geometry.

@@ -23,7 +23,7 @@ use crate::geometry::Coordinates;
 use crate::parallel::*;
 use crate::tds::VertexId;
 
-use super::super::{MAX_VERTICES, Refused};
+use super::super::{InputError, MAX_VERTICES};
 use super::Grain;
 use super::curve::{Curve, Span, Squares};
 
@@ -120,9 +120,9 @@ impl Sorted {
 pub fn spatial_order<A: AsRef<[f64]>>(
     count: usize,
     coordinates: impl Fn(usize) -> A + Sync,
-) -> Result<Vec<u32>, Refused> {
+) -> Result<Vec<u32>, InputError> {
     if count > MAX_VERTICES {
-        return Err(Refused::TooMany);
+        return Err(InputError::TooMany);
     }
     let grain = Grain::default();
     let curve = Curve::through(count, &coordinates, grain.points);
@@ -139,7 +139,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
         geometry: &G,
         points: &[P],
         grain: Grain,
-    ) -> Result<(Self, Vec<VertexId>), Refused> {
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         let (curve, have_plans) = survey(geometry, points, grain)?;
         let coordinates = |i: usize| geometry.coordinates(&points[i]);
         let is_same = |i: u32, j: u32| geometry.compare(&points[i as usize], &points[j as usize]).is_eq();
@@ -169,7 +169,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
     pub(crate) fn sorted<G: Coordinates<N, Point = P>, const N: usize>(
         geometry: &G,
         points: Vec<P>,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, InputError> {
         let grain = Grain::default();
         let (curve, have_plans) = survey(geometry, &points, grain)?;
         let keys = Keys::of(points.len(), |i| geometry.coordinates(&points[i]), &curve, grain);
@@ -178,7 +178,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
                 || keys.difference(i, i - 1) == 0 && geometry.compare(&points[i - 1], &points[i]).is_eq()
         };
         if let Some(position) = (1..points.len()).into_par_iter().with_min_len(grain.points).find_first(is_wrong) {
-            return Err(Refused::Unsorted(position));
+            return Err(InputError::Unsorted(position));
         }
         Ok(Sites { points, keys, curve, have_plans })
     }
@@ -191,7 +191,7 @@ fn survey<G: Coordinates<N>, const N: usize>(
     geometry: &G,
     points: &[G::Point],
     grain: Grain,
-) -> Result<(Curve, bool), Refused> {
+) -> Result<(Curve, bool), InputError> {
     let look = |(admitted, planned, span): (bool, bool, Span), p: &G::Point| {
         let planned = planned & geometry.exact_plan(p).is_some();
         (admitted & geometry.admits(p), planned, span.with(geometry.coordinates(p).as_ref()))
@@ -200,10 +200,10 @@ fn survey<G: Coordinates<N>, const N: usize>(
     let chunks = points.par_chunks(grain.points).map(|chunk| chunk.iter().fold(nothing(), look));
     let (admitted, have_plans, span) = chunks.reduce(nothing, |p, q| (p.0 & q.0, p.1 & q.1, p.2.and(q.2)));
     if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-        return Err(Refused::Coordinate(bad));
+        return Err(InputError::Coordinate(bad));
     }
     if points.len() > MAX_VERTICES {
-        return Err(Refused::TooMany);
+        return Err(InputError::TooMany);
     }
     Ok((Curve::along(span), have_plans))
 }

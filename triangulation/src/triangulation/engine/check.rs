@@ -1,4 +1,5 @@
 use std::borrow::Borrow;
+use std::fmt;
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
@@ -24,6 +25,7 @@ pub enum Level {
 
 /// What a check found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Flaw {
     /// Level 1 or 2.
     Structure(tds::TdsError),
@@ -42,6 +44,25 @@ pub enum Flaw {
     /// Level 4: a piece of a constraint, between these vertices, was left out when its crossings did not come
     /// to an end.
     Missing(VertexId, VertexId),
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Flaw::Structure(error) => error.fmt(f),
+            Flaw::Orientation(cell) => write!(f, "cell {cell:?} is flat or turned around"),
+            Flaw::NotConvex(cell, i) => write!(f, "beyond facet {i} of infinite cell {cell:?} the hull turns inwards"),
+            Flaw::NotDelaunay(cell, i) => {
+                write!(f, "the vertex beyond facet {i} of cell {cell:?} lies in the cell's circumscribed sphere")
+            }
+            Flaw::Hidden(vertex) => write!(f, "point {vertex:?} is hidden by a cell that does not hide it"),
+            Flaw::OneSided(cell, i) => write!(f, "edge {i} of cell {cell:?} is constrained on one side only"),
+            Flaw::Line(line, a, b) => {
+                write!(f, "line {line:?} has no constrained edge between vertices {a:?} and {b:?}")
+            }
+            Flaw::Missing(a, b) => write!(f, "the constraint between vertices {a:?} and {b:?} was left out"),
+        }
+    }
 }
 
 /// Whether a cell, full and finite, is positively oriented.

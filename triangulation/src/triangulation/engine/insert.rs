@@ -1,20 +1,37 @@
 //! Insertion, written once: the zone that a point is in conflict with is replaced by the point's star. The kinds say
 //! how far the zone goes.
 
-use crate::geometry::Geometry;
+use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, Zone};
 
-use super::super::{Location, MAX_VERTICES, Refused, Triangulation};
+use super::super::{InputError, Location, MAX_VERTICES, PointError, Triangulation, spatial_order};
+
+/// The vertex of a point that was inserted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Inserted<V = ()> {
+    /// The new vertex; or the one that was on the site already, which keeps its payload.
+    pub vertex: VertexId,
+    /// The payload that was given, if there was a vertex on the site already; `None` if the vertex is new.
+    pub unused: Option<V>,
+}
+
+impl<V> Inserted<V> {
+    /// Returns whether the vertex is new.
+    #[inline]
+    pub fn is_new(&self) -> bool {
+        self.unused.is_none()
+    }
+}
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Checks that a point may come in.
-    pub(in super::super) fn admit(&self, p: &G::Point) -> Result<(), Refused> {
+    pub(in super::super) fn admit(&self, p: &G::Point) -> Result<(), PointError> {
         if !self.geometry.admits(p) {
-            return Err(Refused::Coordinate(self.vertex_count()));
+            return Err(PointError::Coordinate);
         }
         if self.tds.vertex_slots() >= MAX_VERTICES {
-            return Err(Refused::TooMany);
+            return Err(PointError::TooMany);
         }
         Ok(())
     }
@@ -44,13 +61,52 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         vertex_data: V,
         takes: impl Fn(&Self, CellId, usize, CellId) -> bool,
         data: impl Fn(&C, usize) -> C,
-    ) -> VertexId {
+    ) -> Inserted<V> {
         if let Location::Vertex(vertex) = location {
-            return vertex;
+            return Inserted { vertex, unused: Some(vertex_data) };
         }
         let vertex = self.add_vertex(p, vertex_data);
         self.connect(vertex, location, takes, data);
-        vertex
+        Inserted { vertex, unused: None }
+    }
+
+    /// Puts the vertex that was removed last at another point, given where that is, and returns it; or the vertex that
+    /// is there already. See [`connect`](Self::connect).
+    pub(in super::super) fn insert_again(
+        &mut self,
+        p: G::Point,
+        location: Location,
+        takes: impl Fn(&Self, CellId, usize, CellId) -> bool,
+        data: impl Fn(&C, usize) -> C,
+    ) -> Option<VertexId> {
+        if let Location::Vertex(other) = location {
+            return Some(other);
+        }
+        let vertex = self.restore_vertex(p)?;
+        self.connect(vertex, location, takes, data);
+        Some(vertex)
+    }
+
+    /// Replaces the point of a vertex by another one on the same site; returns false, and changes nothing, if it is
+    /// elsewhere.
+    pub(in super::super) fn replace_on_site(&mut self, vertex: VertexId, p: &G::Point) -> bool {
+        let is_same = self.geometry.compare(self.point(vertex), p).is_eq();
+        if is_same {
+            self.points[vertex.index()] = *p;
+        }
+        is_same
+    }
+
+    /// A finite neighbor of a vertex: it is still there when the vertex has been removed.
+    pub(in super::super) fn beside(&self, vertex: VertexId) -> Option<VertexId> {
+        let corners = self.tds.cell_vertices(self.tds.cell_of(vertex)?);
+        corners.iter().copied().find(|&v| v != vertex && v != VertexId::INFINITE)
+    }
+
+    /// Makes room for that many more vertices, and the cells that come with them.
+    pub(in super::super) fn reserve(&mut self, vertices: usize) {
+        self.tds.reserve(vertices);
+        self.points.reserve_exact(vertices);
     }
 
     /// Whether a finite cell has the point inside or on its border, or an infinite one has its facet in the point's
@@ -124,5 +180,19 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             }
         }
         self.last = finite;
+    }
+}
+
+impl<G: Coordinates<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
+    /// The order in which to insert points; or the first of them that cannot come in, by its position.
+    pub(in super::super) fn order_of_all(&self, points: &[G::Point]) -> Result<Vec<u32>, InputError> {
+        if let Some(bad) = points.iter().position(|p| !self.geometry.admits(p)) {
+            return Err(InputError::Coordinate(bad));
+        }
+        if self.tds.vertex_slots() + points.len() > MAX_VERTICES {
+            return Err(InputError::TooMany);
+        }
+        let geometry = &self.geometry;
+        spatial_order(points.len(), |i| geometry.coordinates(&points[i]))
     }
 }

@@ -5,5 +5,6 @@ pub(super) mod embedded;
 pub(super) mod flip;
 pub(super) mod insert;
 pub(super) mod low_degree;
+pub(super) mod payloads;
 pub(super) mod remove;
 pub(super) mod sides;

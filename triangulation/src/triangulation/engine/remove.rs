@@ -20,8 +20,8 @@ use crate::geometry::{Crossing, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::super::{ConstrainedDelaunay, Delaunay, Locate, Triangulation};
-use super::flip::{Edges, Forced, Free};
+use super::super::{ConstrainedDelaunay, Triangulation};
+use super::flip::{Edges, Forced};
 
 /// The ring around what is not yet triangulated, counter-clockwise as seen from within.
 struct Ring {
@@ -179,29 +179,6 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         self.tds.set_corners(cell, [p, k, n].map(|k| ring.corners[k]));
         self.renew_edges(edges, cell, [(0, ring.beyond[k]), (2, ring.beyond[p])]);
         ring.cut(k, cell, 1);
-    }
-}
-
-impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// Takes a vertex out and returns its point; `None` if there is no such vertex. The result is the
-    /// triangulation of the other points, which keep their numbers; the next point that is added gets the
-    /// number that is now free.
-    ///
-    /// # Complexity
-    /// Linear in the degree of the vertex in practice, quadratic in the worst case.
-    pub fn remove(&mut self, vertex: VertexId) -> Option<G::Point> {
-        if !self.tds().is_vertex(vertex) {
-            return None;
-        }
-        self.inner.remove_vertex(Free, vertex);
-        Some(*self.point(vertex))
-    }
-
-    /// The same, telling a [strategy](Locate) of location.
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Option<G::Point> {
-        let point = self.remove(vertex)?;
-        strategy.removed(vertex);
-        Some(point)
     }
 }
 

@@ -1,13 +1,16 @@
 use std::fmt;
 use std::ops::Deref;
 
-use crate::geometry::Geometry;
+use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, cw};
 
 use super::super::engine::flip::Forced;
 use super::super::lines::constrain::{Met, Scratch, Side};
-use super::super::{Flaw, Level, Location, Refused, Triangulation, Walls};
+use super::super::{
+    Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
+    Walls,
+};
 
 /// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
 /// [`Basic`](crate::Basic) kind; where one lies on a constraint, it splits it.
@@ -19,12 +22,12 @@ use super::super::{Flaw, Level, Location, Refused, Triangulation, Walls};
 ///
 /// ```
 /// use breakline_triangulation::geometry::Plane;
-/// use breakline_triangulation::{Blocked, Constrained};
+/// use breakline_triangulation::{ConstraintError, Constrained};
 ///
 /// let mut t: Constrained<Plane> = Constrained::new(Plane::default());
 /// let v = [[0.0, 0.0], [9.0, 1.0], [4.0, 5.0], [4.0, -5.0]].map(|p| t.insert(p).unwrap());
 /// assert_eq!(t.constrain(v[0], v[1]), Ok(()));
-/// assert_eq!(t.constrain(v[2], v[3]), Err(Blocked::Wall([v[0], v[1]])));
+/// assert_eq!(t.constrain(v[2], v[3]), Err(ConstraintError::Crosses([v[0], v[1]])));
 /// t.release(v[0], v[1]);
 /// assert_eq!(t.constrain(v[2], v[3]), Ok(()));
 /// assert!(t.constrained_edges().eq([[v[2], v[3]]]));
@@ -35,27 +38,31 @@ pub struct Constrained<G: Geometry<3>, V = (), C = ()> {
     pub(in super::super) scratch: Scratch,
 }
 
-/// Why a constraint cannot be put in.
+/// Why an edge cannot be constrained. Nothing has changed then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Blocked {
+#[non_exhaustive]
+pub enum ConstraintError {
     /// It crosses the constraint between these vertices, the smaller first.
-    Wall([VertexId; 2]),
-    /// All points are collinear, so that there are no triangles to hold it; or one of the vertices does not exist.
-    Nowhere,
+    Crosses([VertexId; 2]),
+    /// There is no such vertex.
+    NoVertex(VertexId),
+    /// All points are collinear: there are no triangles to hold it.
+    NoTriangles,
 }
 
-impl fmt::Display for Blocked {
+impl fmt::Display for ConstraintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Blocked::Wall([a, b]) => {
+            ConstraintError::Crosses([a, b]) => {
                 write!(f, "the constraint between vertices {} and {} is crossed", a.index(), b.index())
             }
-            Blocked::Nowhere => f.write_str("there are no triangles, or not both vertices"),
+            ConstraintError::NoVertex(vertex) => write!(f, "there is no vertex {vertex:?}"),
+            ConstraintError::NoTriangles => f.write_str("there are no triangles to hold a constraint"),
         }
     }
 }
 
-impl std::error::Error for Blocked {}
+impl std::error::Error for ConstraintError {}
 
 impl<G: Geometry<3>, V, C> Deref for Constrained<G, V, C> {
     type Target = Triangulation<G, 3, V, Walls<C>>;
@@ -72,40 +79,119 @@ impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Constrained<G, V, C> 
 }
 
 impl<G: Geometry<3>, V> Constrained<G, V> {
-    /// Without points, and without payloads of triangles: these come with [`with_cell_data`](Self::with_cell_data).
+    /// Returns a triangulation without points, and without payloads of cells: these come with
+    /// [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
-        Constrained { inner: Triangulation::new(geometry), scratch: Scratch::default() }
+        Self::over(Triangulation::new(geometry))
+    }
+
+    /// Like [`new`](Self::new), with room for that many vertices.
+    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
+        Self::over(Triangulation::with_capacity(geometry, vertices))
+    }
+}
+
+impl<G: Coordinates<3>> Constrained<G> {
+    /// Triangulates many points, put in in [spatial order](crate::spatial_order). Returns the vertex of each point beside.
+    ///
+    /// # Errors
+    /// The first point that cannot come in, by its position.
+    ///
+    /// # Complexity
+    /// For points that are spread evenly, time proportional to their number.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+        let mut triangulation = Self::with_capacity(geometry, points.len());
+        let vertices = triangulation.insert_all(points)?;
+        Ok((triangulation, vertices))
+    }
+
+    /// Like [`from_points`](Self::from_points), with payloads: `data` is asked for that of each vertex once, by the
+    /// position of the first point that has it, in order.
+    ///
+    /// # Errors
+    /// See [`from_points`](Self::from_points).
+    pub fn from_points_with<V>(
+        geometry: G,
+        points: &[G::Point],
+        data: impl FnMut(usize) -> V,
+    ) -> Result<(Constrained<G, V>, Vec<VertexId>), InputError> {
+        let (triangulation, vertices) = Self::from_points(geometry, points)?;
+        Ok((Constrained::over(triangulation.inner.with_data_of_points(&vertices, data)), vertices))
     }
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
-    /// The same triangulation with these payloads of triangles, the infinite ones included; asked for in order of their
-    /// numbers. Linear in the number of triangles; nothing but payloads is copied.
+    pub(in super::super) fn over(inner: Triangulation<G, 3, V, Walls<C>>) -> Self {
+        Constrained { inner, scratch: Scratch::default() }
+    }
+
+    /// Returns the same triangulation with other payloads of vertices; `data` is asked for them in order of the
+    /// vertices' numbers, those of removed ones included. Linear in their number; nothing but payloads is copied.
+    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Constrained<G, W, C> {
+        Constrained::over(self.inner.with_vertex_data(data))
+    }
+
+    /// Returns the same triangulation with other payloads of cells, the infinite ones included; `data` is asked for
+    /// them in order of the cells' numbers. Linear in their number; nothing but payloads is copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Constrained<G, V, D> {
-        Constrained { inner: self.inner.with_data_of_cells(data), scratch: self.scratch }
+        Constrained::over(self.inner.with_data_of_cells(data))
     }
 
-    /// The payload of a triangle, to change. O(1).
-    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
-        self.inner.tds.cell_data_mut(cell).data_mut()
-    }
-
-    /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the site is taken.
+    /// Adds a point with a payload. Returns its vertex; or, if the site is taken, the one that is there already, which
+    /// keeps its payload, and the payload that was given. On a constraint, it splits the
+    /// constraint.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.
-    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
+    ///
+    /// # Complexity
+    /// A [walk](Triangulation::locate) from the last insertion; constant time in the hull, outside of it time
+    /// proportional to the number of its edges that are seen.
+    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(None), p, data)
+    }
+
+    /// Like [`insert_with`](Self::insert_with), but looks for the point from a cell on. Of a vertex nearby, that is
+    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that does not exist, stands for the last insertion.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(near), p, data)
+    }
+
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate), which learns of the new
+    /// vertex.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_by(
+        &mut self,
+        strategy: &mut impl Locate<G, 3>,
+        p: G::Point,
+        data: V,
+    ) -> Result<Inserted<V>, PointError> {
         self.inner.admit(&p)?;
-        let location = self.inner.locate(&p, None);
+        let location = strategy.locate(&self.inner, &p);
+        let inserted = self.insert_at(p, data, location);
+        if inserted.is_new() {
+            strategy.inserted(&self.inner.geometry, inserted.vertex, &p);
+        }
+        Ok(inserted)
+    }
+
+    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         let split = self.inner.wall_at(location);
-        let takes = |t: &Triangulation<G, 3, V, Walls<C>>, from: CellId, i, beyond| {
-            !t.tds.cell_data(from).has(i) && t.is_split_by(beyond, &p)
-        };
-        let vertex = self.inner.insert_at(p, location, data, takes, |walls, i| walls.only(i));
+        let inserted = self.inner.insert_at(p, location, data, takes(&p), |walls, i| walls.only(i));
+        self.constrain_both_halves(split, inserted.vertex);
+        inserted
+    }
+
+    /// Constrains the edges from a new vertex to the ends of the constraint that it has split, if it has.
+    fn constrain_both_halves(&mut self, split: Option<[VertexId; 2]>, vertex: VertexId) {
         for end in split.into_iter().flatten() {
             self.inner.wall_up(vertex, end);
         }
-        Ok(vertex)
     }
 
     /// The payload of a finite vertex, to change.
@@ -113,16 +199,24 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         self.inner.tds.vertex_data_mut(vertex)
     }
 
+    /// The payload of a triangle, to change. O(1).
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell).data_mut()
+    }
+
     /// Forces the straight way between two vertices to consist of edges. Triangles that it crosses are replaced.
     ///
     /// # Errors
-    /// If it is blocked; nothing has changed then.
+    /// If it crosses a constraint, a vertex does not exist, or there are no triangles; nothing has changed then.
     ///
     /// # Complexity
     /// Quadratic in the number of triangles between two vertices on the way at worst, in practice linear.
-    pub fn constrain(&mut self, a: VertexId, b: VertexId) -> Result<(), Blocked> {
-        if self.dimension() < 2 || ![a, b].into_iter().all(|v| self.tds().is_vertex(v)) {
-            return Err(Blocked::Nowhere);
+    pub fn constrain(&mut self, a: VertexId, b: VertexId) -> Result<(), ConstraintError> {
+        if let Some(absent) = [a, b].into_iter().find(|&v| !self.tds().is_vertex(v)) {
+            return Err(ConstraintError::NoVertex(absent));
+        }
+        if self.dimension() < 2 {
+            return Err(ConstraintError::NoTriangles);
         }
         // First without touching anything.
         let mut from = a;
@@ -132,7 +226,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
                 Met::Wall(cell, i) => {
                     let mut ends = self.tds().edge_ends(cell, i);
                     ends.sort_unstable();
-                    return Err(Blocked::Wall(ends));
+                    return Err(ConstraintError::Crosses(ends));
                 }
             }
         }
@@ -153,18 +247,57 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         self.inner.wall_down(a, b).is_some()
     }
 
-    /// Takes a vertex out and returns its point; `None` if there is no such vertex, or a constraint ends in it or runs
-    /// through it.
-    pub fn remove(&mut self, vertex: VertexId) -> Option<G::Point> {
-        if !self.tds().is_vertex(vertex) || self.inner.is_on_wall(vertex) {
-            return None;
+    /// Removes a vertex and returns its point. The others keep their numbers; the next point that is added gets the
+    /// number that is now free. Triangles without the vertex stay.
+    ///
+    /// # Errors
+    /// If there is no such vertex; if a constraint ends in it or runs through it; or if without it there would be no
+    /// triangles to hold the constraints.
+    ///
+    /// # Complexity
+    /// Linear in the degree of the vertex; on the hull, in the number of triangles.
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        if !self.tds().is_vertex(vertex) {
+            return Err(RemovalError::NoVertex);
         }
-        // Without triangles there is nothing to hold the constraints.
-        if self.constrained_edges().next().is_some() && self.inner.is_flat_without(vertex) {
-            return None;
+        let leaves_no_triangles = || self.inner.is_flat_without(vertex) && self.constrained_edges().next().is_some();
+        if self.inner.is_on_wall(vertex) || leaves_no_triangles() {
+            return Err(RemovalError::Constraint);
         }
         self.inner.remove_lawless(Forced, vertex);
-        Some(*self.point(vertex))
+        Ok(*self.point(vertex))
+    }
+
+    /// Like [`remove`](Self::remove), and tells a [strategy](Locate) of location.
+    ///
+    /// # Errors
+    /// See [`remove`](Self::remove).
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        let point = self.remove(vertex)?;
+        strategy.removed(vertex);
+        Ok(point)
+    }
+
+    /// Moves a vertex, which keeps its number and payload, and returns it. If another one is on the site already, that
+    /// one is returned, and the one that was moved is gone.
+    ///
+    /// # Errors
+    /// If it cannot be [removed](Self::remove), or a coordinate is not finite or out of range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// That of a removal, and of an insertion that looks for its point from there.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
+        self.inner.admit(&p)?;
+        if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
+            return Ok(vertex);
+        }
+        let beside = self.inner.beside(vertex);
+        self.remove(vertex)?;
+        let location = self.inner.locate(&p, beside.and_then(|v| self.tds().cell_of(v)));
+        let split = self.inner.wall_at(location);
+        let moved = self.inner.insert_again(p, location, takes(&p), |walls, i| walls.only(i)).unwrap_or(vertex);
+        self.constrain_both_halves(split, moved);
+        Ok(moved)
     }
 
     /// Checks up to the level: that of the law is that each edge is constrained on both sides or on none.
@@ -179,13 +312,38 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
 }
 
 impl<G: Geometry<3>, C: Copy + Default> Constrained<G, (), C> {
-    /// Adds a point; the vertex that is there already, if the site is taken.
+    /// Adds a point. Returns its vertex; the one that is there already, if the site is taken.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
-        self.insert_with(p, ())
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
+        Ok(self.insert_with(p, ())?.vertex)
     }
+}
+
+impl<G: Coordinates<3>, C: Copy + Default> Constrained<G, (), C> {
+    /// Adds many points, in [spatial order](crate::spatial_order). Returns the vertex of each.
+    ///
+    /// # Errors
+    /// The first point that cannot come in, by its position; nothing has changed then.
+    ///
+    /// # Complexity
+    /// For points that are spread evenly, time proportional to their number.
+    pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        for position in self.inner.order_of_all(points)? {
+            let i = position as usize;
+            vertices[i] = self.insert(points[i]).map_err(|error| error.at(i))?;
+        }
+        Ok(vertices)
+    }
+}
+
+/// Which cells beyond a facet a new point splits: those that it lies in or sees, up to the constraints.
+fn takes<G: Geometry<3>, V, C: Copy + Default>(
+    p: &G::Point,
+) -> impl Fn(&Triangulation<G, 3, V, Walls<C>>, CellId, usize, CellId) -> bool {
+    |t, from, i, beyond| !t.tds.cell_data(from).has(i) && t.is_split_by(beyond, p)
 }
 
 /// What triangulations with constraints have in common.

@@ -7,7 +7,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::bulk::{self, Sites};
 use super::super::lines::constrain::Scratch;
 use super::super::lines::paths::Lines;
-use super::super::{Flaw, Level, Refused, Rounding, Triangulation};
+use super::super::{Flaw, InputError, Level, Rounding, Triangulation};
 
 /// Which edges of a triangle are constraints, and its payload: bit `i` is set for the edge opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -97,7 +97,7 @@ impl<C: Default> Walls<C> {
 /// t.remove_line(ids[1]);
 /// assert_eq!(t.chain(ids[0]), [v[0], v[2]]);
 /// assert!(t.check(Level::Law).is_empty());
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct ConstrainedDelaunay<G: Crossing, V = (), C = ()> {
@@ -180,7 +180,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         let takes = |t: &Triangulation<G, 3, V, Walls<C>>, from, i, beyond| {
             !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p)
         };
-        let vertex = self.inner.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i));
+        let vertex = self.inner.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i)).vertex;
         for end in split.into_iter().flatten() {
             self.inner.wall_up(vertex, end);
         }
@@ -266,7 +266,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     ///
     /// # Complexity
     /// O(n log n), on all threads.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let (sites, vertices) = Sites::of(&geometry, points, bulk::Grain::default())?;
         Ok((Self::from_sites(geometry, sites), vertices))
     }

@@ -3,7 +3,10 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
-use super::super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk, spatial_order};
+use super::super::engine::flip::Free;
+use super::super::{
+    InputError, Inserted, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
+};
 
 /// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space: `N` follows from the
 /// geometry.
@@ -29,7 +32,7 @@ use super::super::{Locate, Location, MAX_VERTICES, Refused, Triangulation, bulk,
 /// *land.cell_data_mut(cell) = "lake";
 /// land.insert([1.0, 4.0])?;
 /// assert_eq!(land.finite_cells().filter(|&cell| *land.tds().cell_data(cell) == "lake").count(), 3);
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct Delaunay<G: Geometry<N>, const N: usize, V = (), C = ()> {
@@ -51,21 +54,82 @@ impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Delau
 }
 
 impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
-    /// Without points, and without payloads of cells: these come with [`with_cell_data`](Self::with_cell_data).
+    /// Returns a triangulation without points, and without payloads of cells: these come with
+    /// [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
-        Delaunay { inner: Triangulation::new(geometry) }
+        Self::over(Triangulation::new(geometry))
+    }
+
+    /// Like [`new`](Self::new), with room for that many vertices.
+    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
+        Self::over(Triangulation::with_capacity(geometry, vertices))
+    }
+}
+
+impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
+    /// Triangulates many points. Returns the vertex of each point beside: they are numbered in [spatial
+    /// order](super::super::spatial_order), and points on one site share theirs (the first of them stands).
+    ///
+    /// # Errors
+    /// The first point that cannot come in, by its position.
+    ///
+    /// # Complexity
+    /// In the plane by divide and conquer (Guibas and Stolfi 1985, Dwyer 1987), on all threads: O(n log n) at
+    /// worst, linear for points that are spread evenly. Peak memory is 60 bytes a point beside two copies of the
+    /// points. In space by insertion, linear in practice.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+        let grain = bulk::Grain::default();
+        let (sites, vertices) = bulk::Sites::of(&geometry, points, grain)?;
+        let mut triangulation = Self::new(geometry);
+        let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, grain);
+        let count = points.len();
+        triangulation.inner.points = points;
+        if let Some(tds) = tds {
+            triangulation.inner.tds = tds;
+            return Ok((triangulation, vertices));
+        }
+        triangulation.inner.tds.reserve(count);
+        for index in 0..count {
+            let p = triangulation.inner.points[index];
+            triangulation.insert(p).map_err(|error| error.at(index))?;
+        }
+        Ok((triangulation, vertices))
+    }
+
+    /// Like [`from_points`](Self::from_points), with payloads: `data` is asked for that of each vertex once, by the
+    /// position of the first point that has it, in order.
+    ///
+    /// # Errors
+    /// See [`from_points`](Self::from_points).
+    pub fn from_points_with<V>(
+        geometry: G,
+        points: &[G::Point],
+        data: impl FnMut(usize) -> V,
+    ) -> Result<(Delaunay<G, N, V>, Vec<VertexId>), InputError> {
+        let (triangulation, vertices) = Self::from_points(geometry, points)?;
+        Ok((Delaunay::over(triangulation.inner.with_data_of_points(&vertices, data)), vertices))
     }
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> {
-    /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
-    /// numbers. Linear in the number of cells; nothing but payloads is copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Delaunay<G, N, V, D> {
-        Delaunay { inner: self.inner.with_cell_data(data) }
+    pub(in super::super) fn over(inner: Triangulation<G, N, V, C>) -> Self {
+        Delaunay { inner }
     }
 
-    /// Adds a point with a payload; the vertex that is there already, with the payload it has, if the
-    /// site is taken.
+    /// Returns the same triangulation with other payloads of vertices; `data` is asked for them in order of the
+    /// vertices' numbers, those of removed ones included. Linear in their number; nothing but payloads is copied.
+    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Delaunay<G, N, W, C> {
+        Delaunay::over(self.inner.with_vertex_data(data))
+    }
+
+    /// Returns the same triangulation with other payloads of cells, the infinite ones included; `data` is asked for
+    /// them in order of the cells' numbers. Linear in their number; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Delaunay<G, N, V, D> {
+        Delaunay::over(self.inner.with_cell_data(data))
+    }
+
+    /// Adds a point with a payload. Returns its vertex; or, if the site is taken, the one that is there already, which
+    /// keeps its payload, and the payload that was given.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.
@@ -73,36 +137,40 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
     /// # Complexity
     /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced:
     /// constant on average for points in spatial order.
-    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
-        self.insert_near(p, data, None)
+    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(None), p, data)
     }
 
-    /// The same, looking for the place from a cell on. Of a vertex nearby, that is
-    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that is there no more, for the last insertion.
+    /// Like [`insert_with`](Self::insert_with), but looks for the point from a cell on. Of a vertex nearby, that is
+    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that does not exist, stands for the last insertion.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
-    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<VertexId, Refused> {
-        self.inner.admit(&p)?;
-        let location = self.inner.locate(&p, near);
-        Ok(self.insert_at(p, data, location))
+    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(near), p, data)
     }
 
-    /// The same, looking for the place by a [strategy](crate::Locate), which learns of the new vertex.
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate), which learns of the new
+    /// vertex.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
-    pub fn insert_by(&mut self, strategy: &mut impl Locate<G, N>, p: G::Point, data: V) -> Result<VertexId, Refused> {
+    pub fn insert_by(
+        &mut self,
+        strategy: &mut impl Locate<G, N>,
+        p: G::Point,
+        data: V,
+    ) -> Result<Inserted<V>, PointError> {
         self.inner.admit(&p)?;
         let location = strategy.locate(&self.inner, &p);
-        let vertex = self.insert_at(p, data, location);
-        if !matches!(location, Location::Vertex(_)) {
-            strategy.inserted(&self.inner.geometry, vertex, &p);
+        let inserted = self.insert_at(p, data, location);
+        if inserted.is_new() {
+            strategy.inserted(&self.inner.geometry, inserted.vertex, &p);
         }
-        Ok(vertex)
+        Ok(inserted)
     }
 
-    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> VertexId {
+    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         self.inner.insert_at(p, location, data, |t, _, _, beyond| t.in_conflict(beyond, &p), |data, _| *data)
     }
 
@@ -117,123 +185,80 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
     }
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// Moves a vertex, which keeps its number and payload, and returns it; `None` if there is no such vertex. If
-    /// another one is at the place already, that one is returned, and the one that was moved is gone.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or out of range; nothing has changed then.
-    ///
-    /// # Complexity
-    /// That of a removal, and of an insertion that looks for its place from there.
-    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<Option<VertexId>, Refused> {
-        self.inner.admit(&p)?;
-        if !self.tds().is_vertex(vertex) {
-            return Ok(None);
-        }
-        if self.inner.geometry.compare(self.point(vertex), &p).is_eq() {
-            self.inner.points[vertex.index()] = p;
-            return Ok(Some(vertex));
-        }
-        // A cell of another vertex, which is still there afterwards.
-        let around = self.tds().cell_of(vertex).map(|cell| self.tds().cell_vertices(cell));
-        let beside =
-            around.and_then(|corners| corners.iter().copied().find(|&v| v != vertex && v != VertexId::INFINITE));
-        self.remove(vertex);
-        let location = self.locate(&p, beside.and_then(|v| self.tds().cell_of(v)));
-        if let Location::Vertex(other) = location {
-            return Ok(Some(other));
-        }
-        let vertex = self.inner.restore_vertex(p);
-        if let Some(vertex) = vertex {
-            self.inner.connect(vertex, location, |t, _, _, beyond| t.in_conflict(beyond, &p), |data, _| *data);
-        }
-        Ok(vertex)
-    }
-}
-
 impl<G: Geometry<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
-    /// Adds a point; the vertex that is there already, if the site is taken.
+    /// Adds a point. Returns its vertex; the one that is there already, if the site is taken.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
-        self.insert_with(p, ())
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
+        Ok(self.insert_with(p, ())?.vertex)
     }
 }
 
-impl<G: Coordinates<N>, const N: usize, V: Default, C: Copy + Default> Delaunay<G, N, V, C> {
-    /// Adds many points, in [spatial order](super::super::spatial_order). Returns the vertex of each point.
+impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
+    /// Adds many points, in [spatial order](crate::spatial_order). Returns the vertex of each.
     ///
     /// # Errors
-    /// The first point that is refused, by its position; nothing has changed then.
+    /// The first point that cannot come in, by its position; nothing has changed then.
     ///
     /// # Complexity
     /// For points that are spread evenly, time proportional to their number. For an empty triangulation of the plane
-    /// [`from_points`](Self::from_points) is faster.
-    pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, Refused> {
-        if let Some(bad) = points.iter().position(|p| !self.geometry().admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
-        if self.tds().vertex_slots() + points.len() > MAX_VERTICES {
-            return Err(Refused::TooMany);
-        }
-        let geometry = self.geometry();
-        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
+    /// [`from_points`](Delaunay::from_points) is faster.
+    pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for position in order {
-            vertices[position as usize] = self.insert_with(points[position as usize], V::default())?;
+        for position in self.inner.order_of_all(points)? {
+            let i = position as usize;
+            vertices[i] = self.insert(points[i]).map_err(|error| error.at(i))?;
         }
         Ok(vertices)
     }
 }
 
-impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
-    /// Triangulates many points. Returns the vertex of each point beside: they are numbered in [spatial
-    /// order](super::super::spatial_order), and points on one site share theirs (the first of them stands).
+impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+    /// Removes a vertex and returns its point. The result is the triangulation of the other points, which keep their
+    /// numbers; the next point that is added gets the number that is now free.
     ///
     /// # Errors
-    /// The first point that is refused, by its position.
+    /// If there is no such vertex.
     ///
     /// # Complexity
-    /// In the plane by divide and conquer (Guibas and Stolfi 1985, Dwyer 1987), on all threads: O(n log n) at
-    /// worst, linear for points that are spread evenly. Peak memory is 60 bytes a point beside two copies of the
-    /// points. In space by insertion, linear in practice.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
-        let grain = bulk::Grain::default();
-        let (sites, vertices) = bulk::Sites::of(&geometry, points, grain)?;
-        let mut triangulation = Self::new(geometry);
-        let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, grain);
-        let count = points.len();
-        triangulation.inner.points = points;
-        if let Some(tds) = tds {
-            triangulation.inner.tds = tds;
-            return Ok((triangulation, vertices));
+    /// Linear in the degree of the vertex in practice, quadratic in the worst case.
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        if !self.tds().is_vertex(vertex) {
+            return Err(RemovalError::NoVertex);
         }
-        triangulation.inner.tds.reserve(count);
-        for index in 0..count {
-            triangulation.insert(triangulation.inner.points[index])?;
-        }
-        Ok((triangulation, vertices))
+        self.inner.remove_vertex(Free, vertex);
+        Ok(*self.point(vertex))
     }
 
-    /// The same with payloads: `data` is asked for each site once, by the position of the first point on it, in order.
+    /// Like [`remove`](Self::remove), and tells a [strategy](Locate) of location.
     ///
     /// # Errors
-    /// See [`from_points`](Self::from_points).
-    pub fn from_points_with<V>(
-        geometry: G,
-        points: &[G::Point],
-        mut data: impl FnMut(usize) -> V,
-    ) -> Result<(Delaunay<G, N, V>, Vec<VertexId>), Refused> {
-        let (triangulation, vertices) = Self::from_points(geometry, points)?;
-        let mut payloads: Vec<Option<V>> = Vec::new();
-        payloads.resize_with(triangulation.tds().vertex_slots(), || None);
-        for (position, vertex) in vertices.iter().enumerate() {
-            payloads[vertex.index()].get_or_insert_with(|| data(position));
+    /// See [`remove`](Self::remove).
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        let point = self.remove(vertex)?;
+        strategy.removed(vertex);
+        Ok(point)
+    }
+
+    /// Moves a vertex, which keeps its number and payload, and returns it. If another one is on the site already, that
+    /// one is returned, and the one that was moved is gone.
+    ///
+    /// # Errors
+    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// That of a removal, and of an insertion that looks for its point from there.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
+        self.inner.admit(&p)?;
+        if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
+            return Ok(vertex);
         }
-        let Triangulation { geometry, tds, points, zone, last } = triangulation.inner;
-        let tds = tds.with_vertex_data(payloads.into_iter().flatten().collect());
-        Ok((Delaunay { inner: Triangulation { geometry, tds, points, zone, last } }, vertices))
+        let beside = self.inner.beside(vertex);
+        self.remove(vertex)?;
+        let location = self.inner.locate(&p, beside.and_then(|v| self.tds().cell_of(v)));
+        let takes = |t: &Triangulation<G, 3, V, C>, _, _, beyond| t.in_conflict(beyond, &p);
+        let moved = self.inner.insert_again(p, location, takes, |data, _| *data);
+        Ok(moved.unwrap_or(vertex))
     }
 }

@@ -7,7 +7,9 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::Free;
-use super::super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatial_order};
+use super::super::{
+    Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
+};
 
 /// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2
 /// - w`, seen from below (Aurenhammer 1987; Edelsbrunner and Shah 1996). The dual of the power diagram.
@@ -39,7 +41,7 @@ use super::super::{Flaw, Level, Locate, Location, Refused, Triangulation, spatia
 /// assert_eq!(t.finite_cells().count(), 3);
 /// t.remove(heavy);
 /// assert!(t.hidden().eq([light]) && t.check(Level::Law).is_empty());
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// Payloads of cells are kept as in [`Delaunay`](crate::Delaunay).
@@ -54,7 +56,7 @@ pub struct Regular<G: Geometry<3>, V = (), C = ()> {
 struct Hidden {
     /// The cell that hides each.
     host: FxHashMap<VertexId, CellId>,
-    /// And back.
+    /// The points that each cell hides.
     under: FxHashMap<CellId, Vec<VertexId>>,
 }
 
@@ -109,65 +111,122 @@ impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Regular<G, V, C> {
 }
 
 impl<G: Geometry<3>, V> Regular<G, V> {
-    /// Without points, and without payloads of cells: these come with [`with_cell_data`](Self::with_cell_data).
+    /// Returns a triangulation without points, and without payloads of cells: these come with
+    /// [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
-        Regular { inner: Triangulation::new(geometry), hidden: Hidden::default() }
+        Self::over(Triangulation::new(geometry))
+    }
+
+    /// Like [`new`](Self::new), with room for that many vertices.
+    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
+        Self::over(Triangulation::with_capacity(geometry, vertices))
+    }
+}
+
+impl<G: Coordinates<3>> Regular<G> {
+    /// Triangulates many points, put in in [spatial order](crate::spatial_order); points on one site with one weight share their vertex. Returns the vertex of each point beside.
+    ///
+    /// # Errors
+    /// The first point that cannot come in, by its position.
+    ///
+    /// # Complexity
+    /// For points that are spread evenly, time proportional to their number.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+        let mut triangulation = Self::with_capacity(geometry, points.len());
+        let vertices = triangulation.insert_all(points)?;
+        Ok((triangulation, vertices))
+    }
+
+    /// Like [`from_points`](Self::from_points), with payloads: `data` is asked for that of each vertex once, by the
+    /// position of the first point that has it, in order.
+    ///
+    /// # Errors
+    /// See [`from_points`](Self::from_points).
+    pub fn from_points_with<V>(
+        geometry: G,
+        points: &[G::Point],
+        data: impl FnMut(usize) -> V,
+    ) -> Result<(Regular<G, V>, Vec<VertexId>), InputError> {
+        let (Regular { inner, hidden }, vertices) = Self::from_points(geometry, points)?;
+        Ok((Regular { inner: inner.with_data_of_points(&vertices, data), hidden }, vertices))
     }
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
-    /// The same triangulation with these payloads of cells, the infinite ones included; asked for in order of their
-    /// numbers. Linear in the number of cells; nothing but payloads is copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, V, D> {
-        Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
+    fn over(inner: Triangulation<G, 3, V, C>) -> Self {
+        Regular { inner, hidden: Hidden::default() }
     }
 
     /// Finds what hides the vertices that are in no cell. Those that nothing hides are put in.
     #[cfg(feature = "serde")]
-    pub(in super::super) fn over(inner: Triangulation<G, 3, V, C>) -> Self {
+    pub(in super::super) fn with_hidden(inner: Triangulation<G, 3, V, C>) -> Self {
         let hidden = inner.tds.detached_vertices();
         let mut regular = Regular { inner, hidden: Hidden::default() };
         regular.connect_again(hidden);
         regular
     }
 
-    /// Adds a point with a payload, seen or [hidden](Self::is_hidden); the one that is there already, with the payload
-    /// it has, if there is one on the same site and with the same weight.
+    /// Returns the same triangulation with other payloads of vertices; `data` is asked for them in order of the
+    /// vertices' numbers, those of removed ones included. Linear in their number; nothing but payloads is copied.
+    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Regular<G, W, C> {
+        Regular { inner: self.inner.with_vertex_data(data), hidden: self.hidden }
+    }
+
+    /// Returns the same triangulation with other payloads of cells, the infinite ones included; `data` is asked for
+    /// them in order of the cells' numbers. Linear in their number; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, V, D> {
+        Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
+    }
+
+    /// Adds a point with a payload, seen or [hidden](Self::is_hidden). Returns its vertex; or, if there is one on the
+    /// same site and with the same weight, that one, which keeps its payload, and the payload that was given.
     ///
     /// # Errors
-    /// If a coordinate or the weight is not finite or out of range; nothing has changed then.
+    /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
     /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced
     /// and of points hidden under these.
-    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<VertexId, Refused> {
-        self.inner.admit(&p)?;
-        let location = self.inner.locate(&p, None);
-        Ok(self.insert_at(p, data, location).0)
+    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(None), p, data)
     }
 
-    /// The same, looking for the place by a [strategy](Locate), which learns of the new vertex if it is seen.
+    /// Like [`insert_with`](Self::insert_with), but looks for the point from a cell on. Of a vertex nearby, that is
+    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that does not exist, stands for the last insertion.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
-    pub fn insert_by(&mut self, strategy: &mut impl Locate<G, 3>, p: G::Point, data: V) -> Result<VertexId, Refused> {
-        self.inner.admit(&p)?;
-        let location = strategy.locate(&self.inner, &p);
-        let (vertex, is_new) = self.insert_at(p, data, location);
-        if is_new && self.tds().is_vertex(vertex) {
-            strategy.inserted(&self.inner.geometry, vertex, &p);
-        }
-        Ok(vertex)
+    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(near), p, data)
     }
 
-    /// The vertex, and whether it is a new one.
-    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> (VertexId, bool) {
-        if let Some(same) = self.same(&p, location) {
-            return (same, false);
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate), which learns of the new
+    /// vertex if it is seen.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_by(
+        &mut self,
+        strategy: &mut impl Locate<G, 3>,
+        p: G::Point,
+        data: V,
+    ) -> Result<Inserted<V>, PointError> {
+        self.inner.admit(&p)?;
+        let location = strategy.locate(&self.inner, &p);
+        let inserted = self.insert_at(p, data, location);
+        if inserted.is_new() && self.tds().is_vertex(inserted.vertex) {
+            strategy.inserted(&self.inner.geometry, inserted.vertex, &p);
+        }
+        Ok(inserted)
+    }
+
+    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
+        if let Some(vertex) = self.same(&p, location) {
+            return Inserted { vertex, unused: Some(data) };
         }
         let vertex = self.inner.add_vertex(p, data);
         self.connect(vertex, location);
-        (vertex, true)
+        Inserted { vertex, unused: None }
     }
 
     /// A point, seen or hidden, on the same site and with the same weight.
@@ -235,13 +294,15 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         }
     }
 
-    /// Takes a point out, seen or hidden, and returns it; `None` if there is none with this number. The result is the
-    /// triangulation of the others, which keep their numbers; the next point that is added gets the number that is now
-    /// free.
+    /// Removes a point, seen or hidden, and returns it. The result is the triangulation of the others, which keep their
+    /// numbers; the next point that is added gets the number that is now free.
+    ///
+    /// # Errors
+    /// If there is no point with this number.
     ///
     /// # Complexity
     /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point under the cells around it.
-    pub fn remove(&mut self, vertex: VertexId) -> Option<G::Point> {
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if self.hidden.take(vertex) {
             self.inner.tds.attach();
             self.inner.tds.remove_vertex(vertex);
@@ -254,35 +315,39 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
             self.inner.remove_vertex(Free, vertex);
             self.connect_again(hidden);
         } else {
-            return None;
+            return Err(RemovalError::NoVertex);
         }
-        Some(*self.point(vertex))
+        Ok(*self.point(vertex))
     }
 
-    /// The same, telling a [strategy](Locate) of location. Of points that come to light it is told nothing.
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Option<G::Point> {
-        let point = self.remove(vertex)?;
-        strategy.removed(vertex);
-        Some(point)
-    }
-
-    /// Moves a point, seen or hidden, which keeps its number and payload, and returns it; `None` if there is none with
-    /// this number. If there is one at the place already, with the same weight, that one is returned, and the one that
-    /// was moved is gone.
+    /// Like [`remove`](Self::remove), and tells a [strategy](Locate) of location. It is not notified of points that are
+    /// seen from now on.
     ///
     /// # Errors
-    /// If a coordinate or the weight is not finite or out of range; nothing has changed then.
-    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<Option<VertexId>, Refused> {
+    /// See [`remove`](Self::remove).
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        let point = self.remove(vertex)?;
+        strategy.removed(vertex);
+        Ok(point)
+    }
+
+    /// Moves a point, seen or hidden, which keeps its number and payload, and returns it. If there is one on the site
+    /// already, with the same weight, that one is returned, and the one that was moved is gone.
+    ///
+    /// # Errors
+    /// If there is no point with this number, or a coordinate or the weight is not finite or out of range; nothing has
+    /// changed then.
+    ///
+    /// # Complexity
+    /// That of a removal, and of an insertion.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
         self.inner.admit(&p)?;
-        if self.remove(vertex).is_none() {
-            return Ok(None);
-        }
+        self.remove(vertex)?;
         let location = self.inner.locate(&p, None);
         if let Some(same) = self.same(&p, location) {
-            return Ok(Some(same));
+            return Ok(same);
         }
-        let vertex = self.inner.restore_vertex(p);
-        if let Some(vertex) = vertex {
+        if let Some(vertex) = self.inner.restore_vertex(p) {
             self.connect(vertex, location);
         }
         Ok(vertex)
@@ -342,35 +407,30 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
     }
 }
 
-impl<G: Coordinates<3>, V: Default> Regular<G, V> {
-    /// Triangulates many points, put in in [spatial order](super::super::spatial_order). Returns the number of each; points on
-    /// one site with one weight share theirs.
-    ///
-    /// # Errors
-    /// The first point that is refused, by its position.
-    ///
-    /// # Complexity
-    /// For points that are spread evenly, time proportional to their number.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), Refused> {
-        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-            return Err(Refused::Coordinate(bad));
-        }
-        let order = spatial_order(points.len(), |i| geometry.coordinates(&points[i]))?;
-        let mut triangulation = Self::new(geometry);
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for position in order {
-            vertices[position as usize] = triangulation.insert_with(points[position as usize], V::default())?;
-        }
-        Ok((triangulation, vertices))
-    }
-}
-
 impl<G: Geometry<3>, C: Copy + Default> Regular<G, (), C> {
-    /// Adds a point, seen or [hidden](Self::is_hidden).
+    /// Adds a point. Returns its vertex; the one that is there already, if the site is taken.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
-        self.insert_with(p, ())
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
+        Ok(self.insert_with(p, ())?.vertex)
+    }
+}
+
+impl<G: Coordinates<3>, C: Copy + Default> Regular<G, (), C> {
+    /// Adds many points, in [spatial order](crate::spatial_order). Returns the vertex of each.
+    ///
+    /// # Errors
+    /// The first point that cannot come in, by its position; nothing has changed then.
+    ///
+    /// # Complexity
+    /// For points that are spread evenly, time proportional to their number.
+    pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
+        let mut vertices = vec![VertexId::INFINITE; points.len()];
+        for position in self.inner.order_of_all(points)? {
+            let i = position as usize;
+            vertices[i] = self.insert(points[i]).map_err(|error| error.at(i))?;
+        }
+        Ok(vertices)
     }
 }

@@ -14,7 +14,7 @@ use crate::tds::VertexId;
 
 use super::super::bulk::{Grain, Sites};
 use super::super::locate::Dice;
-use super::super::{ConstrainedDelaunay, Refused};
+use super::super::{ConstrainedDelaunay, InputError};
 use super::paths::{LineVertices, segments_of, undirected};
 
 /// So many triangles may be met, for each vertex and each piece, by pieces that are joined in order; the rest is joined
@@ -61,7 +61,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         points: &[G::Point],
         lines: &[L],
         on_crossing: OnCrossing,
-    ) -> Result<(Self, Vec<VertexId>), Refused> {
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         check_numbers(points.len(), lines)?;
         let (sites, mut vertices) = Sites::of(&geometry, points, Grain::default())?;
         if lines.is_empty() {
@@ -95,7 +95,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         points: Vec<G::Point>,
         lines: &[L],
         on_crossing: OnCrossing,
-    ) -> Result<(Self, Option<Vec<VertexId>>), Refused> {
+    ) -> Result<(Self, Option<Vec<VertexId>>), InputError> {
         check_numbers(points.len(), lines)?;
         let sites = Sites::sorted(&geometry, points)?;
         let named = |line: &L| LineVertices::of(line.as_ref(), |i| VertexId::new(i as usize));
@@ -109,7 +109,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         mut sites: Sites<G::Point>,
         mut lines: Vec<LineVertices>,
         on_crossing: OnCrossing,
-    ) -> Result<(Self, Option<Vec<VertexId>>), Refused> {
+    ) -> Result<(Self, Option<Vec<VertexId>>), InputError> {
         let index = |v: VertexId| v.index() as u32;
         let segments = segments_of(lines.iter().map(|line| &**line), index);
         let arrangement = {
@@ -140,10 +140,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
 }
 
 /// Returns an error if a line names a point that does not exist.
-fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Refused> {
+fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), InputError> {
     for (line, numbers) in lines.iter().enumerate() {
         if let Some(&index) = numbers.as_ref().iter().find(|&&i| i as usize >= points) {
-            return Err(Refused::Index { line, index });
+            return Err(InputError::Index { line, index });
         }
     }
     Ok(())
@@ -196,7 +196,7 @@ fn reject<G: Crossing>(
     lines: &[LineVertices],
     arrangement: &Arrangement,
     segments: &[[u32; 2]],
-) -> Result<(), Refused> {
+) -> Result<(), InputError> {
     for crossing in arrangement.crossings() {
         let ends = crossing.segments.map(|i| segments[i as usize]);
         let [ab, cd] = ends.map(|ends| ends.map(|site| &sites[site as usize]));
@@ -206,8 +206,8 @@ fn reject<G: Crossing>(
             other.contains(site) && sites.get(*site as usize).is_some_and(|x| is_on(ab, x) && is_on(cd, x))
         };
         if !chain.iter().any(is_vertex) {
-            let place = geometry.plan(&geometry.crossing(ab, cd));
-            return Err(Refused::Crossing { segments: ends.map(|segment| find(lines, segment)), place });
+            let at = geometry.plan(&geometry.crossing(ab, cd));
+            return Err(InputError::Crossing { segments: ends.map(|segment| find(lines, segment)), at });
         }
     }
     Ok(())
@@ -251,7 +251,7 @@ fn add_sites<G: Crossing + Coordinates<3>>(
     sites: &mut Sites<G::Point>,
     arrangement: &Arrangement,
     segments: &[[u32; 2]],
-) -> Result<(Option<Vec<VertexId>>, Vec<VertexId>), Refused> {
+) -> Result<(Option<Vec<VertexId>>, Vec<VertexId>), InputError> {
     if arrangement.added().is_empty() {
         return Ok((None, Vec::new()));
     }

@@ -6,7 +6,6 @@
 
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
-use std::fmt;
 
 use rustc_hash::FxHashMap;
 
@@ -17,32 +16,9 @@ use crate::tds::VertexId;
 
 use super::super::bulk::spatial_order;
 use super::super::locate::Dice;
-use super::super::{ConstrainedDelaunay, LineId, Refused};
+use super::super::{ConstrainedDelaunay, InputError, LineId, PointError, RemovalError};
 use super::build::points_added;
 use super::paths::{segments_of, undirected};
-
-/// Why a vertex cannot be taken out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kept {
-    /// This line was given by it.
-    Line(LineId),
-    /// Lines cross in it.
-    Crossing,
-    /// There is no such vertex.
-    Absent,
-}
-
-impl fmt::Display for Kept {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Kept::Line(line) => write!(f, "line {} was given by the vertex", line.index()),
-            Kept::Crossing => f.write_str("lines cross in the vertex"),
-            Kept::Absent => f.write_str("there is no such vertex"),
-        }
-    }
-}
-
-impl std::error::Error for Kept {}
 
 /// What lines ask for: segments over the vertices that were given.
 struct Demand {
@@ -67,7 +43,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// # Complexity
     /// A walk and time proportional to the number of triangles replaced; and a look at every segment that crosses
     /// others, if there are any: one that the point lies on exactly is led through it from now on.
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, Refused> {
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
         self.inner.admit(&p)?;
         let is_led = self.lies_on_led(&p);
         let vertex = self.insert_near(p, None);
@@ -91,15 +67,15 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// # Complexity
     /// A look at all lines; then as [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as
     /// [`remove_line`](Self::remove_line).
-    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, Kept> {
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if !self.tds().is_vertex(vertex) {
-            return Err(Kept::Absent);
+            return Err(RemovalError::NoVertex);
         }
         if self.is_added(vertex) {
-            return Err(Kept::Crossing);
+            return Err(RemovalError::Crossing);
         }
         if let Some(line) = self.lines().find(|&line| self.line_vertices(line).contains(&vertex)) {
-            return Err(Kept::Line(line));
+            return Err(RemovalError::Line(line));
         }
         let p = *self.point(vertex);
         if self.was_tangled || self.remove_free(vertex).is_none() {
@@ -113,10 +89,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     ///
     /// # Errors
     /// If there is no such vertex, or it is one that lines cross in.
-    pub fn remove_with_lines(&mut self, vertex: VertexId) -> Result<(G::Point, Vec<LineId>), Kept> {
+    pub fn remove_with_lines(&mut self, vertex: VertexId) -> Result<(G::Point, Vec<LineId>), RemovalError> {
         let lines: Vec<LineId> = self.lines().filter(|&line| self.line_vertices(line).contains(&vertex)).collect();
         // With its last line, a vertex that came with it would go, too.
-        let p = self.tds().is_vertex(vertex).then(|| *self.point(vertex)).ok_or(Kept::Absent)?;
+        let p = self.tds().is_vertex(vertex).then(|| *self.point(vertex)).ok_or(RemovalError::NoVertex)?;
         for &line in &lines {
             self.lines.given[line.index()] = None;
         }
@@ -152,10 +128,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// # Complexity
     /// All lines are arranged anew, as by [`from_lines`](Self::from_lines), so that many lines are better added in one
     /// call; the triangulation changes only where they do.
-    pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, Refused> {
+    pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, InputError> {
         let points: Vec<G::Point> = lines.iter().flat_map(|line| line.as_ref()).copied().collect();
         if let Some(bad) = points.iter().position(|p| self.inner.admit(p).is_err()) {
-            return Err(Refused::Coordinate(bad));
+            return Err(InputError::Coordinate(bad));
         }
         let vertices = self.insert_lent(&points);
         for (&vertex, &p) in vertices.iter().zip(&points) {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
-use super::super::{ConstrainedDelaunay, LineId, Refused};
+use super::super::{ConstrainedDelaunay, GapError, LineId};
 use super::paths::undirected;
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
@@ -23,12 +23,11 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// ring is made of, and a piece that an even number of them run along counts for nothing.
     ///
     /// # Errors
-    /// If they leave a gap: [`Refused::Open`] with the end of a line at which no other goes on, and the nearest such
-    /// end.
+    /// If they leave a gap.
     ///
     /// # Complexity
     /// O(n log n) for n pieces of lines, and linear in the number of cells.
-    pub fn nesting_of(&self, lines: impl IntoIterator<Item = LineId>) -> Result<Vec<u32>, Refused> {
+    pub fn nesting_of(&self, lines: impl IntoIterator<Item = LineId>) -> Result<Vec<u32>, GapError> {
         let mut counts: HashMap<[VertexId; 2], bool> = HashMap::new();
         let mut ends: HashMap<VertexId, (bool, LineId)> = HashMap::new();
         for line in lines {
@@ -49,7 +48,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
             let far = |v: VertexId| (at(v)[0] - x).hypot(at(v)[1] - y);
             let others = loose[1..].iter().map(|&(other, _)| other);
             let other = others.min_by(|&u, &v| far(u).total_cmp(&far(v))).unwrap_or(end);
-            return Err(Refused::Open { ring: line.index(), gap: [at(end), at(other)] });
+            return Err(GapError { line, ends: [at(end), at(other)] });
         }
         Ok(self.nest(|cell, i| {
             self.is_constrained(cell, i) && {

@@ -3,7 +3,7 @@ use rustc_hash::FxHashMap;
 use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};
 
-use super::super::{Delaunay, Triangulation};
+use super::super::{Delaunay, Inserted, Triangulation};
 use super::{Dice, Locate, Location};
 
 /// One vertex in that many is in the sample above.
@@ -36,7 +36,7 @@ const RATIO: usize = 30;
 ///     t.insert_by(&mut hierarchy, [f64::from(i * 7919 % 1000), f64::from(i * 104_729 % 997)], ())?;
 /// }
 /// assert!(matches!(hierarchy.locate(&t, &[500.5, 500.5]), Location::Cell { .. }));
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Hierarchy<L: Geometry<3>> {
@@ -111,7 +111,7 @@ impl<L: Geometry<3> + Clone> Hierarchy<L> {
         self.descend(point, |cell| near.push(cell));
         let mut below = vertex;
         for (level, near) in self.levels[..height].iter_mut().zip(near.into_iter().rev()) {
-            let Ok(vertex) = level.sample.insert_near(*point, below, near) else { return };
+            let Ok(Inserted { vertex, .. }) = level.sample.insert_near(*point, below, near) else { return };
             // Where the site is taken, it was by a vertex that is there no more, of whose end nothing was told.
             *level.sample.inner.tds.vertex_data_mut(vertex) = below;
             level.of_below.insert(below, vertex);
@@ -151,7 +151,7 @@ impl<G: Geometry<3>, L: Geometry<3, Point = G::Point> + Clone> Locate<G, 3> for 
         let mut below = vertex;
         for level in &mut self.levels {
             let Some(vertex) = level.of_below.remove(&below) else { return };
-            level.sample.remove(vertex);
+            let _ = level.sample.remove(vertex); // it was there
             below = vertex;
         }
     }

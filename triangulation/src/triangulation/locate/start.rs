@@ -43,7 +43,7 @@ use super::Location;
 /// let last = LastAnswer::default();
 /// assert!(matches!(last.locate(&t, &[8.5, 8.25]), Location::Cell { touching: 0, .. }));
 /// assert_eq!(last.locate(&t, &[8.0, 8.0]), Location::Vertex(v[88]));
-/// # Ok::<(), breakline_triangulation::Refused>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Locate<G: Geometry<N>, const N: usize> {
     /// Returns where a point lies; [`Location::Nowhere`] for one that the geometry does not [admit](Geometry::admits).

@@ -47,7 +47,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// assert!(matches!(met[..], [Passage::Vertex(w), Passage::Face(_), Passage::Edge(..), Passage::Face(_)] if w == v[0]));
     /// let met: Vec<Passage> = t.along([&[1.0, 0.0], &[4.0, 0.0]], None).collect();
     /// assert_eq!(met, [Passage::Along([v[0], v[1]]), Passage::Vertex(v[1])]);
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn along<'t>(
         &'t self,

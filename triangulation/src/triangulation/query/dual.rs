@@ -187,7 +187,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// let [corner, middle] = [v[0], v[4]].map(|v| t.voronoi_cell(v, &square));
     /// assert_eq!((corner.area, middle.area), (3.5, 2.0));
     /// assert_eq!(middle.corners.len(), 4);
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn voronoi_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
         if !self.tds().is_vertex(vertex) {

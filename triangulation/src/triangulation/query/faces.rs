@@ -34,7 +34,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0], [2.0, 2.0]];
     /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
     /// assert_eq!(t.faces_from(v[0]).count(), 4);
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn faces_from(&self, start: VertexId) -> impl Iterator<Item = CellId> + '_ {
         let faces = self.tds.is_vertex(start).then(|| {

@@ -54,7 +54,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// let x: f64 = weights.iter().map(|&(v, weight)| weight * t.point(v)[0]).sum();
     /// assert!((x - 1.0).abs() < 1e-12);
     /// assert_eq!(t.sibson(&[9.0, 1.0], None), None);
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn sibson(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
         self.coordinates(q, near, |zone, at, new| {

@@ -178,7 +178,7 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// assert_eq!(t.nearest(&[4.0, 2.0], None), Some(v[2]));
     /// assert!(t.nearest_first(&[4.0, 2.0], None).take(2).eq([v[2], v[1]]));
     /// assert!(t.within(&[4.0, 2.0], &[4.0, 0.0]).eq([v[2], v[1]]));
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn nearest(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexId> {
         let Ok(nearest) = nearest(&self.inner, q, self.locate(q, near));

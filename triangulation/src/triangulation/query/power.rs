@@ -40,7 +40,7 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
     /// for (cell, i) in t.tds().finite_edges() {
     ///     assert!(matches!(t.power_edge(cell, i), Some(VoronoiEdge::Ray { from: [2.0, 1.0], .. })));
     /// }
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn power_center(&self, cell: CellId) -> Option<[f64; 2]> {
         let corners = self.finite_face(cell)?.map(|v| *self.point(v));

@@ -64,7 +64,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// let mut found = t.within_rectangle([&[0.5, 0.0], &[5.0, 3.0]]);
     /// found.sort_by(|&a, &b| t.point(a)[0].total_cmp(&t.point(b)[0]));
     /// assert_eq!(found, [v[1], v[2]]);
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn within_rectangle(&self, corners: [&G::Point; 2]) -> Vec<VertexId> {
         let Ok(vertices) = within_rectangle(self, corners, self.locate(corners[0], None));

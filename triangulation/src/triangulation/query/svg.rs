@@ -77,7 +77,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// let zone = t.conflict_zone(&[2.0, 2.0], None).expect("it is inside");
     /// let svg = t.svg(&[Mark::Cells(&zone.cells), Mark::Edges(&zone.border), Mark::Line(&[[2.0, 2.0]])]);
     /// assert_eq!((svg.matches("class=\"cell\"").count(), svg.matches("class=\"edge\"").count()), (2, 4));
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn svg(&self, marks: &[Mark<'_>]) -> String {
         let mut svg = String::new();

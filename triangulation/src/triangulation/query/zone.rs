@@ -78,7 +78,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// let (t, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
     /// let zone = t.conflict_zone(&[2.0, 2.0], None).expect("it is inside");
     /// assert_eq!((zone.cells.len(), zone.border.len()), (2, 4));
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
         let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), |_, _| Ok(true));

@@ -265,7 +265,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// let mesh = t.refined(&Quality { min_angle: 25.0, max_area: 0.25, ..Quality::default() });
     /// assert!(mesh.shortfall().is_empty());
     /// assert!(mesh.inside().count() >= 36, "nine times four");
-    /// # Ok::<(), breakline_triangulation::Refused>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Complexity

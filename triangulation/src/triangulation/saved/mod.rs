@@ -20,7 +20,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
 use super::lines::constrain::Scratch;
-use super::{Basic, Constrained, Delaunay, Flaw, Level, MAX_VERTICES, Refused, Regular, Triangulation, Walls};
+use super::{Basic, Constrained, Delaunay, Flaw, InputError, Level, MAX_VERTICES, Regular, Triangulation, Walls};
 
 /// What is saved. Written from slices, read into vectors.
 #[derive(Serialize, Deserialize)]
@@ -40,7 +40,7 @@ struct Saved<Points, VertexData, CellData> {
 enum Damage {
     /// Lengths or numbers do not fit.
     Shape(&'static str),
-    Point(Refused),
+    Point(InputError),
     Flaw(Flaw),
 }
 
@@ -49,7 +49,7 @@ impl fmt::Display for Damage {
         match self {
             Damage::Shape(what) => write!(f, "damaged triangulation: {what}"),
             Damage::Point(refused) => write!(f, "damaged triangulation: {refused}"),
-            Damage::Flaw(flaw) => write!(f, "damaged triangulation: {flaw:?}"),
+            Damage::Flaw(flaw) => write!(f, "damaged triangulation: {flaw}"),
         }
     }
 }
@@ -69,10 +69,10 @@ impl<P, V, C: Copy + Default> Owned<P, V, C> {
             return Err(Damage::Shape("the dimension is not -1, 0, 1 or 2"));
         }
         if points.len() > MAX_VERTICES {
-            return Err(Damage::Point(Refused::TooMany));
+            return Err(Damage::Point(InputError::TooMany));
         }
         if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-            return Err(Damage::Point(Refused::Coordinate(bad)));
+            return Err(Damage::Point(InputError::Coordinate(bad)));
         }
         if vertex_data.len() != points.len() {
             return Err(Damage::Shape("there are not as many payloads as points"));
@@ -220,7 +220,7 @@ where
         read(deserializer, |inner| {
             first(inner.flaws(Level::Law, |_, _| true))?;
             let seen = inner.vertex_count();
-            let t = Regular::over(inner);
+            let t = Regular::with_hidden(inner);
             if t.vertex_count() != seen {
                 return Err(Damage::Shape("a vertex is in no cell, and nothing hides it"));
             }

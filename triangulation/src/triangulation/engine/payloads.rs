@@ -1,0 +1,57 @@
+//! Payloads of all vertices or cells at once.
+
+use crate::geometry::Geometry;
+use crate::tds::{CellId, VertexId};
+
+use super::super::Triangulation;
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
+    /// The same triangulation with other payloads, of all vertices in order of their numbers.
+    pub(in super::super) fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Triangulation<G, N, W, C> {
+        let data = (0..self.tds.vertex_slots()).map(VertexId::new).map(data).collect();
+        self.with_data_of_all(data)
+    }
+
+    fn with_data_of_all<W>(self, data: Vec<W>) -> Triangulation<G, N, W, C> {
+        let Triangulation { geometry, tds, points, zone, last } = self;
+        Triangulation { geometry, tds: tds.with_vertex_data(data), points, zone, last }
+    }
+
+    /// The same triangulation with payloads of points, given the vertex of each: `data` is asked for that of each
+    /// vertex once, by the position of the first point that has it, in order. Each vertex must have a point.
+    pub(in super::super) fn with_data_of_points<W>(
+        self,
+        vertices: &[VertexId],
+        data: impl FnMut(usize) -> W,
+    ) -> Triangulation<G, N, W, C> {
+        let data = data_of_points(self.tds.vertex_slots(), vertices, data);
+        self.with_data_of_all(data.into_iter().flatten().collect())
+    }
+
+    /// The same triangulation with other payloads, of all cells in order of their numbers.
+    pub(in super::super) fn with_cell_data<D: Copy + Default>(
+        self,
+        mut data: impl FnMut(CellId) -> D,
+    ) -> Triangulation<G, N, V, D> {
+        self.map_cell_data(|cell, _| data(cell))
+    }
+
+    /// The same triangulation with payloads of cells that follow from those that were there.
+    pub(in super::super) fn map_cell_data<D: Copy + Default>(
+        self,
+        data: impl FnMut(CellId, &C) -> D,
+    ) -> Triangulation<G, N, V, D> {
+        let Triangulation { geometry, tds, points, zone, last } = self;
+        Triangulation { geometry, tds: tds.map_cell_data(data), points, zone, last }
+    }
+}
+
+/// The payload of each vertex that has a point, by number; asked for by the position of the first such point, in order.
+fn data_of_points<V>(slots: usize, vertices: &[VertexId], mut data: impl FnMut(usize) -> V) -> Vec<Option<V>> {
+    let mut payloads: Vec<Option<V>> = Vec::new();
+    payloads.resize_with(slots, || None);
+    for (position, vertex) in vertices.iter().enumerate() {
+        payloads[vertex.index()].get_or_insert_with(|| data(position));
+    }
+    payloads
+}
