@@ -11,7 +11,7 @@ enum Color {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut t = Delaunay::new(Plane::<breakline_triangulation::kernel::Adaptive>::default());
+    let mut t = Delaunay::new(Plane::new());
     for (place, color) in [([1.0, 1.0], Color::Red), ([5.0, 1.0], Color::Green), ([3.0, 5.0], Color::Blue)] {
         t.insert_with(place, color)?;
     }

@@ -21,16 +21,22 @@
 //! use breakline_triangulation::geometry::Plane;
 //! use breakline_triangulation::{Delaunay, Level, Location};
 //!
-//! let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
-//! let (mut t, v) = Delaunay::<Plane, 3>::from_points(Plane::default(), &corners)?;
-//! let middle = t.insert([2.0, 2.0])?;
-//! assert_eq!(t.tds().vertices_around(middle).count(), 4);
-//! assert!(matches!(t.locate(&[3.0, 2.0], None), Location::Cell { touching: 0, .. }));
-//! assert_eq!(t.nearest(&[3.5, 0.0], None), Some(v[1]));
-//! t.remove(middle);
-//! assert!(t.check(Level::Law).is_empty());
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+//!     let (mut t, v) = Delaunay::from_points(Plane::new(), &corners)?;
+//!     let middle = t.insert([2.0, 2.0])?;
+//!     assert_eq!(t.tds().vertices_around(middle).count(), 4);
+//!     assert!(matches!(t.locate(&[3.0, 2.0], None), Location::Cell { .. }));
+//!     assert_eq!(t.nearest(&[3.5, 0.0], None), Some(v[1]));
+//!     t.remove(middle)?;
+//!     assert!(t.check(Level::Law).is_empty());
+//!     Ok(())
+//! }
 //! ```
+//!
+//! The geometry says what a point is: [`Plane::new()`](crate::geometry::Plane::new) is that of `[x, y]`,
+//! [`Space::new()`](crate::geometry::Space::new) that of `[x, y, z]`. To name the type, say [`Delaunay2`] or
+//! [`Delaunay3`], and so on: `Delaunay2<u32>` has a number at each vertex.
 //!
 //! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear, 2 in the plane or
 //! while all are coplanar, and 3 in space. Each is a state of the same structure: it is traversed, asked and checked,
@@ -47,7 +53,7 @@
 //! |---|---|
 //! | triangulate many points at once | [`Delaunay::from_points`], [`Regular::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
-//! | take points out again, or move them | `remove`, `move_to`; in the plane |
+//! | remove points again, or move them | `remove`, `move_to`; in the plane |
 //! | keep something at each vertex, at each cell | [`Delaunay::insert_with`], [`Delaunay::with_cell_data`] |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |

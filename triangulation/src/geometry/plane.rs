@@ -9,6 +9,13 @@ use crate::num::Sign;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Plane<K = Adaptive>(PhantomData<K>);
 
+impl Plane {
+    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Plane::<K>::default()`.
+    pub fn new() -> Self {
+        Plane::default()
+    }
+}
+
 impl<K: Kernel> Geometry<3> for Plane<K> {
     type Point = [f64; 2];
 

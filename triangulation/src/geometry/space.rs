@@ -9,6 +9,13 @@ use crate::num::Sign;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Space<K = Adaptive>(PhantomData<K>);
 
+impl Space {
+    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Space::<K>::default()`.
+    pub fn new() -> Self {
+        Space::default()
+    }
+}
+
 impl<K: Kernel> Space<K> {
     /// The first projection along an axis in which three points have an area, and its sign. For
     /// triangles of one plane that is always the same projection.

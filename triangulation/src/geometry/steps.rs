@@ -12,6 +12,13 @@ use crate::num::Sign;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Steps<K = Lattice>(PhantomData<K>);
 
+impl Steps {
+    /// Returns the geometry with the kernel [`Lattice`]; with another one, use `Steps::<K>::default()`.
+    pub fn new() -> Self {
+        Steps::default()
+    }
+}
+
 /// Every 32-bit number is a double.
 #[inline(always)]
 pub(super) fn plan(p: &[i32; 3]) -> [f64; 2] {

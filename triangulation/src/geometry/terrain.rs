@@ -12,6 +12,13 @@ use crate::num::Sign;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Terrain<K = Adaptive>(PhantomData<K>);
 
+impl Terrain {
+    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Terrain::<K>::default()`.
+    pub fn new() -> Self {
+        Terrain::default()
+    }
+}
+
 impl<K: Kernel> Geometry<3> for Terrain<K> {
     type Point = [f64; 3];
 

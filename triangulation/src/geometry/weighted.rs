@@ -17,6 +17,13 @@ use crate::num::Sign;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Weighted<K = Adaptive>(PhantomData<K>);
 
+impl Weighted {
+    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Weighted::<K>::default()`.
+    pub fn new() -> Self {
+        Weighted::default()
+    }
+}
+
 impl<K> Weighted<K> {
     /// The order of two points' weights: of those at one site, the greater is in the regular triangulation.
     #[inline]

@@ -23,6 +23,7 @@ pub use kinds::constrained::{Constrained, ConstraintError};
 pub use kinds::constrained_delaunay::{ConstrainedDelaunay, Walls};
 pub use kinds::delaunay::Delaunay;
 pub use kinds::regular::Regular;
+pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, Delaunay3, Regular2};
 pub use lines::build::{OnCrossing, Rounding};
 pub use lines::paths::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
@@ -54,7 +55,7 @@ use error::MAX_VERTICES;
 /// use breakline_triangulation::geometry::Plane;
 /// use breakline_triangulation::{Delaunay, Level, Triangulation};
 ///
-/// let delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
+/// let delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::new());
 /// let view: &Triangulation<Plane, 3> = &delaunay;
 /// assert!(view.check(Level::Law).is_empty());
 /// ```
@@ -63,7 +64,7 @@ use error::MAX_VERTICES;
 /// use breakline_triangulation::geometry::Plane;
 /// use breakline_triangulation::{Delaunay, Level, Triangulation};
 ///
-/// let delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
+/// let delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::new());
 /// let view: &Triangulation<Plane, 3> = &delaunay;
 /// assert!(view.check_tiling().is_empty());
 /// assert!(delaunay.check(Level::Law).is_empty());

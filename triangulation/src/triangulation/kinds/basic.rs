@@ -24,7 +24,7 @@ use super::super::{
 /// use breakline_triangulation::geometry::Plane;
 /// use breakline_triangulation::{Basic, Level};
 ///
-/// let mut t: Basic<Plane, 3> = Basic::new(Plane::default());
+/// let mut t = Basic::new(Plane::new());
 /// for p in [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0], [1.0, 8.0]] {
 ///     t.insert(p)?;
 /// }

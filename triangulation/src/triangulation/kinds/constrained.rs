@@ -24,7 +24,7 @@ use super::super::{
 /// use breakline_triangulation::geometry::Plane;
 /// use breakline_triangulation::{ConstraintError, Constrained};
 ///
-/// let mut t: Constrained<Plane> = Constrained::new(Plane::default());
+/// let mut t = Constrained::new(Plane::new());
 /// let v = [[0.0, 0.0], [9.0, 1.0], [4.0, 5.0], [4.0, -5.0]].map(|p| t.insert(p).unwrap());
 /// assert_eq!(t.constrain(v[0], v[1]), Ok(()));
 /// assert_eq!(t.constrain(v[2], v[3]), Err(ConstraintError::Crosses([v[0], v[1]])));

@@ -22,7 +22,7 @@ use super::super::{
 /// use breakline_triangulation::{geometry::Plane, Delaunay, Location};
 ///
 /// let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
-/// let (square, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &corners)?;
+/// let (square, _) = Delaunay::from_points(Plane::new(), &corners)?;
 /// let is_finite: Vec<bool> = square.tds().cells().map(|cell| !square.tds().is_infinite(cell)).collect();
 /// let mut land = square.with_cell_data(|cell| if is_finite[cell.index()] { "land" } else { "sea" });
 /// let middle = land.insert([5.0, 4.0])?;

@@ -5,3 +5,26 @@ pub(super) mod constrained;
 pub(super) mod constrained_delaunay;
 pub(super) mod delaunay;
 pub(super) mod regular;
+
+use crate::geometry::{Plane, Space, Weighted};
+
+use basic::Basic;
+use constrained::Constrained;
+use constrained_delaunay::ConstrainedDelaunay;
+use delaunay::Delaunay;
+use regular::Regular;
+
+/// A triangulation without a law, of points `[x, y]`.
+pub type Basic2<V = (), C = ()> = Basic<Plane, 3, V, C>;
+/// A triangulation without a law, of points `[x, y, z]` in space.
+pub type Basic3<V = (), C = ()> = Basic<Space, 4, V, C>;
+/// A Delaunay triangulation of points `[x, y]`.
+pub type Delaunay2<V = (), C = ()> = Delaunay<Plane, 3, V, C>;
+/// A Delaunay triangulation of points `[x, y, z]` in space.
+pub type Delaunay3<V = (), C = ()> = Delaunay<Space, 4, V, C>;
+/// A regular triangulation of points `[x, y, weight]`.
+pub type Regular2<V = (), C = ()> = Regular<Weighted, V, C>;
+/// A constrained triangulation of points `[x, y]`, without a law beside.
+pub type Constrained2<V = (), C = ()> = Constrained<Plane, V, C>;
+/// A constrained Delaunay triangulation of points `[x, y]`.
+pub type ConstrainedDelaunay2<V = (), C = ()> = ConstrainedDelaunay<Plane, V, C>;

@@ -29,7 +29,7 @@ use super::super::{
 /// use breakline_triangulation::geometry::Weighted;
 /// use breakline_triangulation::{Level, Regular};
 ///
-/// let mut t: Regular<Weighted> = Regular::new(Weighted::default());
+/// let mut t = Regular::new(Weighted::new());
 /// for [x, y] in [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]] {
 ///     t.insert([x, y, 0.0])?;
 /// }

@@ -42,7 +42,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     ///
     /// // Two faces, with the edge from the lower right to the upper left between them.
     /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 5.0], [0.0, 4.0]];
-    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, v) = Delaunay::from_points(Plane::new(), &points)?;
     /// let met: Vec<Passage> = t.along([&[-1.0, -1.0], &[3.0, 3.0]], None).collect();
     /// assert!(matches!(met[..], [Passage::Vertex(w), Passage::Face(_), Passage::Edge(..), Passage::Face(_)] if w == v[0]));
     /// let met: Vec<Passage> = t.along([&[1.0, 0.0], &[4.0, 0.0]], None).collect();

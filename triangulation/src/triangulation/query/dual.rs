@@ -182,7 +182,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
     ///
     /// let points = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0], [2.0, 2.0]];
-    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, v) = Delaunay::from_points(Plane::new(), &points)?;
     /// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
     /// let [corner, middle] = [v[0], v[4]].map(|v| t.voronoi_cell(v, &square));
     /// assert_eq!((corner.area, middle.area), (3.5, 2.0));

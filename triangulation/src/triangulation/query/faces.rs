@@ -32,7 +32,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
     ///
     /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0], [2.0, 2.0]];
-    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, v) = Delaunay::from_points(Plane::new(), &points)?;
     /// assert_eq!(t.faces_from(v[0]).count(), 4);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

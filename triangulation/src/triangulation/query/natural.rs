@@ -49,7 +49,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
     ///
     /// let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
-    /// let (t, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, _) = Delaunay::from_points(Plane::new(), &points)?;
     /// let weights = t.sibson(&[1.0, 1.0], None).expect("it is inside");
     /// let x: f64 = weights.iter().map(|&(v, weight)| weight * t.point(v)[0]).sum();
     /// assert!((x - 1.0).abs() < 1e-12);

@@ -174,7 +174,7 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
     ///
     /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
-    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, v) = Delaunay::from_points(Plane::new(), &points)?;
     /// assert_eq!(t.nearest(&[4.0, 2.0], None), Some(v[2]));
     /// assert!(t.nearest_first(&[4.0, 2.0], None).take(2).eq([v[2], v[1]]));
     /// assert!(t.within(&[4.0, 2.0], &[4.0, 0.0]).eq([v[2], v[1]]));

@@ -31,7 +31,7 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
     /// ```
     /// use breakline_triangulation::{geometry::Weighted, Regular, VoronoiEdge};
     ///
-    /// let mut t: Regular<Weighted> = Regular::new(Weighted::default());
+    /// let mut t = Regular::new(Weighted::new());
     /// for p in [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 8.0]] {
     ///     t.insert(p)?;
     /// }
@@ -72,7 +72,7 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
     /// ```
     /// use breakline_triangulation::{geometry::Weighted, Regular};
     ///
-    /// let mut t: Regular<Weighted> = Regular::new(Weighted::default());
+    /// let mut t = Regular::new(Weighted::new());
     /// let [light, heavy] = [[1.0, 1.0, 0.0], [3.0, 1.0, 2.0]].map(|p| t.insert(p).unwrap());
     /// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];
     /// let [light, heavy] = [light, heavy].map(|v| t.power_cell(v, &square).area);

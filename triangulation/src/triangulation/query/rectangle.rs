@@ -60,7 +60,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
     ///
     /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
-    /// let (t, v) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, v) = Delaunay::from_points(Plane::new(), &points)?;
     /// let mut found = t.within_rectangle([&[0.5, 0.0], &[5.0, 3.0]]);
     /// found.sort_by(|&a, &b| t.point(a)[0].total_cmp(&t.point(b)[0]));
     /// assert_eq!(found, [v[1], v[2]]);

@@ -73,7 +73,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// use breakline_triangulation::{geometry::Plane, Delaunay, Mark};
     ///
     /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
-    /// let (t, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, _) = Delaunay::from_points(Plane::new(), &points)?;
     /// let zone = t.conflict_zone(&[2.0, 2.0], None).expect("it is inside");
     /// let svg = t.svg(&[Mark::Cells(&zone.cells), Mark::Edges(&zone.border), Mark::Line(&[[2.0, 2.0]])]);
     /// assert_eq!((svg.matches("class=\"cell\"").count(), svg.matches("class=\"edge\"").count()), (2, 4));

@@ -75,7 +75,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
     ///
     /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
-    /// let (t, _) = Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points)?;
+    /// let (t, _) = Delaunay::from_points(Plane::new(), &points)?;
     /// let zone = t.conflict_zone(&[2.0, 2.0], None).expect("it is inside");
     /// assert_eq!((zone.cells.len(), zone.border.len()), (2, 4));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
