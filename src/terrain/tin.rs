@@ -64,14 +64,14 @@ impl Tin {
     pub fn elevation(&self, x: f64, y: f64) -> Option<f64> {
         // Closer to zero than the arithmetic goes is zero; what is beyond its other end is beyond all vertices.
         let [x, y] = [x, y].map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
-        let in_whole = match self.triangulation.locate(&[x, y, 0.0], None) {
+        let location = self.triangulation.locate(&[x, y, 0.0], None);
+        let in_whole = match location {
             Location::Vertex(vertex) => {
                 let inside = self.triangulation.tds().around(vertex).any(|cell| self.inside[cell.index()]);
                 inside.then(|| self.triangulation.point(vertex)[2])
             }
-            Location::Cell { cell, touching } => {
-                let beside = (0..3).filter(|i| touching >> i & 1 == 1);
-                let beside = beside.map(|i| self.triangulation.tds().neighbor(cell, i));
+            Location::Cell { cell, .. } => {
+                let beside = location.facets().map(|(cell, i)| self.triangulation.tds().neighbor(cell, i));
                 let cell = std::iter::once(cell).chain(beside).find(|cell| self.inside[cell.index()]);
                 let corners = |cell| self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
                 cell.map(|cell| linear(corners(cell), [x, y]))

@@ -287,3 +287,30 @@ fn errors_do_not_repeat_their_source() {
     assert_eq!(source, "a constraint needs the vertex");
     assert_eq!(PointError::TooMany.to_string(), "more than 2147483646 points");
 }
+
+/// Points of cells and edges, of numbers that stand for none, too.
+#[test]
+fn cells_and_edges_have_points() {
+    let (t, v) = Delaunay::from_points(Plane::new(), &[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]).unwrap();
+    for cell in (0..9).map(CellId::new) {
+        let is_finite = t.tds().is_used(cell) && !t.tds().is_infinite(cell);
+        assert_eq!(t.cell_points(cell).is_some(), is_finite);
+        for i in 0..4 {
+            let Some(points) = t.edge_points(cell, i) else {
+                assert!(!is_finite || i == 3);
+                continue;
+            };
+            assert_eq!(points, t.tds().edge_ends(cell, i).map(|v| t.point(v)));
+        }
+    }
+    let edges = t.tds().cells().flat_map(|cell| (0..3).map(move |i| (cell, i)));
+    assert_eq!(edges.filter(|&(cell, i)| t.edge_points(cell, i).is_some()).count(), 6);
+    assert_eq!(t.locate(&[0.0, 0.0], None).vertex(), Some(v[0]));
+    let on_edge = t.locate(&[2.0, 0.0], None);
+    let ends: Vec<_> =
+        on_edge.facets().map(|(cell, i)| t.edge_points(cell, i).map(|ends| ends.map(|p| p[1]))).collect();
+    assert_eq!((ends, on_edge.vertex()), (vec![Some([0.0, 0.0])], None));
+    let mut line = Basic::<Plane, 3>::new(Plane::new());
+    line.insert_all(&[[0.0, 0.0], [1.0, 0.0]]).unwrap();
+    assert!(line.tds().cells().all(|cell| line.cell_points(cell).is_none() && line.edge_points(cell, 0).is_none()));
+}

@@ -182,13 +182,13 @@ impl Cut {
     pub(super) fn elevation(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let triangulation = &self.patch.triangulation;
         let is_piece = |cell: &CellId| self.remains.is_piece[cell.index()];
-        match triangulation.locate(&[x, y, 0.0], None) {
+        let location = triangulation.locate(&[x, y, 0.0], None);
+        match location {
             Location::Vertex(vertex) => {
                 triangulation.tds().around(vertex).any(|cell| is_piece(&cell)).then(|| self.point(vertex)[2])
             }
-            Location::Cell { cell, touching } => {
-                let beside = (0..3).filter(|i| touching >> i & 1 == 1);
-                let beside = beside.map(|i| triangulation.tds().neighbor(cell, i));
+            Location::Cell { cell, .. } => {
+                let beside = location.facets().map(|(cell, i)| triangulation.tds().neighbor(cell, i));
                 let cell = std::iter::once(cell).chain(beside).find(is_piece)?;
                 Some(linear(triangulation.tds().corners(cell).map(|vertex| self.point(vertex)), [x, y]))
             }

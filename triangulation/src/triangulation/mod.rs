@@ -156,6 +156,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.tds.corners(cell).map(|v| &self.points[v.index()])
     }
 
+    /// Returns the points of a finite cell, in the order of its vertices: three of a triangle, four of a tetrahedron;
+    /// `None` for an infinite cell, for a number without a cell, and while the dimension is not full.
+    #[inline]
+    pub fn cell_points(&self, cell: CellId) -> Option<[&G::Point; N]> {
+        (self.is_full() && self.tds.is_used(cell) && !self.tds.is_infinite(cell)).then(|| self.simplex(cell))
+    }
+
     /// Whether the complex spans the space.
     #[inline(always)]
     fn is_full(&self) -> bool {
@@ -172,5 +179,17 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     fn in_conflict(&self, cell: CellId, q: &G::Point) -> bool {
         let Ok(is_in_conflict) = engine::sides::in_conflict(self, cell, q);
         is_in_conflict
+    }
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+    /// Returns the points of the edge opposite vertex `i` of a cell, which has it on its left from the first to the
+    /// second; `None` for an edge that ends in infinity, for one that does not exist, and below dimension 2.
+    pub fn edge_points(&self, cell: CellId, i: usize) -> Option<[&G::Point; 2]> {
+        if self.dimension() < 2 || i > 2 || !self.tds.is_used(cell) {
+            return None;
+        }
+        let ends = self.tds.edge_ends(cell, i);
+        (!ends.contains(&VertexId::INFINITE)).then(|| ends.map(|v| self.point(v)))
     }
 }

@@ -72,6 +72,40 @@ impl Location {
         cell
     }
 
+    /// Returns the vertex that the point lies on; `None` if it lies on none.
+    pub fn vertex(self) -> Option<VertexId> {
+        match self {
+            Location::Vertex(vertex) => Some(vertex),
+            _ => None,
+        }
+    }
+
+    /// Returns the facets of the [cell](Self::cell) that the point lies on, each with the cell and the index of the
+    /// vertex opposite: none inside of the cell, one in the inside of a facet, two on an edge of a tetrahedron. None
+    /// either on a vertex and outside of the hull.
+    ///
+    /// ```
+    /// use breakline_triangulation::Delaunay;
+    /// use breakline_triangulation::geometry::Plane;
+    ///
+    /// let (t, v) = Delaunay::from_points(Plane::new(), &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])?;
+    /// let facets: Vec<_> = t.locate(&[4.0, 1.0], None).facets().collect();
+    /// let mut ends = t.tds().edge_ends(facets[0].0, facets[0].1);
+    /// ends.sort();
+    /// assert_eq!((facets.len(), ends), (1, [v[1].min(v[2]), v[1].max(v[2])]));
+    /// assert_eq!(t.locate(&[3.0, 2.0], None).facets().count(), 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline]
+    pub fn facets(self) -> impl Iterator<Item = (CellId, usize)> {
+        let (cell, touching) = match self {
+            Location::Cell { cell, touching } => (Some(cell), touching),
+            _ => (None, 0),
+        };
+        let is_on = move |i: &usize| touching >> i & 1 == 1;
+        cell.into_iter().flat_map(move |cell| (0..u8::BITS as usize).filter(is_on).map(move |i| (cell, i)))
+    }
+
     /// The same wherever the cells are kept.
     pub(super) fn cell_in<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Option<CellId>, T::Error> {
         match self {
