@@ -361,16 +361,7 @@ impl<'a> Builder<'a> {
 
     /// Phase 4: the sites of each segment, in order.
     fn collect(self, crossings: Vec<Crossing>, is_led: &[bool], passes: Vec<Pass>) -> Arrangement {
-        // Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
-        // column from one side to the other.
-        let along = |segment: u32, site: u32| {
-            let [a, b] = self.segments[segment as usize];
-            let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
-            let at = self.site(site);
-            let [dx, dy] = [0, 1].map(|k| b[k] / self.grid.unit[k] - a[k] / self.grid.unit[k]);
-            let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
-            [first, second].map(|k| if a[k] <= b[k] { at[k] } else { -at[k] })
-        };
+        let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize], self.site(site));
         // Segment after segment, by counting; and each one's sites then by their place along it.
         let mut ends = vec![0; self.segments.len()];
         passes.iter().for_each(|pass| ends[pass.segment as usize] += 1);

@@ -31,6 +31,7 @@ mod boxes;
 mod builder;
 mod order;
 mod pixel;
+mod rounder;
 mod sweep;
 
 use std::ops::Range;
@@ -40,6 +41,7 @@ use rustc_hash::FxHashMap;
 use crate::kernel::{Adaptive, Wide};
 use builder::Builder;
 use pixel::Grid;
+pub(crate) use rounder::{Rounder, crosses, is_aligned, is_ordinary, step_at};
 
 /// Less work than of so many segments or places is done by one thread, without trees: to wake another, or to build one,
 /// takes longer.

@@ -5,7 +5,7 @@ use crate::num::lattice::lowest_bit;
 use crate::num::{Dyadic, Pair, Sign};
 
 use super::boxes::Box2;
-use super::{Place, Segment};
+use super::{Place, Segment, lexicographic};
 
 /// The places to which crossings are rounded. On each axis these are either the multiples of the *unit*, a power of
 /// two; or the doubles, of which those near zero are multiples of the *smallest* step.
@@ -24,7 +24,7 @@ pub(super) struct Grid {
 }
 
 /// The unit in the last place of a number.
-fn last_place(x: f64) -> f64 {
+pub(super) fn last_place(x: f64) -> f64 {
     let x = x.abs();
     // Of the largest numbers there is none above.
     if x < f64::MAX / 2.0 { x.next_up() - x } else { x - x.next_down() }
@@ -42,6 +42,11 @@ impl Grid {
         let mut grid = Grid { unit, is_even: true, smallest, is_ordinary };
         grid.is_even = places.into_iter().all(|some| some.iter().all(|&place| grid.holds(place)));
         grid
+    }
+
+    /// The same with steps that are all equal, or those of doubles.
+    pub(super) fn with_steps(self, is_even: bool) -> Self {
+        Grid { is_even, ..self }
     }
 
     /// From a place to the next one above on an axis.
@@ -119,6 +124,18 @@ impl Grid {
                 lower_left => lower_left * side([right, up]) == Sign::Negative,
             }
         }
+    }
+
+    /// A key by which sites whose pixels a segment meets are in order, from its lexicographically smaller end.
+    ///
+    /// Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
+    /// column from one side to the other.
+    #[inline]
+    pub(super) fn along(&self, [a, b]: Segment, site: Place) -> Place {
+        let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
+        let [dx, dy] = [0, 1].map(|k| b[k] / self.unit[k] - a[k] / self.unit[k]);
+        let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
+        [first, second].map(|k| if a[k] <= b[k] { site[k] } else { -site[k] })
     }
 
     /// Where two segments cross in their interiors, rounded to the grid: the center of the pixel that the crossing lies

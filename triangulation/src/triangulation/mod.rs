@@ -24,6 +24,7 @@ pub use kinds::constrained_delaunay::{ConstrainedDelaunay, Walls};
 pub use kinds::delaunay::Delaunay;
 pub use kinds::regular::Regular;
 pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, Delaunay3, Regular2};
+pub use lines::LinesFlaw;
 pub use lines::build::{OnCrossing, Rounding};
 pub use lines::paths::{LineId, LineTag};
 pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};

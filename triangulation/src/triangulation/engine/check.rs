@@ -5,7 +5,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, VertexId};
 
-use super::super::{LineId, Triangulation};
+use super::super::{LinesFlaw, Triangulation};
 use super::embedded::Embedded;
 use super::sides::{in_conflict, side_of_facet, simplex};
 
@@ -39,10 +39,9 @@ pub enum Flaw {
     Hidden(VertexId),
     /// Level 4: an edge is constrained on one side only.
     OneSided(CellId, usize),
-    /// Level 4: between these two vertices of a line's chain there is no constrained edge.
-    Line(LineId, VertexId, VertexId),
-    /// Level 4: a piece of a constraint, between these vertices, was left out when its crossings did not come
-    /// to an end.
+    /// Level 4: what is known of lines is not what is there.
+    Lines(LinesFlaw),
+    /// Level 4: a sub-constraint, between these vertices, was left out, since another one blocks it.
     Missing(VertexId, VertexId),
 }
 
@@ -57,9 +56,7 @@ impl fmt::Display for Flaw {
             }
             Flaw::Hidden(vertex) => write!(f, "point {vertex:?} is hidden by a cell that does not hide it"),
             Flaw::OneSided(cell, i) => write!(f, "edge {i} of cell {cell:?} is constrained on one side only"),
-            Flaw::Line(line, a, b) => {
-                write!(f, "line {line:?} has no constrained edge between vertices {a:?} and {b:?}")
-            }
+            Flaw::Lines(flaw) => flaw.fmt(f),
             Flaw::Missing(a, b) => write!(f, "the constraint between vertices {a:?} and {b:?} was left out"),
         }
     }

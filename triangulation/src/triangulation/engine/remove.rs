@@ -16,12 +16,12 @@
 //! *The triangles outside of the hole stay.* Nothing can enter their circles by a removal, and the walls, which
 //! say who sees whom, do not change. So no edge of the rim is ever flipped.
 
-use crate::geometry::{Crossing, Geometry};
+use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::super::{ConstrainedDelaunay, Triangulation};
-use super::flip::{Edges, Forced};
+use super::super::Triangulation;
+use super::flip::Edges;
 
 /// The ring around what is not yet triangulated, counter-clockwise as seen from within.
 struct Ring {
@@ -93,7 +93,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 
     /// The vertices that are left, in their order, if they are collinear without this one.
-    fn line_without(&self, vertex: VertexId) -> Option<Vec<VertexId>> {
+    pub(in super::super) fn line_without(&self, vertex: VertexId) -> Option<Vec<VertexId>> {
         let mut line = Vec::new();
         let mut is_on_hull = false;
         for (cell, i) in self.tds.corners_around(vertex) {
@@ -181,48 +181,3 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         ring.cut(k, cell, 1);
     }
 }
-
-impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Takes out a vertex that no constraint ends in or runs through, and returns its point; `None` if one does, or if
-    /// there is no such vertex. The result is the triangulation of the other points with the same constraints. Numbers
-    /// and time as in [`Delaunay::remove`]. The tables of [lines](super::super::lines::paths::Lines) must not name it any more when
-    /// its number is used again.
-    pub(in super::super) fn remove_free(&mut self, vertex: VertexId) -> Option<G::Point> {
-        if !self.tds().is_vertex(vertex) || self.is_on_constraint(vertex) {
-            return None;
-        }
-        if let Some(line) = self.inner.line_without(vertex) {
-            // No triangles will be left to hold the constraints.
-            let is_wall = |pair: &&[VertexId]| {
-                self.tds().edge(pair[0], pair[1]).is_some_and(|(cell, i)| self.is_constrained(cell, i))
-            };
-            let walls: Vec<_> = line.windows(2).filter(is_wall).map(|pair| [pair[0], pair[1]]).collect();
-            self.waiting.extend(walls);
-        }
-        self.inner.remove_vertex(Forced, vertex);
-        Some(*self.point(vertex))
-    }
-
-    pub(in super::super) fn is_on_constraint(&self, vertex: VertexId) -> bool {
-        self.inner.is_on_wall(vertex) || self.waiting.iter().flatten().any(|&end| end == vertex)
-    }
-
-    /// Takes the constraint off the edge between two vertices, which then is there only if the law wants it.
-    /// Says whether there was one. What the tables of lines tell of it is left to the caller.
-    ///
-    /// # Complexity
-    /// Linear in the degree of `a` and in the number of flips.
-    pub(in super::super) fn clear_wall(&mut self, a: VertexId, b: VertexId) -> bool {
-        let Some(sides) = self.inner.wall_down(a, b) else {
-            let waiting = self.waiting.len();
-            self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);
-            return self.waiting.len() < waiting;
-        };
-        self.scratch.unsettled.extend(sides);
-        self.settle();
-        true
-    }
-}
-
-#[cfg(test)]
-mod tests;

@@ -6,7 +6,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId, cw};
 
 use super::super::engine::flip::Forced;
-use super::super::lines::constrain::{Met, Scratch, Side};
+use super::super::lines::trace::{Met, Scratch, Side};
 use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
     Walls,
@@ -223,7 +223,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         while from != b {
             match self.inner.trace(from, b, &mut self.scratch) {
                 Met::Vertex(v) => from = v,
-                Met::Wall(cell, i) => {
+                Met::Constraint(cell, i) => {
                     let mut ends = self.tds().edge_ends(cell, i);
                     ends.sort_unstable();
                     return Err(ConstraintError::Crosses(ends));
@@ -236,7 +236,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
             let triangulate = |t: &Triangulation<G, 3, V, Walls<C>>, side: &Side, apexes: &mut Vec<u32>| {
                 t.wrap(side, Triangulation::is_within, apexes);
             };
-            self.inner.force_traced(from, v, &mut self.scratch, triangulate);
+            self.inner.insert_traced(from, v, &mut self.scratch, triangulate);
             from = v;
         }
         Ok(())
@@ -382,6 +382,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     pub fn constrained_around(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         let constrained = self.tds.edges_around(vertex).filter(|&(cell, i)| self.is_constrained(cell, i));
         constrained.map(|(cell, i)| self.tds.vertex(cell, cw(i)))
+    }
+
+    /// Whether there is a constraint on the edge between two vertices.
+    pub(in super::super) fn has_constraint(&self, a: VertexId, b: VertexId) -> bool {
+        self.tds.edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
     }
 
     /// Makes an edge a constraint; says whether it is there.

@@ -1,13 +1,11 @@
-use std::collections::HashSet;
 use std::ops::Deref;
 
 use crate::geometry::{Coordinates, Crossing};
 use crate::tds::{CellId, VertexId};
 
 use super::super::bulk::{self, Sites};
-use super::super::lines::constrain::Scratch;
-use super::super::lines::paths::Lines;
-use super::super::{Flaw, InputError, Level, Rounding, Triangulation};
+use super::super::lines::Lines;
+use super::super::{Flaw, InputError, Level, Triangulation};
 
 /// Which edges of a triangle are constraints, and its payload: bit `i` is set for the edge opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -102,20 +100,7 @@ impl<C: Default> Walls<C> {
 #[derive(Debug)]
 pub struct ConstrainedDelaunay<G: Crossing, V = (), C = ()> {
     pub(in super::super) inner: Triangulation<G, 3, V, Walls<C>>,
-    /// Segments among collinear points, which no triangle can hold yet.
-    pub(in super::super) waiting: Vec<[VertexId; 2]>,
-    /// Vertices added where segments cross.
-    pub(in super::super) crossings: Vec<VertexId>,
-    /// Pieces of segments that are not there whole.
-    pub(in super::super) left_out: Vec<[VertexId; 2]>,
-    /// The input lines, and their ways.
     pub(in super::super) lines: Lines,
-    pub(in super::super) rounding: Option<Rounding>,
-    /// Vertices that have come with lines, and go with them.
-    pub(in super::super) lent: HashSet<VertexId>,
-    /// Whether pieces crossed after they had been arranged, possible off the grid only, and were arranged again.
-    pub(in super::super) was_tangled: bool,
-    pub(in super::super) scratch: Scratch,
 }
 
 impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
@@ -128,34 +113,14 @@ impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
 
 impl<G: Crossing + Clone, V: Clone, C: Clone> Clone for ConstrainedDelaunay<G, V, C> {
     fn clone(&self) -> Self {
-        ConstrainedDelaunay {
-            inner: self.inner.duplicate(),
-            waiting: self.waiting.clone(),
-            crossings: self.crossings.clone(),
-            left_out: self.left_out.clone(),
-            lines: self.lines.clone(),
-            rounding: self.rounding,
-            lent: self.lent.clone(),
-            was_tangled: self.was_tangled,
-            scratch: self.scratch.clone(),
-        }
+        ConstrainedDelaunay { inner: self.inner.duplicate(), lines: self.lines.clone() }
     }
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// Without points, and without payloads of triangles: these come with [`with_cell_data`](Self::with_cell_data).
     pub fn new(geometry: G) -> Self {
-        ConstrainedDelaunay {
-            inner: Triangulation::new(geometry),
-            waiting: Vec::new(),
-            crossings: Vec::new(),
-            left_out: Vec::new(),
-            lines: Lines::default(),
-            rounding: None,
-            lent: HashSet::new(),
-            was_tangled: false,
-            scratch: Scratch::default(),
-        }
+        ConstrainedDelaunay { inner: Triangulation::new(geometry), lines: Lines::default() }
     }
 }
 
@@ -163,10 +128,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// The same triangulation with these payloads of triangles, the infinite ones included; asked for in order of their
     /// numbers. Linear in the number of triangles; nothing but payloads is copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> ConstrainedDelaunay<G, V, D> {
-        let ConstrainedDelaunay { inner, waiting, crossings, left_out, lines, rounding, lent, was_tangled, scratch } =
-            self;
-        let inner = inner.with_data_of_cells(data);
-        ConstrainedDelaunay { inner, waiting, crossings, left_out, lines, rounding, lent, was_tangled, scratch }
+        ConstrainedDelaunay { inner: self.inner.with_data_of_cells(data), lines: self.lines }
     }
 
     /// The payload of a triangle, to change. O(1).
@@ -174,44 +136,14 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         self.inner.tds.cell_data_mut(cell).data_mut()
     }
 
-    pub(in super::super) fn insert_near(&mut self, p: G::Point, near: Option<CellId>) -> VertexId {
-        let location = self.inner.locate(&p, near);
-        let split = self.inner.wall_at(location);
-        let takes = |t: &Triangulation<G, 3, V, Walls<C>>, from, i, beyond| {
-            !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p)
-        };
-        let vertex = self.inner.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i)).vertex;
-        for end in split.into_iter().flatten() {
-            self.inner.wall_up(vertex, end);
-        }
-        if let Some([a, b]) = split {
-            self.lines.split(a, b, vertex);
-        }
-        vertex
-    }
-
-    /// Puts in what could not be while all points were collinear.
-    pub(in super::super) fn insert_waiting(&mut self) {
-        if self.dimension() == 2 && !self.waiting.is_empty() {
-            for [a, b] in std::mem::take(&mut self.waiting) {
-                self.force(a, b);
-            }
-        }
-    }
-
     /// The payload of a finite vertex, to change.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
     }
 
-    /// Whether there is a constraint on the edge between two vertices.
-    pub(in super::super) fn is_wall(&self, a: VertexId, b: VertexId) -> bool {
-        self.tds().edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
-    }
-
     /// The vertices that were added where constraints cross.
     pub fn crossings(&self) -> &[VertexId] {
-        &self.crossings
+        self.lines.added()
     }
 
     /// Replaces the point of a finite vertex by another one at the same place, at another height, say; returns the old
@@ -230,13 +162,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
             return flaws;
         }
         let one_sided = self.one_sided_walls().into_iter();
-        let left_out = self.left_out.iter().map(|&[a, b]| Flaw::Missing(a, b));
-        let broken = self.lines().flat_map(|line| {
-            let chain = self.chain(line);
-            let gap = |pair: &&[VertexId]| !self.is_wall(pair[0], pair[1]);
-            chain.windows(2).filter(gap).map(|pair| Flaw::Line(line, pair[0], pair[1])).collect::<Vec<_>>()
-        });
-        one_sided.chain(left_out).chain(broken).collect()
+        one_sided.chain(self.lines.check(&self.inner)).collect()
     }
 }
 
@@ -252,7 +178,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             return triangulation;
         }
         for index in 0..count {
-            triangulation.insert_near(triangulation.inner.points[index], None);
+            let ConstrainedDelaunay { inner, lines } = &mut triangulation;
+            lines.insert_point(inner, inner.points[index], None);
         }
         debug_assert_eq!(triangulation.vertex_count(), count, "two points on one site");
         triangulation

@@ -129,11 +129,12 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         }
 
         let mut triangulation = Self::from_sites(geometry, sites);
-        triangulation.lines.given = lines.into_iter().map(Some).collect();
-        triangulation.crossings = added;
-        let pieces = triangulation.lines.lead(&arrangement, &segments, vertex);
-        if !triangulation.join_all(pieces, &arrangement).is_empty() {
+        triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
+        triangulation.lines.added = added.into_iter().collect();
+        let pieces = triangulation.lines.paths.record(&arrangement, &segments, vertex);
+        if !triangulation.constrain_all(pieces, &arrangement).is_empty() {
             triangulation.rearrange();
+            triangulation.lines.rearrangements = 0;
         }
         Ok((triangulation, renumbered))
     }
@@ -152,30 +153,30 @@ fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Inpu
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Puts in the pieces of an arrangement. Returns those that cross others, which are there up to the first crossing
     /// only.
-    pub(in super::super) fn join_all(
+    pub(in super::super) fn constrain_all(
         &mut self,
         mut pieces: Vec<[VertexId; 2]>,
         arrangement: &Arrangement,
     ) -> Vec<[VertexId; 2]> {
-        self.rounding = (!arrangement.crossings().is_empty())
+        self.lines.rounding = (!arrangement.crossings().is_empty())
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         if self.dimension() < 2 {
-            self.waiting = pieces;
+            self.lines.waiting = pieces;
             // What lay between their ends, when there were triangles, may go.
-            self.lines.splits.clear();
+            self.lines.paths.splits.clear();
             return Vec::new();
         }
         // Pieces next to each other are joined one after the other, until that has taken its time.
-        let enough = self.scratch.met + PATIENCE * (self.vertex_count() + pieces.len());
+        let enough = self.lines.scratch.met + PATIENCE * (self.vertex_count() + pieces.len());
         let mut crossing = Vec::new();
         let mut dice = Dice::default();
         for next in 0..pieces.len() {
-            if self.scratch.met > enough {
+            if self.lines.scratch.met > enough {
                 let left = pieces.len() - next;
                 pieces.swap(next, next + dice.below(left));
             }
             let [a, b] = pieces[next];
-            if !self.join(a, b) {
+            if !self.lines.constrain(&mut self.inner, a, b) {
                 crossing.push([a, b]);
             }
         }
@@ -185,7 +186,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 
     /// How the crossings of lines were rounded; `None` if none cross.
     pub fn rounding(&self) -> Option<Rounding> {
-        self.rounding
+        self.lines.rounding
     }
 }
 

@@ -1,445 +1,139 @@
-//! Forcing a segment into a constrained triangulation.
-//!
-//! 1. *Trace*: walk along the segment from its start and collect the triangles it crosses, until it
-//!    meets a vertex or a constraint.
-//! 2. At a vertex: the triangles crossed so far are taken out, the new edge is put in, and the polygons
-//!    on its two sides are triangulated again, each triangle with the vertex that makes the empty
-//!    circle (Anglada 1997); long ones in random order (Shewchuk and Brown 2015). Go on from the vertex.
-//! 3. At a constraint: it is lifted, the place of the crossing becomes a vertex, and four pieces are
-//!    put in.
+//! One vertex or one sub-constraint, put in and taken out, with the tables kept true.
 
-use rustc_hash::FxHashMap;
-
-use crate::geometry::{Crossing, Geometry, in_sphere};
-use crate::num::Sign;
-use crate::tds::{CellId, VertexId, ccw, cw};
+use crate::geometry::Crossing;
+use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::Forced;
-use super::super::{ConstrainedDelaunay, Triangulation, Walls};
+use super::super::{Triangulation, Walls};
+use super::Lines;
 use super::paths::undirected;
+use super::trace::Met;
 
-/// Buffers of the segment insertion, kept from one to the next.
-#[derive(Debug, Clone, Default)]
-pub(in super::super) struct Scratch {
-    /// Triangles that the segment crosses, in order.
-    corridor: Vec<CellId>,
-    pub(in super::super) left: Side,
-    pub(in super::super) right: Side,
-    /// Parts of a side that are still to be triangulated.
-    parts: Vec<Part>,
-    /// How a side is triangulated.
-    apexes: Vec<u32>,
-    /// How many triangles have been met by all traces.
-    pub(in super::super) met: usize,
-    /// Triangles whose edges may have to be flipped.
-    pub(in super::super) unsettled: Vec<CellId>,
-}
+/// The triangulation whose constraints lines hold.
+pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, Walls<C>>;
 
-/// One side of a segment: the border of what it crosses there, from its one end to the other.
-#[derive(Debug, Clone, Default)]
-pub(in super::super) struct Side {
-    pub(in super::super) chain: Vec<VertexId>,
-    /// Of each of these, but for the ends, a vertex to which an edge led over the segment. None of these edges cross.
-    pub(in super::super) across: Vec<VertexId>,
-    /// Between each two of the chain.
-    edges: Vec<Edge>,
-}
-
-/// An edge of the border: the triangle on its outer side, and the edge's number there.
-#[derive(Debug, Clone, Copy)]
-struct Edge {
-    cell: CellId,
-    i: usize,
-    is_wall: bool,
-    /// Whether the triangle on the outer side is crossed, too: the corridor touches itself, around the edge's end.
-    is_spike: bool,
-}
-
-/// Positions of a chain between which a triangle is to be put, and the edge that it has in common with the one before.
-type Part = (usize, usize, Option<(CellId, usize)>);
-
-impl Side {
-    fn clear(&mut self, start: VertexId) {
-        self.chain.clear();
-        self.chain.push(start);
-        self.across.clear();
-        self.across.push(start);
-        self.edges.clear();
+impl Lines {
+    /// Inserts a point that was admitted, and returns its vertex; the one that is there, if the site is taken. A
+    /// constraint that it lies on is split.
+    pub(in super::super) fn insert_point<G: Crossing, V: Default, C: Copy + Default>(
+        &mut self,
+        t: &mut Mesh<G, V, C>,
+        p: G::Point,
+        near: Option<CellId>,
+    ) -> VertexId {
+        let location = t.locate(&p, near);
+        let split = t.wall_at(location);
+        let takes = |t: &Mesh<G, V, C>, from, i, beyond| !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p);
+        let vertex = t.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i)).vertex;
+        for end in split.into_iter().flatten() {
+            t.wall_up(vertex, end);
+        }
+        if let Some([a, b]) = split {
+            self.split_edge(a, b, vertex);
+        }
+        vertex
     }
 
-    fn push(&mut self, vertex: VertexId, across: VertexId, edge: Edge) {
-        self.chain.push(vertex);
-        self.across.push(across);
-        self.edges.push(edge);
-    }
-
-    /// The vertex that was pushed last.
-    fn last(&self) -> VertexId {
-        self.chain[self.chain.len() - 1]
-    }
-
-    pub(in super::super) fn reverse(&mut self) {
-        self.chain.reverse();
-        self.across.reverse();
-        self.edges.reverse();
-    }
-
-    /// Of the edges that have both sides on the border, which of them are the same.
-    fn spikes(&self) -> Vec<[usize; 2]> {
-        let mut seen: FxHashMap<[VertexId; 2], usize> = FxHashMap::default();
-        let mut spikes = Vec::new();
-        for (k, ends) in self.chain.windows(2).enumerate().filter(|&(k, _)| self.edges[k].is_spike) {
-            match seen.get(&[ends[1], ends[0]]) {
-                Some(&other) => spikes.push([other, k]),
-                None => _ = seen.insert([ends[0], ends[1]], k),
+    /// Inserts the sub-constraint between two vertices: the one way in which constraints get into the triangulation.
+    /// Where it passes through vertices, it is split. Returns `false` if a constraint blocks it; it is there up to that
+    /// one then.
+    ///
+    /// While all points are collinear, it waits.
+    pub(in super::super) fn constrain<G: Crossing, V, C: Copy + Default>(
+        &mut self,
+        t: &mut Mesh<G, V, C>,
+        a: VertexId,
+        b: VertexId,
+    ) -> bool {
+        if t.dimension() < 2 {
+            self.waiting.push([a, b]);
+            return true;
+        }
+        // Nothing is allocated for what is one edge.
+        let (mut first, mut parts) = (Some([a, b]), Vec::new());
+        let mut is_whole = true;
+        while let Some([a, b]) = first.take().or_else(|| parts.pop()) {
+            if a == b || t.wall_up(a, b) {
+                continue;
+            }
+            if let Some(&between) = self.paths.splits.get(&undirected(a, b)) {
+                parts.extend([[between, b], [a, between]]);
+                continue;
+            }
+            // At an end where many edges meet, it takes long to find the direction.
+            let [a, b] = if t.tds.is_busier(a, b) { [b, a] } else { [a, b] };
+            match t.trace(a, b, &mut self.scratch) {
+                Met::Vertex(v) => {
+                    t.insert_traced(a, v, &mut self.scratch, Triangulation::triangulate);
+                    if v != b {
+                        self.paths.split(a, b, v);
+                        parts.push([v, b]);
+                    }
+                }
+                Met::Constraint(..) => is_whole = false,
             }
         }
-        spikes
-    }
-}
-
-/// From this length of its chain on, a side is triangulated in random order: it then takes less time.
-const LONG: usize = 32;
-
-/// The base of a triangle that [`fill`](ConstrainedDelaunay::fill) makes is opposite this corner.
-const BASE: usize = 2;
-
-/// How a trace ended.
-pub(in super::super) enum Met {
-    /// At this vertex, which may be the segment's end.
-    Vertex(VertexId),
-    /// At the constraint opposite corner `i` of the cell.
-    Wall(CellId, usize),
-}
-
-impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Puts in the piece of a line between two vertices, in a triangulation that spans the plane. Says whether all of
-    /// it is there: pieces that were arranged meet no constraint between their ends, but off the grid; behind one,
-    /// nothing is put in.
-    pub(in super::super) fn join(&mut self, a: VertexId, b: VertexId) -> bool {
-        let mut is_whole = true;
-        self.force_until(a, b, |_, _, _, _| {
-            is_whole = false;
-            Vec::new()
-        });
         is_whole
     }
 
-    /// Puts in the segment between two vertices, in a triangulation that spans the plane, across constraints.
-    ///
-    /// A crossing may move both lines by a rounding, and so make them cross others, pieces of which wait
-    /// here. [`Crossing`] sees to it that this comes to an end; how soon cannot be told, so that there is a
-    /// limit, far beyond what a segment can cross: every constraint once. Beyond it pieces are left out,
-    /// and the check names them.
-    pub(in super::super) fn force(&mut self, a: VertexId, b: VertexId) {
-        let mut crossings_left = 1000 + 4 * self.vertex_count();
-        self.force_until(a, b, |this, ends, cell, i| {
-            if crossings_left == 0 {
-                this.left_out.push(ends);
-                return Vec::new();
+    /// Inserts what had to wait while all points were collinear.
+    pub(super) fn constrain_waiting<G: Crossing, V, C: Copy + Default>(&mut self, t: &mut Mesh<G, V, C>) {
+        if t.dimension() == 2 && !self.waiting.is_empty() {
+            self.index.take();
+            for [a, b] in std::mem::take(&mut self.waiting) {
+                self.constrain(t, a, b); // nothing blocks it: all are collinear
             }
-            crossings_left -= 1;
-            this.cross(ends, cell, i)
-        });
+        }
     }
 
-    /// Puts in a segment piece by piece; where one meets a constraint, `at_wall` says what to go on with, given the
-    /// ends of the piece and the wall.
-    fn force_until(
+    /// Removes a vertex that no constraint ends in or runs through, and returns its point; `None` if one does, or if
+    /// there is no such vertex. The result is the triangulation of the other points with the same constraints. Numbers
+    /// and time as in [`Delaunay::remove`](crate::Delaunay::remove). No line may name it any more when its number is
+    /// used again.
+    pub(in super::super) fn remove_free<G: Crossing, V, C: Copy + Default>(
         &mut self,
+        t: &mut Mesh<G, V, C>,
+        vertex: VertexId,
+    ) -> Option<G::Point> {
+        if !t.tds.is_vertex(vertex) || self.is_on_constraint(t, vertex) {
+            return None;
+        }
+        if let Some(line) = t.line_without(vertex) {
+            // No triangles will be left to hold the constraints.
+            let constrained = line.windows(2).filter(|pair| t.has_constraint(pair[0], pair[1]));
+            self.waiting.extend(constrained.map(|pair| [pair[0], pair[1]]));
+        }
+        t.remove_vertex(Forced, vertex);
+        Some(*t.point(vertex))
+    }
+
+    /// Whether a constraint ends in a vertex or runs through it, or will when there are triangles.
+    pub(super) fn is_on_constraint<G: Crossing, V, C: Copy + Default>(
+        &self,
+        t: &Mesh<G, V, C>,
+        vertex: VertexId,
+    ) -> bool {
+        t.is_on_wall(vertex) || self.waiting.iter().flatten().any(|&end| end == vertex)
+    }
+
+    /// Takes the constraint off the edge between two vertices, which then is there only if the law wants it. Returns
+    /// whether there was one. What the tables say of the edge is left to the caller.
+    ///
+    /// # Complexity
+    /// Linear in the degree of `a` and in the number of flips.
+    pub(super) fn release<G: Crossing, V, C: Copy + Default>(
+        &mut self,
+        t: &mut Mesh<G, V, C>,
         a: VertexId,
         b: VertexId,
-        mut at_wall: impl FnMut(&mut Self, [VertexId; 2], CellId, usize) -> Vec<(VertexId, VertexId)>,
-    ) {
-        // Nothing is allocated for a segment that is one piece.
-        let (mut first, mut pieces) = (Some((a, b)), Vec::new());
-        while let Some((a, b)) = first.take().or_else(|| pieces.pop()) {
-            if a == b || self.inner.wall_up(a, b) {
-                continue;
-            }
-            if let Some(&between) = self.lines.splits.get(&undirected(a, b)) {
-                pieces.extend([(between, b), (a, between)]);
-                continue;
-            }
-            // At an end where many edges meet, it takes long to find the way.
-            let [a, b] = if self.tds().is_busier(a, b) { [b, a] } else { [a, b] };
-            match self.inner.trace(a, b, &mut self.scratch) {
-                Met::Vertex(v) => {
-                    self.inner.force_traced(a, v, &mut self.scratch, Triangulation::triangulate);
-                    if v != b {
-                        self.lines.split(a, b, v);
-                        pieces.push((v, b));
-                    }
-                }
-                Met::Wall(cell, i) => pieces.extend(at_wall(self, [a, b], cell, i)),
-            }
-        }
-    }
-
-    /// Adds a vertex where a segment crosses a constraint, which is lifted; returns the pieces of both.
-    fn cross(&mut self, [a, b]: [VertexId; 2], cell: CellId, i: usize) -> Vec<(VertexId, VertexId)> {
-        let [c, d] = self.tds().edge_ends(cell, i);
-        let x = self.inner.geometry.crossing([self.point(a), self.point(b)], [self.point(c), self.point(d)]);
-        self.scratch.unsettled.extend(self.inner.wall_down(c, d).into_iter().flatten());
-        self.settle();
-        let before = self.vertex_count();
-        let near = self.tds().cell_of(c);
-        let v = self.insert_near(x, near);
-        if self.vertex_count() > before {
-            self.crossings.push(v);
-        }
-        for [p, q] in [[a, b], [c, d]] {
-            if v != p && v != q {
-                self.lines.split(p, q, v);
-            }
-        }
-        vec![(v, b), (a, v), (v, d), (c, v)]
-    }
-
-    /// Restores the law, starting from the cells in `unsettled`.
-    pub(in super::super) fn settle(&mut self) {
-        self.inner.settle(Forced, &mut self.scratch.unsettled);
-    }
-}
-
-impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
-    /// Whether a vertex is in the circle of a counter-clockwise triangle.
-    #[inline(always)]
-    pub(in super::super) fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
-        in_sphere(&self.geometry, triangle.map(|v| self.point(v)), self.point(p))
-    }
-
-    #[inline]
-    pub(in super::super) fn turn(&self, a: VertexId, b: VertexId, c: VertexId) -> Sign {
-        self.geometry.orientation([a, b, c].map(|v| self.point(v)))
-    }
-
-    /// Whether `p` lies ahead of `a` on the way to `b`, all three being collinear.
-    fn is_ahead(&self, a: VertexId, b: VertexId, p: VertexId) -> bool {
-        let compare = |p: VertexId, q: VertexId| self.geometry.compare(self.point(p), self.point(q));
-        compare(a, p) == compare(a, b)
-    }
-
-    /// Walks from `a` towards `b` and fills the corridor and its two sides.
-    pub(in super::super) fn trace(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
-        scratch.corridor.clear();
-        scratch.left.clear(a);
-        scratch.right.clear(a);
-        let met = self.trace_into(a, b, scratch);
-        scratch.met += scratch.corridor.len();
-        met
-    }
-
-    fn trace_into(&self, a: VertexId, b: VertexId, Scratch { corridor, left, right, .. }: &mut Scratch) -> Met {
-        let tds = &self.tds;
-        let edge = |cell: CellId, i: usize| {
-            let outside = tds.neighbor(cell, i);
-            let j = tds.index_of_neighbor(outside, cell);
-            Edge { cell: outside, i: j, is_wall: tds.cell_data(cell).has(i), is_spike: false }
+    ) -> bool {
+        let Some(sides) = t.wall_down(a, b) else {
+            let waiting = self.waiting.len();
+            self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);
+            return self.waiting.len() < waiting;
         };
-        // The triangle at `a` through which the segment leaves, or a neighbor right on the way.
-        let mut leaves = None;
-        for (cell, i) in tds.corners_around(a) {
-            let (u, w) = (tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
-            if u == VertexId::INFINITE {
-                continue;
-            }
-            match self.turn(a, u, b) {
-                Sign::Zero if self.is_ahead(a, b, u) => return Met::Vertex(u),
-                Sign::Positive if w != VertexId::INFINITE && self.turn(a, w, b) == Sign::Negative => {
-                    right.push(u, w, edge(cell, cw(i)));
-                    left.push(w, u, edge(cell, ccw(i)));
-                    leaves = Some((cell, i));
-                    break;
-                }
-                _ => {}
-            }
-        }
-        let Some((mut cell, mut i)) = leaves else {
-            // Unreachable: the triangles around a vertex of a convex region leave no gap.
-            return Met::Vertex(b);
-        };
-        loop {
-            corridor.push(cell);
-            if tds.cell_data(cell).has(i) {
-                return Met::Wall(cell, i);
-            }
-            let beyond = tds.neighbor(cell, i);
-            let j = tds.index_of_neighbor(beyond, cell);
-            let p = tds.vertex(beyond, j);
-            // `beyond` is (p, left, right) counter-clockwise: the one on p's side is left behind.
-            let turn = self.turn(a, b, p);
-            let [on_left, on_right] = [left.last(), right.last()];
-            if turn != Sign::Negative {
-                left.push(p, on_right, edge(beyond, cw(j)));
-            }
-            if turn != Sign::Positive {
-                right.push(p, on_left, edge(beyond, ccw(j)));
-            }
-            i = match turn {
-                Sign::Zero => {
-                    corridor.push(beyond);
-                    return Met::Vertex(p);
-                }
-                Sign::Positive => ccw(j),
-                Sign::Negative => cw(j),
-            };
-            cell = beyond;
-        }
-    }
-
-    /// Makes the segment that was traced to a vertex a constrained edge. `triangulate` says how a side is triangulated:
-    /// it adds the apexes of the side's parts, as positions in its chain, each part before its first and its second
-    /// half.
-    pub(in super::super) fn force_traced(
-        &mut self,
-        a: VertexId,
-        v: VertexId,
-        scratch: &mut Scratch,
-        triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
-    ) {
-        if scratch.corridor.is_empty() {
-            self.wall_up(a, v); // the edge is there
-        } else {
-            self.retriangulate(scratch, triangulate);
-        }
-    }
-
-    /// Replaces the corridor by triangles on both sides of the segment, which is a constraint then. What was a
-    /// constrained Delaunay triangulation is one again: triangles that the segment does not cross see no more than
-    /// before.
-    ///
-    /// In any other triangulation, too, the triangles fit the polygon: from each vertex of the border an edge went over
-    /// the segment, so that no edge of the border can hide it from the base.
-    fn retriangulate(
-        &mut self,
-        Scratch { corridor, left, right, parts, apexes, .. }: &mut Scratch,
-        triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
-    ) {
-        for &cell in corridor.iter() {
-            *self.tds.cell_data_mut(cell) = Walls::taken_out();
-        }
-        for edge in left.edges.iter_mut().chain(&mut right.edges) {
-            edge.is_spike = self.tds.cell_data(edge.cell).is_taken_out();
-        }
-        // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end,
-        // has it on its left. On the right it is the other way around.
-        right.reverse();
-        let sides = [left, right].map(|side| {
-            apexes.clear();
-            triangulate(self, side, apexes);
-            self.fill(side, corridor, parts, apexes)
-        });
-        if let [Some(left), Some(right)] = sides {
-            self.tds.link(left, BASE, right, BASE);
-            for cell in [left, right] {
-                let data = self.tds.cell_data_mut(cell);
-                *data = data.with(BASE, true);
-            }
-        }
-        debug_assert!(corridor.is_empty(), "the corridor was not filled");
-    }
-
-    /// Puts the triangles of a side, given by their apexes, over the base from its chain's first to its last vertex,
-    /// with cells from `free`. Returns the triangle on the base.
-    fn fill(
-        &mut self,
-        side: &mut Side,
-        free: &mut Vec<CellId>,
-        parts: &mut Vec<Part>,
-        apexes: &[u32],
-    ) -> Option<CellId> {
-        let mut on_base = None;
-        let mut apexes = apexes.iter();
-        parts.push((0, side.chain.len() - 1, None));
-        while let Some((first, last, above)) = parts.pop() {
-            let (Some(&apex), Some(cell)) = (apexes.next(), free.pop()) else {
-                debug_assert!(false, "a polygon without a triangle on its base");
-                continue;
-            };
-            let apex = apex as usize;
-            self.tds.set_corners(cell, [first, last, apex].map(|k| side.chain[k]));
-            match above {
-                Some((other, i)) => self.tds.link(cell, BASE, other, i),
-                None => on_base = Some(cell),
-            }
-            let mut walls = Walls::default();
-            for (i, from, to) in [(0, apex, last), (1, first, apex)] {
-                if to - from > 1 {
-                    parts.push((from, to, Some((cell, i))));
-                    continue;
-                }
-                let edge = &mut side.edges[from];
-                walls = walls.with(i, edge.is_wall);
-                if edge.is_spike {
-                    (edge.cell, edge.i) = (cell, i);
-                } else {
-                    self.tds.link(cell, i, edge.cell, edge.i);
-                }
-            }
-            *self.tds.cell_data_mut(cell) = walls;
-        }
-        if side.edges.iter().any(|edge| edge.is_spike) {
-            for [p, q] in side.spikes().into_iter().map(|pair| pair.map(|k| side.edges[k])) {
-                self.tds.link(p.cell, p.i, q.cell, q.i);
-            }
-        }
-        on_base
-    }
-
-    /// Triangulates a side by the law of Delaunay.
-    fn triangulate(&self, side: &Side, apexes: &mut Vec<u32>) {
-        if side.chain.len() < LONG || self.triangulate_long(side, apexes).is_none() {
-            self.wrap(side, Self::is_in_circle, apexes);
-        }
-    }
-
-    /// Triangulates a side, given whether a vertex goes before the third one of a triangle as that of the same base.
-    ///
-    /// Time quadratic in the length of the chain at the worst.
-    pub(in super::super) fn wrap(
-        &self,
-        side: &Side,
-        is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
-        apexes: &mut Vec<u32>,
-    ) {
-        let (mut from, mut to) = (0, side.chain.len() - 1);
-        let mut open = Vec::new();
-        loop {
-            let Some(apex) = self.apex(&side.chain[from..=to], &is_closer) else { return };
-            let apex = from + apex;
-            apexes.push(apex as u32);
-            if to - apex > 1 {
-                open.push((apex, to));
-            }
-            (from, to) = match (apex - from > 1).then_some((from, apex)).or_else(|| open.pop()) {
-                Some(part) => part,
-                None => return,
-            };
-        }
-    }
-
-    /// Which vertex of a chain makes a triangle with its first and last than which none is closer.
-    pub(in super::super) fn apex(
-        &self,
-        chain: &[VertexId],
-        is_closer: &impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
-    ) -> Option<usize> {
-        if chain.len() == 3 {
-            return Some(1);
-        }
-        let (a, b) = (chain[0], chain[chain.len() - 1]);
-        let mut best = None;
-        for k in 1..chain.len() - 1 {
-            let p = chain[k];
-            if self.turn(a, b, p) != Sign::Positive {
-                continue; // behind the base, or an end of it met again at a spike
-            }
-            let closer = |c: usize| chain[c] != p && is_closer(self, [a, b, chain[c]], p);
-            if best.is_none_or(closer) {
-                best = Some(k);
-            }
-        }
-        best
+        self.scratch.unsettled.extend(sides);
+        t.settle(Forced, &mut self.scratch.unsettled);
+        true
     }
 }

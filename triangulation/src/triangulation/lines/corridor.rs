@@ -29,7 +29,7 @@ use crate::tds::VertexId;
 
 use super::super::locate::Dice;
 use super::super::{Triangulation, Walls};
-use super::constrain::Side;
+use super::trace::Side;
 
 /// No node.
 const NONE: u32 = u32::MAX;
@@ -251,7 +251,7 @@ mod tests {
     use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
     use super::super::super::{ConstrainedDelaunay, OnCrossing};
-    use super::super::constrain::{Met, Scratch};
+    use super::super::trace::{Met, Scratch};
     use super::*;
     use crate::geometry::Plane;
     use crate::kernel::{Adaptive, Kernel, Predicate, Range};
@@ -336,7 +336,7 @@ mod tests {
             ASKED.store(0, Relaxed);
             let t = build::<Counting>(&points, &segments);
             assert_eq!(t.constrained_edges().count(), count as usize);
-            [t.scratch.met as f64, ASKED.load(Relaxed) as f64]
+            [t.lines.scratch.met as f64, ASKED.load(Relaxed) as f64]
         });
         for (few, many) in counts[0].into_iter().zip(counts[1]) {
             assert!(many < 2.6 * few && many < 1e6, "{counts:?}");

@@ -1,37 +1,19 @@
-//! Lines added, removed and changed in place.
+//! Lines and points added, removed and changed in place.
 //!
-//! The arrangement of the lines is a function of their set, and so is the triangulation of vertices and pieces. An edit
-//! therefore arranges the new set of lines, compares, and carries out the difference: what comes out is what building
-//! anew would have given, with other numbers.
+//! What comes out is what building anew would have given, with other numbers. Few changes are carried out where they are
+//! ([`local`](super::local)); many at once, and what changes the grid, by [arranging all lines anew](super::rearrange).
 
-use std::cmp::Reverse;
-use std::collections::{HashMap, HashSet};
-
-use rustc_hash::FxHashMap;
-
-use crate::arrangement::Arrangement;
+use crate::arrangement::is_ordinary;
 use crate::geometry::{Coordinates, Crossing};
-use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::super::bulk::spatial_order;
-use super::super::locate::Dice;
 use super::super::{ConstrainedDelaunay, InputError, LineId, PointError, RemovalError};
-use super::build::points_added;
-use super::paths::{segments_of, undirected};
-
-/// What lines ask for: segments over the vertices that were given.
-struct Demand {
-    /// In order.
-    given: Vec<VertexId>,
-    /// Of each.
-    places: Vec<[f64; 2]>,
-    /// By positions among these.
-    segments: Vec<[u32; 2]>,
-}
-
-/// A piece of a line between two sites.
-type Piece = [VertexId; 2];
+use super::Lines;
+use super::constrain::Mesh;
+use super::index::{Ends, place};
+use super::local::{Edit, NotLocal};
+use super::paths::{LineVertices, segments_of, undirected};
+use super::rearrange::order_of_insertion;
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Adds a point; the vertex that is there already, if the site is taken. On a constraint, the
@@ -41,21 +23,35 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A walk and time proportional to the number of triangles replaced; and a look at every segment that crosses
-    /// others, if there are any: one that the point lies on exactly is led through it from now on.
+    /// A walk and time proportional to the number of triangles replaced. Where it lies exactly on a segment that crosses
+    /// others, as [`insert_lines`](Self::insert_lines).
     pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
         self.inner.admit(&p)?;
-        let is_led = self.lies_on_led(&p);
-        let vertex = self.insert_near(p, None);
-        self.lent.remove(&vertex);
-        if self.claim(vertex) {
-            self.replace_point(vertex, p);
-        }
-        if is_led || self.was_tangled {
+        let count = self.vertex_count();
+        let vertex = self.lines.insert_point(&mut self.inner, p, None);
+        let is_new = self.vertex_count() > count;
+        self.lines.owned.remove(vertex);
+        if self.give(vertex, p, is_new).is_err() {
             self.rearrange();
         }
-        self.insert_waiting();
+        self.lines.constrain_waiting(&mut self.inner);
         Ok(vertex)
+    }
+
+    /// Has the lines take note of a given vertex, which is new, or may have been added for a crossing.
+    fn give(&mut self, vertex: VertexId, p: G::Point, is_new: bool) -> Result<(), NotLocal> {
+        let was_added = self.lines.added.remove(vertex);
+        if was_added {
+            self.lines.touch();
+            self.replace_point(vertex, p);
+        }
+        if is_new && !is_ordinary(place(&self.inner, vertex)) {
+            self.lines.index.take(); // the next one knows
+        }
+        if self.lines.paths.bent.is_empty() || !(is_new || was_added) {
+            return Ok(());
+        }
+        Edit::on(&mut self.inner, &mut self.lines)?.give(vertex, was_added)
     }
 
     /// Takes a vertex that was given out and returns its point. Constraints that merely run through it go on without
@@ -65,8 +61,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// Why it stays.
     ///
     /// # Complexity
-    /// A look at all lines; then as [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as
-    /// [`remove_line`](Self::remove_line).
+    /// As [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as [`remove_line`](Self::remove_line). The
+    /// first edit after construction takes linear time.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);
@@ -74,50 +70,30 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         if self.is_added(vertex) {
             return Err(RemovalError::Crossing);
         }
-        if let Some(line) = self.lines().find(|&line| self.line_vertices(line).contains(&vertex)) {
+        if let Some(&line) = self.lines.given_by(&self.inner, vertex).first() {
             return Err(RemovalError::Line(line));
         }
         let p = *self.point(vertex);
-        if self.was_tangled || self.remove_free(vertex).is_none() {
-            self.lent.insert(vertex); // needed by nothing but lines, if by these
+        let is_removed = !self.lines.recrossed && self.lines.remove_free(&mut self.inner, vertex).is_some();
+        if !is_removed && self.lines.withdraw(&mut self.inner, vertex).is_err() {
             self.rearrange();
         }
         Ok(p)
     }
 
-    /// The same with all lines that were given by the vertex, whose ids are returned.
+    /// Removes a vertex that was given, with all lines that were given by it. Returns its point and their ids.
     ///
     /// # Errors
     /// If there is no such vertex, or it is one that lines cross in.
     pub fn remove_with_lines(&mut self, vertex: VertexId) -> Result<(G::Point, Vec<LineId>), RemovalError> {
-        let lines: Vec<LineId> = self.lines().filter(|&line| self.line_vertices(line).contains(&vertex)).collect();
-        // With its last line, a vertex that came with it would go, too.
         let p = self.tds().is_vertex(vertex).then(|| *self.point(vertex)).ok_or(RemovalError::NoVertex)?;
-        for &line in &lines {
-            self.lines.given[line.index()] = None;
+        let lines = self.lines.given_by(&self.inner, vertex);
+        if lines.is_empty() {
+            return Ok((self.remove(vertex)?, lines));
         }
-        if !lines.is_empty() {
-            self.lent.insert(vertex);
-            self.rearrange();
-            return Ok((p, lines));
-        }
-        Ok((self.remove(vertex)?, lines))
-    }
-
-    /// Makes a vertex that was added for a crossing, if it was, one that is given.
-    fn claim(&mut self, vertex: VertexId) -> bool {
-        let at = self.crossings.binary_search(&vertex);
-        at.map(|at| self.crossings.remove(at)).is_ok()
-    }
-
-    /// Whether a point lies exactly on a segment that is led through sites.
-    fn lies_on_led(&self, p: &G::Point) -> bool {
-        let geometry = &self.inner.geometry;
-        self.lines.led.keys().any(|&[a, b]| {
-            let (a, b) = (self.point(a), self.point(b));
-            geometry.side_of_sphere_in_flat(&[a, b], p) == Sign::Positive
-                && geometry.orientation([a, b, p]) == Sign::Zero
-        })
+        self.lines.owned.insert(vertex); // with its last line, it goes
+        self.change_lines(lines.iter().map(|&line| (line, None)).collect());
+        Ok((p, lines))
     }
 
     /// Adds lines through points; their vertices, where they are new, come and go with them. Returns their ids.
@@ -126,46 +102,56 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// The position, in all lines taken together, of the first point that is refused; nothing has changed then.
     ///
     /// # Complexity
-    /// All lines are arranged anew, as by [`from_lines`](Self::from_lines), so that many lines are better added in one
-    /// call; the triangulation changes only where they do.
+    /// For a few lines, a walk from the last insertion, and time proportional to the number of triangles that they and
+    /// the segments that they cross meet. The first edit after construction takes linear time.
+    ///
+    /// Many lines at once are arranged together with all others, as by [`from_lines`](Self::from_lines); so are few, if
+    /// they change the unit of the grid, or come to cross others off the grid (see [`Rounding`](super::super::Rounding)):
+    /// [`rearrangements`](Self::rearrangements) counts how often.
     pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, InputError> {
         let points: Vec<G::Point> = lines.iter().flat_map(|line| line.as_ref()).copied().collect();
         if let Some(bad) = points.iter().position(|p| self.inner.admit(p).is_err()) {
             return Err(InputError::Coordinate(bad));
         }
-        let vertices = self.insert_lent(&points);
-        for (&vertex, &p) in vertices.iter().zip(&points) {
-            if self.claim(vertex) {
-                self.lent.insert(vertex);
-                self.replace_point(vertex, p);
-            }
-        }
-        let mut ids = Vec::with_capacity(lines.len());
+        let (vertices, is_known) = self.insert_owned(&points);
+        let mut changes = Vec::with_capacity(lines.len());
         let mut rest = &vertices[..];
         for line in lines {
             let (here, others) = rest.split_at(line.as_ref().len());
             rest = others;
-            ids.push(LineId::new(self.lines.given.len()));
-            self.lines.given.push(Some(here.into()));
+            changes.push((LineId::new(self.lines.paths.given.len()), Some(here.into())));
+            self.lines.paths.given.push(None);
         }
-        self.rearrange();
+        let ids = changes.iter().map(|(line, _)| *line).collect();
+        let before = self.lines.replace(changes);
+        if is_known.and_then(|()| self.lines.change(&mut self.inner, &before)).is_err() {
+            self.rearrange();
+        }
         Ok(ids)
     }
 
-    /// Inserts points whose vertices, where they are new, go with the lines that need them; returns the vertices.
-    fn insert_lent(&mut self, points: &[G::Point]) -> Vec<VertexId> {
+    /// Inserts points whose vertices, where they are new, go with the lines that need them. Returns the vertices, and
+    /// whether the lines that are there have taken note of them.
+    fn insert_owned(&mut self, points: &[G::Point]) -> (Vec<VertexId>, Result<(), NotLocal>) {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         let mut near = None;
+        let mut is_known = if self.lines.is_few(points.len()) { Ok(()) } else { Err(NotLocal) };
         for i in order_of_insertion(&self.inner.geometry, points) {
-            let before = self.vertex_count();
-            let vertex = self.insert_near(points[i as usize], near);
-            if self.vertex_count() > before {
-                self.lent.insert(vertex);
+            let (count, p) = (self.vertex_count(), points[i as usize]);
+            let vertex = self.lines.insert_point(&mut self.inner, p, near);
+            let is_new = self.vertex_count() > count;
+            if is_new || self.is_added(vertex) {
+                self.lines.owned.insert(vertex);
+            }
+            if is_known.is_ok() {
+                is_known = self.give(vertex, p, is_new);
+            } else if self.lines.added.remove(vertex) {
+                self.replace_point(vertex, p);
             }
             vertices[i as usize] = vertex;
             near = self.tds().cell_of(vertex);
         }
-        vertices
+        (vertices, is_known)
     }
 
     /// Removes a line. Edges that other lines share stay constrained; vertices that were added for it, or came with it,
@@ -175,11 +161,11 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// # Complexity
     /// As for [`insert_lines`](Self::insert_lines).
     pub fn remove_line(&mut self, line: LineId) -> bool {
-        let removed = self.lines.given.get_mut(line.index()).and_then(Option::take).is_some();
-        if removed {
-            self.rearrange();
+        let is_there = self.lines.paths.given.get(line.index()).is_some_and(Option::is_some);
+        if is_there {
+            self.change_lines(vec![(line, None)]);
         }
-        removed
+        is_there
     }
 
     /// Divides a line at one of the vertices that it was given by, counted from 0: it keeps its first part, the rest
@@ -188,16 +174,15 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// # Complexity
     /// Linear in the line's vertices: no triangle changes.
     pub fn split_line(&mut self, line: LineId, at: usize) -> Option<LineId> {
-        let given = self.lines.given.get_mut(line.index())?;
-        let vertices = given.as_deref()?;
+        let vertices = self.line_vertices(line).to_vec();
         if at == 0 || at + 1 >= vertices.len() {
             return None;
         }
-        let (first, rest) = (vertices[..=at].into(), vertices[at..].into());
-        *given = Some(first);
-        self.lines.given.push(Some(rest));
-        self.lines.touch();
-        Some(LineId::new(self.lines.given.len() - 1))
+        let rest = LineId::new(self.lines.paths.given.len());
+        self.lines.paths.given.push(None);
+        self.lines.rename(rest, Some(vertices[at..].into()));
+        self.lines.rename(line, Some(vertices[..=at].into()));
+        Some(rest)
     }
 
     /// Appends a line to another that ends where it begins; the second id is free then. `false`, and nothing is
@@ -211,158 +196,124 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             return false;
         }
         let joined = [head, &tail[1..]].concat();
-        self.lines.given[first.index()] = Some(joined[..].into());
-        self.lines.given[second.index()] = None;
-        self.lines.touch();
+        self.lines.rename(first, Some(joined[..].into()));
+        self.lines.rename(second, None);
         true
     }
 
-    /// Carries out the difference between what is there and what the lines ask for.
-    pub(in super::super) fn rearrange(&mut self) {
-        self.lines.touch();
-        let used: HashSet<VertexId> = self.lines.each().flatten().copied().collect();
-        let leaving: HashSet<VertexId> = self.lent.iter().copied().filter(|v| !used.contains(v)).collect();
-        let demand = self.demand(&leaving);
-        if self.dimension() < 2 {
-            self.waiting = demand.segments.iter().map(|ends| ends.map(|i| demand.given[i as usize])).collect();
-            // What lay between their ends may be there no more.
-            self.lines.led.clear();
-            self.lines.splits.clear();
-            self.take_out(leaving);
-            return;
+    /// How many times all lines have been arranged anew since construction: by edits of many lines, and by those that
+    /// could not be carried out where they were.
+    pub fn rearrangements(&self) -> usize {
+        self.lines.rearrangements
+    }
+
+    /// Gives lines other vertices, or none.
+    pub(super) fn change_lines(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) {
+        let before = self.lines.replace(changes);
+        if self.lines.change(&mut self.inner, &before).is_err() {
+            self.rearrange();
         }
-        self.waiting.clear();
-        let place = |i: u32| demand.places[i as usize];
-        let step = self.inner.geometry.step();
-        let arrangement = Arrangement::new(demand.given.len(), place, &demand.segments, step);
-        self.left_out = self.carry_out(&arrangement, &demand, leaving);
-        self.was_tangled = !self.left_out.is_empty();
-        if self.was_tangled {
-            let arrangement = arrangement.settled(place, &demand.segments, step);
-            self.left_out = self.carry_out(&arrangement, &demand, HashSet::new());
+    }
+}
+
+/// Lines, each with the vertices that it had before.
+type Before = Vec<(LineId, Option<LineVertices>)>;
+
+impl Lines {
+    /// Whether so many vertices of lines are few, so that it is faster to change them one by one than to arrange all
+    /// anew.
+    fn is_few(&self, vertices: usize) -> bool {
+        vertices <= 32 + self.paths.given.len() / 32
+    }
+
+    /// The lines that were given by a vertex, in order.
+    fn given_by<G: Crossing, V, C: Copy + Default>(&self, t: &Mesh<G, V, C>, vertex: VertexId) -> Vec<LineId> {
+        let names = |line: &LineId| self.paths.vertices(*line).contains(&vertex);
+        if t.dimension() < 2 {
+            return self.paths.numbered().map(|(line, _)| line).filter(names).collect();
+        }
+        let index = self.index();
+        let edges = t.constrained_around(vertex).map(|other| undirected(vertex, other));
+        let segments = edges.flat_map(|edge| index.segments_on(&self.paths, edge));
+        let lines = segments.filter(|segment| segment.contains(&vertex)).flat_map(|segment| index.lines_of(segment));
+        let mut lines: Vec<LineId> = lines.chain(index.dots.iter().filter(|line| names(line))).copied().collect();
+        lines.sort_unstable();
+        lines.dedup();
+        lines
+    }
+
+    /// Gives lines other vertices, or none, before their segments are changed; returns those that they had.
+    fn replace(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) -> Before {
+        self.index(); // of what is there
+        let given = &mut self.paths.given;
+        changes.into_iter().map(|(line, new)| (line, std::mem::replace(&mut given[line.index()], new))).collect()
+    }
+
+    /// Gives a line other vertices whose segments are there.
+    fn rename(&mut self, line: LineId, vertices: Option<LineVertices>) {
+        let old = std::mem::replace(&mut self.paths.given[line.index()], vertices);
+        if let Some(index) = self.index.get_mut() {
+            index.rename(line, old.as_deref().unwrap_or_default(), self.paths.vertices(line));
         }
     }
 
-    /// Removes vertices that nothing needs.
-    fn take_out(&mut self, leaving: HashSet<VertexId>) {
-        self.lent.retain(|v| !leaving.contains(v));
-        let mut leaving: Vec<VertexId> = leaving.into_iter().collect();
-        leaving.sort_unstable();
-        for vertex in leaving {
-            self.remove_free(vertex);
-        }
-    }
-
-    /// What the lines ask for, without vertices that leave.
-    fn demand(&self, leaving: &HashSet<VertexId>) -> Demand {
-        let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
-        let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
-        let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
-        let segments = segments_of(self.lines.each(), number);
-        let places = given.iter().map(|&v| self.plan_of(v)).collect();
-        Demand { given, places, segments }
-    }
-
-    /// Makes the triangulation that of an arrangement of what was asked for, without vertices that leave. Returns the
-    /// pieces that cross others.
-    fn carry_out(
+    /// Carries out what lines ask for that had other vertices before.
+    fn change<G: Crossing, V: Default, C: Copy + Default>(
         &mut self,
-        arrangement: &Arrangement,
-        Demand { given, segments, .. }: &Demand,
-        mut leaving: HashSet<VertexId>,
-    ) -> Vec<Piece> {
-        // Phase 1: sites that stay keep their vertices, others go.
-        let mut at_place: HashMap<[u64; 2], VertexId> =
-            self.crossings.iter().map(|&v| (key(self.plan_of(v)), v)).collect();
-        let mut sites: Vec<Option<VertexId>> = given.iter().copied().map(Some).collect();
-        sites.extend(arrangement.added().iter().map(|&place| at_place.remove(&key(place))));
-        leaving.extend(at_place.into_values());
-
-        // Phase 2: which pieces are there.
-        let mut splits = FxHashMap::default();
-        let mut kept = HashSet::new();
-        let mut way = Vec::new();
-        for (i, &[a, b]) in (0..).zip(segments) {
-            let mut from = sites[a as usize];
-            for &site in arrangement.chain(i).iter().chain([&b]) {
-                let to = sites[site as usize];
-                let ends = from.zip(to);
-                from = to;
-                let Some((from, to)) = ends else { continue };
-                way.clear();
-                way.push(from);
-                self.lines.walk_piece(from, to, &mut way);
-                let is_there = way.windows(2).all(|edge| self.is_wall(edge[0], edge[1]));
-                if is_there && !way.iter().any(|v| leaving.contains(v)) {
-                    kept.extend(way.windows(2).map(|edge| undirected(edge[0], edge[1])));
-                    self.lines.copy_splits(from, to, &mut splits);
+        t: &mut Mesh<G, V, C>,
+        before: &Before,
+    ) -> Result<(), NotLocal> {
+        let vertices = |(line, old): &(LineId, Option<LineVertices>)| {
+            old.as_deref().unwrap_or_default().len() + self.paths.vertices(*line).len()
+        };
+        if t.dimension() < 2 || !self.is_few(before.iter().map(vertices).sum()) {
+            return Err(NotLocal);
+        }
+        for (line, old) in before {
+            let old = old.as_deref().unwrap_or_default();
+            let new = self.paths.vertices(*line).to_vec();
+            let [gone, come]: [Vec<Ends>; 2] = [old, &new].map(|vertices| segments_of([vertices].into_iter(), |v| v));
+            let is_in = |segments: &[Ends], segment: &Ends| segments.binary_search(segment).is_ok();
+            for &segment in gone.iter().filter(|segment| !is_in(&come, segment)) {
+                if self.measured(t)?.detach(segment, *line) {
+                    let ends = segment.map(|v| place(t, v));
+                    self.measured(t)?.count_ends(ends, false)?;
+                    Edit::on(t, self)?.remove_segment(segment)?;
+                }
+            }
+            for &segment in come.iter().filter(|segment| !is_in(&gone, segment)) {
+                if !self.measured(t)?.has_segment(segment) {
+                    let ends = segment.map(|v| place(t, v));
+                    self.measured(t)?.count_ends(ends, true)?;
+                    Edit::on(t, self)?.add_segment(segment)?;
+                }
+                self.measured(t)?.attach(segment, *line);
+            }
+            self.measured(t)?.dots.retain(|other| other != line);
+            if come.is_empty() && self.paths.given[line.index()].is_some() {
+                self.measured(t)?.dots.push(*line);
+            }
+        }
+        for &vertex in before.iter().filter_map(|(_, old)| old.as_deref()).flatten() {
+            if self.owned.contains(vertex) && self.given_by(t, vertex).is_empty() {
+                self.owned.remove(vertex);
+                if self.remove_free(t, vertex).is_none() {
+                    self.withdraw(t, vertex)?;
+                } else if t.dimension() < 2 {
+                    return Err(NotLocal);
                 }
             }
         }
-
-        // Phase 3: the rest is taken out.
-        let constrained: Vec<Piece> = self.constrained_edges().collect();
-        for [a, b] in constrained.into_iter().filter(|edge| !kept.contains(edge)) {
-            self.clear_wall(a, b);
-        }
-        self.lines.splits = splits;
-        self.crossings.retain(|v| !leaving.contains(v));
-        self.take_out(leaving);
-
-        // Phase 4: new sites and pieces are put in.
-        let added = points_added(&self.inner.geometry, arrangement, segments, |i| *self.point(given[i as usize]));
-        let mut near = None;
-        for i in order_of_insertion(&self.inner.geometry, &added) {
-            let (site, p) = (&mut sites[given.len() + i as usize], added[i as usize]);
-            match *site {
-                Some(vertex) => {
-                    self.replace_point(vertex, p);
-                }
-                None => {
-                    let count = self.vertex_count();
-                    let vertex = self.insert_near(p, near);
-                    self.crossings.extend((self.vertex_count() > count).then_some(vertex));
-                    *site = Some(vertex);
-                    near = self.tds().cell_of(vertex);
-                }
-            }
-        }
-        self.crossings.sort_unstable();
-        let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all of them
-        let pieces = self.lines.lead(arrangement, segments, |site| sites[site as usize]);
-        let crossing = self.join_all(pieces, arrangement);
-        self.lines.touch();
-        crossing
+        Ok(())
     }
 
-    pub(in super::super) fn plan_of(&self, vertex: VertexId) -> [f64; 2] {
-        self.inner.geometry.plan(self.point(vertex))
+    /// Removes a vertex that no line was given by, and that constraints run through.
+    fn withdraw<G: Crossing, V: Default, C: Copy + Default>(
+        &mut self,
+        t: &mut Mesh<G, V, C>,
+        vertex: VertexId,
+    ) -> Result<(), NotLocal> {
+        self.owned.insert(vertex); // it goes, too, if all is arranged anew
+        Edit::on(t, self)?.withdraw(vertex)
     }
-}
-
-/// Returns the order in which points are inserted one by one: a few as they come; many in random
-/// rounds, each about twice as large as the one before and in spatial order. Then O(n log n) triangles are expected to
-/// come and go, wherever the points lie (Amenta, Choi and Rote 2003).
-fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::Point]) -> Vec<u32> {
-    const FEW: usize = 256;
-    if points.len() <= FEW {
-        return (0..points.len() as u32).collect();
-    }
-    let Ok(mut order) = spatial_order(points.len(), |i| geometry.coordinates(&points[i])) else {
-        return (0..points.len() as u32).collect(); // more than can be numbered
-    };
-    let mut dice = Dice::default();
-    let mut rounds = vec![0; points.len()];
-    // Of points on one site, which come in a row, the first stays the first.
-    for here in order.chunk_by(|&i, &j| geometry.compare(&points[i as usize], &points[j as usize]).is_eq()) {
-        let round = (1 << 16 | dice.below(1 << 16)).trailing_zeros();
-        here.iter().for_each(|&i| rounds[i as usize] = round);
-    }
-    order.sort_by_key(|&i| Reverse(rounds[i as usize]));
-    order
-}
-
-/// Equal places have equal keys: coordinates of vertices have one zero only.
-fn key(place: [f64; 2]) -> [u64; 2] {
-    place.map(|x| (x + 0.0).to_bits())
 }

@@ -1,7 +1,6 @@
 //! Who is who among the lines of a constrained triangulation.
 
 use std::ops::{Deref, DerefMut};
-use std::sync::OnceLock;
 
 use rustc_hash::FxHashMap;
 
@@ -26,15 +25,13 @@ pub type LineId = Id<LineTag>;
 /// So a line takes 24 bytes, and 4 for each of its vertices if they are not two; a segment that crosses others about 40
 /// more, and 4 for each site on it.
 #[derive(Debug, Clone, Default)]
-pub(in super::super) struct Lines {
+pub(in super::super) struct Paths {
     /// By their ids.
     pub(in super::super) given: Vec<Option<LineVertices>>,
     /// Of segments, from the smaller vertex to the larger: the sites between.
-    pub(in super::super) led: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
+    pub(in super::super) bent: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
     /// Of pieces: the vertex on which they were split.
     pub(in super::super) splits: FxHashMap<[VertexId; 2], VertexId>,
-    /// The lines on each edge, sorted; made when it is first asked for.
-    on_edges: OnceLock<Vec<([VertexId; 2], LineId)>>,
 }
 
 /// The vertices that a line was given by.
@@ -90,20 +87,20 @@ pub(in super::super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
     if a < b { [a, b] } else { [b, a] }
 }
 
-/// Each segment of some lines once, from the smaller vertex to the larger, in order; the numbers keep the order of the
-/// vertices.
-pub(in super::super) fn segments_of<'a>(
+/// Each segment of some lines once, from the smaller vertex to the larger, in order; what stands for the vertices keeps
+/// their order.
+pub(in super::super) fn segments_of<'a, T: Ord>(
     lines: impl Iterator<Item = &'a [VertexId]>,
-    number: impl Fn(VertexId) -> u32,
-) -> Vec<[u32; 2]> {
+    of_vertex: impl Fn(VertexId) -> T,
+) -> Vec<[T; 2]> {
     let pairs = lines.flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
-    let mut segments: Vec<[u32; 2]> = pairs.map(|pair| undirected(pair[0], pair[1]).map(&number)).collect();
+    let mut segments: Vec<[T; 2]> = pairs.map(|pair| undirected(pair[0], pair[1]).map(&of_vertex)).collect();
     segments.sort_unstable();
     segments.dedup();
     segments
 }
 
-impl Lines {
+impl Paths {
     /// The vertices of each line that is there.
     pub(in super::super) fn each(&self) -> impl Iterator<Item = &[VertexId]> {
         self.given.iter().flatten().map(|line| &**line)
@@ -111,13 +108,13 @@ impl Lines {
 
     /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each
     /// once, in order.
-    pub(in super::super) fn lead(
+    pub(in super::super) fn record(
         &mut self,
         arrangement: &Arrangement,
         segments: &[[u32; 2]],
         vertex: impl Fn(u32) -> VertexId,
     ) -> Vec<[VertexId; 2]> {
-        self.led.clear();
+        self.bent.clear();
         let mut pieces = Vec::with_capacity(segments.len());
         for (i, ends) in (0..).zip(segments) {
             let [a, b] = ends.map(&vertex);
@@ -134,22 +131,27 @@ impl Lines {
             if a > b {
                 between.reverse();
             }
-            self.led.insert(undirected(a, b), between);
+            self.bent.insert(undirected(a, b), between);
         }
         pieces.sort_unstable();
         pieces.dedup();
         pieces
     }
 
-    /// Forgets what was derived. After every change.
-    pub(in super::super) fn touch(&mut self) {
-        self.on_edges.take();
+    /// The segments of all lines, each once, from the smaller vertex to the larger, in order.
+    pub(in super::super) fn segments(&self) -> Vec<[VertexId; 2]> {
+        segments_of(self.each(), |v| v)
+    }
+
+    /// The sites that a segment passes through, its ends with them.
+    pub(in super::super) fn sites(&self, [a, b]: [VertexId; 2]) -> Vec<VertexId> {
+        let between = self.bent.get(&[a, b]).into_iter().flatten().copied();
+        [a].into_iter().chain(between).chain([b]).collect()
     }
 
     /// Puts down that the edge was split.
     pub(in super::super) fn split(&mut self, a: VertexId, b: VertexId, at: VertexId) {
         self.splits.insert(undirected(a, b), at);
-        self.touch();
     }
 
     /// Adds the way of a segment to `chain`, without its start.
@@ -159,7 +161,7 @@ impl Lines {
             self.walk_piece(at, site, chain);
             at = site;
         };
-        if let Some(sites) = self.led.get(&undirected(a, b)) {
+        if let Some(sites) = self.bent.get(&undirected(a, b)) {
             if a < b {
                 sites.iter().for_each(|&site| steps(site));
             } else {
@@ -187,6 +189,43 @@ impl Lines {
         }
     }
 
+    /// Calls with each node of a segment: its sub-constraints, and what these were split into.
+    pub(super) fn nodes(&self, segment: [VertexId; 2], mut visit: impl FnMut([VertexId; 2])) {
+        let mut at = segment[0];
+        let mut parts = Vec::new();
+        for &site in self.bent.get(&segment).into_iter().flatten().chain([&segment[1]]) {
+            parts.push(undirected(at, site));
+            at = site;
+            while let Some(part) = parts.pop() {
+                visit(part);
+                if let Some(&between) = self.splits.get(&part) {
+                    parts.extend(part.map(|end| undirected(end, between)));
+                }
+            }
+        }
+    }
+
+    /// The vertices that a line was given by; none of one that does not exist.
+    pub(super) fn vertices(&self, line: LineId) -> &[VertexId] {
+        self.given.get(line.index()).and_then(Option::as_deref).unwrap_or_default()
+    }
+
+    /// The lines that are there, each with the vertices that it was given by.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (LineId, &[VertexId])> {
+        let given = self.given.iter().enumerate();
+        given.filter_map(|(number, line)| Some((LineId::new(number), line.as_deref()?)))
+    }
+
+    /// Drops splits of edges that are on the chain of no segment.
+    pub(in super::super) fn drop_stray_splits(&mut self) {
+        let mut splits = FxHashMap::default();
+        for ends in self.segments() {
+            let sites = self.sites(ends);
+            sites.windows(2).for_each(|part| self.copy_splits(part[0], part[1], &mut splits));
+        }
+        self.splits = splits;
+    }
+
     /// Adds what this table tells of a piece to another one.
     pub(in super::super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
         let mut pieces = vec![undirected(a, b)];
@@ -204,7 +243,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Adds the way of a segment to `chain`, without its start.
     fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         if self.dimension() == 2 {
-            return self.lines.walk(a, b, chain);
+            return self.lines.paths.walk(a, b, chain);
         }
         // No edge could be split where all points are collinear.
         let first = chain.len();
@@ -218,28 +257,16 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         chain.push(b);
     }
 
-    fn on_edges(&self) -> &[([VertexId; 2], LineId)] {
-        self.lines.on_edges.get_or_init(|| {
-            let mut on_edges = Vec::new();
-            for line in self.lines() {
-                on_edges.extend(self.chain(line).windows(2).map(|pair| (undirected(pair[0], pair[1]), line)));
-            }
-            on_edges.sort_unstable();
-            on_edges.dedup();
-            on_edges
-        })
-    }
-
     /// The ids of all lines, in order.
     pub fn lines(&self) -> impl Iterator<Item = LineId> + '_ {
-        let given = self.lines.given.iter().enumerate();
+        let given = self.lines.paths.given.iter().enumerate();
         given.filter(|(_, line)| line.is_some()).map(|(index, _)| LineId::new(index))
     }
 
     /// The vertices that a line was given by, in order: where several points were given for one site, its vertex.
     /// Empty for a line that does not exist.
     pub fn line_vertices(&self, line: LineId) -> &[VertexId] {
-        self.lines.given.get(line.index()).and_then(Option::as_deref).unwrap_or_default()
+        self.lines.paths.vertices(line)
     }
 
     /// The vertices of a line in the triangulation, in order: those that it was given by, and those that it meets on
@@ -273,19 +300,27 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// The ids of all lines that run along the edge between two vertices, in order.
     ///
     /// # Complexity
-    /// A binary search; the first call after a change takes O(n log n) for n edges of lines, and 12 bytes for each of
-    /// them while the triangulation stays as it is.
+    /// Constant time for each line; the first call after construction takes linear time, and about 40 bytes for each
+    /// segment, and for each edge of segments that are more than one.
     pub fn lines_through(&self, a: VertexId, b: VertexId) -> impl ExactSizeIterator<Item = LineId> + '_ {
-        let on_edges = self.on_edges();
         let edge = undirected(a, b);
-        let first = on_edges.partition_point(|(e, _)| *e < edge);
-        let count = on_edges[first..].partition_point(|(e, _)| *e == edge);
-        on_edges[first..first + count].iter().map(|&(_, line)| line)
+        let mut lines: Vec<LineId> = Vec::new();
+        if self.dimension() < 2 {
+            let runs_along =
+                |line: &LineId| self.chain(*line).windows(2).any(|pair| undirected(pair[0], pair[1]) == edge);
+            lines.extend(self.lines().filter(runs_along));
+        } else if !self.lines.paths.splits.contains_key(&edge) {
+            let index = self.lines.index();
+            lines.extend(index.segments_on(&self.lines.paths, edge).flat_map(|segment| index.lines_of(segment)));
+            lines.sort_unstable();
+            lines.dedup();
+        }
+        lines.into_iter()
     }
 
     /// Whether a vertex was added where lines cross, rather than given.
     pub fn is_added(&self, vertex: VertexId) -> bool {
-        self.crossings.binary_search(&vertex).is_ok()
+        self.lines.added.contains(vertex)
     }
 }
 
@@ -293,14 +328,13 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 mod tests {
     use super::*;
 
-    /// What the docs of [`Lines`] say.
+    /// What the docs of [`Paths`] say.
     #[test]
     fn lines_are_small() {
         assert_eq!(size_of::<Option<LineVertices>>(), 24, "a line");
         assert_eq!(size_of::<VertexId>(), 4, "a vertex of a line, a site on a segment");
         assert_eq!(size_of::<([VertexId; 2], Box<[VertexId]>)>(), 24, "a segment that crosses others, in the table");
         assert_eq!(size_of::<([VertexId; 2], VertexId)>(), 12, "an edge that was split, in the table");
-        assert_eq!(size_of::<([VertexId; 2], LineId)>(), 12, "a line on an edge, once that was asked for");
         assert_eq!(size_of::<super::super::super::Walls>(), 1, "the flags of three edges, at each triangle");
     }
 }

@@ -50,8 +50,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         }
         kept.extend(vertices.last());
         if !gone.is_empty() {
-            self.lines.given[line.index()] = Some(kept[..].into());
-            self.rearrange();
+            self.change_lines(vec![(line, Some(kept[..].into()))]);
         }
         gone.len()
     }
@@ -62,7 +61,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         edges.all(|other| {
             other == vertex
                 || other == VertexId::INFINITE
-                || !self.is_wall(vertex, other)
+                || !self.inner.has_constraint(vertex, other)
                 || self.lines_through(vertex, other).eq([line])
         })
     }
@@ -92,8 +91,9 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             {
                 continue;
             }
-            let blocks =
-                |&v: &VertexId| !corners.contains(&v) && !gone.contains(&v) && self.is_on_constraint(v) && holds(v);
+            let blocks = |&v: &VertexId| {
+                !corners.contains(&v) && !gone.contains(&v) && self.lines.is_on_constraint(&self.inner, v) && holds(v)
+            };
             if theirs.iter().any(blocks) {
                 return false;
             }

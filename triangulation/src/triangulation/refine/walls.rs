@@ -71,7 +71,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let is_right =
             |k| if after_a < after_b { (after_a..after_b).contains(&k) } else { !(after_b..after_a).contains(&k) };
         let vertex = self.star(zone, p, Origin::Wall(constraint), |k| sides[usize::from(is_right(k))]);
-        self.t.lines.split(a, b, vertex);
+        self.t.lines.split_edge(a, b, vertex);
         for k in 0..self.t.inner.zone.star.len() {
             let cell = self.t.inner.zone.star[k];
             let Some(i) = self.t.tds().index_of(cell, vertex) else { continue };
@@ -129,7 +129,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             }
             let around: Vec<CellId> = self.t.tds().around(apex).collect();
             let outside = self.beyond(edge);
-            if self.t.remove_free(apex).is_none() {
+            if self.t.lines.remove_free(&mut self.t.inner, apex).is_none() {
                 return edge;
             }
             self.fresh.extend(around.into_iter().filter(|&cell| self.t.tds().is_used(cell)));

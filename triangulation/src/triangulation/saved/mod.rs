@@ -19,7 +19,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
-use super::lines::constrain::Scratch;
+use super::lines::trace::Scratch;
 use super::{Basic, Constrained, Delaunay, Flaw, InputError, Level, MAX_VERTICES, Regular, Triangulation, Walls};
 
 /// What is saved. Written from slices, read into vectors.

@@ -1,0 +1,160 @@
+//! What the tables of lines claim, checked against the triangulation.
+
+use std::fmt;
+
+use rustc_hash::FxHashSet;
+
+use crate::geometry::Crossing;
+use crate::tds::VertexId;
+
+use super::super::{Flaw, Rounding, Triangulation, Walls};
+use super::Lines;
+use super::paths::undirected;
+
+/// What is wrong with the lines of a triangulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LinesFlaw {
+    /// The chain of the segment between these vertices does not run in order on both axes, or meets a vertex twice.
+    Order(VertexId, VertexId),
+    /// The chain of the segment between these vertices leads over an edge that is not constrained.
+    Unconstrained(VertexId, VertexId),
+    /// The tables name sites, or split edges, that are on the chain of no segment.
+    Stray,
+    /// A constraint waits for triangles, though there are some.
+    Waiting(VertexId, VertexId),
+    /// The grid of the rounding does not fit the lines.
+    Rounding,
+    /// The index of segments by edges does not agree with their chains.
+    Index,
+    /// A vertex that was added where lines cross is on no constraint, or was given.
+    Added(VertexId),
+    /// A vertex that came with lines is named by none.
+    Owned(VertexId),
+}
+
+impl fmt::Display for LinesFlaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            LinesFlaw::Order(a, b) => {
+                write!(f, "the chain of the segment between vertices {} and {} is not in order", a.index(), b.index())
+            }
+            LinesFlaw::Unconstrained(a, b) => {
+                write!(
+                    f,
+                    "the chain of the segment between vertices {} and {} is not constrained",
+                    a.index(),
+                    b.index()
+                )
+            }
+            LinesFlaw::Stray => f.write_str("the chain of a segment belongs to no line"),
+            LinesFlaw::Waiting(a, b) => {
+                write!(f, "the constraint between vertices {} and {} waits for triangles", a.index(), b.index())
+            }
+            LinesFlaw::Rounding => f.write_str("the unit of the grid does not fit the lines"),
+            LinesFlaw::Index => f.write_str("the index of segments does not agree with their chains"),
+            LinesFlaw::Added(v) => write!(f, "vertex {} was added where no lines cross", v.index()),
+            LinesFlaw::Owned(v) => write!(f, "vertex {} came with no line", v.index()),
+        }
+    }
+}
+
+impl Lines {
+    /// What is wrong with the tables. Linear in the lengths of all chains.
+    pub(in super::super) fn check<G: Crossing, V, C: Copy + Default>(
+        &self,
+        t: &Triangulation<G, 3, V, Walls<C>>,
+    ) -> Vec<Flaw> {
+        let is_flat = t.dimension() < 2;
+        let constraints: FxHashSet<[VertexId; 2]> = match is_flat {
+            true => self.waiting.iter().map(|&[a, b]| undirected(a, b)).collect(),
+            false => t.constrained_edges().collect(),
+        };
+        let waiting = self.waiting.iter().filter(|_| !is_flat).map(|&[a, b]| LinesFlaw::Waiting(a, b));
+        let segments = self.paths.segments();
+        let mut flaws: Vec<LinesFlaw> = waiting.collect();
+        self.check_chains(t, &segments, &constraints, &mut flaws);
+        flaws.extend((!self.has_fitting_grid(t, &segments)).then_some(LinesFlaw::Rounding));
+        let named: FxHashSet<VertexId> = self.paths.each().flatten().copied().collect();
+        let constrained: FxHashSet<VertexId> = constraints.into_iter().flatten().collect();
+        let is_crossing = |v: &VertexId| constrained.contains(v) && !named.contains(v);
+        flaws.extend(self.added.iter().filter(|v| !is_crossing(v)).map(LinesFlaw::Added));
+        flaws.extend(self.owned.iter().filter(|v| !named.contains(v)).map(LinesFlaw::Owned));
+        if let Some(index) = self.index.get() {
+            flaws.extend(segments.iter().filter(|&&ends| !index.knows(&self.paths, ends)).map(|_| LinesFlaw::Index));
+        }
+        let missing = self.missing.iter().map(|&[a, b]| Flaw::Missing(a, b));
+        missing.chain(flaws.into_iter().map(Flaw::Lines)).collect()
+    }
+
+    /// Adds the flaws of segments whose chains do not lead over constraints to their ends, and of entries for others.
+    fn check_chains<G: Crossing, V, C: Copy + Default>(
+        &self,
+        t: &Triangulation<G, 3, V, Walls<C>>,
+        segments: &[[VertexId; 2]],
+        constraints: &FxHashSet<[VertexId; 2]>,
+        flaws: &mut Vec<LinesFlaw>,
+    ) {
+        let mut splits: FxHashSet<[VertexId; 2]> = FxHashSet::default();
+        let mut bent = 0;
+        for &ends in segments {
+            bent += usize::from(self.paths.bent.contains_key(&ends));
+            let sites = self.paths.sites(ends);
+            let mut met: FxHashSet<VertexId> = sites.iter().copied().collect();
+            if met.len() < sites.len() || !sites.windows(2).all(|pair| runs_along(t, ends, [pair[0], pair[1]])) {
+                flaws.push(LinesFlaw::Order(ends[0], ends[1]));
+                continue;
+            }
+            let mut parts: Vec<[VertexId; 2]> = sites.windows(2).map(|pair| undirected(pair[0], pair[1])).collect();
+            while let Some(part) = parts.pop() {
+                match self.paths.splits.get(&part) {
+                    Some(&between) if met.insert(between) => {
+                        splits.insert(part);
+                        parts.extend(part.map(|end| undirected(end, between)));
+                    }
+                    Some(_) => {
+                        flaws.push(LinesFlaw::Order(ends[0], ends[1]));
+                        break;
+                    }
+                    None if constraints.contains(&part) => {}
+                    None => flaws.push(LinesFlaw::Unconstrained(ends[0], ends[1])),
+                }
+            }
+        }
+        if flaws.is_empty() && (bent, splits.len()) != (self.paths.bent.len(), self.paths.splits.len()) {
+            flaws.push(LinesFlaw::Stray);
+        }
+    }
+
+    /// Whether what is known of the rounding can be true.
+    fn has_fitting_grid<G: Crossing, V, C>(
+        &self,
+        t: &Triangulation<G, 3, V, Walls<C>>,
+        segments: &[[VertexId; 2]],
+    ) -> bool
+    where
+        C: Copy + Default,
+    {
+        let Some(Rounding { unit, on_grid }) = self.rounding else { return !self.recrossed };
+        let is_power_of_two = |x: f64| {
+            let bits = x.to_bits();
+            x > 0.0 && x.is_finite() && (bits.trailing_zeros() >= 52 || bits.is_power_of_two())
+        };
+        let is_multiple = |v: VertexId| {
+            let at = t.geometry.plan(t.point(v));
+            (0..2).all(|axis| at[axis] % unit[axis] == 0.0)
+        };
+        let mut sites = segments.iter().flat_map(|&ends| self.paths.sites(ends));
+        unit.into_iter().all(is_power_of_two) && !(self.recrossed && on_grid) && (!on_grid || sites.all(is_multiple))
+    }
+}
+
+/// Whether a sub-constraint runs in the direction of its segment, on both axes.
+fn runs_along<G: Crossing, V, C: Copy + Default>(
+    t: &Triangulation<G, 3, V, Walls<C>>,
+    segment: [VertexId; 2],
+    part: [VertexId; 2],
+) -> bool {
+    let [[a, b], [p, q]] = [segment, part].map(|ends| ends.map(|v| t.geometry.plan(t.point(v))));
+    (0..2).all(|axis| p[axis] == q[axis] || (p[axis] < q[axis]) == (a[axis] < b[axis]) && a[axis] != b[axis])
+}

@@ -1,0 +1,521 @@
+//! Edits of one segment or one site, carried out where they are.
+//!
+//! What bends which segment is the least set with these rules (see [`arrangement`](crate::arrangement)):
+//!
+//! - A site is *hot* if a segment ends in it, if the crossing of two segments was rounded to it, or if it is a given
+//!   point exactly on a bent segment.
+//! - A segment is *bent* if it crosses another one, or meets the pixel of an active site that is no end of it. It is led
+//!   through all hot sites whose pixels it meets.
+//! - A hot site is *active* if a bent segment is led through it that does not pass through it exactly, as a given point.
+//!
+//! An edit that adds follows the rules from what is new. One that takes away first takes back what may have hung on it:
+//! from site to site, the segments there that cross no other. What is left hangs on crossings that are left. Then it
+//! adds what the rules ask for.
+//!
+//! *Where to look.* A point of a segment is within half a unit of its chain, on each axis, and the other way around. So
+//! who meets a pixel passes within one unit of its center, and what crosses a segment passes within half a unit of it.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::arrangement::{Rounder, crosses, is_aligned};
+use crate::geometry::Crossing;
+use crate::tds::VertexId;
+
+use super::super::Rounding;
+use super::Lines;
+use super::constrain::Mesh;
+use super::index::{Ends, place};
+use super::near::{Band, near};
+use super::paths::undirected;
+
+/// So many units around a segment or a site are searched. One would do, but for roundings.
+const REACH: f64 = 2.0;
+
+/// Why an edit cannot be local: the grid changes, or sub-constraints cross off the grid, or there are no triangles. All
+/// lines have to be arranged anew.
+#[derive(Debug)]
+pub(super) struct NotLocal;
+
+/// What is still to be looked at.
+enum Step {
+    /// A site has become hot.
+    Attract(VertexId),
+    /// A site has become active.
+    Activate(VertexId),
+    /// A segment is to be bent.
+    Bend(Ends),
+}
+
+/// The consequences of an edit, before they are carried out.
+pub(super) struct Edit<'a, G: Crossing, V, C> {
+    t: &'a mut Mesh<G, V, C>,
+    lines: &'a mut Lines,
+    rounder: Rounder,
+    /// The segment that comes; in no table of edges yet.
+    added: Option<Ends>,
+    /// The segment that goes.
+    removed: Option<Ends>,
+    /// The given vertex that goes.
+    gone: Option<VertexId>,
+    /// The sites of segments that change, in no order; `None` of those that are straight.
+    chains: FxHashMap<Ends, Option<Vec<VertexId>>>,
+    hot: FxHashMap<VertexId, bool>,
+    active: FxHashSet<VertexId>,
+    /// The segments near a site.
+    around: FxHashMap<VertexId, Vec<Ends>>,
+    /// Added vertices through which other segments are led than before.
+    stale: Vec<VertexId>,
+    steps: Vec<Step>,
+}
+
+impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
+    pub(super) fn on(t: &'a mut Mesh<G, V, C>, lines: &'a mut Lines) -> Result<Self, NotLocal> {
+        let rounder = if t.dimension() == 2 { lines.measured(t)?.rounder } else { None }.ok_or(NotLocal)?;
+        Ok(Edit {
+            t,
+            lines,
+            rounder,
+            added: None,
+            removed: None,
+            gone: None,
+            chains: FxHashMap::default(),
+            hot: FxHashMap::default(),
+            active: FxHashSet::default(),
+            around: FxHashMap::default(),
+            stale: Vec::new(),
+            steps: Vec::new(),
+        })
+    }
+
+    /// Inserts a segment that a line has now.
+    pub(super) fn add_segment(mut self, segment: Ends) -> Result<(), NotLocal> {
+        self.added = Some(segment);
+        for end in segment {
+            if !self.lines_at(end).into_iter().any(|other| other.contains(&end) || self.has_site(other, end)) {
+                self.heat(end);
+            }
+        }
+        let ends = self.ends(segment);
+        let mut crossed = Vec::new();
+        for other in self.near_segment(segment).0 {
+            let Some(center) = self.rounder.crossing(ends, self.ends(other)) else { continue };
+            self.add_site(center, [segment, other])?;
+            crossed.push(other);
+        }
+        if crossed.is_empty() {
+            self.bend_if_attracted(segment);
+        } else {
+            crossed.push(segment);
+            self.steps.extend(crossed.into_iter().map(Step::Bend));
+        }
+        self.follow()?;
+        self.carry_out()
+    }
+
+    /// Removes a segment that no line has any more.
+    pub(super) fn remove_segment(mut self, segment: Ends) -> Result<(), NotLocal> {
+        self.removed = Some(segment);
+        let sites = self.lines.paths.sites(segment);
+        self.retract(sites);
+        self.follow()?;
+        self.carry_out()
+    }
+
+    /// Makes a vertex one that is given: a new one, or one that was added for a crossing.
+    pub(super) fn give(mut self, vertex: VertexId, was_added: bool) -> Result<(), NotLocal> {
+        if was_added {
+            self.retract(vec![vertex]);
+        } else {
+            let at = place(self.t, vertex);
+            let around = self.around(vertex);
+            if around.into_iter().any(|segment| self.is_bent(segment) && lies_on(self.ends(segment), at)) {
+                self.heat(vertex);
+            }
+        }
+        self.follow()?;
+        self.carry_out()
+    }
+
+    /// Removes a vertex that no line was given by, or makes it one that was added, if lines cross in it.
+    pub(super) fn withdraw(mut self, vertex: VertexId) -> Result<(), NotLocal> {
+        self.gone = Some(vertex);
+        self.retract(vec![vertex]);
+        if self.is_hot(vertex) {
+            self.steps.push(Step::Activate(vertex));
+            self.stale.push(vertex);
+        }
+        self.follow()?;
+        self.carry_out()
+    }
+
+    fn ends(&self, segment: Ends) -> [[f64; 2]; 2] {
+        segment.map(|v| place(self.t, v))
+    }
+
+    /// The segments near another one, and the vertices; without those that come or go.
+    fn near_segment(&self, segment: Ends) -> (Vec<Ends>, Vec<VertexId>) {
+        let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| REACH * unit));
+        let (edges, vertices) = near(self.t, &band, segment[0]);
+        (self.segments_on(edges), vertices)
+    }
+
+    /// The segments that may meet the pixel of a vertex: with the one that comes, without the one that goes.
+    fn around(&mut self, vertex: VertexId) -> Vec<Ends> {
+        if !self.around.contains_key(&vertex) {
+            let band = Band::around([place(self.t, vertex); 2], self.rounder.unit().map(|unit| REACH * unit));
+            let segments = self.segments_on(near(self.t, &band, vertex).0);
+            self.around.insert(vertex, segments);
+        }
+        self.around[&vertex].iter().copied().chain(self.added).collect()
+    }
+
+    /// The segments that end in a vertex or run through it, without those that come or go.
+    fn lines_at(&self, vertex: VertexId) -> Vec<Ends> {
+        self.segments_on(self.t.constrained_around(vertex).map(|other| undirected(vertex, other)))
+    }
+
+    fn segments_on(&self, edges: impl IntoIterator<Item = Ends>) -> Vec<Ends> {
+        let index = self.lines.index();
+        let segments = edges.into_iter().flat_map(|edge| index.segments_on(&self.lines.paths, edge));
+        let mut segments: Vec<Ends> =
+            segments.filter(|&segment| Some(segment) != self.added && Some(segment) != self.removed).collect();
+        segments.sort_unstable();
+        segments.dedup();
+        segments
+    }
+
+    fn is_bent(&self, segment: Ends) -> bool {
+        self.chains.get(&segment).map_or_else(|| self.lines.paths.bent.contains_key(&segment), Option::is_some)
+    }
+
+    /// Whether a segment is led through a vertex between its ends.
+    fn has_site(&self, segment: Ends, vertex: VertexId) -> bool {
+        if let Some(chain) = self.chains.get(&segment) {
+            return chain.as_ref().is_some_and(|sites| sites.contains(&vertex));
+        }
+        let Some(sites) = self.lines.paths.bent.get(&segment) else { return false };
+        let before = self.order_along(segment);
+        let key = before(vertex);
+        let at = sites.partition_point(|&site| before(site) < key);
+        sites.get(at) == Some(&vertex)
+    }
+
+    /// Keys by which the sites of a segment are in order, from its first end to its second.
+    fn order_along(&self, segment: Ends) -> impl Fn(VertexId) -> [f64; 2] + use<'_, 'a, G, V, C> {
+        let ends = self.ends(segment);
+        let sign = if ends[0] <= ends[1] { 1.0 } else { -1.0 };
+        move |vertex| self.rounder.along(ends, place(self.t, vertex)).map(|x| sign * x)
+    }
+
+    /// The sites of a segment as they are now.
+    fn sites(&self, segment: Ends) -> Vec<VertexId> {
+        let in_table = || self.lines.paths.bent.get(&segment).map(|sites| sites.to_vec());
+        self.chains.get(&segment).cloned().unwrap_or_else(in_table).unwrap_or_default()
+    }
+
+    /// The sites of a bent segment, to change.
+    fn sites_mut(&mut self, segment: Ends) -> &mut Vec<VertexId> {
+        let table = &self.lines.paths.bent;
+        let in_table = || table.get(&segment).map(|sites| sites.to_vec());
+        self.chains.entry(segment).or_insert_with(in_table).get_or_insert_default()
+    }
+
+    fn is_given(&self, vertex: VertexId) -> bool {
+        !self.lines.added.contains(vertex) && self.gone != Some(vertex)
+    }
+
+    /// Whether a segment whose pixel a site is in passes through it as a given point.
+    fn is_exact(&self, segment: Ends, site: VertexId) -> bool {
+        self.is_given(site) && is_aligned(self.ends(segment), place(self.t, site))
+    }
+
+    fn meets_pixel(&self, segment: Ends, site: VertexId) -> bool {
+        !segment.contains(&site) && self.rounder.hits(self.ends(segment), place(self.t, site))
+    }
+
+    fn is_hot(&self, vertex: VertexId) -> bool {
+        self.hot.get(&vertex).copied().unwrap_or_else(|| {
+            self.lines.added.contains(vertex)
+                || self.lines_at(vertex).into_iter().any(|s| s.contains(&vertex) || self.has_site(s, vertex))
+        })
+    }
+
+    fn is_active(&self, site: VertexId) -> bool {
+        self.active.contains(&site)
+            || self.lines_at(site).into_iter().any(|s| self.has_site(s, site) && !self.is_exact(s, site))
+    }
+
+    fn heat(&mut self, site: VertexId) {
+        self.hot.insert(site, true);
+        self.steps.push(Step::Attract(site));
+    }
+
+    /// Makes the rounded crossing of two segments a hot site.
+    fn add_site(&mut self, center: [f64; 2], segments: [Ends; 2]) -> Result<(), NotLocal> {
+        let ends = segments.map(|ends| ends.map(|v| *self.t.point(v)));
+        let p = self.t.geometry.meet(center, &ends.each_ref().map(|ends| ends.each_ref()));
+        self.t.admit(&p).map_err(|_| NotLocal)?;
+        let count = self.t.vertex_count();
+        let near = self.t.tds.cell_of(segments[1][0]);
+        let site = self.lines.insert_point(self.t, p, near);
+        if self.t.vertex_count() > count {
+            self.lines.added.insert(site);
+            self.heat(site);
+        } else if !self.is_hot(site) {
+            self.heat(site);
+        }
+        Ok(())
+    }
+
+    /// Has a segment bent if it meets the pixel of an active site.
+    fn bend_if_attracted(&mut self, segment: Ends) {
+        let vertices = self.near_segment(segment).1;
+        let attracts = |&v: &VertexId| self.meets_pixel(segment, v) && self.is_hot(v) && self.is_active(v);
+        if vertices.iter().any(attracts) {
+            self.steps.push(Step::Bend(segment));
+        }
+    }
+
+    /// Follows the rules to their end.
+    fn follow(&mut self) -> Result<(), NotLocal> {
+        while let Some(step) = self.steps.pop() {
+            match step {
+                Step::Attract(site) => {
+                    if self.is_given(site) && self.rounder.is_even() && !self.rounder.holds(place(self.t, site)) {
+                        return Err(NotLocal); // it takes the grid along
+                    }
+                    for segment in self.around(site) {
+                        if self.is_bent(segment) && self.meets_pixel(segment, site) && !self.has_site(segment, site) {
+                            self.sites_mut(segment).push(site);
+                            if !self.is_exact(segment, site) {
+                                self.steps.push(Step::Activate(site));
+                            }
+                        }
+                    }
+                }
+                Step::Activate(site) => {
+                    if self.active.insert(site) {
+                        for segment in self.around(site) {
+                            if !self.is_bent(segment) && self.meets_pixel(segment, site) {
+                                self.steps.push(Step::Bend(segment));
+                            }
+                        }
+                    }
+                }
+                Step::Bend(segment) => {
+                    if !self.is_bent(segment) {
+                        self.bend(segment);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Leads a segment through all hot sites whose pixels it meets; given points on it become hot.
+    fn bend(&mut self, segment: Ends) {
+        self.chains.insert(segment, Some(Vec::new()));
+        let ends = self.ends(segment);
+        let mut vertices = self.near_segment(segment).1;
+        vertices.retain(|&v| self.meets_pixel(segment, v));
+        let mut sites = Vec::new();
+        for v in vertices {
+            if self.is_hot(v) {
+                sites.push(v);
+                if !self.is_exact(segment, v) {
+                    self.steps.push(Step::Activate(v));
+                }
+            } else if self.is_given(v) && lies_on(ends, place(self.t, v)) {
+                self.heat(v);
+            }
+        }
+        self.chains.insert(segment, Some(sites));
+    }
+
+    /// Takes back what may hang on some sites: the segments that are led through them and cross no other, and so on.
+    /// Sites that are not hot any more are taken off their segments; segments that are still attracted are bent again.
+    fn retract(&mut self, sites: Vec<VertexId>) {
+        let mut seen: FxHashSet<VertexId> = sites.iter().copied().collect();
+        let mut open = sites;
+        let mut known: FxHashSet<Ends> = FxHashSet::default();
+        let mut loose: Vec<Ends> = Vec::new();
+        let mut order: Vec<VertexId> = Vec::new();
+        while let Some(site) = open.pop() {
+            order.push(site);
+            for segment in self.lines_at(site) {
+                if self.is_bent(segment) && known.insert(segment) && !self.crosses_any(segment) {
+                    loose.push(segment);
+                    open.extend(self.sites(segment).into_iter().filter(|&site| seen.insert(site)));
+                }
+            }
+        }
+        self.chains.extend(loose.iter().map(|&segment| (segment, None)));
+        for site in order {
+            let bent: Vec<Ends> = self.lines_at(site).into_iter().filter(|&s| self.is_bent(s)).collect();
+            let is_hot = self.is_end(site) || self.is_crossing(site, &bent) || self.is_on_one(site, &bent);
+            self.hot.insert(site, is_hot);
+            for segment in bent.into_iter().filter(|_| !is_hot) {
+                if self.has_site(segment, site) {
+                    self.sites_mut(segment).retain(|&other| other != site);
+                }
+            }
+        }
+        for segment in loose {
+            self.bend_if_attracted(segment);
+        }
+    }
+
+    /// Whether a segment crosses another one: which is led through one of its sites, or its ends, then.
+    fn crosses_any(&self, segment: Ends) -> bool {
+        let ends = self.ends(segment);
+        let sites = self.sites(segment).into_iter().chain(segment);
+        sites.into_iter().any(|site| self.lines_at(site).into_iter().any(|other| crosses(ends, self.ends(other))))
+    }
+
+    fn is_end(&self, site: VertexId) -> bool {
+        self.lines_at(site).into_iter().any(|segment| segment.contains(&site))
+    }
+
+    /// Whether the crossing of two of some segments is rounded to a site.
+    fn is_crossing(&self, site: VertexId, segments: &[Ends]) -> bool {
+        let at = place(self.t, site);
+        let crosses_here = |i: usize, j: usize| {
+            self.rounder.crossing(self.ends(segments[i]), self.ends(segments[j])).is_some_and(|center| center == at)
+        };
+        (0..segments.len()).any(|i| (0..i).any(|j| crosses_here(i, j)))
+    }
+
+    /// Whether a site is a given point on one of some segments.
+    fn is_on_one(&self, site: VertexId, segments: &[Ends]) -> bool {
+        let at = place(self.t, site);
+        self.is_given(site) && segments.iter().any(|&segment| lies_on(self.ends(segment), at))
+    }
+
+    /// Changes tables and triangulation.
+    fn carry_out(mut self) -> Result<(), NotLocal> {
+        // Phase 1: which vertices go, and which segments get another chain.
+        let is_left = |(&v, &is_hot): (&VertexId, &bool)| (!is_hot && self.lines.added.contains(v)).then_some(v);
+        let mut leaving: Vec<VertexId> = self.hot.iter().filter_map(is_left).collect();
+        if let Some(gone) = self.gone {
+            self.lines.owned.remove(gone);
+            if self.is_hot(gone) {
+                self.lines.added.insert(gone);
+            } else {
+                leaving.push(gone);
+            }
+        }
+        leaving.sort_unstable();
+        let through: Vec<Ends> = leaving.iter().flat_map(|&v| self.lines_at(v)).collect();
+        let mut changed: Vec<(Ends, Option<Box<[VertexId]>>)> = Vec::new();
+        for (segment, sites) in std::mem::take(&mut self.chains) {
+            let ordered = sites.map(|mut sites| {
+                let key = self.order_along(segment);
+                sites.sort_unstable_by(|&u, &v| key(u).partial_cmp(&key(v)).unwrap_or(std::cmp::Ordering::Equal));
+                sites.into_boxed_slice()
+            });
+            if Some(segment) == self.added || ordered.as_ref() != self.lines.paths.bent.get(&segment) {
+                changed.push((segment, ordered));
+            }
+        }
+        if let Some(added) = self.added
+            && !changed.iter().any(|(segment, _)| *segment == added)
+        {
+            changed.push((added, None));
+        }
+        changed.sort_unstable();
+        for segment in through {
+            if let Err(at) = changed.binary_search_by(|(other, _)| other.cmp(&segment)) {
+                changed.insert(at, (segment, self.lines.paths.bent.get(&segment).cloned()));
+            }
+        }
+
+        // Phase 2: the tables.
+        let old = |segment: &Ends| Some(*segment) != self.added;
+        let taken_off: FxHashSet<Ends> =
+            changed.iter().map(|(segment, _)| *segment).filter(old).chain(self.removed).collect();
+        let mut edges: FxHashSet<Ends> = FxHashSet::default();
+        let (index, paths) = self.lines.index_and_paths();
+        let index = index.ok_or(NotLocal)?;
+        taken_off.iter().for_each(|&segment| edges.extend(index.remove_chain(paths, segment)));
+        edges.retain(|&edge| index.segments_on(paths, edge).all(|segment| taken_off.contains(&segment)));
+        let mut stale = std::mem::take(&mut self.stale);
+        let paths = &mut self.lines.paths;
+        edges.retain(|edge| paths.splits.remove(edge).is_none());
+        let mut parts: Vec<Ends> = Vec::new();
+        let segments: Vec<Ends> = changed.iter().map(|(segment, _)| *segment).collect();
+        for (segment, sites) in changed {
+            let before = match &sites {
+                Some(sites) => paths.bent.insert(segment, sites.clone()),
+                None => paths.bent.remove(&segment),
+            };
+            let [before, after] = [before.unwrap_or_default(), sites.unwrap_or_default()];
+            stale.extend(difference(&before, &after));
+            let chain = paths.sites(segment);
+            parts.extend(chain.windows(2).map(|pair| undirected(pair[0], pair[1])));
+        }
+        if let Some(removed) = self.removed {
+            stale.extend(paths.bent.remove(&removed).unwrap_or_default());
+        }
+        parts.sort_unstable();
+        parts.dedup();
+
+        // Phase 3: the triangulation. Edges that were taken off one segment and are asked for by another stay.
+        parts.retain(|part| !edges.remove(part));
+        let mut edges: Vec<Ends> = edges.into_iter().collect();
+        edges.sort_unstable();
+        for [a, b] in edges {
+            self.lines.release(self.t, a, b);
+        }
+        for vertex in leaving {
+            self.lines.added.remove(vertex);
+            self.lines.remove_free(self.t, vertex).ok_or(NotLocal)?;
+        }
+        if self.t.dimension() < 2 {
+            return Err(NotLocal);
+        }
+        for [a, b] in parts {
+            if !self.lines.constrain(self.t, a, b) {
+                return Err(NotLocal);
+            }
+        }
+        for segment in segments {
+            let (index, paths) = self.lines.index_and_paths();
+            index.ok_or(NotLocal)?.add_chain(paths, segment);
+        }
+
+        // Phase 4: points at crossings of other segments than before.
+        stale.sort_unstable();
+        stale.dedup();
+        self.added = None;
+        stale.retain(|&v| self.lines.added.contains(v));
+        stale.into_iter().for_each(|site| self.renew_point(site));
+        let is_rounded = !self.lines.paths.bent.is_empty();
+        self.lines.rounding =
+            is_rounded.then(|| Rounding { unit: self.rounder.unit(), on_grid: self.rounder.is_even() });
+        self.lines.touch();
+        Ok(())
+    }
+
+    /// Has the geometry say anew what the point at a crossing is.
+    fn renew_point(&mut self, site: VertexId) {
+        let segments = self.lines_at(site).into_iter().filter(|&segment| self.has_site(segment, site));
+        let ends: Vec<[G::Point; 2]> = segments.map(|ends| ends.map(|v| *self.t.point(v))).collect();
+        let ends: Vec<[&G::Point; 2]> = ends.iter().map(|ends| ends.each_ref()).collect();
+        if !ends.is_empty() {
+            let p = self.t.geometry.meet(place(self.t, site), &ends);
+            self.t.points[site.index()] = p;
+        }
+    }
+}
+
+/// The vertices that are in one of two lists only.
+fn difference(before: &[VertexId], after: &[VertexId]) -> Vec<VertexId> {
+    let sets = [before, after].map(|sites| sites.iter().copied().collect::<FxHashSet<VertexId>>());
+    sets[0].symmetric_difference(&sets[1]).copied().collect()
+}
+
+/// Whether a place lies on a segment, ends included.
+fn lies_on([a, b]: [[f64; 2]; 2], at: [f64; 2]) -> bool {
+    let is_between = |k: usize| a[k].min(b[k]) <= at[k] && at[k] <= a[k].max(b[k]);
+    is_between(0) && is_between(1) && is_aligned([a, b], at)
+}

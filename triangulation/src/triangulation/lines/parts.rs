@@ -1,0 +1,79 @@
+//! The tables of lines in a form to be saved.
+
+use crate::tds::VertexId;
+
+use super::super::{LineId, Rounding};
+use super::Lines;
+use super::paths::Paths;
+
+/// The content of [`Lines`], in an order that depends on nothing else.
+pub(in super::super) struct Parts {
+    /// By their ids: the vertices that each was given by; `None` where a line has been removed.
+    pub(in super::super) given: Vec<Option<Vec<VertexId>>>,
+    /// Segments that pass through sites, from the smaller end through all of them to the larger.
+    pub(in super::super) bent: Vec<Vec<VertexId>>,
+    /// Edges of chains that were split: the smaller end, the larger, and the vertex between.
+    pub(in super::super) splits: Vec<[VertexId; 3]>,
+    pub(in super::super) waiting: Vec<[VertexId; 2]>,
+    pub(in super::super) added: Vec<VertexId>,
+    /// In order.
+    pub(in super::super) owned: Vec<VertexId>,
+    pub(in super::super) rounding: Option<Rounding>,
+    pub(in super::super) recrossed: bool,
+}
+
+impl Lines {
+    /// A copy of the content.
+    pub(in super::super) fn parts(&self) -> Parts {
+        let segments = self.paths.segments();
+        let mut splits: Vec<[VertexId; 3]> =
+            self.paths.splits.iter().map(|(&[a, b], &between)| [a, b, between]).collect();
+        splits.sort_unstable();
+        let bent = segments.iter().filter(|ends| self.paths.bent.contains_key(*ends));
+        Parts {
+            given: self.paths.given.iter().map(|line| line.as_deref().map(<[_]>::to_vec)).collect(),
+            bent: bent.map(|&ends| self.paths.sites(ends)).collect(),
+            splits,
+            waiting: self.waiting.clone(),
+            added: self.added.iter().collect(),
+            owned: self.owned.iter().collect(),
+            rounding: self.rounding,
+            recrossed: self.recrossed,
+        }
+    }
+
+    /// Lines with this content, which is still to be [checked](Self::check).
+    ///
+    /// # Errors
+    /// What does not fit into the tables.
+    pub(in super::super) fn from_parts(parts: Parts) -> Result<Self, &'static str> {
+        if parts.given.len() >= LineId::LIMIT {
+            return Err("there are too many lines");
+        }
+        let given = parts.given.into_iter().map(|line| line.map(|vertices| vertices[..].into()));
+        let mut paths = Paths { given: given.collect(), ..Paths::default() };
+        for chain in parts.bent {
+            let is_new = match chain[..] {
+                [a, ref between @ .., b] => a < b && paths.bent.insert([a, b], between.into()).is_none(),
+                _ => false,
+            };
+            is_new.then_some(()).ok_or("a segment has two chains, or is turned around")?;
+        }
+        for [a, b, between] in parts.splits {
+            let is_new = a < b && paths.splits.insert([a, b], between).is_none();
+            is_new.then_some(()).ok_or("an edge is split twice, or is turned around")?;
+        }
+        if parts.waiting.iter().any(|[a, b]| a == b) {
+            return Err("a constraint has one end");
+        }
+        Ok(Lines {
+            paths,
+            waiting: parts.waiting,
+            added: parts.added.into_iter().collect(),
+            owned: parts.owned.into_iter().collect(),
+            rounding: parts.rounding,
+            recrossed: parts.recrossed,
+            ..Lines::default()
+        })
+    }
+}
