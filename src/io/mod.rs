@@ -34,7 +34,6 @@
 //! feature `gdal`; reprojection needs the feature `proj`. Without them these functions are there and return
 //! an error that says so.
 
-mod auxiliary;
 mod contain;
 mod contour_summary;
 pub mod contours;

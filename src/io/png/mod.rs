@@ -1,13 +1,15 @@
 //! Shaded relief as a PNG picture, with its place in a world file and its coordinate system in an auxiliary file of GDAL
 //! beside it.
 
+mod auxiliary;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use ::png::{BitDepth, ColorType, Compression, Decoder, Encoder};
 use rayon::prelude::*;
 
-use super::{Destination, Output, auxiliary, world_file};
+use super::{Destination, Output, world_file};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Kind, Result};
