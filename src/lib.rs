@@ -49,6 +49,17 @@
 //! three choices that do not depend on each other: a [geometry](triangulation::geometry), a [kernel](triangulation::kernel), a
 //! kind of [`triangulation`]. The [guide](triangulation::guide) is for those who come from CGAL, spade or Triangle.
 //!
+//! # Features
+//!
+//! | feature | default | without it |
+//! |---|---|---|
+//! | `cli` | yes | no program, and no crates for a command line |
+//! | `geo` | yes | no conversions to the types of the crate `geo` |
+//! | `png` | yes | pictures are refused, with the feature's name |
+//! | `zstd` | yes | GeoTIFF with ZSTD is refused, with the feature's name |
+//! | `gdal`, `proj` | no | files that only GDAL reads, and reprojection, are refused, with the feature's name |
+//! | `serde` | no | triangulations are not saved and read with serde |
+//!
 //! # The floors
 //!
 //! Each module uses only those above it in this list.
@@ -63,6 +74,7 @@
 //! | [`run`] | what a verb of the program does, from a request to a product |
 //! | `cli` | the command line; not for other programs |
 
+#[cfg(feature = "cli")]
 #[doc(hidden)] // the program as a function: no part of what the library promises
 pub mod cli;
 pub mod crs;

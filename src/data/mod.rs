@@ -17,12 +17,13 @@
 //! Conventions: x to the east, y to the north, z up, in the units of the coordinate system that comes
 //! along (`crs`, where it is known); NaN is a height, or a cell, without a value; faces are
 //! counter-clockwise in plan; rasters have their transform in GDAL's order, for the corners of cells.
-//! Nothing here reads, writes or computes a result. [`geo`] converts to the types of the crate of that
-//! name.
+//! Nothing here reads, writes or computes a result. `geo`, behind the feature of that name, converts to the types of
+//! the crate of that name.
 
 mod bounds;
 mod contour_line;
 mod frame;
+#[cfg(feature = "geo")]
 pub mod geo;
 mod grid;
 mod las_head;

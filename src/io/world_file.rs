@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+#[cfg(feature = "png")]
 use crate::data::Frame;
 use crate::error::{Error, Result};
 
 /// The text of a world file: the steps of a column and a row, and the center of the first cell.
+#[cfg(feature = "png")]
 pub(crate) fn text(frame: &Frame) -> String {
     let t = &frame.transform;
     let [x, y] = frame.center(0, 0);
@@ -45,6 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[cfg(feature = "png")]
     fn what_is_written_is_read_back() {
         let frame = Frame { width: 3, height: 2, transform: [100.0, 2.0, 0.5, 50.0, 0.25, -2.0] };
         assert_eq!(text(&frame), "2\n0.25\n0.5\n-2\n101.25\n49.125\n");

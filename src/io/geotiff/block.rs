@@ -16,7 +16,7 @@ use super::nodata::Nodata;
 use super::tags;
 use crate::data::Window;
 use crate::error::{Error, Kind, Result};
-use crate::io::contain::contain;
+use crate::io::contain;
 
 /// Cells whose values are handed out at once: as stored samples they take an eighth of the room.
 const BAND_CELLS: usize = 1 << 20;

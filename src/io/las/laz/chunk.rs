@@ -8,7 +8,7 @@ use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor, Sequential
 use super::compression::{Compression, Order, POINT14, POINT14_LAYERS};
 use super::table::layer_sizes;
 use crate::data::PointBatch;
-use crate::io::contain::contain;
+use crate::io::contain;
 use crate::io::las::options::Detail;
 use crate::io::las::raw::u32_at;
 use crate::io::las::record::RecordLayout;

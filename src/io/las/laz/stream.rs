@@ -10,7 +10,7 @@ use super::compression::{ChunkSize, Compression};
 use super::table::POINTER;
 use crate::data::PointBatch;
 use crate::error::{Error, Result};
-use crate::io::contain::contain;
+use crate::io::contain;
 use crate::io::las::cut::Cut;
 use crate::io::las::header::Header;
 use crate::io::las::input::Input;

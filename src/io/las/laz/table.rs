@@ -5,7 +5,7 @@ use std::io::Cursor;
 use laz::laszip::ChunkTable;
 
 use super::compression::{ChunkSize, Compression, Order};
-use crate::io::contain::contain;
+use crate::io::contain;
 use crate::io::las::header::Header;
 use crate::io::las::input::Input;
 use crate::io::las::raw::{u32_at, u64_at};

@@ -1,0 +1,28 @@
+//! The same functions in a build without PNG.
+
+use std::path::Path;
+
+use super::super::Destination;
+use super::Picture;
+use crate::data::BlockSource;
+use crate::error::{Error, Result};
+
+/// Fails: this build writes no pictures.
+///
+/// # Errors
+/// Always, with the cure.
+pub fn write_gray<'a>(target: impl Into<Destination<'a>>, _source: &dyn BlockSource) -> Result<()> {
+    Err(missing(target.into().path()))
+}
+
+/// Fails: this build reads no pictures.
+///
+/// # Errors
+/// Always, with the cure.
+pub fn describe(path: &Path) -> Result<Picture> {
+    Err(missing(path))
+}
+
+fn missing(path: &Path) -> Error {
+    Error::unsupported("PNG, which this build does not have").in_file(path).cure("build with the feature `png`")
+}
