@@ -21,7 +21,7 @@ fn assert_stated(what: &str, value: impl std::fmt::Display) {
 
 #[test]
 fn the_program_makes_the_same_bytes() {
-    // Sets of lines that broke something once are kept beside: tests/constraints.rs.
+    // Sets of lines that broke something once are kept beside: triangulation/tests/lines_that_went_wrong.rs.
     let mut expected = BTreeSet::from(["README.md".to_owned(), "constraints".to_owned()]);
     let mut total = 0;
     for (name, bytes) in fixtures::files().unwrap() {

@@ -1,9 +1,9 @@
 //! The compact triangulation: the answers of the one that was written, and errors for whatever is damaged.
 
 use crate::grid::{Free, Point, build, place, points};
-use breakline::triangulation::geometry::{Plane, Terrain};
-use breakline::triangulation::tds::{CellId, Complex, VertexId};
-use breakline::triangulation::{
+use breakline_triangulation::geometry::{Plane, Terrain};
+use breakline_triangulation::tds::{CellId, Complex, VertexId};
+use breakline_triangulation::{
     Compact, ConflictZone, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Law, Level, Location, OnCrossing,
     Passage, Regular, Triangulation,
 };
@@ -178,14 +178,14 @@ fn all_kinds_and_geometries() {
     assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(Damaged::Unanswerable(Law::Constrained)));
 
     // A hidden vertex has no place in it.
-    let mut regular: Regular<breakline::triangulation::geometry::Weighted> = Regular::new(Default::default());
+    let mut regular: Regular<breakline_triangulation::geometry::Weighted> = Regular::new(Default::default());
     for (k, [x, y]) in square.into_iter().chain([[2.0, 2.0]]).enumerate() {
         regular.insert([x, y, if k == 4 { -100.0 } else { 0.0 }]).unwrap();
     }
     bytes.clear();
     regular.write_compact(&mut bytes).unwrap();
     let weighted = Compact::open(
-        breakline::triangulation::geometry::Weighted::<breakline::triangulation::kernel::Adaptive>::default(),
+        breakline_triangulation::geometry::Weighted::<breakline_triangulation::kernel::Adaptive>::default(),
         &bytes,
     )
     .unwrap();

@@ -2,9 +2,9 @@
 
 use std::fmt::Debug;
 
-use breakline::triangulation::geometry::{Coordinates, Mapped, Metric, Plane, seen_along};
-use breakline::triangulation::kernel::{Exact, Fixed};
-use breakline::triangulation::{Delaunay, Level, Triangulation};
+use breakline_triangulation::geometry::{Coordinates, Mapped, Metric, Plane, seen_along};
+use breakline_triangulation::kernel::{Exact, Fixed};
+use breakline_triangulation::{Delaunay, Level, Triangulation};
 use testkit::random::Random;
 
 /// The triangles by the positions of their points, from the smallest on: orientation counts.
@@ -31,7 +31,7 @@ where
     G::Point: Debug,
 {
     let places: Vec<[f64; 2]> = points.iter().map(&place).collect();
-    let positions = |vertices: &[breakline::triangulation::tds::VertexId]| {
+    let positions = |vertices: &[breakline_triangulation::tds::VertexId]| {
         let mut first = vec![usize::MAX; vertices.len()];
         for (i, v) in vertices.iter().enumerate().rev() {
             first[v.index()] = i;

@@ -4,11 +4,11 @@ use std::cell::Cell;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use breakline::triangulation::geometry::{Geometry, Mapped, Plane, Space, Steps, Terrain, Weighted};
-use breakline::triangulation::kernel::{Adaptive, Lattice, Wide};
-use breakline::triangulation::num::Sign;
-use breakline::triangulation::tds::{Tds, VertexId};
-use breakline::triangulation::{
+use breakline_triangulation::geometry::{Geometry, Mapped, Plane, Space, Steps, Terrain, Weighted};
+use breakline_triangulation::kernel::{Adaptive, Lattice, Wide};
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::tds::{Tds, VertexId};
+use breakline_triangulation::{
     Basic, Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine, Triangulation,
 };
 use testkit::random::Random;
@@ -28,7 +28,7 @@ enum Place {
 /// The place, after a look at whether it is the one.
 fn place<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Location, q: Point) -> Place {
     let tds: &Tds<3> = t.tds();
-    let plane = Plane::<breakline::triangulation::kernel::Exact>::default();
+    let plane = Plane::<breakline_triangulation::kernel::Exact>::default();
     match location {
         Location::Vertex(vertex) => {
             assert_eq!(*t.point(vertex), q);

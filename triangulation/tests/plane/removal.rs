@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use breakline::triangulation::geometry::Plane;
-use breakline::triangulation::kernel::Adaptive;
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Delaunay, Level, MoveError, PointError, RemovalError};
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::kernel::Adaptive;
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{Delaunay, Level, MoveError, PointError, RemovalError};
 use testkit::random::{Random, ulps};
 
 type Point = [f64; 2];

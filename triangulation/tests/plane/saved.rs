@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use breakline::triangulation::geometry::{Plane, Weighted};
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Basic, Constrained, Delaunay, Level, Regular};
+use breakline_triangulation::geometry::{Plane, Weighted};
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{Basic, Constrained, Delaunay, Level, Regular};
 use proptest::prelude::*;
 use serde_json::Value;
 use testkit::cells::by_vertices;

@@ -2,10 +2,10 @@
 
 use crate::center;
 use crate::polygon::{area, part};
-use breakline::triangulation::geometry::{Geometry, Weighted, distance_to_segment};
-use breakline::triangulation::kernel::{Adaptive, power_center};
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Regular, VoronoiEdge};
+use breakline_triangulation::geometry::{Geometry, Weighted, distance_to_segment};
+use breakline_triangulation::kernel::{Adaptive, power_center};
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{Regular, VoronoiEdge};
 use testkit::random::{Random, ulps};
 
 type Point = [f64; 3];

@@ -4,11 +4,11 @@
 use std::cmp::Ordering;
 
 use crate::grid::{Free, Point, build};
-use breakline::triangulation::geometry::{Metric, Plane, Space, Weighted};
-use breakline::triangulation::kernel::{Exact, Kernel, Wide};
-use breakline::triangulation::refine::{Conformity, Domain, Quality, Region};
-use breakline::triangulation::tds::{CellId, VertexId};
-use breakline::triangulation::{
+use breakline_triangulation::geometry::{Metric, Plane, Space, Weighted};
+use breakline_triangulation::kernel::{Exact, Kernel, Wide};
+use breakline_triangulation::refine::{Conformity, Domain, Quality, Region};
+use breakline_triangulation::tds::{CellId, VertexId};
+use breakline_triangulation::{
     Basic, Buckets, Compact, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Hierarchy, JumpAndWalk, Level,
     LineId, Locate, Location, Mark, Near, Passage, Regular, StraightLine, Triangulation, VoronoiEdge,
 };
@@ -101,7 +101,7 @@ fn asks_the_complex<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
 }
 
 fn is_ordinary(x: f64) -> bool {
-    <breakline::triangulation::kernel::Adaptive as Kernel>::RANGE.admits(x)
+    <breakline_triangulation::kernel::Adaptive as Kernel>::RANGE.admits(x)
 }
 
 /// Odd places lie nowhere, others somewhere.
@@ -376,7 +376,7 @@ fn compact_triangulations() {
         let mut bytes = Vec::new();
         t.write_compact(&mut bytes).unwrap();
         let compact =
-            Compact::open(Plane::<breakline::triangulation::kernel::Adaptive>::default(), &bytes[..]).unwrap();
+            Compact::open(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &bytes[..]).unwrap();
         let all = |q: Point, rim: Point| -> Result<_, Damaged> {
             Ok((
                 compact.nearest(&q, None)?,
@@ -422,7 +422,7 @@ fn in_space() {
     let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [1.0, 1.0, 1.0]];
     for count in 0..=corners.len() {
         let (t, _) =
-            Delaunay::from_points(Space::<breakline::triangulation::kernel::Adaptive>::default(), &corners[..count])
+            Delaunay::from_points(Space::<breakline_triangulation::kernel::Adaptive>::default(), &corners[..count])
                 .unwrap();
         for [x, y] in odd_places() {
             for z in COORDINATES {

@@ -3,16 +3,16 @@
 use std::collections::BTreeSet;
 
 use crate::chosen::{Chosen, plane, weighted};
-use breakline::triangulation::geometry::Space;
-use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
+use breakline_triangulation::geometry::Space;
+use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
 use testkit::random::Random;
 
 type Cells = BTreeSet<Vec<Vec<i64>>>;
 
 fn cells<G, const N: usize, V, C>(t: &Triangulation<G, N, V, C>) -> Cells
 where
-    G: breakline::triangulation::geometry::Coordinates<N>,
+    G: breakline_triangulation::geometry::Coordinates<N>,
     C: Copy + Default,
 {
     testkit::cells::cells(t, |p| p.as_ref().iter().map(|x| *x as i64).collect())

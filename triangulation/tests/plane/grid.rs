@@ -1,7 +1,7 @@
 //! Delaunay triangulations of points on tiny grids, where ties are the rule.
 
-use breakline::triangulation::Delaunay;
-use breakline::triangulation::geometry::Plane;
+use breakline_triangulation::Delaunay;
+use breakline_triangulation::geometry::Plane;
 use testkit::random::Random;
 
 pub(crate) type Point = [f64; 2];

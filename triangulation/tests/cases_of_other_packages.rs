@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use breakline::triangulation::Delaunay;
-use breakline::triangulation::geometry::Plane;
+use breakline_triangulation::Delaunay;
+use breakline_triangulation::geometry::Plane;
 use testkit::case::Case;
 use testkit::judge;
 use testkit::random::Random;

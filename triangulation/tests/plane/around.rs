@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use crate::grid::{Free, build};
-use breakline::triangulation::geometry::Geometry;
-use breakline::triangulation::num::Sign;
-use breakline::triangulation::tds::{Tds, VertexId};
+use breakline_triangulation::geometry::Geometry;
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::tds::{Tds, VertexId};
 use testkit::random::Random;
 
 /// Points of a tiny grid; every third time on one line, and with some taken out again, so that there are holes in the

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use breakline::triangulation::geometry::{Plane, Space, Weighted};
-use breakline::triangulation::kernel::Adaptive;
-use breakline::triangulation::tds::{CellId, Tds, VertexId};
-use breakline::triangulation::{
+use breakline_triangulation::geometry::{Plane, Space, Weighted};
+use breakline_triangulation::kernel::Adaptive;
+use breakline_triangulation::tds::{CellId, Tds, VertexId};
+use breakline_triangulation::{
     Basic, Constrained, ConstraintError, Delaunay, Inserted, Level, MoveError, PointError, Regular, RemovalError,
     Triangulation, Walls,
 };

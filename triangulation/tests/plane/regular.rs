@@ -3,11 +3,11 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use breakline::triangulation::geometry::{Geometry, Weighted};
-use breakline::triangulation::kernel::Adaptive;
-use breakline::triangulation::num::Sign;
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Delaunay, Flaw, Level, Regular, RemovalError};
+use breakline_triangulation::geometry::{Geometry, Weighted};
+use breakline_triangulation::kernel::Adaptive;
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{Delaunay, Flaw, Level, Regular, RemovalError};
 use dashu_int::IBig;
 use testkit::random::Random;
 

@@ -1,9 +1,9 @@
 //! Faces told without a mark on those that have been: each comes exactly once, from whichever vertex.
 
-use breakline::triangulation::geometry::{Coordinates, Mapped, Plane, Steps, Terrain};
-use breakline::triangulation::kernel::{DotProduct, Exact, Kernel, Wide};
-use breakline::triangulation::tds::{CellId, VertexId};
-use breakline::triangulation::{Basic, ConstrainedDelaunay, Delaunay, OnCrossing, Triangulation};
+use breakline_triangulation::geometry::{Coordinates, Mapped, Plane, Steps, Terrain};
+use breakline_triangulation::kernel::{DotProduct, Exact, Kernel, Wide};
+use breakline_triangulation::tds::{CellId, VertexId};
+use breakline_triangulation::{Basic, ConstrainedDelaunay, Delaunay, OnCrossing, Triangulation};
 use testkit::random::Random;
 
 type Point = [f64; 2];
@@ -101,9 +101,9 @@ fn grids_circles_clusters_and_scans() {
     // Scan lines in centimetres, of which some stand on others.
     let scan = |dice: &mut Random, k: i32| [k % 200 * 25 + dice.below(5) as i32, k / 200 * 70, dice.below(3000) as i32];
     let steps: Vec<[i32; 3]> = (0..20_000).map(|k| scan(&mut dice, k)).collect();
-    judge_some(Steps::<breakline::triangulation::kernel::Lattice>::default(), &steps);
+    judge_some(Steps::<breakline_triangulation::kernel::Lattice>::default(), &steps);
     let heights: Vec<[f64; 3]> = steps.iter().map(|p| p.map(|x| f64::from(x) * 0.01)).collect();
-    judge_some(Terrain::<breakline::triangulation::kernel::Adaptive>::default(), &heights);
+    judge_some(Terrain::<breakline_triangulation::kernel::Adaptive>::default(), &heights);
     judge_some(Mapped::new(|p: &[f64; 3]| [p[1], 3.0 * p[0]]), &heights);
 }
 

@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use crate::grid::{Point, build, grid_point, place, points};
-use breakline::triangulation::geometry::{Geometry, Metric, Plane, Steps, Terrain};
-use breakline::triangulation::num::Sign;
-use breakline::triangulation::tds::{CellId, VertexId};
-use breakline::triangulation::{ConstrainedDelaunay, Mark, OnCrossing, Passage, Triangulation};
+use breakline_triangulation::geometry::{Geometry, Metric, Plane, Steps, Terrain};
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::tds::{CellId, VertexId};
+use breakline_triangulation::{ConstrainedDelaunay, Mark, OnCrossing, Passage, Triangulation};
 use testkit::cells::{by_vertices, vertices};
 use testkit::picture::OnFailure;
 use testkit::random::Random;
@@ -33,7 +33,7 @@ fn constrained(dice: &mut Random, points: &[Point]) -> Forced {
 fn judge_zone<V, C: Copy + Default>(
     before: &Triangulation<Plane, 3, V, C>,
     after: &Triangulation<Plane, 3, V, C>,
-    zone: &breakline::triangulation::ConflictZone,
+    zone: &breakline_triangulation::ConflictZone,
 ) {
     let destroyed: BTreeSet<_> = by_vertices(before).difference(&by_vertices(after)).cloned().collect();
     assert_eq!(zone.cells.len(), destroyed.len());
@@ -122,12 +122,12 @@ fn metrics_agree() {
         assert_eq!(plane().compare_distance(&q, &a, &b), expected);
         let [q, a, b] = places.map(|[x, y]| [x, y, dice.unit()]);
         assert_eq!(
-            Terrain::<breakline::triangulation::kernel::Exact>::default().compare_distance(&q, &a, &b),
+            Terrain::<breakline_triangulation::kernel::Exact>::default().compare_distance(&q, &a, &b),
             expected
         );
         let [q, a, b] = places.map(|[x, y]| [x as i32, y as i32, dice.below(9) as i32]);
         assert_eq!(
-            Steps::<breakline::triangulation::kernel::Lattice>::default().compare_distance(&q, &a, &b),
+            Steps::<breakline_triangulation::kernel::Lattice>::default().compare_distance(&q, &a, &b),
             expected
         );
     }

@@ -7,7 +7,7 @@ use testkit::subject::build;
 /// Every failure that was found and mended stays here, made small.
 #[test]
 fn named_cases() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/constraints");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/constraints");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

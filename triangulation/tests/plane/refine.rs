@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use breakline::triangulation::geometry::{Crossing, Plane, Terrain, distance_to_segment};
-use breakline::triangulation::kernel::{Adaptive, DotProduct, Exact, Fixed, InCircle, Kernel, Lattice, Wide};
-use breakline::triangulation::num::Sign;
-use breakline::triangulation::refine::{Conformity, Domain, Quality, Refined, Region, Shortfall};
-use breakline::triangulation::tds::CellId;
-use breakline::triangulation::{ConstrainedDelaunay, Level, OnCrossing};
+use breakline_triangulation::geometry::{Crossing, Plane, Terrain, distance_to_segment};
+use breakline_triangulation::kernel::{Adaptive, DotProduct, Exact, Fixed, InCircle, Kernel, Lattice, Wide};
+use breakline_triangulation::num::Sign;
+use breakline_triangulation::refine::{Conformity, Domain, Quality, Refined, Region, Shortfall};
+use breakline_triangulation::tds::CellId;
+use breakline_triangulation::{ConstrainedDelaunay, Level, OnCrossing};
 use testkit::random::Random;
 
 type Point = [f64; 2];

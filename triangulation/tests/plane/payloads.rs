@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use breakline::triangulation::geometry::{Geometry, Plane, Space, Weighted};
-use breakline::triangulation::tds::{CellId, VertexId};
-use breakline::triangulation::{
+use breakline_triangulation::geometry::{Geometry, Plane, Space, Weighted};
+use breakline_triangulation::tds::{CellId, VertexId};
+use breakline_triangulation::{
     Basic, Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation, Walls,
 };
 use testkit::random::Random;
@@ -93,7 +93,7 @@ fn delaunay_cells_around_a_hub() {
     let rim = (0..40).map(|k| f64::from(k) * 0.157).map(|turn| [turn.cos(), turn.sin()]);
     let points: Vec<[f64; 2]> = rim.chain([[0.0, 0.0]]).collect();
     let (t, vertices) =
-        Delaunay::from_points(Plane::<breakline::triangulation::kernel::Adaptive>::default(), &points).unwrap();
+        Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points).unwrap();
     let mut t = t.with_cell_data(another);
     let before = seen(&t);
     assert!(t.tds().around(vertices[40]).count() > 20);

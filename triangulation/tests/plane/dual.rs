@@ -3,10 +3,10 @@
 use crate::center;
 use crate::grid::{Free, Point, build};
 use crate::polygon::{area, part};
-use breakline::triangulation::geometry::Plane;
-use breakline::triangulation::kernel::{Exact, circumcenter};
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Delaunay, VoronoiEdge};
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::kernel::{Exact, circumcenter};
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{Delaunay, VoronoiEdge};
 use testkit::random::{Random, ulps};
 
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {

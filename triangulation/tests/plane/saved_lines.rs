@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::saved::{PLACES, read_damaged, through};
-use breakline::triangulation::geometry::Plane;
-use breakline::triangulation::refine::Quality;
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing};
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::refine::Quality;
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing};
 use serde_json::Value;
 use testkit::cells::by_vertices;
 use testkit::random::{Random, ulps};

@@ -3,9 +3,9 @@
 
 use std::cmp::Ordering;
 
-use breakline::triangulation::geometry::{Coordinates, Crossing, Geometry, Plane, Weighted};
-use breakline::triangulation::kernel::{Adaptive, Kernel};
-use breakline::triangulation::num::Sign;
+use breakline_triangulation::geometry::{Coordinates, Crossing, Geometry, Plane, Weighted};
+use breakline_triangulation::kernel::{Adaptive, Kernel};
+use breakline_triangulation::num::Sign;
 
 /// The answers of a geometry of points with `D` coordinates, by its functions.
 #[derive(Debug, Clone, Copy)]

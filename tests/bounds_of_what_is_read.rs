@@ -3,7 +3,7 @@
 //! Takes the number of scenes from the environment:
 //!
 //! ```text
-//! BREAKLINE_WINDOWS=20000 cargo test --release --test windows
+//! BREAKLINE_WINDOWS=20000 cargo test --release --test bounds_of_what_is_read
 //! ```
 
 use std::collections::BTreeSet;

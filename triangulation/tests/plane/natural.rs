@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::grid::{Free, Point, build};
-use breakline::triangulation::geometry::Plane;
-use breakline::triangulation::kernel::Wide;
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{Delaunay, Location};
+use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::kernel::Wide;
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{Delaunay, Location};
 use testkit::random::Random;
 
 type Weights = Vec<(VertexId, f64)>;

@@ -4,16 +4,16 @@
 //! Takes the number of sequences of each kind and arithmetic from the environment:
 //!
 //! ```text
-//! BREAKLINE_SEQUENCES=50000 cargo test --release --test plane sequences
+//! BREAKLINE_SEQUENCES=50000 cargo test --release -p breakline-triangulation --test plane sequences
 //! ```
 
 use std::collections::BTreeSet;
 
 use crate::chosen::{Chosen, plane, weighted};
-use breakline::triangulation::geometry::Coordinates;
-use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide};
-use breakline::triangulation::tds::VertexId;
-use breakline::triangulation::{ConstrainedDelaunay, Delaunay, Level, LineId, Regular, RemovalError, Triangulation};
+use breakline_triangulation::geometry::Coordinates;
+use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide};
+use breakline_triangulation::tds::VertexId;
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, LineId, Regular, RemovalError, Triangulation};
 use testkit::random::Random;
 
 fn sequences() -> u64 {
