@@ -11,12 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 type Module = Vec<String>;
 
 /// Circles that are still there. An entry that no longer occurs fails the test, so that the list only shrinks.
-const KNOWN: [&str; 4] = [
-    "cli/args: surface, verbs",
-    "cli: progress, talk",
-    "terrain: builder, clip, cut, tin",
-    "triangulation: engine, kinds, lines, locate",
-];
+const KNOWN: [&str; 3] =
+    ["cli/args: surface, verbs", "terrain: builder, clip, cut, tin", "triangulation: engine, kinds, lines, locate"];
 
 #[test]
 fn folders_have_no_circles() {
@@ -39,11 +35,7 @@ fn circles_are_found() {
     let none: [&str; 0] = [];
     assert_eq!(in_room("use super::b::{Second, third};", ""), none, "one direction");
     assert_eq!(in_room("use super::b::Second;", "fn f() { super::a::g() }"), ["room: a, b"]);
-    assert_eq!(
-        in_room("use crate::room::b;", "use super::{\n    First,\n    X,\n};"),
-        ["room: a, b"],
-        "a re-export"
-    );
+    assert_eq!(in_room("use crate::room::b;", "use super::{\n    First,\n    X,\n};"), ["room: a, b"], "a re-export");
     assert_eq!(in_room("use super::Other;", "use crate::room::First;"), ["room: a, b"], "under another name");
     assert_eq!(in_room("use super::Other;", "// use super::First;\n/// [`First`](super::First)"), none, "comments");
     assert_eq!(in_room("use super::Other;", "#[cfg(test)]\nmod tests {\n    use super::super::a::First;\n}"), none);

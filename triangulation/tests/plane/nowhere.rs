@@ -375,8 +375,7 @@ fn compact_triangulations() {
         let t = &build(points);
         let mut bytes = Vec::new();
         t.write_compact(&mut bytes).unwrap();
-        let compact =
-            Compact::open(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &bytes[..]).unwrap();
+        let compact = Compact::open(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &bytes[..]).unwrap();
         let all = |q: Point, rim: Point| -> Result<_, Damaged> {
             Ok((
                 compact.nearest(&q, None)?,

@@ -121,15 +121,9 @@ fn metrics_agree() {
         let expected = squared(q, a).total_cmp(&squared(q, b));
         assert_eq!(plane().compare_distance(&q, &a, &b), expected);
         let [q, a, b] = places.map(|[x, y]| [x, y, dice.unit()]);
-        assert_eq!(
-            Terrain::<breakline_triangulation::kernel::Exact>::default().compare_distance(&q, &a, &b),
-            expected
-        );
+        assert_eq!(Terrain::<breakline_triangulation::kernel::Exact>::default().compare_distance(&q, &a, &b), expected);
         let [q, a, b] = places.map(|[x, y]| [x as i32, y as i32, dice.below(9) as i32]);
-        assert_eq!(
-            Steps::<breakline_triangulation::kernel::Lattice>::default().compare_distance(&q, &a, &b),
-            expected
-        );
+        assert_eq!(Steps::<breakline_triangulation::kernel::Lattice>::default().compare_distance(&q, &a, &b), expected);
     }
 }
 
