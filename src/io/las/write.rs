@@ -11,7 +11,7 @@ use super::merge::{self, Rounding, Step, padded};
 use super::raw::u32_at;
 use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Kind, Result};
-use crate::io::contain::contain;
+use crate::io::contain;
 use crate::io::output::{Destination, Output};
 
 /// Bytes of records that are compressed together, for each thread: two chunks of usual points.
