@@ -71,6 +71,8 @@
 //! | save it | serde, with the feature `serde`: all kinds, in the plane |
 //! | keep it in a file, and ask without loading it | [`Delaunay::write_compact`], [`Compact`] |
 //! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], [`Triangulation::tds`]; outwards: [`Triangulation::faces_from`] |
+//! | ask the same of a structure of your own | [`query`], over [`Embedded`] |
+//! | build and edit a surface of any genus | [`tds::Tds::from_cells`] |
 //! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
 //!
 //! All questions take `&self`. In space points cannot be removed, and there are the basic and the Delaunay kind.

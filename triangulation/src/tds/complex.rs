@@ -1,18 +1,21 @@
 use std::convert::Infallible;
-use std::iter::FusedIterator;
 
-use super::{CellId, Tds, VertexId, ccw, cw};
+use super::{CellId, Tds, VertexId};
 
-/// Who is whose neighbor, wherever that is kept: what [`Tds`] and the
-/// [compact triangulation](crate::triangulation::Compact) have in common, for reading.
+/// Read access to cells and their neighbors, wherever they are kept: what [`Tds`], the
+/// [compact triangulation](crate::triangulation::Compact) and a structure of the user's own have in common.
 ///
-/// The conventions are those of the [module](super). Whatever can be damaged answers with an error, so what is written
-/// over this trait is written once, and where [`Error`](Self::Error) is [`Infallible`] nothing is left of that in the
-/// machine code.
+/// The conventions are those of the [module](super). A structure that can be damaged, as one in a file, answers with an
+/// error; where [`Error`](Self::Error) is [`Infallible`], nothing is left of that in the machine code. So each algorithm is
+/// written once over this trait: those of the plane are in [`plane`](super::plane), those that need points in
+/// [`query`](crate::query).
+///
+/// A structure of one's own may keep finite cells only, if it can answer for the infinite ones: `examples/own_structure.rs`
+/// has one, an array of triangles.
 ///
 /// # Laws
 /// - Vertices are numbered below [`vertex_slots`](Self::vertex_slots), cells below [`cell_slots`](Self::cell_slots).
-/// - An answer that is no error is a number that exists: a vertex, or [`INFINITE`](VertexId::INFINITE); a cell.
+/// - An answer that is not an error is a number that exists: a vertex, or [`INFINITE`](VertexId::INFINITE); a cell.
 /// - Nothing panics, but a complex that cannot be damaged may if asked for what does not exist.
 ///
 /// # Models
@@ -30,58 +33,58 @@ use super::{CellId, Tds, VertexId, ccw, cw};
 /// }
 /// ```
 pub trait Complex<const N: usize> {
-    /// What becomes of a link that does not hold.
+    /// The answer where a link does not hold; [`Infallible`] if that cannot be.
     type Error;
 
-    /// Of the complex: -1 without a vertex, `N - 1` when full.
+    /// Returns the dimension of the complex: -1 without a vertex, `N - 1` when full.
     fn dimension(&self) -> i32;
 
-    /// Vertices are numbered below this, perhaps with gaps.
+    /// Returns one more than the largest number of a vertex; there may be gaps.
     fn vertex_slots(&self) -> usize;
 
-    /// Cells are numbered below this, perhaps with gaps.
+    /// Returns one more than the largest number of a cell; there may be gaps.
     fn cell_slots(&self) -> usize;
 
-    /// Whether the number stands for a cell.
+    /// Returns whether the number stands for a cell.
     fn is_used(&self, cell: CellId) -> bool;
 
-    /// The vertices of a cell; below full dimension there is no vertex in the high places.
+    /// Returns the vertices of a cell, `dimension + 1` of them. What the rest of the array holds below full dimension is never
+    /// looked at, but for that it is not [`VertexId::INFINITE`].
     ///
     /// # Errors
     /// If the cell or a vertex of it does not exist.
     fn corners(&self, cell: CellId) -> Result<[VertexId; N], Self::Error>;
 
-    /// The cell opposite vertex `i`, of `dimension + 1` vertices.
+    /// Returns the cell across the facet opposite vertex `i`, of `dimension + 1` vertices.
     ///
     /// # Errors
     /// If there is none.
     fn neighbor(&self, cell: CellId, i: usize) -> Result<CellId, Self::Error>;
 
-    /// A cell that has this vertex; `None` for the infinite vertex of an empty complex, and for a gap.
+    /// Returns a cell that has this vertex; `None` for the infinite vertex of an empty complex, and for a gap.
     ///
     /// # Errors
     /// If the vertex, or the cell, does not exist.
     fn cell_of(&self, vertex: VertexId) -> Result<Option<CellId>, Self::Error>;
 
-    /// Whether links fit, asked where a walk relies on it: an error that names the cell if not. A complex that cannot
-    /// be damaged does not look.
+    /// Returns an error that names the cell unless the links agree, asked where an algorithm relies on it. A complex that
+    /// cannot be damaged does not look, and returns `Ok(())`.
     ///
     /// # Errors
-    /// If it does not hold.
+    /// If they do not agree.
     fn ensure(&self, at: CellId, holds: impl FnOnce() -> bool) -> Result<(), Self::Error>;
 
-    /// Has the memory send what is known of the neighbors of a cell, ahead of the question for one of them: nothing else,
-    /// or nothing at all.
+    /// Prefetches the neighbors of a cell: a hint that may do nothing.
     #[inline(always)]
     fn fetch_neighbors(&self, _: CellId) {}
 
-    /// The number of vertices of a cell: `dimension + 1`.
+    /// Returns the number of vertices of a cell: `dimension + 1`.
     #[inline(always)]
     fn width(&self) -> usize {
         (self.dimension() + 1) as usize
     }
 
-    /// One vertex of a cell.
+    /// Returns one vertex of a cell.
     ///
     /// # Errors
     /// See [`corners`](Self::corners).
@@ -90,7 +93,7 @@ pub trait Complex<const N: usize> {
         Ok(self.corners(cell)?[i])
     }
 
-    /// Where a vertex stands in a cell.
+    /// Returns the index of a vertex in a cell.
     ///
     /// # Errors
     /// See [`corners`](Self::corners).
@@ -100,7 +103,7 @@ pub trait Complex<const N: usize> {
         Ok(self.corners(cell)?.iter().position(|&v| v == vertex))
     }
 
-    /// Whether the infinite vertex is a corner.
+    /// Returns whether the infinite vertex is a corner.
     ///
     /// # Errors
     /// See [`corners`](Self::corners).
@@ -109,10 +112,10 @@ pub trait Complex<const N: usize> {
         Ok(self.corners(cell)?.contains(&VertexId::INFINITE))
     }
 
-    /// The index of the facet that `cell` shares with its neighbor `other`.
+    /// Returns the index of the facet that `cell` shares with its neighbor `other`.
     ///
     /// # Errors
-    /// If they are no neighbors.
+    /// If they are not neighbors.
     #[inline(always)]
     fn index_of_neighbor(&self, cell: CellId, other: CellId) -> Result<usize, Self::Error> {
         let mut found = None;
@@ -126,7 +129,7 @@ pub trait Complex<const N: usize> {
         Ok(found.unwrap_or(0))
     }
 
-    /// The finite cell beside an infinite one across its finite facet; a finite cell itself.
+    /// Returns the finite cell across the finite facet of an infinite one, and a finite cell itself.
     ///
     /// # Errors
     /// If that is infinite, too, or a link does not hold.
@@ -138,16 +141,6 @@ pub trait Complex<const N: usize> {
         let inner = self.neighbor(cell, infinite)?;
         self.ensure(inner, || self.is_infinite(inner).is_ok_and(|is_infinite| !is_infinite))?;
         Ok(inner)
-    }
-
-    /// The ends of the edge opposite vertex `i` of a triangle, which has it on its left from the first to the second.
-    ///
-    /// # Errors
-    /// See [`corners`](Self::corners).
-    #[inline(always)]
-    fn edge_ends(&self, cell: CellId, i: usize) -> Result<[VertexId; 2], Self::Error> {
-        let corners = self.corners(cell)?;
-        Ok([corners[ccw(i)], corners[cw(i)]])
     }
 }
 
@@ -208,175 +201,4 @@ impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {
     fn index_of_neighbor(&self, cell: CellId, other: CellId) -> Result<usize, Infallible> {
         Ok(self.index_of_neighbor(cell, other))
     }
-}
-
-/// The cells that have a vertex, from one of them counter-clockwise, each with the place of the vertex in it.
-///
-/// Each step over a link is taken only if the link leads back: so no two steps lead to one cell, and the way cannot run
-/// into a ring that it did not start from. It ends after each cell that has the vertex once, whatever the links say.
-pub(crate) struct Star<'a, T> {
-    complex: &'a T,
-    vertex: VertexId,
-    front: CellId,
-    /// The same as `front` at the start, when all are left, and when none is.
-    end: CellId,
-    is_over: bool,
-}
-
-impl<'a, T: Complex<3>> Star<'a, T> {
-    /// Of a vertex in a complex of dimension 1 or 2; below the `lowest` of them there are none.
-    pub(crate) fn new(complex: &'a T, vertex: VertexId, lowest: i32) -> Result<Self, T::Error> {
-        let start = if complex.dimension() >= lowest { complex.cell_of(vertex)? } else { None };
-        let at = start.unwrap_or(CellId::NONE);
-        Ok(Star { complex, vertex, front: at, end: at, is_over: start.is_none() })
-    }
-
-    /// Where the vertex stands in a cell.
-    #[inline(always)]
-    fn place(&self, cell: CellId) -> Result<usize, T::Error> {
-        let place = super::first_of(&self.complex.corners(cell)?, self.vertex);
-        self.complex.ensure(cell, || place < 3)?;
-        Ok(place.min(2)) // an index into a cell whatever the links say
-    }
-
-    /// The next cell across the side that `turn` gives for the place of the vertex in a face.
-    #[inline(always)]
-    fn beside(
-        &self,
-        (cell, place): (CellId, usize),
-        turn: impl Fn(usize) -> usize,
-        back: impl Fn(usize) -> usize,
-    ) -> Result<CellId, T::Error> {
-        let complex = self.complex;
-        let beside = complex.neighbor(cell, turned(complex, place, turn))?;
-        complex.ensure(beside, || {
-            let Ok(Some(j)) = complex.index_of(beside, self.vertex) else { return false };
-            complex.neighbor(beside, turned(complex, j, back)).is_ok_and(|c| c == cell)
-        })?;
-        Ok(beside)
-    }
-
-    #[inline(always)]
-    fn step(&mut self) -> Result<(CellId, usize), T::Error> {
-        let here = (self.front, self.place(self.front)?);
-        self.front = self.beside(here, ccw, cw)?;
-        self.is_over = self.front == self.end;
-        Ok(here)
-    }
-
-    fn step_back(&mut self) -> Result<(CellId, usize), T::Error> {
-        self.end = self.beside((self.end, self.place(self.end)?), cw, ccw)?;
-        self.is_over = self.front == self.end;
-        Ok((self.end, self.place(self.end)?))
-    }
-}
-
-impl<T: Complex<3>> Iterator for Star<'_, T> {
-    type Item = Result<(CellId, usize), T::Error>;
-
-    #[inline]
-    fn next(&mut self) -> Option<Self::Item> {
-        (!self.is_over).then(|| self.step().inspect_err(|_| self.is_over = true))
-    }
-}
-
-impl<T: Complex<3>> DoubleEndedIterator for Star<'_, T> {
-    fn next_back(&mut self) -> Option<Self::Item> {
-        (!self.is_over).then(|| self.step_back().inspect_err(|_| self.is_over = true))
-    }
-}
-
-impl<T: Complex<3>> FusedIterator for Star<'_, T> {}
-
-/// The place in a cell that a turn leads to from another one; on a line both ways lead to the only other.
-#[inline(always)]
-fn turned<T: Complex<3>>(complex: &T, place: usize, turn: impl Fn(usize) -> usize) -> usize {
-    if complex.dimension() == 1 { 1 - place.min(1) } else { turn(place) }
-}
-
-/// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included.
-pub(crate) fn vertices_around<T: Complex<3>>(
-    complex: &T,
-    vertex: VertexId,
-) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, T::Error>> + '_, T::Error> {
-    Ok(Star::new(complex, vertex, 1)?.map(|cell| {
-        let (cell, i) = cell?;
-        complex.vertex(cell, turned(complex, i, ccw))
-    }))
-}
-
-/// The face on its left, and the index of the vertex opposite; on a line the index is 2, of no vertex.
-type Edge = (CellId, usize);
-
-/// The edges that start at a vertex, counter-clockwise.
-pub(crate) fn edges_around<T: Complex<3>>(
-    complex: &T,
-    vertex: VertexId,
-) -> Result<impl DoubleEndedIterator<Item = Result<Edge, T::Error>> + '_, T::Error> {
-    Ok(Star::new(complex, vertex, 1)?.map(|cell| {
-        let (cell, i) = cell?;
-        Ok((cell, if complex.dimension() == 1 { 2 } else { cw(i) }))
-    }))
-}
-
-/// The finite vertices, in order of their numbers.
-pub(crate) fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Result<VertexId, T::Error>> + '_ {
-    let numbers = (0..complex.vertex_slots()).map(VertexId::new);
-    numbers.filter_map(|vertex| complex.cell_of(vertex).map(|cell| cell.map(|_| vertex)).transpose())
-}
-
-/// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the vertex opposite), if
-/// there is such an edge and dimension 2.
-///
-/// Time proportional to the degree of `a`; where that is high, to the smaller of both degrees.
-pub(crate) fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<Option<Edge>, T::Error> {
-    let mut around_a = Star::new(complex, a, 2)?;
-    let is_edge = |(cell, i)| Ok((complex.vertex(cell, ccw(i))? == b).then_some((cell, cw(i))));
-    for cell in around_a.by_ref().take(HIGH_DEGREE) {
-        if let Some(edge) = is_edge(cell?)? {
-            return Ok(Some(edge));
-        }
-    }
-    if around_a.is_over {
-        return Ok(None);
-    }
-    for (at_a, at_b) in around_a.zip(Star::new(complex, b, 2)?) {
-        let (cell, i) = at_b?;
-        let from_b = (complex.vertex(cell, cw(i))? == a).then_some((cell, ccw(i)));
-        if let Some(edge) = is_edge(at_a?)?.or(from_b) {
-            return Ok(Some(edge));
-        }
-    }
-    Ok(None)
-}
-
-/// Beyond this, the degree of a vertex is compared with that of another one.
-const HIGH_DEGREE: usize = 64;
-
-/// Whether the degree of a vertex is high, and higher than that of another one. Time proportional to the smaller degree.
-pub(crate) fn is_busier<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<bool, T::Error> {
-    let mut around_a = Star::new(complex, a, 2)?;
-    if around_a.by_ref().take(HIGH_DEGREE).count() < HIGH_DEGREE {
-        return Ok(false);
-    }
-    let mut around_b = Star::new(complex, b, 2)?.skip(HIGH_DEGREE);
-    for at_a in around_a {
-        at_a?;
-        if around_b.next().is_none() {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-/// The face with these three vertices, in any order, one of which may be the infinite one.
-pub(crate) fn face<T: Complex<3>>(complex: &T, [a, b, c]: [VertexId; 3]) -> Result<Option<CellId>, T::Error> {
-    for cell in Star::new(complex, a, 2)? {
-        let (cell, _) = cell?;
-        let corners = complex.corners(cell)?;
-        if a != b && b != c && c != a && corners.contains(&b) && corners.contains(&c) {
-            return Ok(Some(cell));
-        }
-    }
-    Ok(None)
 }

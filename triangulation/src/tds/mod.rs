@@ -22,7 +22,7 @@
 //! | the triangles, edges, vertices around a vertex | [`Tds::around`], [`Tds::edges_around`], [`Tds::vertices_around`] |
 //! | all edges, or one by its ends | [`Tds::edges`], [`Tds::finite_edges`], [`Tds::edge`] |
 //! | the convex hull | [`Tds::hull`] |
-//! | what does not depend on where links are kept | [`Complex`] |
+//! | what does not depend on where links are kept | [`Complex`]; in the plane, [`plane`] |
 //! | a complex of one's own | [`Tds::from_cells`] |
 //! | a split, and its inverse | [`Tds::split_cell`], [`Tds::split_facet`], [`Tds::split_edge`]; [`Tds::unsplit_cell`] |
 //! | a flip of a facet or edge, a collapse, the star of a hole | [`Tds::flip`], [`Tds::flip_edge`], [`Tds::collapse`], [`Tds::star_hole`] |
@@ -35,22 +35,23 @@
 //! A complex that stands alone is any closed manifold, built and edited by calls that check. The
 //! [kinds of triangulations](crate#reexports) have one that is a sphere, and only read access to it.
 
+mod around;
 mod build;
 mod check;
 mod complex;
 mod edit;
 mod error;
 mod id;
-mod plane;
+pub mod plane;
 #[cfg(feature = "serde")]
 mod rebuild;
 mod remove;
 mod zone;
 
 pub use complex::Complex;
-pub(crate) use complex::{Star, edge, edges_around, face, vertices, vertices_around};
 pub use error::{EditError, TdsError};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
+pub(crate) use plane::Star;
 #[cfg(feature = "serde")]
 pub(crate) use rebuild::Parts;
 pub(crate) use zone::Zone;
@@ -215,7 +216,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// The finite vertices, in order of their numbers.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
         let vertices = (0..self.vertex_cell.len()).map(VertexId::new).filter(|&v| self.is_vertex(v));
-        plane::counted(vertices, self.vertex_count())
+        around::counted(vertices, self.vertex_count())
     }
 
     /// Whether the number stands for a finite vertex. Any number may be asked for.
@@ -227,7 +228,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// All cells, the infinite ones included, in order of their numbers.
     pub fn cells(&self) -> impl ExactSizeIterator<Item = CellId> + '_ {
         let cells = (0..self.links.len()).map(CellId::new).filter(|&c| self.is_used(c));
-        plane::counted(cells, self.cell_count())
+        around::counted(cells, self.cell_count())
     }
 
     /// Whether the number stands for a cell.
@@ -487,15 +488,6 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         for index in 0..self.links.len() {
             self.mirror(CellId::new(index));
         }
-    }
-}
-
-/// What exists in the plane only.
-impl<V, C: Copy + Default> Tds<3, V, C> {
-    /// The ends of the edge opposite vertex `i` of a cell, which has it on its left from the first to the second.
-    #[inline(always)]
-    pub fn edge_ends(&self, cell: CellId, i: usize) -> [VertexId; 2] {
-        [self.vertex(cell, ccw(i)), self.vertex(cell, cw(i))]
     }
 }
 

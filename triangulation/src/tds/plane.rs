@@ -1,140 +1,217 @@
-//! What is around what, in the plane: edges, the faces and vertices around a vertex, the hull.
+//! What is around what in the plane, over any [`Complex`]: the same functions as the methods of [`Tds`](super::Tds), for
+//! every structure.
 //!
-//! Orders are functions of the cells' numbers, so that a triangulation that was built alike is walked alike. What is
-//! around a vertex comes counter-clockwise from a cell of it ([`Tds::cell_of`]); [`rev`](Iterator::rev) turns that
-//! around: clockwise, ending with that cell.
+//! Each ends with an error at the first link that does not hold. Nothing runs in circles, whatever the links are.
 //!
-//! | dimension | edges | around a vertex | hull |
-//! |---|---|---|---|
-//! | 2 | two faces each | faces, edges, vertices, the infinite ones included | the ring of its vertices |
-//! | 1 | the cells | no faces, two edges, two vertices (the infinite one beside an end) | both ends |
-//! | 0 | none | nothing | the vertex |
-//! | -1 | none | nothing | nothing |
+//! ```
+//! use breakline_triangulation::tds::{Complex, VertexId, plane};
+//!
+//! /// The largest number of edges at a vertex.
+//! fn largest_degree<T: Complex<3>>(complex: &T) -> Result<usize, T::Error> {
+//!     let mut largest = 0;
+//!     for vertex in plane::vertices(complex) {
+//!         largest = largest.max(plane::vertices_around(complex, vertex?)?.count());
+//!     }
+//!     Ok(largest)
+//! }
+//! ```
 
 use std::iter::FusedIterator;
 
-use super::complex::{self, Star};
-use super::{CellId, Tds, VertexId};
+use super::{CellId, Complex, VertexId, ccw, cw};
 
-/// An iterator that knows how many items are left.
-struct Counted<I> {
-    items: I,
-    left: usize,
+/// Returns the ends of the edge opposite vertex `i` of a triangle, which has it on its left from the first to the second.
+///
+/// # Errors
+/// If there is no such triangle.
+#[inline(always)]
+pub fn edge_ends<T: Complex<3>>(complex: &T, cell: CellId, i: usize) -> Result<[VertexId; 2], T::Error> {
+    let corners = complex.corners(cell)?;
+    Ok([corners[ccw(i)], corners[cw(i)]])
 }
 
-impl<I: Iterator> Iterator for Counted<I> {
-    type Item = I::Item;
+/// The cells that have a vertex, from one of them counter-clockwise, each with the index of the vertex in it.
+///
+/// Each step across a link is taken only if the link leads back: so no two steps lead to one cell, and the iteration cannot
+/// run into a ring that it did not start from. It ends after each cell that has the vertex once, whatever the links say.
+pub(crate) struct Star<'a, T> {
+    complex: &'a T,
+    vertex: VertexId,
+    front: CellId,
+    /// The same as `front` at the start, when all are left, and when none is.
+    end: CellId,
+    is_over: bool,
+}
+
+impl<'a, T: Complex<3>> Star<'a, T> {
+    /// Of a vertex in a complex of dimension 1 or 2; below the `lowest` of them there are none.
+    pub(crate) fn new(complex: &'a T, vertex: VertexId, lowest: i32) -> Result<Self, T::Error> {
+        let start = if complex.dimension() >= lowest { complex.cell_of(vertex)? } else { None };
+        let at = start.unwrap_or(CellId::NONE);
+        Ok(Star { complex, vertex, front: at, end: at, is_over: start.is_none() })
+    }
+
+    /// The index of the vertex in a cell.
+    #[inline(always)]
+    fn index(&self, cell: CellId) -> Result<usize, T::Error> {
+        let index = super::first_of(&self.complex.corners(cell)?, self.vertex);
+        self.complex.ensure(cell, || index < 3)?;
+        Ok(index.min(2)) // an index into a cell whatever the links say
+    }
+
+    /// The next cell across the side that `turn` gives for the index of the vertex in a face.
+    #[inline(always)]
+    fn beside(
+        &self,
+        (cell, i): (CellId, usize),
+        turn: impl Fn(usize) -> usize,
+        back: impl Fn(usize) -> usize,
+    ) -> Result<CellId, T::Error> {
+        let complex = self.complex;
+        let beside = complex.neighbor(cell, turned(complex, i, turn))?;
+        complex.ensure(beside, || {
+            let Ok(Some(j)) = complex.index_of(beside, self.vertex) else { return false };
+            complex.neighbor(beside, turned(complex, j, back)).is_ok_and(|c| c == cell)
+        })?;
+        Ok(beside)
+    }
+
+    #[inline(always)]
+    fn step(&mut self) -> Result<(CellId, usize), T::Error> {
+        let here = (self.front, self.index(self.front)?);
+        self.front = self.beside(here, ccw, cw)?;
+        self.is_over = self.front == self.end;
+        Ok(here)
+    }
+
+    fn step_back(&mut self) -> Result<(CellId, usize), T::Error> {
+        self.end = self.beside((self.end, self.index(self.end)?), cw, ccw)?;
+        self.is_over = self.front == self.end;
+        Ok((self.end, self.index(self.end)?))
+    }
+}
+
+impl<T: Complex<3>> Iterator for Star<'_, T> {
+    type Item = Result<(CellId, usize), T::Error>;
 
     #[inline]
-    fn next(&mut self) -> Option<I::Item> {
-        let item = self.items.next()?;
-        self.left -= 1;
-        Some(item)
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.left, Some(self.left))
+    fn next(&mut self) -> Option<Self::Item> {
+        (!self.is_over).then(|| self.step().inspect_err(|_| self.is_over = true))
     }
 }
 
-impl<I: Iterator> ExactSizeIterator for Counted<I> {}
-
-/// Gives an iterator over cells or vertices its exact size.
-pub(super) fn counted<I: Iterator>(items: I, left: usize) -> impl ExactSizeIterator<Item = I::Item> {
-    Counted { items, left }
+impl<T: Complex<3>> DoubleEndedIterator for Star<'_, T> {
+    fn next_back(&mut self) -> Option<Self::Item> {
+        (!self.is_over).then(|| self.step_back().inspect_err(|_| self.is_over = true))
+    }
 }
 
-impl<V, C: Copy + Default> Tds<3, V, C> {
-    /// All edges, each once: the cell that has it on its border and the index of the vertex opposite. In order of these
-    /// pairs, of the two that a face on each side gives the smaller one.
-    ///
-    /// On a line an edge is a cell, and the index is 2, of no vertex: [`edge_ends`](Self::edge_ends) takes both.
-    pub fn edges(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
-        let (indices, count) = match self.dimension {
-            2 => (0..3, self.cell_count() / 2 * 3),
-            1 => (2..3, self.cell_count()),
-            _ => (0..0, 0),
-        };
-        let sides = self.cells().flat_map(move |cell| indices.clone().map(move |i| (cell, i)));
-        counted(sides.filter(|&(cell, i)| self.dimension == 1 || cell < self.neighbor(cell, i)), count)
-    }
+impl<T: Complex<3>> FusedIterator for Star<'_, T> {}
 
-    /// The edges without the infinite vertex, each once, in the order of [`edges`](Self::edges): of these it leaves out
-    /// as many as the infinite vertex has [`degree`](Self::degree). The cell may be an infinite one.
-    pub fn finite_edges(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
-        self.edges().filter(|&(cell, i)| !self.edge_ends(cell, i).contains(&VertexId::INFINITE))
-    }
+/// The index in a cell that a turn leads to from another one; on a line both turns lead to the only other.
+#[inline(always)]
+fn turned<T: Complex<3>>(complex: &T, i: usize, turn: impl Fn(usize) -> usize) -> usize {
+    if complex.dimension() == 1 { 1 - i.min(1) } else { turn(i) }
+}
 
-    /// The finite and infinite faces around a vertex, counter-clockwise. Empty below dimension 2.
-    pub fn around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = CellId> + FusedIterator + '_ {
-        self.corners_around(vertex).map(|(cell, _)| cell)
-    }
+/// Returns the vertices that a vertex has an edge to, counter-clockwise, the infinite one included; of the infinite
+/// vertex, those on the hull, clockwise. Empty below dimension 1.
+///
+/// # Errors
+/// If there is no such vertex. The iterator ends at the first error.
+pub fn vertices_around<T: Complex<3>>(
+    complex: &T,
+    vertex: VertexId,
+) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, T::Error>> + '_, T::Error> {
+    Ok(Star::new(complex, vertex, 1)?.map(|cell| {
+        let (cell, i) = cell?;
+        complex.vertex(cell, turned(complex, i, ccw))
+    }))
+}
 
-    /// The same, each with the place of the vertex in it.
-    pub fn corners_around(
-        &self,
-        vertex: VertexId,
-    ) -> impl DoubleEndedIterator<Item = (CellId, usize)> + FusedIterator + '_ {
-        let Ok(star) = Star::new(self, vertex, 2);
-        star.map(|Ok(corner)| corner)
-    }
+/// Returns the edges that start at a vertex, counter-clockwise, each as the cell on its left and the index of the vertex
+/// opposite. On a line the cell is the edge, and the index is 2, of no vertex.
+///
+/// # Errors
+/// If there is no such vertex. The iterator ends at the first error.
+pub fn edges_around<T: Complex<3>>(
+    complex: &T,
+    vertex: VertexId,
+) -> Result<impl DoubleEndedIterator<Item = Result<(CellId, usize), T::Error>> + '_, T::Error> {
+    Ok(Star::new(complex, vertex, 1)?.map(|cell| {
+        let (cell, i) = cell?;
+        Ok((cell, if complex.dimension() == 1 { 2 } else { cw(i) }))
+    }))
+}
 
-    /// The edges that start at a vertex, counter-clockwise, each as the face on its left and the index of the vertex
-    /// opposite; those to the infinite vertex included. On a line as in [`edges`](Self::edges).
-    pub fn edges_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = (CellId, usize)> + '_ {
-        let Ok(edges) = complex::edges_around(self, vertex);
-        edges.map(|Ok(edge)| edge)
-    }
+/// Returns the finite vertices, in order of their numbers.
+pub fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Result<VertexId, T::Error>> + '_ {
+    let numbers = (0..complex.vertex_slots()).map(VertexId::new);
+    numbers.filter_map(|vertex| complex.cell_of(vertex).map(|cell| cell.map(|_| vertex)).transpose())
+}
 
-    /// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included.
-    pub fn vertices_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
-        let Ok(vertices) = complex::vertices_around(self, vertex);
-        vertices.map(|Ok(v)| v)
+/// Returns the cell to the left of the directed edge `a b` and the index of the edge in it (that of the vertex opposite),
+/// if there is such an edge and dimension 2.
+///
+/// # Errors
+/// If a link around the vertices does not hold.
+///
+/// # Complexity
+/// Time proportional to the degree of `a`; where that is high, to the smaller of both degrees.
+pub fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<Option<(CellId, usize)>, T::Error> {
+    let mut around_a = Star::new(complex, a, 2)?;
+    let is_edge = |(cell, i)| Ok((complex.vertex(cell, ccw(i))? == b).then_some((cell, cw(i))));
+    for cell in around_a.by_ref().take(HIGH_DEGREE) {
+        if let Some(edge) = is_edge(cell?)? {
+            return Ok(Some(edge));
+        }
     }
+    if around_a.is_over {
+        return Ok(None);
+    }
+    for (at_a, at_b) in around_a.zip(Star::new(complex, b, 2)?) {
+        let (cell, i) = at_b?;
+        let from_b = (complex.vertex(cell, cw(i))? == a).then_some((cell, ccw(i)));
+        if let Some(edge) = is_edge(at_a?)?.or(from_b) {
+            return Ok(Some(edge));
+        }
+    }
+    Ok(None)
+}
 
-    /// The number of edges at a vertex, that to the infinite vertex included. Time proportional to it.
-    pub fn degree(&self, vertex: VertexId) -> usize {
-        self.vertices_around(vertex).count()
-    }
+/// Beyond this, the degree of a vertex is compared with that of another one.
+const HIGH_DEGREE: usize = 64;
 
-    /// The vertices on the convex hull, those in the middle of its sides included, counter-clockwise from any. Of
-    /// collinear points that is both ends.
-    pub fn hull(&self) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
-        let only = if self.dimension == 0 { self.vertices().next() } else { None };
-        // The infinite vertex sees the plane from behind.
-        only.into_iter().chain(self.vertices_around(VertexId::INFINITE).rev())
+/// Returns whether the degree of a vertex is high, and higher than that of another one. Time proportional to the smaller degree.
+pub(crate) fn is_busier<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<bool, T::Error> {
+    let mut around_a = Star::new(complex, a, 2)?;
+    if around_a.by_ref().take(HIGH_DEGREE).count() < HIGH_DEGREE {
+        return Ok(false);
     }
+    let mut around_b = Star::new(complex, b, 2)?.skip(HIGH_DEGREE);
+    for at_a in around_a {
+        at_a?;
+        if around_b.next().is_none() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
 
-    /// The cell to the left of the directed edge `a b` and the index of the edge in it (that of the
-    /// vertex opposite), if there is such an edge and dimension 2. Time proportional to the degree of `a`; where that is
-    /// high, to the smaller of both degrees.
-    pub fn edge(&self, a: VertexId, b: VertexId) -> Option<(CellId, usize)> {
-        let Ok(edge) = complex::edge(self, a, b);
-        edge
+/// Returns the face with these three vertices, in any order, one of which may be the infinite one.
+///
+/// # Errors
+/// If a link around the first vertex does not hold.
+///
+/// # Complexity
+/// Linear in the degree of the first vertex.
+pub fn face<T: Complex<3>>(complex: &T, [a, b, c]: [VertexId; 3]) -> Result<Option<CellId>, T::Error> {
+    for cell in Star::new(complex, a, 2)? {
+        let (cell, _) = cell?;
+        let corners = complex.corners(cell)?;
+        if a != b && b != c && c != a && corners.contains(&b) && corners.contains(&c) {
+            return Ok(Some(cell));
+        }
     }
-
-    /// Whether the degree of a vertex is high, and higher than that of another one. Time proportional to the smaller
-    /// degree.
-    pub(crate) fn is_busier(&self, a: VertexId, b: VertexId) -> bool {
-        let Ok(is_busier) = complex::is_busier(self, a, b);
-        is_busier
-    }
-
-    /// Whether two vertices, one of which may be the infinite one, are the ends of an edge. Time proportional to the
-    /// degree of `a`.
-    pub fn has_edge(&self, a: VertexId, b: VertexId) -> bool {
-        self.vertices_around(a).any(|v| v == b)
-    }
-
-    /// The face with these three vertices, in any order, one of which may be the infinite one. Time proportional to the
-    /// degree of the first.
-    pub fn face(&self, corners: [VertexId; 3]) -> Option<CellId> {
-        let Ok(face) = complex::face(self, corners);
-        face
-    }
-
-    /// Whether three vertices, in any order, are those of a [`face`](Self::face).
-    pub fn is_face(&self, corners: [VertexId; 3]) -> bool {
-        self.face(corners).is_some()
-    }
+    Ok(None)
 }

@@ -7,7 +7,7 @@ mod error;
 mod kinds;
 mod lines;
 mod locate;
-mod query;
+pub mod query;
 pub mod refine;
 #[cfg(feature = "serde")]
 mod saved;

@@ -1,6 +1,6 @@
 use crate::geometry::Geometry;
 use crate::num::Sign;
-use crate::tds::{self, CellId, Complex, Star, VertexId};
+use crate::tds::{CellId, Complex, Star, VertexId, plane};
 
 use super::super::Level;
 use super::super::engine::check::{is_convex, is_empty, is_positive};
@@ -32,7 +32,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
 
     /// Every number exists, every point is admitted, and neighbors know each other and share their facet turned around.
     fn check_links(&self) -> Result<(), Damaged> {
-        let vertices = tds::vertices(self).chain(self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE)));
+        let vertices = plane::vertices(self).chain(self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE)));
         for vertex in vertices {
             let vertex = vertex?;
             if vertex != VertexId::INFINITE {
@@ -67,7 +67,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
             return Ok(());
         }
         let mut corners = 0;
-        for vertex in tds::vertices(self).chain([Ok(VertexId::INFINITE)]) {
+        for vertex in plane::vertices(self).chain([Ok(VertexId::INFINITE)]) {
             for cell in Star::new(self, vertex?, 1)? {
                 cell?;
                 corners += 1;
@@ -99,7 +99,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         if self.dimension() == 1 {
             let [a, b] = [0, 1].map(|index| self.point(VertexId::new(index)));
             let [a, b] = [a?, b?];
-            for vertex in tds::vertices(self) {
+            for vertex in plane::vertices(self) {
                 let vertex = vertex?;
                 if self.geometry.orientation([&a, &b, &self.point(vertex)?]) != Sign::Zero {
                     return Err(Damaged::Vertex(vertex));

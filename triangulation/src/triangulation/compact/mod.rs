@@ -289,7 +289,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Embedded<
     type Geometry = G;
     type Complex = Self;
     type Error = Damaged;
-    type Held<'a>
+    type PointRef<'a>
         = [f64; D]
     where
         Self: 'a;
@@ -317,7 +317,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Embedded<
     }
 
     #[inline]
-    fn hold<'a>(point: &'a [f64; D]) -> [f64; D]
+    fn point_ref<'a>(point: &'a [f64; D]) -> [f64; D]
     where
         Self: 'a,
     {

@@ -1,10 +1,10 @@
-//! The questions of the other kinds, which damage may answer.
+//! The queries of the other kinds; each may end with an error where bytes are damaged.
 
 use crate::geometry::{Coordinates, Geometry, Metric};
-use crate::tds::{self, CellId, VertexId};
+use crate::tds::{CellId, VertexId, plane};
 
-use super::super::query::{self, Along, ConflictZone, Faces, NearestFirst, Passage};
-use super::super::{Location, locate};
+use super::super::Location;
+use super::super::query::{self, ConflictZone, Passage};
 use super::{Compact, Damaged, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
@@ -14,7 +14,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// # Errors
     /// If what it meets is damaged.
     pub fn locate(&self, q: &[f64; D], near: Option<CellId>) -> Result<Location, Damaged> {
-        locate::walk(self, q, near)
+        query::locate(self, q, near)
     }
 
     /// All that a segment meets: see [`Triangulation::along`](crate::triangulation::Triangulation::along). Ends at
@@ -24,11 +24,10 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// If what it meets is damaged.
     pub fn along(
         &self,
-        [a, b]: [&[f64; D]; 2],
+        ends: [&[f64; D]; 2],
         near: Option<CellId>,
     ) -> Result<impl Iterator<Item = Result<Passage, Damaged>> + use<'_, G, B, D>, Damaged> {
-        let location = if self.dimension() == 2 { self.locate(a, near)? } else { Location::OutsideAffineHull };
-        Ok(Along::new(self, [a, b], location))
+        query::along(self, ends, near)
     }
 
     /// The vertices in a rectangle: see
@@ -40,7 +39,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     where
         G: Coordinates<3>,
     {
-        query::within_rectangle(self, corners, self.locate(corners[0], None)?)
+        query::within_rectangle(self, corners, None)
     }
 
     /// All finite faces in constant memory: see
@@ -55,7 +54,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     where
         G: Coordinates<3>,
     {
-        Faces::new(self, start)
+        query::faces_from(self, start)
     }
 
     /// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included; of
@@ -67,7 +66,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         &self,
         vertex: VertexId,
     ) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, Damaged>> + '_, Damaged> {
-        tds::vertices_around(self, vertex)
+        plane::vertices_around(self, vertex)
     }
 
     /// The cell to the left of an edge: see [`Tds::edge`](crate::tds::Tds::edge).
@@ -75,7 +74,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// # Errors
     /// If what is around the first vertex is damaged.
     pub fn edge(&self, a: VertexId, b: VertexId) -> Result<Option<(CellId, usize)>, Damaged> {
-        tds::edge(self, a, b)
+        plane::edge(self, a, b)
     }
 
     /// The face with these vertices: see [`Tds::face`](crate::tds::Tds::face).
@@ -83,7 +82,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// # Errors
     /// If what is around the first vertex is damaged.
     pub fn face(&self, corners: [VertexId; 3]) -> Result<Option<CellId>, Damaged> {
-        tds::face(self, corners)
+        plane::face(self, corners)
     }
 
     /// What a new point would destroy: see [`Delaunay::conflict_zone`](crate::triangulation::Delaunay::conflict_zone)
@@ -95,7 +94,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         match self.law() {
             Law::Delaunay | Law::ConstrainedDelaunay => {
                 let passes = |cell, i| Ok(!self.is_constrained(cell, i)?);
-                query::zone_at(self, q, self.locate(q, near)?, passes)
+                query::conflict_zone(self, q, near, passes)
             }
             law => Err(Damaged::Unanswerable(law)),
         }
@@ -109,7 +108,7 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
     /// If what it meets is damaged, and on other kinds than Delaunay triangulations.
     pub fn nearest(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<VertexId>, Damaged> {
         self.demand_delaunay()?;
-        query::nearest(self, q, self.locate(q, near)?)
+        query::nearest(self, q, near)
     }
 
     /// All vertices from the nearest on: see
@@ -123,8 +122,7 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         near: Option<CellId>,
     ) -> Result<impl Iterator<Item = Result<VertexId, Damaged>> + use<'_, G, B, D>, Damaged> {
         self.demand_delaunay()?;
-        let nearest = NearestFirst::new(self, q, self.locate(q, near)?)?;
-        Ok(nearest.map(|candidate| Ok(candidate?.vertex)))
+        query::nearest_first(self, q, near)
     }
 
     /// The vertices in a circle: see [`Delaunay::within`](crate::triangulation::Delaunay::within). Ends at the first
@@ -138,13 +136,7 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         rim: &[f64; D],
     ) -> Result<impl Iterator<Item = Result<VertexId, Damaged>> + use<'_, G, B, D>, Damaged> {
         self.demand_delaunay()?;
-        let location = if self.geometry.admits(rim) { self.locate(center, None)? } else { Location::Nowhere };
-        let nearest = NearestFirst::new(self, center, location)?;
-        let rim = *rim;
-        let is_within = move |candidate: &Result<_, Damaged>| {
-            candidate.as_ref().map_or(true, |candidate: &query::Candidate<'_, Self>| candidate.is_within(&rim))
-        };
-        Ok(nearest.take_while(is_within).map(|candidate| Ok(candidate?.vertex)))
+        query::within(self, center, rim, None)
     }
 
     fn demand_delaunay(&self) -> Result<(), Damaged> {

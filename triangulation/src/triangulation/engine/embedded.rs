@@ -6,52 +6,90 @@ use crate::tds::{Complex, Tds, VertexId};
 
 use super::super::Triangulation;
 
-/// A complex whose vertices have points: what the editable [`Triangulation`] and the read-only
-/// [`Compact`](crate::Compact) have in common. Location and the other questions are written once over this trait.
+/// A complex whose vertices have points: what [`Triangulation`], the read-only [`Compact`](crate::Compact) and a structure of
+/// the user's own have in common. Location and the other [queries](crate::query) are written once over this trait.
+///
+/// *Why it is as it is.* Some structures keep points as they are, others have to decode them: so a point comes as a
+/// [`PointRef`](Self::PointRef), a reference or a copy. The complex is a type of its own, so that a structure may keep its
+/// cells in a [`Tds`]. What is in memory and cannot be damaged has the error [`Infallible`], of which nothing is left in the
+/// machine code.
 ///
 /// # Laws
-/// - Points that are no error are such as the geometry [admits](Geometry::admits).
+/// - Each finite vertex has a point, and the geometry [admits](Geometry::admits) it.
+/// - Finite cells are positively oriented. They fill the convex hull of the points without overlap: what is not convex is
+///   filled up.
+/// - Across each facet of the hull there is an infinite cell.
 ///
 /// # Models
-/// [`Triangulation`], [`Compact`](crate::Compact).
+/// [`Triangulation`], [`Compact`](crate::Compact). One of one's own, with points beside a complex:
+///
+/// ```
+/// use std::convert::Infallible;
+/// use breakline_triangulation::geometry::Plane;
+/// use breakline_triangulation::tds::{Tds, TdsError, VertexId};
+/// use breakline_triangulation::{Embedded, Location, query};
+///
+/// struct Sites { plane: Plane, points: Vec<[f64; 2]>, cells: Tds<3> }
+///
+/// impl Embedded<3> for Sites {
+///     type Geometry = Plane;
+///     type Complex = Tds<3>;
+///     type Error = Infallible;
+///     type PointRef<'a> = &'a [f64; 2];
+///     fn geometry(&self) -> &Plane { &self.plane }
+///     fn complex(&self) -> &Tds<3> { &self.cells }
+///     fn point(&self, vertex: VertexId) -> Result<&[f64; 2], Infallible> { Ok(&self.points[vertex.index()]) }
+///     fn point_ref<'a>(point: &'a [f64; 2]) -> &'a [f64; 2] where Self: 'a { point }
+/// }
+///
+/// // Two triangles, and the four infinite ones around them.
+/// let [a, b, c, d] = [0, 1, 2, 3].map(VertexId::new);
+/// let far = VertexId::INFINITE;
+/// let cells = [[a, b, c], [a, c, d], [b, a, far], [c, b, far], [d, c, far], [a, d, far]];
+/// let cells = Tds::from_cells(vec![(); 4], &cells)?;
+/// let square = Sites { plane: Plane::default(), points: vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]], cells };
+/// assert_eq!(query::locate(&square, &[4.0, 4.0], None), Ok(Location::Vertex(c)));
+/// assert_eq!(query::nearest(&square, &[1.0, 3.0], None), Ok(Some(d)));
+/// # Ok::<(), TdsError>(())
+/// ```
 pub trait Embedded<const N: usize> {
-    /// What is asked of points.
+    /// What is asked about points.
     type Geometry: Geometry<N>;
-    /// Who is whose neighbor.
+    /// The cells and their neighbors.
     type Complex: Complex<N, Error = Self::Error>;
-    /// What becomes of a link, or of a point, that cannot be.
+    /// The answer where a link does not hold, or a point cannot be; [`Infallible`] if neither happens.
     type Error;
-    /// A point where it is kept, or a copy of it.
-    type Held<'a>: Borrow<PointOf<Self, N>> + Copy
+    /// A reference to a point, or a copy of it.
+    type PointRef<'a>: Borrow<PointOf<Self, N>> + Copy
     where
         Self: 'a;
 
-    /// The geometry.
+    /// Returns the geometry.
     fn geometry(&self) -> &Self::Geometry;
 
-    /// The combinatorics.
+    /// Returns the complex.
     fn complex(&self) -> &Self::Complex;
 
-    /// The point of a finite vertex.
+    /// Returns the point of a finite vertex.
     ///
     /// # Errors
     /// If there is none, or the geometry does not admit it.
-    fn point(&self, vertex: VertexId) -> Result<Self::Held<'_>, Self::Error>;
+    fn point(&self, vertex: VertexId) -> Result<Self::PointRef<'_>, Self::Error>;
 
-    /// A point of one's own, as those of vertices come.
-    fn hold<'a>(point: &'a PointOf<Self, N>) -> Self::Held<'a>
+    /// Makes a point from outside look like those of vertices.
+    fn point_ref<'a>(point: &'a PointOf<Self, N>) -> Self::PointRef<'a>
     where
         Self: 'a;
 }
 
-/// What the vertices of a triangulation have as points.
+/// The type of the points of a structure.
 pub type PointOf<T, const N: usize> = <<T as Embedded<N>>::Geometry as Geometry<N>>::Point;
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Embedded<N> for Triangulation<G, N, V, C> {
     type Geometry = G;
     type Complex = Tds<N, V, C>;
     type Error = Infallible;
-    type Held<'a>
+    type PointRef<'a>
         = &'a G::Point
     where
         Self: 'a;
@@ -72,7 +110,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Embedded<N> for Trian
     }
 
     #[inline(always)]
-    fn hold<'a>(point: &'a G::Point) -> &'a G::Point
+    fn point_ref<'a>(point: &'a G::Point) -> &'a G::Point
     where
         Self: 'a,
     {

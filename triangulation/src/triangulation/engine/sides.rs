@@ -34,7 +34,7 @@ pub(in super::super) fn side_of_facet<const N: usize, T: Embedded<N>>(
         return side_of_facet_in_flat(t, cell, replaced, q);
     }
     let corners = t.complex().corners(cell)?;
-    let mut simplex = [T::hold(q); N];
+    let mut simplex = [T::point_ref(q); N];
     for i in 0..N {
         if i != replaced {
             simplex[i] = t.point(corners[i])?;
@@ -59,7 +59,7 @@ fn side_of_facet_in_flat<const N: usize, T: Embedded<N>>(
 pub(in super::super) fn simplex<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
-) -> Result<[T::Held<'_>; N], T::Error> {
+) -> Result<[T::PointRef<'_>; N], T::Error> {
     let corners = t.complex().corners(cell)?;
     let mut simplex = [t.point(corners[0])?; N];
     for i in 1..N {
@@ -97,7 +97,7 @@ fn beyond_hull<const N: usize, T: Embedded<N>>(
         Sign::Negative => false,
         Sign::Zero => {
             let corners = t.complex().corners(cell)?;
-            let mut facet = [T::hold(q); N];
+            let mut facet = [T::point_ref(q); N];
             let finite = corners[..t.complex().width()].iter().filter(|&&v| v != VertexId::INFINITE);
             let mut length = 0;
             for &v in finite {

@@ -31,29 +31,29 @@ impl Buckets {
 
     /// For the vertices of a triangulation, two to a square.
     pub fn of<G: Coordinates<3>, V, C: Copy + Default>(triangulation: &Triangulation<G, 3, V, C>) -> Self {
-        let place = |v: VertexId| place(triangulation.geometry(), triangulation.point(v));
+        let site = |v: VertexId| site(triangulation.geometry(), triangulation.point(v));
         let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         let bounds = triangulation
             .tds
             .vertices()
-            .map(place)
+            .map(site)
             .fold(nothing, |[low, high], p| [[0, 1].map(|k| low[k].min(p[k])), [0, 1].map(|k| high[k].max(p[k]))]);
         let mut buckets = Self::over(bounds, triangulation.vertex_count() / 2);
         for vertex in triangulation.tds.vertices() {
-            let at = buckets.bucket(place(vertex));
+            let at = buckets.bucket(site(vertex));
             buckets.vertices[at] = Some(vertex);
         }
         buckets
     }
 
-    fn bucket(&self, place: [f64; 2]) -> usize {
+    fn bucket(&self, site: [f64; 2]) -> usize {
         let rows = self.vertices.len() / self.columns;
-        let along = |k: usize, end: usize| (((place[k] - self.low[k]) * self.scale) as usize).min(end - 1);
+        let along = |k: usize, end: usize| (((site[k] - self.low[k]) * self.scale) as usize).min(end - 1);
         along(1, rows) * self.columns + along(0, self.columns)
     }
 }
 
-fn place<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {
+fn site<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {
     match *geometry.coordinates(p).as_ref() {
         [x, y, ..] => [x, y],
         _ => [0.0; 2],
@@ -62,13 +62,13 @@ fn place<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {
 
 impl<G: Coordinates<3>> Locate<G, 3> for Buckets {
     fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, 3, V, C>, q: &G::Point) -> Location {
-        let vertex = self.vertices[self.bucket(place(triangulation.geometry(), q))];
+        let vertex = self.vertices[self.bucket(site(triangulation.geometry(), q))];
         let vertex = vertex.filter(|&v| triangulation.tds.is_vertex(v));
         triangulation.locate(q, vertex.and_then(|v| triangulation.tds.cell_of(v)))
     }
 
     fn inserted(&mut self, geometry: &G, vertex: VertexId, point: &G::Point) {
-        let at = self.bucket(place(geometry, point));
+        let at = self.bucket(site(geometry, point));
         self.vertices[at] = Some(vertex);
     }
 }

@@ -17,11 +17,11 @@ const RATIO: usize = 30;
 ///   all         o o o o o oo o o oo o
 /// ```
 ///
-/// A place is located from the top down; each time the walk begins at the vertex that was found nearest above. So it
+/// A point is located from the top down; each time the walk begins at the vertex that was found nearest above. So it
 /// takes expected `O(log n)` steps on any Delaunay triangulation whose points came in random order, however they are
 /// spread (O(n) when a line goes through all triangles from there), and memory grows by a thirtieth.
 ///
-/// The geometry of the samples is one over the same kind of points, in which the place of a point is the same. It is
+/// The geometry of the samples is one over the same kind of points, in which a point is the same site. It is
 /// that of the triangulation itself but for weighted points: there it is one that leaves weights aside.
 ///
 /// Which vertices are in the samples looks random and is the same in every run.

@@ -7,10 +7,10 @@
 //! | [`Buckets`] from a vertex in the same square of a grid | a few; none the better where all points are in one square |
 //! | [`Hierarchy`] of samples (Devillers 2002) | `log n`, however the points are spread |
 //!
-//! These walk from one triangle to the next across an edge that parts it from the place. First by rounded numbers,
-//! across the edge that the place is furthest beyond, for as long as that leads on (structural filtering: Funke, Mehlhorn
+//! These walk from one triangle to the next across an edge that parts it from the point. First by rounded numbers,
+//! across the edge that the point is furthest beyond, for as long as that leads on (structural filtering: Funke, Mehlhorn
 //! and Näher 1999); then by certain ones, across any such edge, chosen as if at random (the stochastic, or zigzag, walk).
-//! [`StraightLine`] goes through the triangles that a line to the place meets (both: Devillers, Pion and Teillaud 2002).
+//! [`StraightLine`] goes through the triangles that a line to the point meets (both: Devillers, Pion and Teillaud 2002).
 //!
 //! A strategy is a value of the caller's. Some of them learn from insertions and removals: pass these to
 //! [`Locate::inserted`] and [`Locate::removed`], or insert and remove by way of the strategy:
@@ -32,7 +32,8 @@ use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
 
 use super::Triangulation;
-pub(super) use walk::{Dice, walk};
+pub(super) use walk::Dice;
+pub use walk::locate;
 use walk::{LOOKS, PATIENCE, Seems};
 
 /// Where a point lies in a triangulation.
@@ -54,16 +55,16 @@ pub enum Location {
         cell: CellId,
     },
     /// Outside of the line or plane that all points lie in; also for an empty triangulation, and for
-    /// a second place beside a single point.
+    /// a second site beside a single point.
     OutsideAffineHull,
-    /// Not a place: the geometry does not [admit](Geometry::admits) the point. A coordinate is NaN or infinite, or beyond
+    /// Nowhere: the geometry does not [admit](Geometry::admits) the point. A coordinate is NaN or infinite, or beyond
     /// the [range](crate::kernel::Kernel::RANGE) of the kernel; [`Wide`](crate::kernel::Wide) has every finite number in its
     /// range.
     Nowhere,
 }
 
 impl Location {
-    /// A cell at the place: where to start looking for what is near.
+    /// Returns a cell at the point: where to start looking for what is near.
     pub fn cell<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
         self,
         triangulation: &Triangulation<G, N, V, C>,
@@ -106,8 +107,11 @@ impl Location {
         cell.into_iter().flat_map(move |cell| (0..u8::BITS as usize).filter(is_on).map(move |i| (cell, i)))
     }
 
-    /// The same wherever the cells are kept.
-    pub(super) fn cell_in<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Option<CellId>, T::Error> {
+    /// Like [`cell`](Self::cell), in any complex.
+    ///
+    /// # Errors
+    /// If the vertex does not exist.
+    pub fn cell_in<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Option<CellId>, T::Error> {
         match self {
             Location::Vertex(vertex) => complex.cell_of(vertex),
             Location::Cell { cell, .. } | Location::OutsideHull { cell } => Ok(Some(cell)),
@@ -125,9 +129,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     ///
     /// A point that the geometry does not [admit](Geometry::admits) is [`Location::Nowhere`].
     pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
-        let start = near.filter(|&c| self.tds.is_used(c)).or(self.last);
-        let Ok(location) = walk(self, q, start);
+        let Ok(location) = locate(self, q, self.start(near));
         location
+    }
+
+    /// Where a walk starts: at a cell nearby if it exists, or where the last insertion ended.
+    #[inline]
+    pub(super) fn start(&self, near: Option<CellId>) -> Option<CellId> {
+        near.filter(|&c| self.tds.is_used(c)).or(self.last)
     }
 
     /// A cell that `q` is in, or not far from, found from one nearby: where to start looking, with less certainty than

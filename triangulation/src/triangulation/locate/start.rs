@@ -10,7 +10,7 @@ use super::Location;
 /// to be asked itself.
 ///
 /// # Laws
-/// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same place relative to the complex; of
+/// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same point relative to the complex; of
 ///   the cells that an edge or the outside of the hull is told by, any.
 /// - What [`inserted`](Self::inserted) and [`removed`](Self::removed) have not been told changes the time only.
 ///

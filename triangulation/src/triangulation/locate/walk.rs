@@ -52,12 +52,18 @@ pub(super) const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 /// comes to a cell twice, and on others the chance is halved, at the least, with each round.
 const WANDERING: usize = 8;
 
-/// Where `q` lies, by a walk from a cell, or if there is none by that number, from one at infinity. A point that the
-/// geometry does not admit lies nowhere: no predicate is asked about it.
+/// Returns where `q` lies: exactly, by a walk from a cell nearby, or without one from a cell at infinity. A point that the
+/// geometry does not admit lies [`Nowhere`](Location::Nowhere): no predicate is asked about it.
 ///
-/// On links that are damaged it ends with an error: if a link leads nowhere, or if there are many times more steps than
-/// cells.
-pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
+/// The complex fills its convex hull without overlap; it need not be Delaunay.
+///
+/// # Errors
+/// If a link does not hold, or if there are many times more steps than cells, as damaged links may cause.
+///
+/// # Complexity
+/// Time proportional to the number of cells between; if that is many, from about `n^(1/3)` of the `n` vertices on to as many
+/// cells, where points are spread evenly. See [`Triangulation::locate`](crate::Triangulation::locate).
+pub fn locate<const N: usize, T: Embedded<N>>(
     t: &T,
     q: &PointOf<T, N>,
     start: Option<CellId>,
@@ -86,7 +92,7 @@ pub(in super::super) fn walk<const N: usize, T: Embedded<N>>(
         return Ok(Location::OutsideAffineHull);
     }
     let mut dice = Dice::default();
-    // Where a certain step came from: the place is on this side of the facet.
+    // Where a certain step came from: the point is on this side of the facet.
     let mut from = None;
     let mut steps = 0;
     let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
@@ -147,7 +153,7 @@ pub(super) struct Reached {
     pub(super) seems: Seems,
 }
 
-/// Where a place seems to be, seen from a cell.
+/// Where a point seems to be, seen from a cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Seems {
     /// In the cell.
@@ -220,7 +226,7 @@ fn way_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N
     Ok(None)
 }
 
-/// Where a place is of a finite cell.
+/// Where a point is of a finite cell.
 enum Sides {
     /// Outside of the facet opposite this vertex.
     Outside(usize),
@@ -229,7 +235,7 @@ enum Sides {
 }
 
 /// On which sides of a finite cell `q` lies, by the predicates: of one facet after the other from the `first` on, but for
-/// that of a neighbor from which the place is known to be on this side.
+/// that of a neighbor from which the point is known to be on this side.
 #[inline(always)]
 fn ask_sides<const N: usize, T: Embedded<N>>(
     t: &T,

@@ -1,13 +1,14 @@
-//! What a segment meets on its way.
+//! What a segment meets.
 
 use std::borrow::Borrow;
 use std::cmp::Ordering;
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
-use crate::tds::{self, CellId, Complex, Star, VertexId, ccw, cw};
+use crate::tds::{CellId, Complex, Star, VertexId, ccw, cw, plane};
 
 use super::super::engine::embedded::{Embedded, PointOf};
+use super::super::locate::locate;
 use super::super::{Location, Triangulation};
 
 /// A face, edge or vertex whose inside a segment meets: the faces are open, and so are the edges.
@@ -29,9 +30,8 @@ pub enum Passage {
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// All that a segment meets, in order from `a` to `b`, which may be equal; nothing if the geometry does not
-    /// [admit](Geometry::admits) one of them. What meets two parts only at their border is told by the border: a segment through a vertex meets the
-    /// vertex and perhaps two faces, none of the edges there. Nothing is told of the way outside of the hull, nor below
-    /// dimension 2. Exact.
+    /// [admit](Geometry::admits) one of them. Where it meets two parts only at their common border, the border is returned: a segment through a
+    /// vertex meets the vertex and perhaps two faces, none of the edges there. Outside of the hull nothing is met, nor below dimension 2. Exact.
     ///
     /// # Complexity
     /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for a face or an edge, and the degree of
@@ -54,31 +54,48 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         [a, b]: [&G::Point; 2],
         near: Option<CellId>,
     ) -> impl Iterator<Item = Passage> + use<'t, G, V, C> {
-        let location = if self.is_full() { self.locate(a, near) } else { Location::OutsideAffineHull };
-        Along::new(self, [a, b], location).map(|Ok(passage)| passage)
+        let Ok(along) = along(self, [a, b], self.start(near));
+        along.map(|Ok(passage)| passage)
     }
 }
 
+/// Returns all that a segment meets, in order from its first point to the second: see [`Triangulation::along`]. The first
+/// point is looked for from a cell nearby. Ends at the first error.
+///
+/// # Errors
+/// If a link does not hold.
+///
+/// # Complexity
+/// See [`Triangulation::along`].
+pub fn along<'t, T: Embedded<3>>(
+    t: &'t T,
+    [a, b]: [&PointOf<T, 3>; 2],
+    near: Option<CellId>,
+) -> Result<impl Iterator<Item = Result<Passage, T::Error>> + use<'t, T>, T::Error> {
+    let location = if t.complex().dimension() == 2 { locate(t, a, near)? } else { Location::OutsideAffineHull };
+    Ok(Along::new(t, [a, b], location))
+}
+
 /// What a segment meets, from its start on.
-pub(in crate::triangulation) struct Along<'t, T: Embedded<3>> {
-    way: Way<'t, T>,
+struct Along<'t, T: Embedded<3>> {
+    segment: Segment<'t, T>,
     next: Result<Option<Passage>, T::Error>,
     /// Each face is met once: if there are more, links lead astray.
     faces: usize,
-    /// The last one met: the next one is further on the way.
+    /// The last one met: the next one is further along.
     vertex: Option<VertexId>,
 }
 
 impl<'t, T: Embedded<3>> Along<'t, T> {
     /// Given where the segment starts.
-    pub(in crate::triangulation) fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
-        let way = Way { t, a: *a, b: *b };
-        let next = if t.geometry().admits(b) { way.first(location) } else { Ok(None) };
-        Along { way, next, faces: 0, vertex: None }
+    fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
+        let segment = Segment { t, a: *a, b: *b };
+        let next = if t.geometry().admits(b) { segment.first(location) } else { Ok(None) };
+        Along { segment, next, faces: 0, vertex: None }
     }
 
     fn after(&mut self, passage: Passage) -> Result<Option<Passage>, T::Error> {
-        let complex = self.way.t.complex();
+        let complex = self.segment.t.complex();
         match passage {
             Passage::Face(cell) => {
                 self.faces += 1;
@@ -86,12 +103,12 @@ impl<'t, T: Embedded<3>> Along<'t, T> {
             }
             Passage::Vertex(vertex) => {
                 if let (Some(last), Some(cell)) = (self.vertex.replace(vertex), complex.cell_of(vertex)?) {
-                    complex.ensure(cell, || self.way.order_of(last, vertex).is_ok_and(Ordering::is_gt))?;
+                    complex.ensure(cell, || self.segment.order_of(last, vertex).is_ok_and(Ordering::is_gt))?;
                 }
             }
             Passage::Edge(..) | Passage::Along(_) => {}
         }
-        self.way.after(passage)
+        self.segment.after(passage)
     }
 }
 
@@ -107,14 +124,14 @@ impl<T: Embedded<3>> Iterator for Along<'_, T> {
     }
 }
 
-/// A segment on its way.
-struct Way<'t, T: Embedded<3>> {
+/// A segment, and what it meets next.
+struct Segment<'t, T: Embedded<3>> {
     t: &'t T,
     a: PointOf<T, 3>,
     b: PointOf<T, 3>,
 }
 
-impl<T: Embedded<3>> Way<'_, T> {
+impl<T: Embedded<3>> Segment<'_, T> {
     /// On which side of the line a vertex lies: positive on the left.
     fn side(&self, vertex: VertexId) -> Result<Sign, T::Error> {
         Ok(self.t.geometry().orientation([&self.a, &self.b, self.t.point(vertex)?.borrow()]))
@@ -130,7 +147,7 @@ impl<T: Embedded<3>> Way<'_, T> {
         self.beside(edge, &self.b)
     }
 
-    /// Of points on the line: `Greater` if `q` comes after `p` on the way.
+    /// Of points on the line: `Greater` if `q` comes after `p` along the segment.
     fn order(&self, p: &PointOf<T, 3>, q: &PointOf<T, 3>) -> Ordering {
         let g = self.t.geometry();
         let order = g.compare(q, p);
@@ -159,7 +176,7 @@ impl<T: Embedded<3>> Way<'_, T> {
             Location::Cell { cell, touching: 0 } => Some(Passage::Face(cell)),
             Location::Cell { cell, touching } => {
                 let i = touching.trailing_zeros() as usize;
-                let ends @ [from, to] = complex.edge_ends(cell, i)?;
+                let ends @ [from, to] = plane::edge_ends(complex, cell, i)?;
                 let beyond = complex.neighbor(cell, i)?;
                 Some(match self.end_side(ends)? {
                     Sign::Negative => Passage::Edge(cell, i),
@@ -182,7 +199,7 @@ impl<T: Embedded<3>> Way<'_, T> {
         for cell in Star::new(complex, VertexId::INFINITE, 2)? {
             let (cell, i) = cell?;
             // Of the infinite face: the hull runs from `to` to `from`.
-            let ends @ [to, from] = complex.edge_ends(cell, i)?;
+            let ends @ [to, from] = plane::edge_ends(complex, cell, i)?;
             let sides = [self.side(from)?, self.side(to)?];
             if sides == [Sign::Positive, Sign::Negative] {
                 let starts_outside = self.beside([to, from], &self.a)? == Sign::Positive;
@@ -210,7 +227,7 @@ impl<T: Embedded<3>> Way<'_, T> {
             Passage::Along([_, to]) => self.up_to(to),
             Passage::Edge(cell, i) => {
                 let beyond = complex.neighbor(cell, i)?;
-                let goes_on = self.end_side(complex.edge_ends(cell, i)?)? == Sign::Negative;
+                let goes_on = self.end_side(plane::edge_ends(complex, cell, i)?)? == Sign::Negative;
                 Ok((goes_on && !complex.is_infinite(beyond)?).then_some(Passage::Face(beyond)))
             }
             Passage::Face(cell) => self.after_face(cell),
@@ -229,7 +246,7 @@ impl<T: Embedded<3>> Way<'_, T> {
             return self.up_to(corners[ccw(last)]);
         }
         let i = cw(last);
-        Ok((self.end_side(complex.edge_ends(cell, i)?)? != Sign::Positive).then_some(Passage::Edge(cell, i)))
+        Ok((self.end_side(plane::edge_ends(complex, cell, i)?)? != Sign::Positive).then_some(Passage::Edge(cell, i)))
     }
 
     fn after_vertex(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
@@ -237,7 +254,7 @@ impl<T: Embedded<3>> Way<'_, T> {
         if self.order_to_end(vertex)?.is_le() {
             return Ok(None);
         }
-        for edge in tds::edges_around(complex, vertex)? {
+        for edge in plane::edges_around(complex, vertex)? {
             let (cell, i) = edge?;
             // The next edge of the cell is opposite the vertex.
             let [right, left] = [complex.vertex(cell, cw(i))?, complex.vertex(cell, i)?];

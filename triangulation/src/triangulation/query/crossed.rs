@@ -45,7 +45,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         crossed
     }
 
-    /// The cells that have a place in them or on their border; all infinite ones for a place outside.
+    /// The cells that have a point in them or on their border; all infinite ones for a point outside.
     fn cells_at(&self, a: &G::Point) -> Vec<CellId> {
         match self.locate(a, None) {
             Location::Vertex(vertex) => self.tds.around(vertex).collect(),

@@ -11,9 +11,7 @@ use crate::tds::{CellId, VertexId};
 
 use super::super::{Delaunay, Triangulation};
 
-type Place = [f64; 2];
-
-/// The places that two vertices are both nearest to: the dual of an edge. Of a Voronoi diagram, or of a power diagram.
+/// The points that two vertices are both nearest to: the dual of an edge. Of a Voronoi diagram, or of a power diagram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VoronoiEdge {
     /// Between the centers of the faces beside an edge; of no length if these are one, as where their corners lie on
@@ -35,7 +33,7 @@ pub enum VoronoiEdge {
     },
 }
 
-/// The places in a convex polygon that no vertex is nearer to than this one.
+/// The points in a convex polygon that no vertex is nearer to than this one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VoronoiCell {
     /// Counter-clockwise; none if the cell lies outside of the polygon.
@@ -44,26 +42,26 @@ pub struct VoronoiCell {
     pub area: f64,
 }
 
-/// The places whose product with `normal` is at most `offset`.
+/// The points whose product with `normal` is at most `offset`.
 pub(super) struct HalfPlane {
-    normal: Place,
+    normal: [f64; 2],
     offset: f64,
 }
 
 impl HalfPlane {
     /// What is nearer to the origin than to `p`.
-    fn nearer_than(p: Place) -> Self {
+    fn nearer_than(p: [f64; 2]) -> Self {
         Self::of_less_power(p, 0.0)
     }
 
     /// The same by power, the origin weighing more than `p` by this.
-    pub(super) fn of_less_power(p: Place, by: f64) -> Self {
+    pub(super) fn of_less_power(p: [f64; 2], by: f64) -> Self {
         HalfPlane { normal: p, offset: (dot(p, p) + by) / 2.0 }
     }
 
     /// The part of a convex polygon in it (Sutherland and Hodgman 1974, for one line).
-    fn clip(&self, polygon: &[Place]) -> Vec<Place> {
-        let beyond = |p: Place| dot(self.normal, p) - self.offset;
+    fn clip(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let beyond = |p: [f64; 2]| dot(self.normal, p) - self.offset;
         let mut clipped = Vec::with_capacity(polygon.len() + 1);
         for (k, &p) in polygon.iter().enumerate() {
             let q = polygon[(k + 1) % polygon.len()];
@@ -80,29 +78,33 @@ impl HalfPlane {
     }
 }
 
-pub(super) fn dot(p: Place, q: Place) -> f64 {
+pub(super) fn dot(p: [f64; 2], q: [f64; 2]) -> f64 {
     p[0] * q[0] + p[1] * q[1]
 }
 
-pub(super) fn minus(p: Place, q: Place) -> Place {
+pub(super) fn minus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [p[0] - q[0], p[1] - q[1]]
 }
 
-pub(super) fn plus(p: Place, q: Place) -> Place {
+pub(super) fn plus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [p[0] + q[0], p[1] + q[1]]
 }
 
 /// Twice the area of a polygon, positive if it is counter-clockwise.
-pub(super) fn twice_area(polygon: &[Place]) -> f64 {
+pub(super) fn twice_area(polygon: &[[f64; 2]]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
 }
 
 /// The cell of a site: the part of a convex polygon in half planes that are given relative to the site.
-pub(super) fn cell_of(site: Place, half_planes: impl Iterator<Item = HalfPlane>, within: &[Place]) -> VoronoiCell {
+pub(super) fn cell_of(
+    site: [f64; 2],
+    half_planes: impl Iterator<Item = HalfPlane>,
+    within: &[[f64; 2]],
+) -> VoronoiCell {
     let is_polygon = within.as_flattened().iter().all(|x| x.is_finite());
     let polygon = within.iter().filter(|_| is_polygon).map(|&p| minus(p, site)).collect();
-    let cell: Vec<Place> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(&polygon));
+    let cell: Vec<[f64; 2]> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(&polygon));
     if cell.len() < 3 {
         return VoronoiCell { corners: Vec::new(), area: 0.0 };
     }
@@ -114,7 +116,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Right to a few units in the last place of the larger of its coordinates and its
     /// [distance](kernel::power_center) from the corners. O(1).
     pub fn circumcenter(&self, cell: CellId) -> Option<[f64; 2]> {
-        let corners = self.finite_face(cell)?.map(|v| self.place(v));
+        let corners = self.finite_face(cell)?.map(|v| self.site(v));
         Some(plus(corners[0], kernel::circumcenter(corners)))
     }
 
@@ -135,17 +137,17 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         (!ends.contains(&VertexId::INFINITE)).then_some(ends)
     }
 
-    /// The dual of a finite edge, `None` of what is not one; given the centers of finite faces, and which place between two
+    /// The dual of a finite edge, `None` of what is not one; given the centers of finite faces, and which point between two
     /// collinear vertices belongs to both.
     pub(super) fn dual_edge(
         &self,
         cell: CellId,
         i: usize,
-        center: impl Fn(CellId) -> Option<Place>,
-        between: impl Fn([VertexId; 2]) -> Place,
+        center: impl Fn(CellId) -> Option<[f64; 2]>,
+        between: impl Fn([VertexId; 2]) -> [f64; 2],
     ) -> Option<VoronoiEdge> {
         let ends = self.finite_edge(cell, i)?;
-        let [a, b] = ends.map(|v| self.place(v));
+        let [a, b] = ends.map(|v| self.site(v));
         let [dx, dy] = minus(b, a);
         if self.dimension() == 1 {
             return Some(VoronoiEdge::Line { through: between(ends), direction: [-dy, dx] });
@@ -160,12 +162,12 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// The places that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
+    /// The points that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
     /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex, and
     /// for what is not an edge: on a line an edge has index 2, below that there is none. O(1).
     pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
         let middle = |ends: [VertexId; 2]| {
-            let [a, b] = ends.map(|v| self.place(v));
+            let [a, b] = ends.map(|v| self.site(v));
             [0, 1].map(|k| a[k] / 2.0 + b[k] / 2.0)
         };
         self.dual_edge(cell, i, |cell| self.circumcenter(cell), middle)
@@ -193,8 +195,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         if !self.tds().is_vertex(vertex) {
             return VoronoiCell { corners: Vec::new(), area: 0.0 };
         }
-        let site = self.place(vertex);
+        let site = self.site(vertex);
         let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
-        cell_of(site, neighbors.map(|v| HalfPlane::nearer_than(minus(self.place(v), site))), within)
+        cell_of(site, neighbors.map(|v| HalfPlane::nearer_than(minus(self.site(v), site))), within)
     }
 }

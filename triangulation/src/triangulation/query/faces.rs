@@ -18,11 +18,11 @@ use crate::tds::{CellId, Complex, Star, VertexId, ccw, cw};
 
 use super::super::Triangulation;
 use super::super::engine::embedded::Embedded;
-use super::place;
+use super::site;
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// All finite faces, each once: of each face around a vertex, counter-clockwise, first itself and then what lies
-    /// behind it as the vertex sees it. Nothing is remembered of the faces that have been told. Empty below dimension
+    /// behind it as the vertex sees it. No visited set is kept. Empty below dimension
     /// 2, or if there is no such vertex.
     ///
     /// # Complexity
@@ -37,22 +37,36 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn faces_from(&self, start: VertexId) -> impl Iterator<Item = CellId> + '_ {
-        let faces = self.tds.is_vertex(start).then(|| {
-            let Ok(faces) = Faces::new(self, start);
-            faces
-        });
-        faces.into_iter().flatten().map(|Ok(cell)| cell)
+        let Ok(faces) = faces_from(self, start);
+        faces.map(|Ok(cell)| cell)
     }
 }
 
-/// The finite faces of a triangulation.
-pub(in crate::triangulation) struct Faces<'t, T: Embedded<3>> {
+/// Returns all finite faces, each once, from those around a vertex on, and keeps no visited set: see
+/// [`Triangulation::faces_from`]. Empty below dimension 2, or if there is no such vertex. Ends at the first error.
+///
+/// # Errors
+/// If a link does not hold.
+///
+/// # Complexity
+/// Constant memory; constant time for a face, on average.
+pub fn faces_from<'t, T: Embedded<3, Geometry: Coordinates<3>>>(
     t: &'t T,
     start: VertexId,
-    place: [f64; 2],
-    /// Those around the start that have not been told; `None` after an error.
+) -> Result<impl Iterator<Item = Result<CellId, T::Error>> + use<'t, T>, T::Error> {
+    let is_vertex = start != VertexId::INFINITE && t.complex().cell_of(start)?.is_some();
+    let faces = is_vertex.then(|| Faces::new(t, start)).transpose()?;
+    Ok(faces.into_iter().flatten())
+}
+
+/// The finite faces of a triangulation.
+struct Faces<'t, T: Embedded<3>> {
+    t: &'t T,
+    start: VertexId,
+    site: [f64; 2],
+    /// Those around the start that have not been returned; `None` after an error.
     roots: Option<Star<'t, T::Complex>>,
-    /// The face that was told last.
+    /// The face that was returned last.
     at: Option<CellId>,
     /// Each face is come to and left again once: if there are more steps, links lead astray.
     steps: usize,
@@ -60,9 +74,9 @@ pub(in crate::triangulation) struct Faces<'t, T: Embedded<3>> {
 
 impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
     /// From those around a vertex on.
-    pub(in crate::triangulation) fn new(t: &'t T, start: VertexId) -> Result<Self, T::Error> {
+    fn new(t: &'t T, start: VertexId) -> Result<Self, T::Error> {
         let roots = Some(Star::new(t.complex(), start, 2)?);
-        Ok(Faces { t, start, place: place(t, start)?, roots, at: None, steps: 0 })
+        Ok(Faces { t, start, site: site(t, start)?, roots, at: None, steps: 0 })
     }
 
     /// The index of the edge by which a face is entered; `None` for those around the start.
@@ -72,9 +86,9 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
         if corners.contains(&self.start) {
             return Ok(None);
         }
-        let corners = [place(self.t, a)?, place(self.t, b)?, place(self.t, c)?];
+        let corners = [site(self.t, a)?, site(self.t, b)?, site(self.t, c)?];
         let is_seen =
-            |&i: &usize| Wide::sign(&Orientation2([corners[ccw(i)], corners[cw(i)], self.place])) == Sign::Negative;
+            |&i: &usize| Wide::sign(&Orientation2([corners[ccw(i)], corners[cw(i)], self.site])) == Sign::Negative;
         let mut seen = (0..3).filter(is_seen);
         let (first, second) = (seen.next(), seen.next());
         // A face that is flat, or turned around, or that lies over the start.
@@ -84,8 +98,7 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
         };
         // The edge opposite `i` runs from the common corner to corner `j`.
         let common = 3 - i - j;
-        let falls_on =
-            |to: usize| Wide::sign(&DotProduct([self.place, corners[common], corners[to]])) == Sign::Positive;
+        let falls_on = |to: usize| Wide::sign(&DotProduct([self.site, corners[common], corners[to]])) == Sign::Positive;
         Ok(Some(if falls_on(j) {
             i
         } else if falls_on(i) {

@@ -1,4 +1,39 @@
-//! Questions to triangulations of the plane that go beyond location.
+//! Location and other questions as functions over any [`Embedded`](crate::Embedded) structure: the methods of the kinds, and
+//! those of [`Compact`](crate::Compact), call these.
+//!
+//! | function | returns | asks of the structure |
+//! |---|---|---|
+//! | [`locate`] | the vertex or cell that a point lies on or in | a triangulation, of the plane or of space |
+//! | [`along`] | what a segment meets | a triangulation of the plane |
+//! | [`faces_from`] | all faces, without a visited set | the same |
+//! | [`within_rectangle`] | the vertices in a rectangle | the same |
+//! | [`nearest`], [`nearest_first`], [`within`] | vertices by distance | a Delaunay triangulation |
+//! | [`conflict_zone`] | what a new point would destroy | one, perhaps with constraints |
+//!
+//! All walk from a cell nearby, which may be `None`. What a structure of your own needs is two traits:
+//! [`Complex`](crate::tds::Complex), who is whose neighbor, and [`Embedded`](crate::Embedded), the points. The example
+//! `examples/own_structure.rs` has an array of triangles with indices of vertices.
+//!
+//! ```
+//! use breakline_triangulation::geometry::Plane;
+//! use breakline_triangulation::tds::CellId;
+//! use breakline_triangulation::{Delaunay, Embedded, query};
+//!
+//! /// The vertices nearest to the points of a route, each search starting where the last one ended.
+//! fn nearest_of_all<T: Embedded<3, Geometry = Plane>>(t: &T, route: &[[f64; 2]]) -> Result<Vec<usize>, T::Error> {
+//!     let mut found = Vec::new();
+//!     let mut near: Option<CellId> = None;
+//!     for q in route {
+//!         near = query::locate(t, q, near)?.cell_in(t.complex())?;
+//!         found.extend(query::nearest(t, q, near)?.map(|vertex| vertex.index()));
+//!     }
+//!     Ok(found)
+//! }
+//!
+//! let (t, v) = Delaunay::<Plane, 3>::from_points(Plane::default(), &[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]])?;
+//! assert_eq!(nearest_of_all(&*t, &[[1.0, 1.0], [3.0, 0.0]]), Ok(vec![v[0].index(), v[1].index()]));
+//! # Ok::<(), breakline_triangulation::Refused>(())
+//! ```
 
 mod along;
 mod crossed;
@@ -11,15 +46,15 @@ mod rectangle;
 mod svg;
 mod zone;
 
-pub(super) use along::Along;
-pub use along::Passage;
+pub use along::{Passage, along};
 pub use dual::{VoronoiCell, VoronoiEdge};
-pub(super) use faces::Faces;
-pub(super) use nearest::{Candidate, NearestFirst, nearest};
-pub(super) use rectangle::within_rectangle;
+pub use faces::faces_from;
+pub use nearest::{nearest, nearest_first, within};
+pub use rectangle::within_rectangle;
 pub use svg::Mark;
-pub use zone::ConflictZone;
-pub(super) use zone::zone_at;
+pub use zone::{ConflictZone, conflict_zone};
+
+pub use super::locate::locate;
 
 use std::borrow::Borrow;
 
@@ -30,20 +65,20 @@ use super::Triangulation;
 use super::engine::embedded::Embedded;
 
 /// Where a point lies in the plane.
-fn place_of<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {
+fn site_of<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {
     let coordinates = geometry.coordinates(p);
     [coordinates.as_ref()[0], coordinates.as_ref()[1]]
 }
 
 /// Where a finite vertex lies.
-fn place<T: Embedded<3, Geometry: Coordinates<3>>>(t: &T, vertex: VertexId) -> Result<[f64; 2], T::Error> {
-    Ok(place_of(t.geometry(), t.point(vertex)?.borrow()))
+fn site<T: Embedded<3, Geometry: Coordinates<3>>>(t: &T, vertex: VertexId) -> Result<[f64; 2], T::Error> {
+    Ok(site_of(t.geometry(), t.point(vertex)?.borrow()))
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Where a finite vertex lies.
-    fn place(&self, vertex: VertexId) -> [f64; 2] {
-        let Ok(place) = place(self, vertex);
-        place
+    fn site(&self, vertex: VertexId) -> [f64; 2] {
+        let Ok(site) = site(self, vertex);
+        site
     }
 }

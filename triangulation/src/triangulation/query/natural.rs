@@ -1,6 +1,6 @@
 //! Natural neighbor coordinates.
 //!
-//! If a place was a vertex, its Voronoi cell would take something from the cells of some vertices: its *natural
+//! If a point was a vertex, its Voronoi cell would take something from the cells of some vertices: its *natural
 //! neighbors*, those around its [conflict zone](ConflictZone). Nothing is inserted to see that: the new corners of
 //! cells are circumcenters over the border of the zone, the old ones those of the faces within.
 //!
@@ -9,7 +9,7 @@
 //! | [Sibson](Delaunay::sibson)'s | the area that its cell loses |
 //! | [Laplace](Delaunay::laplace)'s | the length of the border with the new cell, over its distance |
 //!
-//! Both are positive, sum up to 1, and give back the place as the weighted mean of its neighbors; so they interpolate,
+//! Both are positive, sum up to 1, and give back the point as the weighted mean of its neighbors; so they interpolate,
 //! and linear functions exactly. They are continuous, Sibson's smooth but at the vertices, Laplace's less so and
 //! cheaper.
 
@@ -23,18 +23,16 @@ use super::super::{Delaunay, Location};
 use super::dual::{minus, plus, twice_area};
 use super::zone::ConflictZone;
 
-type Place = [f64; 2];
-
 /// Vertices with weights.
 type Weights = Vec<(VertexId, f64)>;
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// Sibson's coordinates of a place: vertices with weights that are not negative, sum up to 1, and whose mean is the
-    /// place; counter-clockwise. Rounded: in all tests the mean misses the place by less than `1e-11`, of points that
+    /// Sibson's coordinates of a point: vertices with weights that are not negative, sum up to 1, and whose mean is the
+    /// place; counter-clockwise. Rounded: in all tests the mean misses the point by less than `1e-11`, of points that
     /// are some 10 apart.
     ///
     /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends
-    /// in linear proportion, which is the limit from within. `None` outside of the hull, at a place that the geometry does
+    /// in linear proportion, which is the limit from within. `None` outside of the hull, at a point that the geometry does
     /// not [admit](crate::geometry::Geometry::admits), and where squares of distances are no numbers (beyond `1e150`, below
     /// `1e-150`). The coordinates must be those that circles are circles of.
     ///
@@ -58,12 +56,12 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// ```
     pub fn sibson(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
         self.coordinates(q, near, |zone, at, new| {
-            // Relative to the place, which all of them surround.
+            // Relative to the point, which all of them surround.
             let center = |&cell: &CellId| {
-                let corners = self.tds().corners(cell).map(|v| self.place(v));
+                let corners = self.tds().corners(cell).map(|v| self.site(v));
                 (cell, plus(minus(corners[0], at), kernel::circumcenter(corners)))
             };
-            let old: FxHashMap<CellId, Place> = zone.cells.iter().map(center).collect();
+            let old: FxHashMap<CellId, [f64; 2]> = zone.cells.iter().map(center).collect();
             let mut lost = Vec::new();
             let weight = |k: usize, vertex: VertexId| {
                 // What a cell loses: from the first face around the vertex to the last one, then to the new corners.
@@ -84,15 +82,15 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         })
     }
 
-    /// Laplace's coordinates of a place, also called non-Sibsonian: answers and cost are as those of
+    /// Laplace's coordinates of a point, also called non-Sibsonian: answers and cost are as those of
     /// [`sibson`](Self::sibson), which see, but no face within the zone is looked at.
     ///
     /// After Belikov, Ivanov, Kontorovich, Korytnik and Semenov 1997, *The non-Sibsonian interpolation*.
     pub fn laplace(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
         self.coordinates(q, near, |zone, at, new| {
             let weight = |k: usize, vertex: VertexId| {
-                let length = |[x, y]: Place| x.hypot(y);
-                length(minus(new[(k + 1) % new.len()], new[k])) / length(minus(self.place(vertex), at))
+                let length = |[x, y]: [f64; 2]| x.hypot(y);
+                length(minus(new[(k + 1) % new.len()], new[k])) / length(minus(self.site(vertex), at))
             };
             self.around(zone, weight)
         })
@@ -104,15 +102,15 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         ends.enumerate().map(|(k, vertex)| (vertex, weight(k, vertex).max(0.0))).collect()
     }
 
-    /// Weights that sum up to 1, from those that `inside` gives for a place within the hull: from the zone, the place,
+    /// Weights that sum up to 1, from those that `inside` gives for a point within the hull: from the zone, the point,
     /// and the corners of its Voronoi cell relative to it, one for each edge of the border.
     fn coordinates(
         &self,
         q: &G::Point,
         near: Option<CellId>,
-        inside: impl FnOnce(&ConflictZone, Place, &[Place]) -> Weights,
+        inside: impl FnOnce(&ConflictZone, [f64; 2], &[[f64; 2]]) -> Weights,
     ) -> Option<Weights> {
-        let at = super::place_of(&self.geometry, q);
+        let at = super::site_of(&self.geometry, q);
         let location = self.locate(q, near);
         let mut weights = match location {
             Location::Vertex(vertex) => return Some(vec![(vertex, 1.0)]),
@@ -127,10 +125,10 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
                     let Ok(zone) = super::zone::zone_at(&self.inner, q, location, |_, _| Ok(true));
                     let zone = zone?;
                     let center = |&(cell, i): &(CellId, usize)| {
-                        let [a, b] = self.tds().edge_ends(cell, i).map(|v| self.place(v));
+                        let [a, b] = self.tds().edge_ends(cell, i).map(|v| self.site(v));
                         kernel::circumcenter([at, a, b])
                     };
-                    let new: Vec<Place> = zone.border.iter().map(center).collect();
+                    let new: Vec<[f64; 2]> = zone.border.iter().map(center).collect();
                     inside(&zone, at, &new)
                 }
             }
@@ -145,8 +143,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 
     /// Linear interpolation.
-    fn between(&self, ends: [VertexId; 2], at: Place) -> Weights {
-        let [a, b] = ends.map(|v| minus(self.place(v), at)).map(|[x, y]| x.hypot(y));
+    fn between(&self, ends: [VertexId; 2], at: [f64; 2]) -> Weights {
+        let [a, b] = ends.map(|v| minus(self.site(v), at)).map(|[x, y]| x.hypot(y));
         vec![(ends[0], b), (ends[1], a)]
     }
 }

@@ -1,7 +1,7 @@
-//! The vertices of a Delaunay or regular triangulation by their distance from a place.
+//! The vertices of a Delaunay or regular triangulation by their distance from a point.
 //!
-//! All follows from one fact: a vertex that is not nearest to a place has a neighbor that is nearer, because its
-//! Voronoi cell, bounded by bisectors with neighbors, does not hold the place. So a walk to nearer neighbors ends at a
+//! All follows from one fact: a vertex that is not nearest to a point has a neighbor that is nearer, because its
+//! Voronoi cell, bounded by bisectors with neighbors, does not hold the point. So a walk to nearer neighbors ends at a
 //! nearest vertex; and each vertex is a neighbor of one that comes before it in the order of distance, so that none is
 //! missed if the nearest of all neighbors of what has been found comes next. The same holds of a regular triangulation,
 //! power for distance, and of the cells of its power diagram.
@@ -13,22 +13,23 @@ use std::collections::BinaryHeap;
 use rustc_hash::FxHashSet;
 
 use crate::geometry::{Geometry, Metric};
-use crate::tds::{self, CellId, Complex, VertexId};
+use crate::tds::{CellId, Complex, VertexId, plane};
 
 use super::super::engine::embedded::{Embedded, PointOf};
+use super::super::locate::locate;
 use super::super::{Delaunay, Location};
 
-/// A vertex found, but not yet told: the nearest is the greatest.
-pub(in crate::triangulation) struct Candidate<'t, T: Embedded<3>> {
+/// A vertex that was found and not yet returned: the nearest is the greatest.
+struct Candidate<'t, T: Embedded<3>> {
     t: &'t T,
     q: PointOf<T, 3>,
-    pub(in crate::triangulation) vertex: VertexId,
-    point: T::Held<'t>,
+    vertex: VertexId,
+    point: T::PointRef<'t>,
 }
 
 impl<T: Embedded<3, Geometry: Metric>> Candidate<'_, T> {
-    /// Whether it is no further from the place than `rim` is.
-    pub(in crate::triangulation) fn is_within(&self, rim: &PointOf<T, 3>) -> bool {
+    /// Whether it is no further from the point than `rim` is.
+    fn is_within(&self, rim: &PointOf<T, 3>) -> bool {
         self.t.geometry().compare_distance(&self.q, self.point.borrow(), rim).is_le()
     }
 }
@@ -54,8 +55,8 @@ impl<T: Embedded<3, Geometry: Metric>> PartialEq for Candidate<'_, T> {
 
 impl<T: Embedded<3, Geometry: Metric>> Eq for Candidate<'_, T> {}
 
-/// The vertices of a Delaunay triangulation by their distance from a place.
-pub(in crate::triangulation) struct NearestFirst<'t, T: Embedded<3, Geometry: Metric>> {
+/// The vertices of a Delaunay triangulation by their distance from a point.
+struct NearestFirst<'t, T: Embedded<3, Geometry: Metric>> {
     t: &'t T,
     q: PointOf<T, 3>,
     found: FxHashSet<VertexId>,
@@ -63,8 +64,8 @@ pub(in crate::triangulation) struct NearestFirst<'t, T: Embedded<3, Geometry: Me
 }
 
 impl<'t, T: Embedded<3, Geometry: Metric>> NearestFirst<'t, T> {
-    /// Given where the place is.
-    pub(in crate::triangulation) fn new(t: &'t T, q: &PointOf<T, 3>, location: Location) -> Result<Self, T::Error> {
+    /// From where the point is.
+    fn new(t: &'t T, q: &PointOf<T, 3>, location: Location) -> Result<Self, T::Error> {
         let mut nearest = NearestFirst { t, q: *q, found: FxHashSet::default(), next: BinaryHeap::new() };
         all_nearest(t, q, location)?.into_iter().try_for_each(|vertex| nearest.find(vertex))?;
         Ok(nearest)
@@ -99,17 +100,28 @@ fn finite_neighbors<T: Embedded<3>>(
     t: &T,
     vertex: VertexId,
 ) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
-    let around = tds::vertices_around(t.complex(), vertex)?;
+    let around = plane::vertices_around(t.complex(), vertex)?;
     Ok(around.filter(|v| !v.as_ref().is_ok_and(|&v| v == VertexId::INFINITE)))
 }
 
-/// The vertex nearest to a place; of several, the first in the order of the geometry.
-pub(in crate::triangulation) fn nearest<T: Embedded<3, Geometry: Metric>>(
+/// Returns the vertex nearest to a point; of several, the first in the [order](Geometry::compare) of the geometry. `None` if
+/// there are no vertices, or if the geometry does not [admit](Geometry::admits) the point.
+///
+/// Exact, in a Delaunay triangulation or a regular one (by power); the walk to it starts at a cell nearby. In others the
+/// vertex that is returned may not be the nearest.
+///
+/// # Errors
+/// If a link does not hold.
+///
+/// # Complexity
+/// That of [`locate`](super::locate), and the degrees of a few vertices.
+pub fn nearest<T: Embedded<3, Geometry: Metric>>(
     t: &T,
     q: &PointOf<T, 3>,
-    location: Location,
+    near: Option<CellId>,
 ) -> Result<Option<VertexId>, T::Error> {
-    let mut first: Option<(VertexId, T::Held<'_>)> = None;
+    let location = locate(t, q, near)?;
+    let mut first: Option<(VertexId, T::PointRef<'_>)> = None;
     for vertex in all_nearest(t, q, location)? {
         let point = t.point(vertex)?;
         if first.is_none_or(|(_, best)| t.geometry().compare(point.borrow(), best.borrow()).is_lt()) {
@@ -119,7 +131,47 @@ pub(in crate::triangulation) fn nearest<T: Embedded<3, Geometry: Metric>>(
     Ok(first.map(|(vertex, _)| vertex))
 }
 
-/// All vertices that no other is nearer than. They lie on an empty circle around the place, on whose chords edges
+/// Returns all vertices of a Delaunay triangulation from the nearest to the furthest; those that are equally far come in
+/// the order of the geometry. None where [`nearest`] is `None`. Ends at the first error.
+///
+/// # Errors
+/// If a link does not hold.
+///
+/// # Complexity
+/// That of [`nearest`], and `O(d log k)` for the `k`-th vertex, of degree `d`.
+pub fn nearest_first<'t, T: Embedded<3, Geometry: Metric>>(
+    t: &'t T,
+    q: &PointOf<T, 3>,
+    near: Option<CellId>,
+) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'t, T>, T::Error> {
+    let nearest = NearestFirst::new(t, q, locate(t, q, near)?)?;
+    Ok(nearest.map(|candidate| Ok(candidate?.vertex)))
+}
+
+/// Returns the vertices of a Delaunay triangulation no further from a center than `rim` is, nearest first. None if the
+/// geometry does not [admit](Geometry::admits) the center or the rim. Ends at the first error.
+///
+/// # Errors
+/// If a link does not hold.
+///
+/// # Complexity
+/// As [`nearest_first`].
+pub fn within<'t, T: Embedded<3, Geometry: Metric>>(
+    t: &'t T,
+    center: &PointOf<T, 3>,
+    rim: &PointOf<T, 3>,
+    near: Option<CellId>,
+) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'t, T>, T::Error> {
+    let location = if t.geometry().admits(rim) { locate(t, center, near)? } else { Location::Nowhere };
+    let nearest = NearestFirst::new(t, center, location)?;
+    let rim = *rim;
+    let is_within = move |candidate: &Result<Candidate<'t, T>, T::Error>| {
+        candidate.as_ref().map_or(true, |candidate| candidate.is_within(&rim))
+    };
+    Ok(nearest.take_while(is_within).map(|candidate| Ok(candidate?.vertex)))
+}
+
+/// All vertices that no other is nearer than. They lie on an empty circle around the point, on whose chords edges
 /// join them all.
 fn all_nearest<T: Embedded<3, Geometry: Metric>>(
     t: &T,
@@ -132,7 +184,7 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
         Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
             complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
         }
-        Location::OutsideAffineHull => tds::vertices(complex).next().transpose()?,
+        Location::OutsideAffineHull => plane::vertices(complex).next().transpose()?,
         Location::Nowhere => None,
     };
     let mut nearest: Vec<VertexId> = start.into_iter().collect();
@@ -161,9 +213,9 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
 }
 
 impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// The vertex nearest to a place; of several, the first in the [order](crate::geometry::Geometry::compare) of the
+    /// The vertex nearest to a point; of several, the first in the [order](crate::geometry::Geometry::compare) of the
     /// geometry. `None` if there are no vertices, or if the geometry does not
-    /// [admit](crate::geometry::Geometry::admits) the place: with the kernel [`Wide`](crate::kernel::Wide) it admits every
+    /// [admit](crate::geometry::Geometry::admits) the point: with the kernel [`Wide`](crate::kernel::Wide) it admits every
     /// finite one. Exact.
     ///
     /// # Complexity
@@ -181,7 +233,7 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn nearest(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexId> {
-        let Ok(nearest) = nearest(&self.inner, q, self.locate(q, near));
+        let Ok(nearest) = nearest(&self.inner, q, self.start(near));
         nearest
     }
 
@@ -195,11 +247,11 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         q: &G::Point,
         near: Option<CellId>,
     ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
-        let Ok(nearest) = NearestFirst::new(&self.inner, q, self.locate(q, near));
-        nearest.map(|Ok(candidate)| candidate.vertex)
+        let Ok(nearest) = nearest_first(&self.inner, q, self.start(near));
+        nearest.map(|Ok(vertex)| vertex)
     }
 
-    /// The vertices no further from a place than `rim` is, nearest first. Exact: the circle is given by a point on it,
+    /// The vertices no further from a point than `rim` is, nearest first. Exact: the circle is given by a point on it,
     /// as the length of a radius is rounded. None if the geometry does not [admit](crate::geometry::Geometry::admits) the
     /// center or the rim.
     ///
@@ -210,9 +262,7 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         center: &G::Point,
         rim: &G::Point,
     ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
-        let location = if self.geometry().admits(rim) { self.locate(center, None) } else { Location::Nowhere };
-        let Ok(nearest) = NearestFirst::new(&self.inner, center, location);
-        let rim = *rim;
-        nearest.map(|Ok(candidate)| candidate).take_while(move |c| c.is_within(&rim)).map(|candidate| candidate.vertex)
+        let Ok(within) = within(&self.inner, center, rim, self.start(None));
+        within.map(|Ok(vertex)| vertex)
     }
 }

@@ -9,15 +9,15 @@ use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus
 use super::nearest::nearest;
 
 impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
-    /// The point of the least power at a place, its squared distance less its weight; of several, the first in the
+    /// The point of the least power at a point, its squared distance less its weight; of several, the first in the
     /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be
     /// one of the same power. `None` if there are no points, or if the geometry does not
-    /// [admit](crate::geometry::Geometry::admits) the place, whose weight does not count otherwise. Exact.
+    /// [admit](crate::geometry::Geometry::admits) the point, whose weight does not count otherwise. Exact.
     ///
     /// # Complexity
     /// As [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
     pub fn nearest(&self, q: &G::Point) -> Option<VertexId> {
-        let Ok(nearest) = nearest(&**self, q, self.locate(q, None));
+        let Ok(nearest) = nearest(&**self, q, self.start(None));
         nearest
     }
 }
@@ -48,7 +48,7 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
         Some(plus([x, y], kernel::power_center(corners)))
     }
 
-    /// The places that have the same power with the ends of an edge, and less with no other point: the edge between
+    /// The points that have the same power with the ends of an edge, and less with no other point: the edge between
     /// their cells of the power diagram, given as in [`Tds::edges`](crate::tds::Tds::edges). A segment leads from the
     /// center of `cell` to that of the other face. `None` for edges with the infinite vertex, and for what is not an edge:
     /// on a line an edge has index 2, below that there is none. O(1).

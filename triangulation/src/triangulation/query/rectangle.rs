@@ -3,11 +3,12 @@ use rustc_hash::FxHashSet;
 use crate::geometry::Coordinates;
 use crate::kernel::{Kernel, Orientation2, Wide};
 use crate::num::Sign;
-use crate::tds::{self, CellId, Complex, VertexId};
+use crate::tds::{CellId, Complex, VertexId, plane};
 
+use super::super::Triangulation;
 use super::super::engine::embedded::{Embedded, PointOf};
-use super::super::{Location, Triangulation};
-use super::{place, place_of};
+use super::super::locate::locate;
+use super::{site, site_of};
 
 /// A rectangle along the axes, its border included; it may be unbounded, and is empty if a coordinate is NaN.
 #[derive(Clone, Copy)]
@@ -67,26 +68,35 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn within_rectangle(&self, corners: [&G::Point; 2]) -> Vec<VertexId> {
-        let Ok(vertices) = within_rectangle(self, corners, self.locate(corners[0], None));
+        let Ok(vertices) = within_rectangle(self, corners, self.start(None));
         vertices
     }
 }
 
-/// The vertices in a rectangle, given where the first of its corners lies.
-pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordinates<3>>>(
+/// Returns the vertices whose coordinates lie in the rectangle along the axes of which two opposite corners are given, its
+/// border included; in order of their numbers. Exact. The search starts at the first corner, which is looked for from a
+/// cell nearby.
+///
+/// # Errors
+/// If a link does not hold.
+///
+/// # Complexity
+/// See [`Triangulation::within_rectangle`].
+pub fn within_rectangle<T: Embedded<3, Geometry: Coordinates<3>>>(
     t: &T,
     corners: [&PointOf<T, 3>; 2],
-    location: Location,
+    near: Option<CellId>,
 ) -> Result<Vec<VertexId>, T::Error> {
     let complex = t.complex();
-    let [p, q] = corners.map(|corner| place_of(t.geometry(), corner));
+    let location = locate(t, corners[0], near)?;
+    let [p, q] = corners.map(|corner| site_of(t.geometry(), corner));
     let rectangle = Rectangle::new(p, q);
     let mut vertices = Vec::new();
     let start = if complex.width() < 3 || !rectangle.is_bounded() { None } else { location.cell_in(complex)? };
     let Some(start) = start else {
-        for vertex in tds::vertices(complex) {
+        for vertex in plane::vertices(complex) {
             let vertex = vertex?;
-            if rectangle.holds(place(t, vertex)?) {
+            if rectangle.holds(site(t, vertex)?) {
                 vertices.push(vertex);
             }
         }
@@ -96,7 +106,7 @@ pub(in crate::triangulation) fn within_rectangle<T: Embedded<3, Geometry: Coordi
     let mut met = vec![start];
     while let Some(cell) = met.pop() {
         for vertex in complex.corners(cell)? {
-            if vertex != VertexId::INFINITE && rectangle.holds(place(t, vertex)?) {
+            if vertex != VertexId::INFINITE && rectangle.holds(site(t, vertex)?) {
                 vertices.push(vertex);
             }
         }
@@ -122,12 +132,12 @@ fn meets<T: Embedded<3, Geometry: Coordinates<3>>>(
     let complex = t.complex();
     let Some(infinite) = complex.index_of(cell, VertexId::INFINITE)? else {
         let [a, b, c] = complex.corners(cell)?;
-        return Ok(rectangle.meets_box([place(t, a)?, place(t, b)?, place(t, c)?]));
+        return Ok(rectangle.meets_box([site(t, a)?, site(t, b)?, site(t, c)?]));
     };
-    let [a, b] = complex.edge_ends(cell, infinite)?;
-    let [a, b] = [place(t, a)?, place(t, b)?];
+    let [a, b] = plane::edge_ends(complex, cell, infinite)?;
+    let [a, b] = [site(t, a)?, site(t, b)?];
     let inner = complex.inner(cell)?;
     let apex = complex.vertex(inner, complex.index_of_neighbor(inner, cell)?)?;
-    let inside = turn(a, b, place(t, apex)?);
+    let inside = turn(a, b, site(t, apex)?);
     Ok(rectangle.corners().into_iter().any(|corner| turn(a, b, corner) != inside))
 }

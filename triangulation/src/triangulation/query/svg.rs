@@ -15,7 +15,7 @@ pub enum Mark<'a> {
     Edges(&'a [(CellId, usize)]),
     /// A polygon, filled: a Voronoi cell, say.
     Polygon(&'a [[f64; 2]]),
-    /// A line through places: the way of a walk, say. Of one place, a dot.
+    /// A line through points: the way of a walk, say. Of one point, a dot.
     Line(&'a [[f64; 2]]),
 }
 
@@ -48,18 +48,18 @@ impl Frame {
         Frame { low, half: if half > 0.0 { half } else { 1.0 } }
     }
 
-    fn place(&self, p: [f64; 2]) -> [f64; 2] {
+    fn pixel(&self, p: [f64; 2]) -> [f64; 2] {
         let [x, y] = [0, 1].map(|k| (p[k] / 2.0 - self.low[k] / 2.0) / self.half * SIZE + MARGIN);
         [x, SIZE + 2.0 * MARGIN - y]
     }
 
     /// As SVG lists them.
     fn list(&self, places: impl Iterator<Item = [f64; 2]>) -> String {
-        places.map(|p| self.place(p)).map(|[x, y]| format!("{x:.2},{y:.2} ")).collect()
+        places.map(|p| self.pixel(p)).map(|[x, y]| format!("{x:.2},{y:.2} ")).collect()
     }
 }
 
-/// The places among these that can be drawn.
+/// The points among these that can be drawn.
 fn finite<'a>(places: impl IntoIterator<Item = &'a [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
     places.into_iter().copied().filter(|p| p.iter().all(|x| x.is_finite()))
 }
@@ -91,7 +91,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             Mark::Polygon(places) | Mark::Line(places) => *places,
             Mark::Cells(_) | Mark::Edges(_) => &[],
         });
-        let frame = Frame::around(self.tds.vertices().map(|v| self.place(v)).chain(finite(drawn)));
+        let frame = Frame::around(self.tds.vertices().map(|v| self.site(v)).chain(finite(drawn)));
         let side = SIZE + 2.0 * MARGIN;
         writeln!(svg, r#"<svg xmlns="http://www.w3.org/2000/svg" class="tri" viewBox="0 0 {side} {side}">"#)?;
         writeln!(svg, "<style>{STYLE}</style>")?;
@@ -100,7 +100,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 Mark::Cells(cells) => {
                     let is_finite = |cell: CellId| self.tds.is_used(cell) && !self.tds.is_infinite(cell);
                     for &cell in cells.iter().filter(|&&cell| is_finite(cell)) {
-                        let corners = self.tds.cell_vertices(cell).iter().map(|&v| self.place(v));
+                        let corners = self.tds.cell_vertices(cell).iter().map(|&v| self.site(v));
                         writeln!(svg, r#"<polygon class="cell" points="{}"/>"#, frame.list(corners))?;
                     }
                 }
@@ -110,7 +110,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                     writeln!(svg, r#"<polygon class="polygon" points="{corners}"/>"#)?;
                 }
                 Mark::Line(dot @ &[_]) => {
-                    for [x, y] in finite(dot).map(|p| frame.place(p)) {
+                    for [x, y] in finite(dot).map(|p| frame.pixel(p)) {
                         writeln!(svg, r#"<circle class="dot" cx="{x:.2}" cy="{y:.2}" r="7"/>"#)?;
                     }
                 }
@@ -122,7 +122,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
         self.draw_edges(svg, &frame, "plain", self.tds.finite_edges())?;
         for v in self.tds.vertices() {
-            let [x, y] = frame.place(self.place(v));
+            let [x, y] = frame.pixel(self.site(v));
             writeln!(svg, r#"<circle cx="{x:.2}" cy="{y:.2}" r="3"/>"#)?;
             if self.vertex_count() <= MOST_NUMBERED {
                 writeln!(svg, r#"<text x="{:.2}" y="{:.2}">{}</text>"#, x + 5.0, y - 5.0, v.index())?;
@@ -139,7 +139,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         edges: impl Iterator<Item = (CellId, usize)>,
     ) -> fmt::Result {
         for ends in edges.filter_map(|(cell, i)| self.finite_edge(cell, i)) {
-            let [[x1, y1], [x2, y2]] = ends.map(|v| frame.place(self.place(v)));
+            let [[x1, y1], [x2, y2]] = ends.map(|v| frame.pixel(self.site(v)));
             writeln!(svg, r#"<line class="{class}" x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#)?;
         }
         Ok(())

@@ -5,6 +5,7 @@ use crate::tds::{CellId, Complex};
 
 use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::engine::sides::in_conflict;
+use super::super::locate::locate;
 use super::super::{ConstrainedDelaunay, Delaunay, Location};
 
 /// The cells that a new point would destroy, and the edges around them, which the cells of its star would stand on.
@@ -20,9 +21,26 @@ pub struct ConflictZone {
     pub border: Vec<(CellId, usize)>,
 }
 
-/// What insertion would replace, given where the point is; `passes` says over which edges the
-/// zone may grow. `None` where a point would destroy nothing: on a vertex, and where it raises the dimension.
-pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
+/// Returns what the insertion of a point into a Delaunay triangulation would destroy, in the plane or on a line; `passes` says
+/// across which edges the zone may grow, given as a cell and the index of the edge in it: those that are not constraints.
+/// `None` where a point would destroy nothing: on a vertex, and where it raises the dimension.
+///
+/// # Errors
+/// If a link does not hold, and what `passes` returns.
+///
+/// # Complexity
+/// That of [`locate`](super::locate), and time proportional to the size of the zone.
+pub fn conflict_zone<T: Embedded<3>>(
+    t: &T,
+    q: &PointOf<T, 3>,
+    near: Option<CellId>,
+    passes: impl Fn(CellId, usize) -> Result<bool, T::Error>,
+) -> Result<Option<ConflictZone>, T::Error> {
+    zone_at(t, q, locate(t, q, near)?, passes)
+}
+
+/// What the insertion of a point would destroy, given where it is; see [`conflict_zone`].
+pub(super) fn zone_at<T: Embedded<3>>(
     t: &T,
     q: &PointOf<T, 3>,
     location: Location,
@@ -35,7 +53,7 @@ pub(in crate::triangulation) fn zone_at<T: Embedded<3>>(
         Location::OutsideHull { cell } => (cell, 0),
     };
     let takes = |from: CellId, i: usize, beyond: CellId| {
-        // A point on an edge destroys the cells on both sides, wall or not.
+        // A point on an edge destroys the cells on both sides, constraint or not.
         let is_split = from == start && touching >> i & 1 == 1;
         Ok(is_split || passes(from, i)? && in_conflict(t, beyond, q)?)
     };
@@ -81,18 +99,18 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
-        let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), |_, _| Ok(true));
+        let Ok(zone) = conflict_zone(&self.inner, q, self.start(near), |_, _| Ok(true));
         zone
     }
 }
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// The same as [`Delaunay::conflict_zone`], where constraints bound what the point sees; with one that it lies
+    /// Like [`Delaunay::conflict_zone`], but constraints bound what the point sees; with one that it lies
     /// on, the zone has both sides of it. Of a point on a segment that was bent at crossings, insertion replaces
     /// more: it leads the segment through the point.
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
         let passes = |cell: CellId, i| Ok(!self.tds().cell_data(cell).has(i));
-        let Ok(zone) = zone_at(&self.inner, q, self.locate(q, near), passes);
+        let Ok(zone) = conflict_zone(&self.inner, q, self.start(near), passes);
         zone
     }
 }
