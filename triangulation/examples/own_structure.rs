@@ -1,6 +1,6 @@
 //! Queries on a structure of one's own: an array of triangles, as meshes come in files. The triangles fill a convex polygon.
 //!
-//! Infinite cells are not stored. One is answered for each edge of the hull, numbered after the triangles:
+//! Infinite cells are not stored: there is one for each edge of the hull, numbered after the triangles.
 //!
 //! ```text
 //!        ghost k: (b, a, infinity)

@@ -1,4 +1,4 @@
-//! What is around what, in the plane: edges, the faces and vertices around a vertex, the hull.
+//! Edges, the faces and vertices around a vertex, and the hull, in the plane.
 //!
 //! Orders are functions of the cells' numbers, so that a triangulation that was built alike is walked alike. What is
 //! around a vertex comes counter-clockwise from a cell of it ([`Tds::cell_of`]); [`rev`](Iterator::rev) turns that
@@ -39,7 +39,7 @@ impl<I: Iterator> Iterator for Counted<I> {
 
 impl<I: Iterator> ExactSizeIterator for Counted<I> {}
 
-/// Gives an iterator over cells or vertices its exact size.
+/// An iterator with a known number of items.
 pub(super) fn counted<I: Iterator>(items: I, left: usize) -> impl ExactSizeIterator<Item = I::Item> {
     Counted { items, left }
 }

@@ -1,7 +1,7 @@
 //! Edits of a complex that stands alone: splits, flips, stars of holes, collapses.
 //!
-//! Each checks first whether the complex stays a closed manifold of the same kind, and returns an [`EditError`] with
-//! nothing changed if not. They look at the cells around a few vertices; none depends on the size of the complex.
+//! Each checks first that the complex stays a closed manifold of the same topological type, and returns an [`EditError`] with
+//! nothing changed if not. They look at the cells around a few vertices; no cost depends on the size of the complex.
 //! Coordinates play no part: whether the result can be drawn with straight edges is for the caller to see.
 //!
 //! Where a cell is split, or a hole filled, each new cell has the payload of the old one that had the facet opposite the
@@ -313,7 +313,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         facet
     }
 
-    /// Whether so many cells more, and one vertex, can be numbered.
+    /// Returns an error unless so many new cells, and one vertex, can be numbered.
     fn ensure_numbers(&self, cells: usize) -> Result<(), EditError> {
         let new_slots = cells.saturating_sub(self.unused.len());
         let has_vertex = !self.unused_vertices.is_empty() || self.vertex_cell.len() < VertexId::LIMIT;
@@ -378,7 +378,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
         self.ensure_numbers(inner.len())?;
         let (base, gained) = (*self.corners(star[0].0), star[0].1);
-        let place = |vertex: VertexId| base.iter().position(|&v| v == vertex).unwrap_or(0);
+        let slot = |vertex: VertexId| base.iter().position(|&v| v == vertex).unwrap_or(0);
         // What lies beyond the facet opposite `a` of each cell of the star, which has no number of its own yet.
         let beyond = |tds: &Self, a: VertexId| -> Vec<(CellId, usize)> {
             let facet = |cell| tds.neighbor(cell, tds.index_of(cell, a).unwrap_or(0));
@@ -389,13 +389,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let mut new_cells: Vec<CellId> = Vec::with_capacity(inner.len());
         for (&a, outside) in inner.iter().zip(outside) {
             let mut vertices = base;
-            vertices[place(a)] = gained;
+            vertices[slot(a)] = gained;
             let new = self.add_cell(Links::alone(vertices), C::default());
             for (&b, (cell, back)) in outer.iter().zip(outside) {
-                self.link(new, if b == gained { place(a) } else { place(b) }, cell, back);
+                self.link(new, if b == gained { slot(a) } else { slot(b) }, cell, back);
             }
             for (&other, &old) in inner.iter().zip(&new_cells) {
-                self.link(new, place(other), old, place(a));
+                self.link(new, slot(other), old, slot(a));
             }
             vertices.into_iter().for_each(|v| self.set_cell_of(v, new));
             new_cells.push(new);
@@ -406,7 +406,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         Ok(new_cells)
     }
 
-    /// Takes a vertex that no cell has any more out of the complex.
+    /// Removes a vertex that is in no cell any more.
     fn drop_vertex(&mut self, vertex: VertexId) {
         if vertex == VertexId::INFINITE {
             self.infinite_cell = CellId::NONE;

@@ -120,7 +120,7 @@ pub enum EditError {
         /// How many there are.
         cells: usize,
     },
-    /// The face that a flip would make is in the complex already.
+    /// The face that a flip would create is in the complex already.
     Exists,
     /// Cells do not form a hole that a star can fill.
     Hole,
@@ -138,7 +138,7 @@ impl fmt::Display for EditError {
             EditError::Vertex(vertex) => write!(f, "there is no vertex {vertex:?}"),
             EditError::Edge([a, b]) => write!(f, "there is no edge between vertices {a:?} and {b:?}"),
             EditError::Star { cells } => write!(f, "{cells} cells have the face, more than a flip takes"),
-            EditError::Exists => write!(f, "the face that would be made exists already"),
+            EditError::Exists => write!(f, "the face that the flip would create exists already"),
             EditError::Hole => write!(f, "the cells do not form a hole that the star of a vertex can fill"),
             EditError::Links([a, b]) => {
                 write!(f, "the links of vertices {a:?} and {b:?} have more in common than the link of their edge")

@@ -1,9 +1,9 @@
-//! Combinatorics: vertices, cells and who is whose neighbor. Has never heard of coordinates.
+//! Combinatorics: vertices, cells and their neighbors, without coordinates.
 //!
 //! The conventions that everything relies on:
-//! - A triangulation is kept as one of the *sphere*: beside the finite vertices there is one
+//! - A triangulation is kept as a *sphere*: beside the finite vertices there is one
 //!   [`INFINITE`](VertexId::INFINITE) vertex, joined to the hull. So every cell has all its neighbors,
-//!   and the hull needs no special case.
+//!   and the hull needs no special case. Any other closed manifold does without it.
 //! - A full cell has `N` vertices: 3 for triangles, 4 for tetrahedra. Neighbor `i` lies opposite
 //!   vertex `i`.
 //! - All cells are oriented alike: counter-clockwise, for those without the infinite vertex, as the
@@ -29,7 +29,7 @@
 //! | whether it is a manifold, or a sphere | [`Tds::check_links`], [`Tds::check_manifold`], [`Tds::check_sphere`] |
 //!
 //! Removed cells and vertices leave holes in the numbers, which the next ones fill: an array indexed by
-//! vertex has [`Tds::vertex_slots`] places, one by cell [`Tds::cell_slots`]. Numbers stay within 32 bits:
+//! vertex has [`Tds::vertex_slots`] entries, one by cell [`Tds::cell_slots`]. Numbers stay within 32 bits:
 //! there are at most 2^32 - 3 cells. Asking for what does not exist panics, like an index.
 //!
 //! A complex that stands alone is any closed manifold, built and edited by calls that check. The
@@ -72,7 +72,7 @@ impl<const N: usize> Links<N> {
     }
 }
 
-/// A triangulated sphere of dimension up to `N - 1`, with payload `V` at each vertex and `C` at each
+/// A closed manifold of cells with up to `N` vertices each, with payload `V` at each vertex and `C` at each
 /// cell (free when `()`).
 #[derive(Debug, Clone)]
 pub struct Tds<const N: usize, V = (), C = ()> {
@@ -98,7 +98,7 @@ impl<const N: usize, V, C: Copy + Default> Default for Tds<N, V, C> {
 }
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// The infinite vertex alone: dimension -1.
+    /// Creates a complex of the infinite vertex alone: dimension -1.
     pub fn new() -> Self {
         Tds {
             dimension: -1,
@@ -174,7 +174,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// Makes room for that many more vertices and the cells that come with them.
+    /// Reserves memory for that many more vertices and the cells that come with them.
     pub fn reserve(&mut self, vertices: usize) {
         // In the plane there are two triangles to a vertex; in space about 6.7 tetrahedra.
         let cells = if N == 3 { 2 * vertices } else { 7 * vertices };
@@ -184,13 +184,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.vertex_data.reserve_exact(vertices);
     }
 
-    /// Of the complex: -1 without a vertex, `N - 1` when full.
+    /// The dimension of the complex: -1 without a vertex, `N - 1` when full.
     #[inline]
     pub fn dimension(&self) -> i32 {
         self.dimension
     }
 
-    /// Finite vertices.
+    /// The number of finite vertices.
     pub fn vertex_count(&self) -> usize {
         self.vertex_cell.len() - self.unused_vertices.len() - self.detached
     }
@@ -202,7 +202,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.vertex_cell.len()
     }
 
-    /// Cells, the infinite ones included.
+    /// The number of cells, the infinite ones included.
     pub fn cell_count(&self) -> usize {
         self.links.len() - self.unused.len()
     }
@@ -219,7 +219,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         around::counted(vertices, self.vertex_count())
     }
 
-    /// Whether the number stands for a finite vertex. Any number may be asked for.
+    /// Returns whether the number stands for a finite vertex. Any number may be asked for.
     #[inline]
     pub fn is_vertex(&self, vertex: VertexId) -> bool {
         self.vertex_cell.get(vertex.index()).is_some_and(|&cell| cell != CellId::NONE)
@@ -231,7 +231,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         around::counted(cells, self.cell_count())
     }
 
-    /// Whether the number stands for a cell.
+    /// Returns whether the number stands for a cell.
     #[inline]
     pub fn is_used(&self, cell: CellId) -> bool {
         self.links.get(cell.index()).is_some_and(|links| links.vertices[0] != VertexId::NONE)
@@ -243,7 +243,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         &self.links[cell.index()].vertices[..(self.dimension + 1) as usize]
     }
 
-    /// The neighbors of a cell, each opposite the vertex in the same place.
+    /// The neighbors of a cell, each opposite the vertex of the same index.
     #[inline]
     pub fn cell_neighbors(&self, cell: CellId) -> &[CellId] {
         &self.links[cell.index()].neighbors[..(self.dimension + 1) as usize]
@@ -267,7 +267,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.links[cell.index()].neighbors[i]
     }
 
-    /// Where a vertex stands in a cell.
+    /// The index of a vertex in a cell.
     #[inline(always)]
     pub fn index_of(&self, cell: CellId, vertex: VertexId) -> Option<usize> {
         let i = first_of(&self.links[cell.index()].vertices, vertex);
@@ -275,14 +275,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 
     /// The index of the facet that `cell` shares with its neighbor `other`. In a triangulation two cells
-    /// share one facet at the most. Of cells that share none, nothing is said.
+    /// share one facet at most. For cells that share none, the answer means nothing.
     #[inline(always)]
     pub fn index_of_neighbor(&self, cell: CellId, other: CellId) -> usize {
         // An index into a cell whatever is asked, so that none has to be checked later.
         first_of(&self.links[cell.index()].neighbors, other).min(N - 1)
     }
 
-    /// Whether the infinite vertex is a corner.
+    /// Returns whether the infinite vertex is a corner.
     #[inline(always)]
     pub fn is_infinite(&self, cell: CellId) -> bool {
         self.links[cell.index()].vertices.contains(&VertexId::INFINITE)
@@ -329,13 +329,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         VertexId::new(self.vertex_cell.len() - 1)
     }
 
-    /// Takes note that a vertex, which keeps its number, is in no cell.
+    /// Records that a vertex, which keeps its number, is in no cell.
     pub(crate) fn detach(&mut self, vertex: VertexId) {
         self.vertex_cell[vertex.index()] = CellId::NONE;
         self.detached += 1;
     }
 
-    /// Takes note that a detached vertex is about to get cells; or, if it is to be removed, that it was detached.
+    /// Records that a detached vertex is about to get cells; or, if it is to be removed, that it was detached.
     pub(crate) fn attach(&mut self) {
         self.detached -= 1;
     }
@@ -357,7 +357,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// Gives back the number of a cell that no other is a neighbor of any more.
+    /// Frees the number of a cell that no other has as a neighbor any more.
     #[inline]
     pub(crate) fn remove_cell(&mut self, cell: CellId) {
         self.links[cell.index()] = Links::UNUSED;

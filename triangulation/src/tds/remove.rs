@@ -1,16 +1,15 @@
-//! Taking vertices out, and complexes that shrink to a line, a point, nothing.
+//! Removal of vertices, and complexes that shrink to a line, a point, nothing.
 
 use super::{CellId, Links, Tds, VertexId};
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Gives back the number of a vertex that no cell has any more. Its payload stays until the number is used
-    /// again.
+    /// Frees the number of a vertex that no cell has any more. Its payload stays until the number is used again.
     pub(crate) fn remove_vertex(&mut self, vertex: VertexId) {
         self.vertex_cell[vertex.index()] = CellId::NONE;
         self.unused_vertices.push(vertex);
     }
 
-    /// Takes the number that was given back last into use again, with its payload.
+    /// Reuses the number that was freed last, with its payload.
     pub(crate) fn restore_vertex(&mut self) -> Option<VertexId> {
         self.unused_vertices.pop()
     }

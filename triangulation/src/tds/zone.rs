@@ -60,7 +60,7 @@ impl Zone {
         self.cells.push(cell);
     }
 
-    /// Forgets the cells.
+    /// Empties the zone.
     pub(crate) fn finish(&mut self) {
         for cell in self.cells.drain(..) {
             self.marked[cell.index()] = false;

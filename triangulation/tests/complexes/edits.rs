@@ -1,4 +1,4 @@
-//! Edits, judged by doing them to lists of cells: an edit is made exactly where the list stays a manifold of the same kind.
+//! Edits, judged by doing them to lists of cells: an edit succeeds exactly where the list stays a manifold of the same kind.
 
 use std::collections::BTreeSet;
 
@@ -45,7 +45,7 @@ fn starred(cells: &Cells, hole: &Cells) -> Cells {
     cells.difference(hole).cloned().chain(new).collect()
 }
 
-/// Of the vertices of the star of a face, those that are not of the face come to make a face instead; if there are as many
+/// Of the vertices of the star of a face, those that are not of the face span a face instead; if there are as many
 /// as a flip takes.
 fn flipped(cells: &Cells, face: &BTreeSet<usize>, width: usize) -> Option<Cells> {
     let star = star(cells, face);
@@ -82,7 +82,7 @@ fn region<const N: usize>(random: &mut Random, tds: &Tds<N, usize>, all: &[CellI
     region
 }
 
-/// One edit, and what the judge makes of it: the new vertex, if there is one, and the cells, if it is allowed.
+/// One edit, and what the judge says of it: the new vertex, if there is one, and the cells, if it is allowed.
 fn edit<const N: usize>(
     random: &mut Random,
     tds: &mut Tds<N, usize>,
@@ -119,7 +119,7 @@ fn edit<const N: usize>(
     }
 }
 
-/// Edits a complex, and counts what was made and what was refused.
+/// Edits a complex, and counts what was done and what was refused.
 fn edit_for_a_while<const N: usize>(random: &mut Random, vertices: usize, cells: &[Cell], edits: usize) -> [usize; 2] {
     let mut tds = build::<N>(vertices, cells).unwrap();
     let characteristic = euler(cells);
@@ -153,21 +153,21 @@ fn edit_for_a_while<const N: usize>(random: &mut Random, vertices: usize, cells:
 }
 
 #[test]
-fn edits_of_surfaces_are_made_exactly_where_the_judge_makes_them() {
+fn edits_of_surfaces_succeed_exactly_where_the_judge_allows_them() {
     let mut random = Random(4);
     for ((vertices, cells), _) in surfaces() {
-        let [made, refused] = edit_for_a_while::<3>(&mut random, vertices, &cells, 300);
-        assert!(made > 100 && refused > 30, "{made} {refused}");
+        let [done, refused] = edit_for_a_while::<3>(&mut random, vertices, &cells, 300);
+        assert!(done > 100 && refused > 30, "{done} {refused}");
     }
 }
 
 #[test]
-fn edits_of_spaces_are_made_exactly_where_the_judge_makes_them() {
+fn edits_of_spaces_succeed_exactly_where_the_judge_allows_them() {
     let mut random = Random(5);
     for (vertices, cells) in spaces() {
         let edits = if cells.len() > 100 { 30 } else { 150 };
-        let [made, refused] = edit_for_a_while::<4>(&mut random, vertices, &cells, edits);
-        assert!(made > edits / 4 && refused > edits / 10, "{made} {refused}");
+        let [done, refused] = edit_for_a_while::<4>(&mut random, vertices, &cells, edits);
+        assert!(done > edits / 4 && refused > edits / 10, "{done} {refused}");
     }
 }
 

@@ -32,7 +32,7 @@ pub(crate) fn link(cells: &[Cell], vertex: usize) -> Vec<Cell> {
     with.map(|cell| cell.iter().copied().filter(|&v| v != vertex).collect()).collect()
 }
 
-/// Whether cells cannot be told apart into two groups without a common vertex.
+/// Whether cells cannot be divided into two groups without a common vertex.
 fn is_connected(cells: &[Cell]) -> bool {
     let mut reached = BTreeSet::from_iter(cells.first().into_iter().flatten().copied());
     for _ in cells {

@@ -101,7 +101,7 @@ fn no_cells_are_a_complex() {
 
 /// The kinds ask for one sphere.
 #[test]
-fn spheres_are_told_from_other_manifolds() {
+fn only_spheres_pass_the_check_of_the_kinds() {
     let close = |(vertices, cells): (usize, Vec<Cell>)| {
         let last = VertexId::new(vertices - 1);
         let infinite = |v: usize| if VertexId::new(v) == last { VertexId::INFINITE } else { VertexId::new(v) };

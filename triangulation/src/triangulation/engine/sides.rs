@@ -1,4 +1,4 @@
-//! On which side of a facet, and in which spheres, a place lies.
+//! On which side of a facet, and in which spheres, a point lies.
 
 use std::borrow::Borrow;
 
@@ -122,7 +122,7 @@ fn in_conflict_in_flat<const N: usize, T: Embedded<N>>(
             Ok(in_sphere_of_flat(t.geometry(), &points.iter().collect::<Vec<_>>(), q))
         }
         Some(infinite) if complex.width() == 2 => {
-            // The end of a line: the edge inwards says which way is out.
+            // The end of a line: the edge inwards says which direction is out.
             let inner = complex.inner(cell)?;
             let end = complex.vertex(cell, 1 - infinite)?;
             let at = complex.index_of(inner, end)?;

@@ -112,7 +112,7 @@ impl<L: Geometry<3> + Clone> Hierarchy<L> {
         let mut below = vertex;
         for (level, near) in self.levels[..height].iter_mut().zip(near.into_iter().rev()) {
             let Ok(Inserted { vertex, .. }) = level.sample.insert_near(*point, below, near) else { return };
-            // Where the site is taken, it was by a vertex that is there no more, of whose end nothing was told.
+            // Where the site is taken, it is by a vertex whose removal was not reported.
             *level.sample.inner.tds.vertex_data_mut(vertex) = below;
             level.of_below.insert(below, vertex);
             below = vertex;
@@ -126,7 +126,7 @@ impl<L: Geometry<3>> Hierarchy<L> {
         self.levels.iter().map(|level| level.sample.vertex_count())
     }
 
-    /// A vertex of the triangulation near a point. Shown on the way, from the top down, is a cell near it on each
+    /// A vertex of the triangulation near a point. Shows, from the top down, a cell near it on each
     /// level.
     fn descend(&self, q: &L::Point, mut show: impl FnMut(Option<CellId>)) -> Option<VertexId> {
         self.levels.iter().rev().fold(None, |start, level| {

@@ -7,15 +7,15 @@
 //! | [`Buckets`] from a vertex in the same square of a grid | a few; none the better where all points are in one square |
 //! | [`Hierarchy`] of samples (Devillers 2002) | `log n`, however the points are spread |
 //!
-//! These walk from one triangle to the next across an edge that parts it from the point. First by rounded numbers,
+//! These walk from one triangle to the next across an edge that separates it from the point. First by rounded numbers,
 //! across the edge that the point is furthest beyond, for as long as that leads on (structural filtering: Funke, Mehlhorn
-//! and Näher 1999); then by certain ones, across any such edge, chosen as if at random (the stochastic, or zigzag, walk).
+//! and Näher 1999); then by certain ones, across any such edge, chosen pseudo-randomly (the stochastic, or zigzag, walk).
 //! [`StraightLine`] goes through the triangles that a line to the point meets (both: Devillers, Pion and Teillaud 2002).
 //!
 //! A strategy is a value of the caller's. Some of them learn from insertions and removals: pass these to
-//! [`Locate::inserted`] and [`Locate::removed`], or insert and remove by way of the strategy:
-//! [`Delaunay::insert_by`](crate::Delaunay::insert_by), [`Delaunay::remove_by`](crate::Delaunay::remove_by). One that
-//! has not been told is slower, and as right.
+//! [`Locate::inserted`] and [`Locate::removed`], or insert and remove with the strategy:
+//! [`Delaunay::insert_by`](crate::Delaunay::insert_by), [`Delaunay::remove_by`](crate::Delaunay::remove_by). A strategy that
+//! misses updates is slower but still correct.
 
 mod buckets;
 mod hierarchy;

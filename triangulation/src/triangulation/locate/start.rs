@@ -4,15 +4,15 @@ use crate::tds::{CellId, VertexId};
 use super::super::Triangulation;
 use super::Location;
 
-/// A strategy to find where a point lies: a value of the caller's, which may learn from insertions and removals.
+/// A strategy to find where a point lies: a value of the caller's, which may be updated by insertions and removals.
 ///
-/// Needed for nothing: [`Triangulation::locate`] walks from the last insertion. Taken by `insert_by`, `remove_by`, and
-/// to be asked itself.
+/// Optional: [`Triangulation::locate`] walks from the last insertion. Passed to `insert_by` and `remove_by`, and a locator
+/// by itself.
 ///
 /// # Laws
 /// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same point relative to the complex; of
-///   the cells that an edge or the outside of the hull is told by, any.
-/// - What [`inserted`](Self::inserted) and [`removed`](Self::removed) have not been told changes the time only.
+///   the cells that share an edge, or that see a point outside of the hull, any.
+/// - A strategy that misses calls of [`inserted`](Self::inserted) and [`removed`](Self::removed) is slower but still correct.
 ///
 /// # Models
 /// [`Near`], [`JumpAndWalk`], [`StraightLine`](super::StraightLine), [`Buckets`](super::Buckets),
@@ -49,10 +49,10 @@ pub trait Locate<G: Geometry<N>, const N: usize> {
     /// Returns where a point lies; [`Location::Nowhere`] for one that the geometry does not [admit](Geometry::admits).
     fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location;
 
-    /// Learns of a new vertex of a triangulation with this geometry.
+    /// Updates the strategy for a new vertex of a triangulation with this geometry.
     fn inserted(&mut self, _geometry: &G, _vertex: VertexId, _point: &G::Point) {}
 
-    /// Learns that a vertex is there no more.
+    /// Updates the strategy for a removed vertex.
     fn removed(&mut self, _vertex: VertexId) {}
 }
 
@@ -66,8 +66,8 @@ impl<G: Geometry<N>, const N: usize> Locate<G, N> for Near {
     }
 }
 
-/// From the nearest of `n^(1/3)` of the `n` vertices, chosen as if at random; the same ones for the same number of
-/// vertices. Takes a geometry that knows [distances](Geometry::rough_distance).
+/// From the nearest of `n^(1/3)` of the `n` vertices, chosen pseudo-randomly; the same ones for the same number of
+/// vertices. Needs a geometry that knows [distances](Geometry::rough_distance).
 ///
 /// Of uniformly distributed points the walk takes `O(n^(1/3))` steps then (Mücke, Saias and Zhu 1996).
 #[derive(Debug, Clone, Copy, Default)]

@@ -30,7 +30,7 @@ impl Dice {
     }
 }
 
-/// Steps after which a walk looks for a better place to go on from. In spatial order nearly all are over long before.
+/// Steps after which a walk looks for a better cell to go on from. In spatial order nearly all are over long before.
 pub(super) const PATIENCE: usize = 64;
 
 /// After that many steps more for each vertex that was looked at, a walk looks again. Where points are spread evenly, one
@@ -48,7 +48,7 @@ const LOOKOUT: usize = 8;
 /// each with the second look; uniform points 4 to 5.
 pub(super) const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 
-/// A walk of that many times more steps than there are cells is lost: on a Delaunay triangulation none of certain steps
+/// A walk of that many times more steps than there are cells is given up: on a Delaunay triangulation none of certain steps
 /// comes to a cell twice, and on others the chance is halved, at the least, with each round.
 const WANDERING: usize = 8;
 
@@ -146,7 +146,7 @@ pub fn locate<const N: usize, T: Embedded<N>>(
     }
 }
 
-/// Where rounded numbers led.
+/// Where a walk by rounded numbers ended.
 pub(super) struct Reached {
     pub(super) cell: CellId,
     steps: usize,

@@ -31,11 +31,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                     if seen.insert(beyond) {
                         open.push(beyond);
                     }
-                    // Of the two cells of an edge, the one that has it this way around tells it.
+                    // Of the two cells of an edge, the one that has it in this direction reports it.
                     crossed.extend((ends[0] < ends[1]).then_some(ends));
                 }
             }
-            // Through a vertex the way goes on in any of its cells.
+            // Through a vertex the segment goes on in any of its cells.
             for &vertex in corners.iter().filter(|&&v| v != VertexId::INFINITE && self.is_between(a, b, v)) {
                 open.extend(self.tds.around(vertex).filter(|&cell| seen.insert(cell)));
             }

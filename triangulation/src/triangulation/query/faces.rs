@@ -4,11 +4,11 @@
 //! `p`, which is one of the edges that have `p` on their outer side. Where that point is a corner of two such edges,
 //! either one will do, but always the same. Going back over the entries leads to one of the faces around `p`:
 //! - beyond the entry the nearest point is nearer, unless it is the same corner `v`;
-//! - in this case the way turns around `v` in one direction, from behind `v` as `p` sees it towards `p`, where faces
+//! - in this case the path turns around `v` in one direction, from behind `v` as `p` sees it towards `p`, where faces
 //!   are nearer.
 //!
 //! Nor does it leave the hull, which is convex and has `p` within. So the faces are a forest over those around `p`,
-//! and its order and the way back up are found from the geometry (de Berg, van Oostrum and Overmars 1996). It takes
+//! and its order and the path back up are found from the geometry (de Berg, van Oostrum and Overmars 1996). It takes
 //! any triangulation, not those of a law only; all comparisons are exact.
 
 use crate::geometry::Coordinates;

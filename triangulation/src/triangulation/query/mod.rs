@@ -11,7 +11,7 @@
 //! | [`conflict_zone`] | what a new point would destroy | one, perhaps with constraints |
 //!
 //! All walk from a cell nearby, which may be `None`. What a structure of your own needs is two traits:
-//! [`Complex`](crate::tds::Complex), who is whose neighbor, and [`Embedded`](crate::Embedded), the points. The example
+//! [`Complex`](crate::tds::Complex), the cells and their neighbors, and [`Embedded`](crate::Embedded), the points. The example
 //! `examples/own_structure.rs` has an array of triangles with indices of vertices.
 //!
 //! ```

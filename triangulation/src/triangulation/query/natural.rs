@@ -28,7 +28,7 @@ type Weights = Vec<(VertexId, f64)>;
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// Sibson's coordinates of a point: vertices with weights that are not negative, sum up to 1, and whose mean is the
-    /// place; counter-clockwise. Rounded: in all tests the mean misses the point by less than `1e-11`, of points that
+    /// point; counter-clockwise. Rounded: in all tests the mean misses the point by less than `1e-11`, of points that
     /// are some 10 apart.
     ///
     /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends

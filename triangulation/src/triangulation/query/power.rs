@@ -9,7 +9,7 @@ use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus
 use super::nearest::nearest;
 
 impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
-    /// The point of the least power at a point, its squared distance less its weight; of several, the first in the
+    /// The vertex of the least power at a point, its squared distance less its weight; of several, the first in the
     /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be
     /// one of the same power. `None` if there are no points, or if the geometry does not
     /// [admit](crate::geometry::Geometry::admits) the point, whose weight does not count otherwise. Exact.
@@ -23,7 +23,7 @@ impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
 }
 
 impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
-    /// The place that has the same power with the corners of a finite face, and less with no other point: the corner of
+    /// The point that has the same power with the corners of a finite face, and less with no other point: the corner of
     /// the power diagram, and the center of the circle that is orthogonal to those of the three. `None` for what is not a
     /// finite face, as below dimension 2. As right as a [circumcenter](crate::triangulation::Triangulation::circumcenter),
     /// which it is where all weights are equal. O(1).
@@ -55,9 +55,9 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
     pub fn power_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
         let between = |ends: [VertexId; 2]| {
             let [[x, y, weight], [u, w, other]] = ends.map(|v| *self.point(v));
-            let way = minus([u, w], [x, y]);
-            let along = 0.5 + (weight - other) / dot(way, way) / 2.0;
-            plus([x, y], way.map(|d| along * d))
+            let offset = minus([u, w], [x, y]);
+            let along = 0.5 + (weight - other) / dot(offset, offset) / 2.0;
+            plus([x, y], offset.map(|d| along * d))
         };
         self.dual_edge(cell, i, |cell| self.power_center(cell), between)
     }

@@ -15,7 +15,7 @@ pub enum Mark<'a> {
     Edges(&'a [(CellId, usize)]),
     /// A polygon, filled: a Voronoi cell, say.
     Polygon(&'a [[f64; 2]]),
-    /// A line through points: the way of a walk, say. Of one point, a dot.
+    /// A line through points: the path of a walk, say. Of one point, a dot.
     Line(&'a [[f64; 2]]),
 }
 
@@ -40,10 +40,10 @@ struct Frame {
 }
 
 impl Frame {
-    fn around(places: impl Iterator<Item = [f64; 2]>) -> Self {
+    fn around(sites: impl Iterator<Item = [f64; 2]>) -> Self {
         let none = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let (low, high) =
-            places.fold(none, |(low, high), p| ([0, 1].map(|k| p[k].min(low[k])), [0, 1].map(|k| p[k].max(high[k]))));
+            sites.fold(none, |(low, high), p| ([0, 1].map(|k| p[k].min(low[k])), [0, 1].map(|k| p[k].max(high[k]))));
         let half = (0..2).map(|k| high[k] / 2.0 - low[k] / 2.0).fold(0.0, f64::max);
         Frame { low, half: if half > 0.0 { half } else { 1.0 } }
     }
@@ -54,19 +54,19 @@ impl Frame {
     }
 
     /// As SVG lists them.
-    fn list(&self, places: impl Iterator<Item = [f64; 2]>) -> String {
-        places.map(|p| self.pixel(p)).map(|[x, y]| format!("{x:.2},{y:.2} ")).collect()
+    fn list(&self, sites: impl Iterator<Item = [f64; 2]>) -> String {
+        sites.map(|p| self.pixel(p)).map(|[x, y]| format!("{x:.2},{y:.2} ")).collect()
     }
 }
 
 /// The points among these that can be drawn.
-fn finite<'a>(places: impl IntoIterator<Item = &'a [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
-    places.into_iter().copied().filter(|p| p.iter().all(|x| x.is_finite()))
+fn finite<'a>(sites: impl IntoIterator<Item = &'a [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
+    sites.into_iter().copied().filter(|p| p.iter().all(|x| x.is_finite()))
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// A picture of the finite edges and vertices, with their numbers if there are few, over what is marked, the first
-    /// mark lowest: as the text of an SVG file. For eyes, to two decimals of a thousandth of the longer side. Marked places
+    /// mark lowest: as the text of an SVG file. For eyes, to two decimals of a thousandth of the longer side. Marked points
     /// that are not finite are left out.
     ///
     /// ```
@@ -88,7 +88,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 
     fn draw(&self, svg: &mut String, marks: &[Mark<'_>]) -> fmt::Result {
         let drawn = marks.iter().flat_map(|mark| match mark {
-            Mark::Polygon(places) | Mark::Line(places) => *places,
+            Mark::Polygon(sites) | Mark::Line(sites) => *sites,
             Mark::Cells(_) | Mark::Edges(_) => &[],
         });
         let frame = Frame::around(self.tds.vertices().map(|v| self.site(v)).chain(finite(drawn)));
@@ -105,8 +105,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                     }
                 }
                 Mark::Edges(edges) => self.draw_edges(svg, &frame, "edge", edges.iter().copied())?,
-                Mark::Polygon(places) => {
-                    let corners = frame.list(finite(places));
+                Mark::Polygon(sites) => {
+                    let corners = frame.list(finite(sites));
                     writeln!(svg, r#"<polygon class="polygon" points="{corners}"/>"#)?;
                 }
                 Mark::Line(dot @ &[_]) => {
@@ -114,9 +114,9 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                         writeln!(svg, r#"<circle class="dot" cx="{x:.2}" cy="{y:.2}" r="7"/>"#)?;
                     }
                 }
-                Mark::Line(places) => {
-                    let places = frame.list(finite(places));
-                    writeln!(svg, r#"<polyline class="line" points="{places}"/>"#)?;
+                Mark::Line(sites) => {
+                    let sites = frame.list(finite(sites));
+                    writeln!(svg, r#"<polyline class="line" points="{sites}"/>"#)?;
                 }
             }
         }
