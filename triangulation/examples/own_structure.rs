@@ -56,7 +56,7 @@ impl Mesh {
         for (k, triangle) in triangles.iter().enumerate() {
             triangle.iter().for_each(|&v| triangle_of[v as usize] = k as u32);
         }
-        Mesh { plane: Plane::default(), points, triangles, across, hull, triangle_of }
+        Mesh { plane: Plane::new(), points, triangles, across, hull, triangle_of }
     }
 
     /// The number of a ghost, counted around the hull.
@@ -168,7 +168,7 @@ fn faces_and_vertices(
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A mesh with the points of a Delaunay triangulation, whose answers are those to expect. Many points share a circle.
     let grid: Vec<[f64; 2]> = (0..400u32).map(|k| [f64::from(k % 20), f64::from(k * 7 % 20 + k / 20)]).collect();
-    let (t, _) = Delaunay::<Plane, 3>::from_points(Plane::default(), &grid)?;
+    let (t, _) = Delaunay::from_points(Plane::new(), &grid)?;
     let triangles = t.finite_cells().map(|cell| t.tds().corners(cell).map(|v| v.index() as u32)).collect();
     let mesh = Mesh::new(t.points().to_vec(), triangles);
 

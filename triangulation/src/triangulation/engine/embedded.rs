@@ -47,7 +47,7 @@ use super::super::Triangulation;
 /// let far = VertexId::INFINITE;
 /// let cells = [[a, b, c], [a, c, d], [b, a, far], [c, b, far], [d, c, far], [a, d, far]];
 /// let cells = Tds::from_cells(vec![(); 4], &cells)?;
-/// let square = Sites { plane: Plane::default(), points: vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]], cells };
+/// let square = Sites { plane: Plane::new(), points: vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]], cells };
 /// assert_eq!(query::locate(&square, &[4.0, 4.0], None), Ok(Location::Vertex(c)));
 /// assert_eq!(query::nearest(&square, &[1.0, 3.0], None), Ok(Some(d)));
 /// # Ok::<(), TdsError>(())

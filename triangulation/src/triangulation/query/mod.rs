@@ -30,9 +30,9 @@
 //!     Ok(found)
 //! }
 //!
-//! let (t, v) = Delaunay::<Plane, 3>::from_points(Plane::default(), &[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]])?;
+//! let (t, v) = Delaunay::from_points(Plane::new(), &[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]])?;
 //! assert_eq!(nearest_of_all(&*t, &[[1.0, 1.0], [3.0, 0.0]]), Ok(vec![v[0].index(), v[1].index()]));
-//! # Ok::<(), breakline_triangulation::Refused>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod along;
