@@ -131,7 +131,7 @@ pub(super) enum Reader {
     /// Points and segments of the plane, see [`triangle::read`].
     Own,
     /// Not read, but `info` tells what it is.
-    Told,
+    InfoOnly,
     /// By GDAL, in a build with the feature `gdal`.
     Gdal,
     /// Nobody reads it.
@@ -358,7 +358,7 @@ impl Reader {
             Reader::Raster(_) => "heights",
             Reader::Mesh(_) => "surface",
             Reader::Own => "points and segments",
-            Reader::Solid(_) | Reader::Told => "by `info` only",
+            Reader::Solid(_) | Reader::InfoOnly => "by `info` only",
             Reader::Gdal => "with `gdal`",
             Reader::Nobody => "",
         }
@@ -610,7 +610,7 @@ pub static FORMATS: &[Format] = &[
         beside: &["pgw", "png.aux.xml"],
         parts: &["pgw", "png.aux.xml"],
         gdal_name: Some("PNG"),
-        reader: Reader::Told,
+        reader: Reader::InfoOnly,
         writers: Writers { shades: Some(|target, source| png::write_gray(target, source)), ..NOT_WRITTEN },
         cure: AS_RASTER,
         help: "hillshade",
@@ -691,7 +691,7 @@ pub static FORMATS: &[Format] = &[
         ..plane("Triangle .poly", "a .poly file of Triangle", &["poly"], "points and segments in the plane (Triangle)")
     },
     Format {
-        reader: Reader::Told,
+        reader: Reader::InfoOnly,
         ..plane(
             "Triangle .edge",
             "an .edge file of Triangle",
@@ -700,7 +700,7 @@ pub static FORMATS: &[Format] = &[
         )
     },
     Format {
-        reader: Reader::Told,
+        reader: Reader::InfoOnly,
         ..plane(
             "Triangle .neigh",
             "a .neigh file of Triangle",

@@ -417,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_the_place() {
+    fn errors_name_the_position() {
         for (text, message) in [
             ("", "not JSON: EOF while parsing a value at line 1 column 0"),
             ("[]", "not GeoJSON: no object with a type"),

@@ -35,14 +35,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut polygons = Vec::new();
     let mut crs = String::new();
     for (number, line) in logical_lines(bytes) {
-        let place = |e: Error| e.at(format!("line {number}"));
+        let at_line = |e: Error| e.at(format!("line {number}"));
         let mut words = line.split_ascii_whitespace();
         match words.next() {
-            Some("v") => vertices.push(vertex(words).map_err(place)?),
+            Some("v") => vertices.push(vertex(words).map_err(at_line)?),
             Some("f") => {
                 let first = corners.len();
                 for word in words {
-                    corners.push(corner(word, vertices.len()).map_err(place)?);
+                    corners.push(corner(word, vertices.len()).map_err(at_line)?);
                 }
                 polygons.push((number, first..corners.len()));
             }
@@ -55,8 +55,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     }
     let mut faces = Vec::with_capacity(polygons.len());
     for (number, range) in polygons {
-        let place = |e: Error| e.at(format!("line {number}"));
-        polygon::add_polygon(&vertices, &corners[range], &mut faces).map_err(place)?;
+        let at_line = |e: Error| e.at(format!("line {number}"));
+        polygon::add_polygon(&vertices, &corners[range], &mut faces).map_err(at_line)?;
     }
     Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
 }

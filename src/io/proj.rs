@@ -41,7 +41,7 @@ mod with_proj {
     const KEPT: usize = 8;
 
     /// An accuracy worse than this, in metres, is told: lidar is better.
-    const TOLD: f64 = 0.1;
+    const REPORTED: f64 = 0.1;
 
     thread_local! {
         static OBJECTS: RefCell<VecDeque<(u64, Rc<Proj>)>> = const { RefCell::new(VecDeque::new()) };
@@ -128,10 +128,10 @@ mod with_proj {
         };
         if from.kind == CrsKind::Geocentric {
             let unit = target.as_ref().map_or(1.0, |unit| unit.factor);
-            let told = to
+            let warning = to
                 .vertical_epsg
                 .map(|code| format!("heights are left over the ellipsoid: they are not those of EPSG:{code}"));
-            return (1.0 / unit, told.or_else(|| Some("heights are those over the ellipsoid".to_owned())));
+            return (1.0 / unit, warning.or_else(|| Some("heights are those over the ellipsoid".to_owned())));
         }
         let factor = target.as_ref().map_or(1.0, |target| source.factor / target.factor);
         let same = match (from.vertical_epsg, to.vertical_epsg) {
@@ -141,7 +141,7 @@ mod with_proj {
         };
         let name =
             |code: Option<u32>| code.map_or("heights over the ellipsoid".to_owned(), |code| format!("EPSG:{code}"));
-        let told = match target {
+        let warning = match target {
             None => from.vertical_epsg.map(|code| {
                 format!(
                     "heights are left as they are, in {} (EPSG:{code}): {to} states no vertical system",
@@ -156,7 +156,7 @@ mod with_proj {
                 name(to.vertical_epsg),
             )),
         };
-        (factor, told)
+        (factor, warning)
     }
 
     fn vertical_datum(code: u32) -> Option<u32> {
@@ -196,7 +196,7 @@ mod with_proj {
             let (from, to) = (&self.from, &self.to);
             let warning = if info.accuracy < 0.0 {
                 format!("the accuracy of the way from {from} to {to} is unknown ({name})")
-            } else if info.accuracy > TOLD {
+            } else if info.accuracy > REPORTED {
                 format!("the way from {from} to {to} is accurate to {} m ({name})", info.accuracy)
             } else {
                 return;
@@ -207,8 +207,8 @@ mod with_proj {
         fn one(&self, object: &Proj, point: [f64; 3]) -> std::result::Result<[f64; 3], String> {
             let mut start = point;
             if let Some(first) = &self.geocentric {
-                let place = first.convert_3d((point[0], point[1], point[2])).map_err(|error| error.to_string())?;
-                start = [place.0, place.1, place.2];
+                let position = first.convert_3d((point[0], point[1], point[2])).map_err(|error| error.to_string())?;
+                start = [position.0, position.1, position.2];
             }
             let (x, y) = object.convert((start[0], start[1])).map_err(|error| error.to_string())?;
             if x.is_finite() && y.is_finite() {

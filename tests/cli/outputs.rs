@@ -51,7 +51,8 @@ fn a_folder_in_the_way_is_known_before_the_work_and_nothing_is_left() {
         (["triangulate", "p.node", "-o", "b.edge"], "b.node"),
         (["tin", "broken.xyz", "-o", "t.ply"], "t.ply"),
     ] {
-        run_in(&folder, &[&args[..], &["--overwrite"]].concat()).fails(1, &[name, "a folder is in the way", "hint: "]);
+        run_in(&folder, &[&args[..], &["--overwrite"]].concat())
+            .fails(1, &[name, "there is a folder with this name", "hint: "]);
         assert_eq!(files_of(folder.path()), before);
     }
 }
@@ -68,7 +69,7 @@ fn a_folder_that_comes_in_the_way_during_the_work_leaves_what_was_there() {
     let output = child.wait_with_output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("c.shp: a folder is in the way"), "{said}");
+    assert!(said.contains("c.shp: there is a folder with this name"), "{said}");
     assert_eq!(files_of(folder.path()), ["c.geojson", "c.prj", "c.qix", "c.shp"]);
     for name in ["c.geojson", "c.prj", "c.qix"] {
         assert_eq!(bytes(&folder, name), b"mine");

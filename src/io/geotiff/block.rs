@@ -11,7 +11,7 @@ use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
 use super::ifd::{ByteOrder, Bytes};
-use super::layout::{Layout, Piece, Stored};
+use super::layout::{Layout, Span, Stored};
 use super::nodata::Nodata;
 use super::tags;
 use crate::data::Window;
@@ -27,17 +27,17 @@ pub(super) fn values(
     layout: &Layout,
     nodata: &Nodata,
     bytes: &Bytes,
-    piece: &Piece,
+    span: &Span,
     part: Window,
     take: &mut dyn FnMut(Window, Vec<f64>),
 ) -> Result<()> {
-    let Stored::At { offset, length } = piece.stored else { return Ok(()) };
-    let place = |e: Error| e.at(format!("block {} (rows from {})", piece.block, piece.first_row));
-    let mut file = header(layout, piece, length);
-    bytes.append(offset, length, &mut file).map_err(place)?;
+    let Stored::At { offset, length } = span.stored else { return Ok(()) };
+    let in_block = |e: Error| e.at(format!("block {} (rows from {})", span.block, span.first_row));
+    let mut file = header(layout, span, length);
+    bytes.append(offset, length, &mut file).map_err(in_block)?;
     if layout.compression == tags::COMPRESSION_JPEG {
         let start = file.len() - length as usize;
-        check_jpeg(&file[start..], layout, piece).map_err(place)?;
+        check_jpeg(&file[start..], layout, span).map_err(in_block)?;
     }
     // The decoders beneath are well tested, but not proven: a panic in one of them is a damaged
     // block, not the end of the program.
@@ -46,13 +46,13 @@ pub(super) fn values(
         let rows = (BAND_CELLS / part.width.max(1)).max(1);
         for row in (part.row..part.row + part.height).step_by(rows) {
             let band = Window { row, height: rows.min(part.row + part.height - row), ..part };
-            take(band, pick(&decoded, layout, nodata, piece, band));
+            take(band, pick(&decoded, layout, nodata, span, band));
         }
         Ok(())
     };
     contain(decode_and_pick)
         .unwrap_or_else(|| Err(Error::format("the decoder gave up")))
-        .map_err(|e| place(in_compression(e, layout.compression)))
+        .map_err(|e| in_block(in_compression(e, layout.compression)))
 }
 
 fn in_compression(error: Error, compression: u16) -> Error {
@@ -65,7 +65,7 @@ fn in_compression(error: Error, compression: u16) -> Error {
 }
 
 /// A TIFF header with one directory for one strip, whose bytes follow.
-fn header(layout: &Layout, piece: &Piece, length: u64) -> Vec<u8> {
+fn header(layout: &Layout, span: &Span, length: u64) -> Vec<u8> {
     let format = match layout.sample.kind {
         super::SampleKind::Unsigned => 1,
         super::SampleKind::Signed => 2,
@@ -77,15 +77,15 @@ fn header(layout: &Layout, piece: &Piece, length: u64) -> Vec<u8> {
     let tables_at = 8 + 2 + 12 * count + 4;
     let data_at = tables_at + tables.len() as u32;
     let mut entries = vec![
-        (tags::IMAGE_WIDTH, long, 1, piece.width as u32),
-        (tags::IMAGE_LENGTH, long, 1, piece.rows as u32),
+        (tags::IMAGE_WIDTH, long, 1, span.width as u32),
+        (tags::IMAGE_LENGTH, long, 1, span.rows as u32),
         (tags::BITS_PER_SAMPLE, short, 1, u32::from(layout.sample.bits)),
         (tags::COMPRESSION, short, 1, u32::from(layout.compression)),
         // BlackIsZero: samples come out as they are stored.
         (tags::PHOTOMETRIC, short, 1, 1),
         (tags::STRIP_OFFSETS, long, 1, data_at),
         (tags::SAMPLES_PER_PIXEL, short, 1, u32::from(layout.interleaved)),
-        (tags::ROWS_PER_STRIP, long, 1, piece.rows as u32),
+        (tags::ROWS_PER_STRIP, long, 1, span.rows as u32),
         (tags::STRIP_BYTE_COUNTS, long, 1, length as u32),
         (tags::PREDICTOR, short, 1, u32::from(layout.predictor)),
         (tags::SAMPLE_FORMAT, short, 1, format),
@@ -124,7 +124,7 @@ fn put32(out: &mut Vec<u8>, order: ByteOrder, value: u32) {
 }
 
 /// A JPEG states its own size, and its decoder believes it: it must be the block's.
-fn check_jpeg(data: &[u8], layout: &Layout, piece: &Piece) -> Result<()> {
+fn check_jpeg(data: &[u8], layout: &Layout, span: &Span) -> Result<()> {
     let short = || Error::format("the JPEG header is cut short");
     let mut at = 2;
     loop {
@@ -136,13 +136,13 @@ fn check_jpeg(data: &[u8], layout: &Layout, piece: &Piece) -> Result<()> {
             let frame = data.get(at + 4..at + 10).ok_or_else(short)?;
             let rows = usize::from(u16::from_be_bytes([frame[1], frame[2]]));
             let columns = usize::from(u16::from_be_bytes([frame[3], frame[4]]));
-            let fits = columns == piece.width && (piece.rows..=layout.block[1]).contains(&rows);
+            let fits = columns == span.width && (span.rows..=layout.block[1]).contains(&rows);
             if fits && u16::from(frame[5]) == layout.interleaved {
                 return Ok(());
             }
             return Err(Error::format(format!(
                 "a JPEG of {columns} x {rows} with {} bands in a block of {} x {} with {}",
-                frame[5], piece.width, piece.rows, layout.interleaved
+                frame[5], span.width, span.rows, layout.interleaved
             )));
         }
         at += 2 + usize::from(u16::from_be_bytes([high, low])).max(2);
@@ -168,13 +168,13 @@ fn from_tiff(error: TiffError) -> Error {
 }
 
 /// Band 1 of a part of a decoded piece.
-fn pick(decoded: &DecodingResult, layout: &Layout, nodata: &Nodata, piece: &Piece, part: Window) -> Vec<f64> {
+fn pick(decoded: &DecodingResult, layout: &Layout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
     if layout.sample.bits < 8 {
         let DecodingResult::U8(packed) = decoded else { return vec![f64::NAN; part.width * part.height] };
-        return pick_bits(packed, layout, nodata, piece, part);
+        return pick_bits(packed, layout, nodata, span, part);
     }
     let step = usize::from(layout.interleaved);
-    let all = Picker { step, row_length: piece.width * step, piece, part };
+    let all = Picker { step, row_length: span.width * step, span, part };
     match decoded {
         DecodingResult::U8(v) => all.pick(v, f64::from, is(nodata.integer())),
         DecodingResult::U16(v) => all.pick(v, f64::from, is(nodata.integer())),
@@ -202,16 +202,16 @@ fn finite(value: f64) -> f64 {
 struct Picker<'a> {
     step: usize,
     row_length: usize,
-    piece: &'a Piece,
+    span: &'a Span,
     part: Window,
 }
 
 impl Picker<'_> {
     fn pick<T: Copy>(&self, samples: &[T], value: impl Fn(T) -> f64, is_nodata: impl Fn(T) -> bool) -> Vec<f64> {
-        let Picker { step, row_length, piece, part } = *self;
+        let Picker { step, row_length, span, part } = *self;
         let mut out = Vec::with_capacity(part.width * part.height);
         for row in part.row..part.row + part.height {
-            let start = (row - piece.first_row) * row_length + (part.column - piece.first_column) * step;
+            let start = (row - span.first_row) * row_length + (part.column - span.first_column) * step;
             let cells = samples[start..start + (part.width - 1) * step + 1].iter().step_by(step);
             out.extend(cells.map(|&sample| if is_nodata(sample) { f64::NAN } else { value(sample) }));
         }
@@ -220,15 +220,15 @@ impl Picker<'_> {
 }
 
 /// Samples of 1, 2 or 4 bits: the first of a byte is in its highest bits, rows begin with a byte.
-fn pick_bits(packed: &[u8], layout: &Layout, nodata: &Nodata, piece: &Piece, part: Window) -> Vec<f64> {
+fn pick_bits(packed: &[u8], layout: &Layout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
     let bits = usize::from(layout.sample.bits);
-    let row_bytes = (piece.width * bits).div_ceil(8);
+    let row_bytes = (span.width * bits).div_ceil(8);
     let mask = (1u16 << bits) as u8 - 1;
     let nodata = nodata.integer::<u8>();
     let mut out = Vec::with_capacity(part.width * part.height);
     for row in part.row..part.row + part.height {
-        let line = &packed[(row - piece.first_row) * row_bytes..][..row_bytes];
-        for column in part.column - piece.first_column..part.column - piece.first_column + part.width {
+        let line = &packed[(row - span.first_row) * row_bytes..][..row_bytes];
+        for column in part.column - span.first_column..part.column - span.first_column + part.width {
             let at = column * bits;
             let sample = line[at / 8] >> (8 - bits - at % 8) & mask;
             out.push(if nodata == Some(sample) { f64::NAN } else { f64::from(sample) });

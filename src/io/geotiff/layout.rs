@@ -39,7 +39,7 @@ impl std::fmt::Display for SampleType {
 }
 
 /// Uncompressed strips may be as large as the raster; they are read in pieces of about this size.
-const PIECE_BYTES: u64 = 1 << 20;
+const SPAN_BYTES: u64 = 1 << 20;
 
 /// Checked description of where the samples of band 1 are.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ pub(super) struct Layout {
     /// Columns and rows of a tile, or the width and the rows of a strip.
     pub(super) block: [usize; 2],
     /// Rows that are decoded at once: those of a block, fewer for an uncompressed strip.
-    piece_height: usize,
+    span_height: usize,
     /// Samples of one cell that lie together: all bands, or 1 where bands have blocks of their own.
     pub(super) interleaved: u16,
     across: usize,
@@ -66,7 +66,7 @@ pub(super) struct Layout {
 
 /// A run of rows of one block: what is decoded at once.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
+pub(super) struct Span {
     /// Which block this is part of, for messages.
     pub(super) block: usize,
     pub(super) first_column: usize,
@@ -117,8 +117,8 @@ impl Layout {
             1 => bands,
             2 => 1,
             other => {
-                let place = tags::tag_name(tags::PLANAR_CONFIGURATION);
-                return Err(Error::format(format!("{other}, expected 1 or 2")).at(place));
+                let tag = tags::tag_name(tags::PLANAR_CONFIGURATION);
+                return Err(Error::format(format!("{other}, expected 1 or 2")).at(tag));
             }
         };
         let is_tiled = directory.has(tags::TILE_OFFSETS) || directory.has(tags::TILE_WIDTH);
@@ -132,14 +132,14 @@ impl Layout {
         let row_bytes = block_width
             .checked_mul(u64::from(interleaved) * u64::from(sample.bits))
             .map_or(u64::MAX, |bits| bits.div_ceil(8));
-        let piece_height = if !is_tiled && compression == tags::COMPRESSION_NONE {
-            (PIECE_BYTES / row_bytes).clamp(1, block_height)
+        let span_height = if !is_tiled && compression == tags::COMPRESSION_NONE {
+            (SPAN_BYTES / row_bytes).clamp(1, block_height)
         } else {
             block_height
         };
-        if row_bytes.saturating_mul(piece_height) > MAX_BLOCK_BYTES {
+        if row_bytes.saturating_mul(span_height) > MAX_BLOCK_BYTES {
             return Err(cure(Error::limit(format!(
-                "a block of {block_width} x {piece_height} cells of {interleaved} x {sample} passes the limit of \
+                "a block of {block_width} x {span_height} cells of {interleaved} x {sample} passes the limit of \
                  {MAX_BLOCK_BYTES} bytes for one block"
             ))));
         }
@@ -175,7 +175,7 @@ impl Layout {
             predictor,
             is_tiled,
             block: [block_width as usize, block_height as usize],
-            piece_height: piece_height as usize,
+            span_height: span_height as usize,
             interleaved,
             across: across as usize,
             offsets,
@@ -244,13 +244,13 @@ impl Layout {
     }
 
     /// Largest number of bytes that decoding one piece gives.
-    pub(super) fn piece_bytes(&self) -> u64 {
-        self.row_bytes() * self.piece_height as u64
+    pub(super) fn span_bytes(&self) -> u64 {
+        self.row_bytes() * self.span_height as u64
     }
 
     /// Cells of one piece.
-    pub(super) fn piece_cells(&self) -> u64 {
-        self.block[0] as u64 * self.piece_height as u64
+    pub(super) fn span_cells(&self) -> u64 {
+        self.block[0] as u64 * self.span_height as u64
     }
 
     /// Columns of blocks.
@@ -281,18 +281,18 @@ impl Layout {
     ///
     /// # Errors
     /// If its bytes are not in the file, or too few to give what they should.
-    pub(super) fn piece(&self, across: usize, row: usize, bytes: &Bytes) -> Result<Piece> {
+    pub(super) fn span(&self, across: usize, row: usize, bytes: &Bytes) -> Result<Span> {
         let [block_width, block_height] = self.block;
         let (block_row, row_in_block) = (row / block_height, row % block_height);
-        let skipped = row_in_block / self.piece_height * self.piece_height;
+        let skipped = row_in_block / self.span_height * self.span_height;
         let first_row = block_row * block_height + skipped;
         // Some writers leave out the rows of a tile that are below the raster.
-        let rows = self.piece_height.min(block_height - skipped).min(self.height - first_row);
+        let rows = self.span_height.min(block_height - skipped).min(self.height - first_row);
         let block = block_row * self.across + across;
         let stored = self
             .stored(block, skipped as u64, rows as u64, bytes)
             .map_err(|e| e.at(format!("block {block} (rows from {first_row})")))?;
-        Ok(Piece { block, first_column: across * block_width, first_row, width: block_width, rows, stored })
+        Ok(Span { block, first_column: across * block_width, first_row, width: block_width, rows, stored })
     }
 
     fn stored(&self, block: usize, skipped: u64, rows: u64, bytes: &Bytes) -> Result<Stored> {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::georeference::ModelTags;
 use super::ifd::{ByteOrder, Bytes, Directory};
-use super::layout::{Layout, Piece, SampleType, Stored};
+use super::layout::{Layout, SampleType, Span, Stored};
 use super::nodata::{Nodata, scale_and_offset};
 use super::{MAX_CELLS, block, tags};
 use crate::crs::{Crs, GeoKeys};
@@ -100,12 +100,12 @@ pub struct GeoTiffReader {
 /// message names it.
 pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
     let path = path.as_ref();
-    read_header(path).map_err(|e| told(e, path))
+    read_header(path).map_err(|e| with_file(e, path))
 }
 
 /// Names the file, and the cure where it is damaged.
 #[cold]
-fn told(error: Error, path: &Path) -> Error {
+fn with_file(error: Error, path: &Path) -> Error {
     let error = error.in_file(path);
     match (error.kind(), error.cure_text()) {
         (Kind::Format, None) => error.cure("the file is damaged: copy or download it again"),
@@ -160,8 +160,8 @@ fn read_header(path: &Path) -> Result<GeoTiffReader> {
         warnings.push(format!("no {} sample can be the nodata value {value}", layout.sample));
     }
     let (scale, offset) = metadata.as_deref().map_or((None, None), scale_and_offset);
-    let (mut transform, told) = model.transform();
-    warnings.extend(told);
+    let (mut transform, warning) = model.transform();
+    warnings.extend(warning);
     if transform.is_none()
         && let Some(beside) = world_file::read_beside(path)
     {
@@ -269,7 +269,7 @@ impl GeoTiffReader {
     /// # Errors
     /// As there.
     pub fn read_stored(&self, window: Window) -> Result<Vec<f64>> {
-        self.stored(window).map_err(|e| told(e, &self.path))
+        self.stored(window).map_err(|e| with_file(e, &self.path))
     }
 
     /// The whole raster.
@@ -344,7 +344,7 @@ impl GeoTiffReader {
             return Ok(Vec::new());
         }
         // Every block's place is checked before there is memory for what they would give.
-        let pieces = self.pieces(window)?;
+        let spans = self.spans(window)?;
         let mut out = Vec::new();
         out.try_reserve_exact(cells).map_err(|_| Error::limit(format!("no memory for {width} x {height} cells")))?;
         out.resize(cells, self.nodata.of_missing_blocks());
@@ -354,22 +354,22 @@ impl GeoTiffReader {
                 out[start..start + part.width].copy_from_slice(source);
             }
         };
-        let values = |piece: &Piece, take: &mut dyn FnMut(Window, Vec<f64>)| {
-            block::values(&self.layout, &self.nodata, &self.bytes, piece, overlap(piece, window), take)
+        let values = |span: &Span, take: &mut dyn FnMut(Window, Vec<f64>)| {
+            block::values(&self.layout, &self.nodata, &self.bytes, span, overlap(span, window), take)
         };
         /// Bytes of values that may wait to be copied.
         const WAITING: u64 = 1 << 27;
-        let piece_bytes = self.layout.piece_bytes().max(8 * self.layout.piece_cells()).max(1);
-        let batch = (WAITING / piece_bytes).min(4 * rayon::current_num_threads() as u64);
+        let span_bytes = self.layout.span_bytes().max(8 * self.layout.span_cells()).max(1);
+        let batch = (WAITING / span_bytes).min(4 * rayon::current_num_threads() as u64);
         if batch < 2 {
             // Of huge blocks, no more than one is decoded, and none of it waits.
-            pieces.iter().try_for_each(|piece| values(piece, &mut copy))?;
+            spans.iter().try_for_each(|span| values(span, &mut copy))?;
             return Ok(out);
         }
-        for batch in pieces.chunks(batch as usize) {
-            let decode = |piece: &Piece| {
+        for batch in spans.chunks(batch as usize) {
+            let decode = |span: &Span| {
                 let mut bands = Vec::new();
-                values(piece, &mut |part, values| bands.push((part, values))).map(|()| bands)
+                values(span, &mut |part, values| bands.push((part, values))).map(|()| bands)
             };
             let decoded: Vec<_> = batch.par_iter().map(decode).collect::<Result<_>>()?;
             decoded.into_iter().flatten().for_each(|(part, values)| copy(part, values));
@@ -378,33 +378,33 @@ impl GeoTiffReader {
     }
 
     /// The stored pieces that a window touches.
-    fn pieces(&self, window: Window) -> Result<Vec<Piece>> {
+    fn spans(&self, window: Window) -> Result<Vec<Span>> {
         let block_width = self.layout.block[0];
         let columns = window.column / block_width..(window.column + window.width).div_ceil(block_width);
         debug_assert!(columns.end <= self.layout.across());
-        let mut pieces = Vec::new();
+        let mut spans = Vec::new();
         let mut row = window.row;
         while row < window.row + window.height {
             let mut end = row + 1;
             for across in columns.clone() {
-                let piece = self.layout.piece(across, row, &self.bytes)?;
-                end = piece.first_row + piece.rows;
-                if matches!(piece.stored, Stored::At { .. }) {
-                    pieces.push(piece);
+                let span = self.layout.span(across, row, &self.bytes)?;
+                end = span.first_row + span.rows;
+                if matches!(span.stored, Stored::At { .. }) {
+                    spans.push(span);
                 }
             }
             row = end;
         }
-        Ok(pieces)
+        Ok(spans)
     }
 }
 
 /// The part of a piece that lies in a window that touches it.
-fn overlap(piece: &Piece, window: Window) -> Window {
-    let column = piece.first_column.max(window.column);
-    let row = piece.first_row.max(window.row);
-    let width = (piece.first_column + piece.width).min(window.column + window.width) - column;
-    let height = (piece.first_row + piece.rows).min(window.row + window.height) - row;
+fn overlap(span: &Span, window: Window) -> Window {
+    let column = span.first_column.max(window.column);
+    let row = span.first_row.max(window.row);
+    let width = (span.first_column + span.width).min(window.column + window.width) - column;
+    let height = (span.first_row + span.rows).min(window.row + window.height) - row;
     Window { column, row, width, height }
 }
 

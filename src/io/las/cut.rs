@@ -12,7 +12,7 @@ pub enum Cut {
 
 impl Cut {
     /// Tells that points are missing from this byte on.
-    pub(super) fn tell(self, text: String, byte: u64, warnings: &mut Vec<String>) -> Result<()> {
+    pub(super) fn refuse_or_warn(self, text: String, byte: u64, warnings: &mut Vec<String>) -> Result<()> {
         match self {
             Cut::Accept => warnings.push(text),
             Cut::Refuse => {

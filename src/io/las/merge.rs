@@ -26,7 +26,7 @@ pub enum Rounding {
 /// A field of characters, padded with zeros.
 pub(super) fn padded<const N: usize>(text: &str) -> [u8; N] {
     let mut field = [0; N];
-    field.iter_mut().zip(text.bytes()).for_each(|(place, byte)| *place = byte);
+    field.iter_mut().zip(text.bytes()).for_each(|(slot, byte)| *slot = byte);
     field
 }
 

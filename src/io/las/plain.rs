@@ -45,7 +45,7 @@ impl Plain {
                 "the header states {} points, but the file holds {room}{torn}: it was cut, or its header is wrong",
                 header.count
             );
-            cut.tell(text, header.layout.points_end, warnings)?;
+            cut.refuse_or_warn(text, header.layout.points_end, warnings)?;
         } else if header.count == 0 && room > 0 {
             warnings.push(format!(
                 "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file was perhaps never \
@@ -68,7 +68,7 @@ impl Plain {
         if whole < count {
             let missing = std::mem::take(&mut self.left);
             let text = format!("the file became shorter while it was read: {missing} points are missing");
-            self.cut.tell(text, self.input.length, warnings)?;
+            self.cut.refuse_or_warn(text, self.input.length, warnings)?;
         }
         Ok(())
     }

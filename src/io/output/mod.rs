@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all, alone or as a set.
 
-mod place;
 mod set;
+mod target;
 mod temporary;
 
 use std::fs::File;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
-use place::Place;
+use target::TargetKind;
 use temporary::Temporary;
 
 pub use set::{Destination, OutputSet};
@@ -68,13 +68,13 @@ impl Output {
     }
 
     fn open(target: &Path, is_seekable: bool) -> Result<Self> {
-        let (file, sink) = match Place::of(target)? {
-            Place::File(path) => {
+        let (file, sink) = match TargetKind::of(target)? {
+            TargetKind::File(path) => {
                 let (file, temporary) = temporary_for(&path)?;
                 (file, Sink::Renamed(temporary, path))
             }
-            Place::Stream if is_seekable => (tempfile::tempfile()?, Sink::Copied(place::open_stream(target)?)),
-            Place::Stream => (place::open_stream(target)?, Sink::Stream),
+            TargetKind::Stream if is_seekable => (tempfile::tempfile()?, Sink::Copied(target::open_stream(target)?)),
+            TargetKind::Stream => (target::open_stream(target)?, Sink::Stream),
         };
         Ok(Output { file: BufWriter::with_capacity(1 << 18, file), target: target.to_path_buf(), sink })
     }
@@ -124,23 +124,23 @@ impl Output {
 /// # Errors
 /// As [`Output::create`].
 pub fn probe(target: &Path) -> Result<()> {
-    let probe = || match Place::of(target)? {
-        Place::File(path) => temporary_for(&path).map(drop),
-        Place::Stream => Ok(()),
+    let probe = || match TargetKind::of(target)? {
+        TargetKind::File(path) => temporary_for(&path).map(drop),
+        TargetKind::Stream => Ok(()),
     };
     probe().map_err(|e: Error| e.in_file(target))
 }
 
 /// Returns true if a target is a pipe or a device, which is never replaced.
 pub fn is_stream(target: &Path) -> bool {
-    matches!(Place::of(target), Ok(Place::Stream))
+    matches!(TargetKind::of(target), Ok(TargetKind::Stream))
 }
 
 fn temporary_for(path: &Path) -> Result<(File, Temporary)> {
-    let replaced = place::replaceable(path)?;
+    let replaced = target::replaceable(path)?;
     let (file, temporary) = Temporary::create(path)?;
     if let Some(old) = replaced {
-        place::take_over(&file, &old)?;
+        target::take_over(&file, &old)?;
     }
     Ok((file, temporary))
 }

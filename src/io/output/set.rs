@@ -3,7 +3,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::temporary::{Renames, Temporary};
-use super::{Flushed, Output, place};
+use super::{Flushed, Output, target};
 use crate::error::{Error, Result};
 
 /// Outputs that appear together or not at all.
@@ -194,7 +194,7 @@ fn replace_all<'a>(
     if let Some((_, (first, _))) = files().next() {
         for (i, path) in stale.iter().enumerate() {
             if path.is_dir() {
-                return Err(place::folder_in_the_way().in_file(path));
+                return Err(target::folder_error().in_file(path));
             }
             let before = beside(path, &first.backup().with_extension(i.to_string()));
             match std::fs::rename(path, &before) {
@@ -218,7 +218,7 @@ fn replace_all<'a>(
 /// Gives the file at a path a second name, if there is one; where that cannot be, another name.
 fn set_aside(temporary: &Temporary, path: &Path) -> Result<Option<PathBuf>> {
     match std::fs::symlink_metadata(path) {
-        Ok(data) if data.is_dir() => return Err(place::folder_in_the_way()),
+        Ok(data) if data.is_dir() => return Err(target::folder_error()),
         Ok(_) => {}
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(error.into()),
@@ -283,7 +283,7 @@ mod tests {
         // Comes after the check.
         std::fs::create_dir(&c).unwrap();
         let error = set.commit().unwrap_err();
-        assert!(error.to_string().ends_with("c: a folder is in the way"), "{error}");
+        assert!(error.to_string().ends_with("c: there is a folder with this name"), "{error}");
         let expected = [("a", "old"), ("c", "/"), ("s", "kept")].map(|(n, t)| (n.to_owned(), t.to_owned()));
         assert_eq!(listed(folder.path()), expected);
     }

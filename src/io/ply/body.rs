@@ -44,18 +44,18 @@ impl<'a> Body<'a> {
     ) -> Result<()> {
         let mut row = vec![Vec::new(); element.properties.len()];
         for number in 0..element.count {
-            let place = |e: Error| e.at(format!("{} {number}", element.name));
+            let in_row = |e: Error| e.at(format!("{} {number}", element.name));
             for (property, values) in element.properties.iter().zip(&mut row) {
                 values.clear();
                 let length = match property.length {
                     None => 1,
-                    Some(kind) => self.list_length(kind, property.kind).map_err(place)?,
+                    Some(kind) => self.list_length(kind, property.kind).map_err(in_row)?,
                 };
                 for _ in 0..length {
-                    values.push(self.value(property.kind).map_err(place)?);
+                    values.push(self.value(property.kind).map_err(in_row)?);
                 }
             }
-            each(number, &row).map_err(place)?;
+            each(number, &row).map_err(in_row)?;
         }
         Ok(())
     }

@@ -84,7 +84,7 @@ impl Header {
         let mut crs = String::new();
         let mut at = 0;
         for number in 1.. {
-            let place = |e: Error| e.at(format!("line {number}"));
+            let at_line = |e: Error| e.at(format!("line {number}"));
             let (line, length) = line(&bytes[at..]).ok_or_else(|| {
                 let message = if number == 1 { "the file does not begin with 'ply'" } else { "the header has no end" };
                 Error::format(message)
@@ -98,15 +98,15 @@ impl Header {
             }
             let words: Vec<&str> = line.split_ascii_whitespace().collect();
             match words[..] {
-                ["format", name, "1.0"] => encoding = Some(named_encoding(name).map_err(place)?),
+                ["format", name, "1.0"] => encoding = Some(named_encoding(name).map_err(at_line)?),
                 ["element", name, count] => {
-                    let count = count.parse().map_err(|_| place(Error::format(format!("'{count}' is no count"))))?;
+                    let count = count.parse().map_err(|_| at_line(Error::format(format!("'{count}' is no count"))))?;
                     elements.push(Element { name: name.into(), count, properties: Vec::new() });
                 }
                 ["property", ..] => {
-                    let property = property(&words).map_err(place)?;
+                    let property = property(&words).map_err(at_line)?;
                     let element = elements.last_mut();
-                    let element = element.ok_or_else(|| place(Error::format("a property before any element")))?;
+                    let element = element.ok_or_else(|| at_line(Error::format("a property before any element")))?;
                     element.properties.push(property);
                 }
                 ["comment" | "obj_info", ..] => {
@@ -117,7 +117,7 @@ impl Header {
                 ["end_header"] => break,
                 _ => {
                     let line: String = line.chars().take(80).collect();
-                    return Err(place(Error::format(format!("'{line}' is no line of a PLY 1.0 header"))));
+                    return Err(at_line(Error::format(format!("'{line}' is no line of a PLY 1.0 header"))));
                 }
             }
         }

@@ -21,7 +21,7 @@ use crate::io::{Destination, Output};
 /// The kinds of a face's edges, by their numbers in the file: from the first corner to the second, and so on around.
 const KINDS: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
 const EDGES: [&str; 3] = ["edge1", "edge2", "edge3"];
-const PIECE: &str = "piece";
+const FRAGMENT: &str = "piece";
 
 /// Writes vertices, faces, the kinds of their edges where there are lines, and the coordinate system.
 pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
@@ -38,7 +38,7 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     write!(output, "element face {}\nproperty list uchar int vertex_indices\n", mesh.face_count)?;
     let has_lines = mesh.constrained_edges > 0;
     if has_lines {
-        EDGES.iter().chain([&PIECE]).try_for_each(|name| writeln!(output, "property uchar {name}"))?;
+        EDGES.iter().chain([&FRAGMENT]).try_for_each(|name| writeln!(output, "property uchar {name}"))?;
     }
     output.write_all(b"end_header\n")?;
     mesh.vertices().try_for_each(|p| {
@@ -56,10 +56,10 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
         row
     };
     if has_lines {
-        mesh.lined_faces().try_for_each(|(face, [b, c, a], is_piece)| {
+        mesh.lined_faces().try_for_each(|(face, [b, c, a], is_fragment)| {
             let [a, b, c] = [a, b, c].map(|kind| KINDS.iter().position(|k| *k == kind).unwrap_or_default() as u8);
             output.write_all(&corners(face))?;
-            output.write_all(&[a, b, c, u8::from(is_piece)])
+            output.write_all(&[a, b, c, u8::from(is_fragment)])
         })?;
     } else {
         mesh.faces().try_for_each(|face| output.write_all(&corners(face)))?;
@@ -97,13 +97,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut triangles = Triangles { vertices, constrained_edges, clip_edges, crs, ..Triangles::default() };
     triangles.faces.reserve_exact(polygons.ends.len());
     let mut start = 0;
-    let mut pieces = polygons.pieces.into_iter().peekable();
+    let mut fragments = polygons.fragments.into_iter().peekable();
     for (i, end) in polygons.ends.into_iter().enumerate() {
         let corners = &polygons.corners[start..end];
         let first = triangles.faces.len() as u32;
         polygon::add_polygon(&triangles.vertices, corners, &mut triangles.faces)
             .map_err(|e| e.at(format!("face {i}")))?;
-        if pieces.next_if_eq(&i).is_some() {
+        if fragments.next_if_eq(&i).is_some() {
             triangles.pieces.extend(first..triangles.faces.len() as u32);
         }
         start = end;
@@ -132,7 +132,7 @@ struct Polygons {
     breaklines: Vec<[u32; 2]>,
     clips: Vec<[u32; 2]>,
     /// Which faces are pieces of cut triangles.
-    pieces: Vec<usize>,
+    fragments: Vec<usize>,
 }
 
 fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
@@ -150,7 +150,7 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         }
         polygons.ends.push(polygons.corners.len());
         let corners = &polygons.corners[first..];
-        let Some((kinds, piece)) = lines else { return Ok(()) };
+        let Some((kinds, fragment)) = lines else { return Ok(()) };
         for (i, property) in kinds.into_iter().enumerate() {
             let edges = match edge_kind(EDGES[i], row[property][0])? {
                 EdgeKind::Breakline => &mut polygons.breaklines,
@@ -161,8 +161,8 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
                 edges.push([a.min(b), a.max(b)]);
             }
         }
-        if row[piece][0] != 0.0 {
-            polygons.pieces.push(number);
+        if row[fragment][0] != 0.0 {
+            polygons.fragments.push(number);
         }
         Ok(())
     })?;
@@ -182,7 +182,7 @@ fn line_properties(element: &Element) -> Option<([usize; 3], usize)> {
         (element.properties[at].kind == Scalar::U8).then_some(at)
     };
     let [a, b, c] = EDGES.map(position);
-    Some(([a?, b?, c?], position(PIECE)?))
+    Some(([a?, b?, c?], position(FRAGMENT)?))
 }
 
 fn edge_kind(name: &str, number: f64) -> Result<EdgeKind> {

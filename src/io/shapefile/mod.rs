@@ -98,21 +98,21 @@ fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
         None => None,
     };
     let Walk { records, types, damage, end, mut odd } = walk::walk(&mut file, size, index.as_ref())?;
-    if let Some(first) = damage.told.first()
+    if let Some(first) = damage.reported.first()
         && records.iter().all(|record| record.shape.is_none())
     {
         return Err(Error::format(format!("no record can be read: {first}")).cure("ask for the file again"));
     }
-    warnings.extend(damage.told);
+    warnings.extend(damage.reported);
     if damage.more > 0 {
         warnings.push(format!("and {} more places that could not be read", damage.more));
     }
-    tell_types(&mut warnings, header_type.code, &types);
+    warn_of_types(&mut warnings, header_type.code, &types);
     if z_field.is_some() {
         // Heights of the geometry do not matter then.
         odd.no_height = 0;
     }
-    tell_oddities(&mut warnings, &odd);
+    warn_of_oddities(&mut warnings, &odd);
 
     let rows = index.and_then(|index| {
         let starts: Vec<u64> = records.iter().map(|record| record.offset).collect();
@@ -254,10 +254,10 @@ fn join(
     };
     let (mut stale, mut deleted) = (0, 0);
     let mut shapes = Vec::with_capacity(records.len());
-    for (place, record) in records.into_iter().enumerate() {
+    for (position, record) in records.into_iter().enumerate() {
         let row = match &rows {
-            Some(rows) => rows[place],
-            None => Some(place),
+            Some(rows) => rows[position],
+            None => Some(position),
         };
         if row.is_none() && record.number.is_some_and(|number| listed.contains(&number)) {
             stale += 1;
@@ -283,7 +283,7 @@ fn join(
     shapes
 }
 
-fn tell_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, usize>) {
+fn warn_of_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, usize>) {
     if types.keys().all(|&code| code == header) {
         return;
     }
@@ -292,7 +292,7 @@ fn tell_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, usi
     warnings.push(format!("the header says {}, the records are {}", name(header), list.join(", ")));
 }
 
-fn tell_oddities(warnings: &mut Vec<String>, odd: &record::Oddities) {
+fn warn_of_oddities(warnings: &mut Vec<String>, odd: &record::Oddities) {
     for (count, what) in [
         (odd.unclosed, "rings did not end where they began; closed"),
         (odd.empty_parts, "parts without points; left out"),

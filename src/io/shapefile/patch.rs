@@ -223,10 +223,10 @@ mod tests {
     #[test]
     fn a_wall_is_filled_in_its_own_plane() {
         // An L in the plane x = 7.
-        let wall: Vec<_> = [[0., 0.], [3., 0.], [3., 1.], [1., 1.], [1., 3.], [0., 3.], [0., 0.]]
+        let ell: Vec<_> = [[0., 0.], [3., 0.], [3., 1.], [1., 1.], [1., 3.], [0., 3.], [0., 0.]]
             .map(|[y, z]: [f64; 2]| [7., y, z])
             .to_vec();
-        let (filled, _) = run(&[wall], &[FIRST]);
+        let (filled, _) = run(&[ell], &[FIRST]);
         assert_eq!((filled.len(), total(&filled)), (4, [5., 0., 0.]));
     }
 

@@ -37,16 +37,16 @@ pub(super) struct Walk {
 /// Places that could not be read: a line for each of the first, and how many more there are.
 #[derive(Debug, Default)]
 pub(super) struct Damage {
-    pub(super) told: Vec<String>,
+    pub(super) reported: Vec<String>,
     pub(super) more: usize,
 }
 
 impl Damage {
-    const MAX_TOLD: usize = 10;
+    const MAX_REPORTED: usize = 10;
 
-    fn add(&mut self, place: &str, why: &str) {
-        if self.told.len() < Self::MAX_TOLD {
-            self.told.push(format!("{place}: {why}"));
+    fn add(&mut self, location: &str, why: &str) {
+        if self.reported.len() < Self::MAX_REPORTED {
+            self.reported.push(format!("{location}: {why}"));
         } else {
             self.more += 1;
         }
@@ -66,11 +66,11 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
     file.seek(SeekFrom::Start(at))?;
     while at < size {
         let number = walk.records.len() + 1;
-        let place = || format!("record {number} (byte {at})");
+        let location = || format!("record {number} (byte {at})");
         let (id, length) = match header(file, size - at)? {
             Ok(header) => header,
             Err(why) => {
-                walk.damage.add(&place(), &why);
+                walk.damage.add(&location(), &why);
                 let Some((skipped, next)) = resync(file, size, at, index)? else {
                     walk.end = Some(at);
                     break;
@@ -92,12 +92,12 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
                 Some(shape)
             }
             Err(Flaw::Damaged(why)) => {
-                walk.damage.add(&place(), &why);
+                walk.damage.add(&location(), &why);
                 None
             }
             Err(Flaw::NotFinite { vertex, axis, value }) => {
                 return Err(Error::format(format!("{axis} of vertex {vertex} is {value}"))
-                    .at(place())
+                    .at(location())
                     .cure("repair the record or take it out, then try again"));
             }
         };

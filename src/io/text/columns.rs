@@ -68,8 +68,8 @@ impl Layout {
         let mut count = 0;
         for (number, field) in (1..=last).zip(self.separator.fields(line)) {
             count = number;
-            for (place, _) in found.iter_mut().zip(wanted).filter(|(_, column)| *column == Some(number)) {
-                *place = field;
+            for (slot, _) in found.iter_mut().zip(wanted).filter(|(_, column)| *column == Some(number)) {
+                *slot = field;
             }
         }
         if count < last {

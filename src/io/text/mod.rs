@@ -91,7 +91,7 @@ pub fn from_stream(
         line: Vec::new(),
         number: 0,
     };
-    let start = start(&mut lines, columns).map_err(|error| lines.place(error))?;
+    let start = start(&mut lines, columns).map_err(|error| lines.locate(error))?;
     let header = if start.has_header { ", with header" } else { "" };
     let info = PointInfo {
         format: format!("text, separated by {}{header}", start.layout.separator.name()),
@@ -128,7 +128,7 @@ impl PointSource for TextReader {
                 Ok(None) => self.finish(self.read + batch.len() as u64),
                 Err(error) => {
                     self.is_done = true;
-                    return Err(self.lines.place(error));
+                    return Err(self.lines.locate(error));
                 }
             }
         }
@@ -287,7 +287,7 @@ impl Lines {
     }
 
     /// Says in which file and line it was.
-    fn place(&self, error: Error) -> Error {
+    fn locate(&self, error: Error) -> Error {
         error.at(format!("line {}", self.number)).in_file(&self.name)
     }
 }

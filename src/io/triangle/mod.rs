@@ -267,7 +267,7 @@ fn room(count: usize, rows: &Rows) -> usize {
     count.min(rows.bytes_left() / 6 + 1)
 }
 
-fn place(row: &mut Row) -> Result<[f64; 2]> {
+fn site(row: &mut Row) -> Result<[f64; 2]> {
     Ok([row.finite("x coordinate")?, row.finite("y coordinate")?])
 }
 

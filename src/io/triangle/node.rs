@@ -10,7 +10,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{LineGraph, Nodes, Surplus, Triangulated, counted, listed, marker, place, read_rows, room};
+use super::{LineGraph, Nodes, Surplus, Triangulated, counted, listed, marker, read_rows, room, site};
 use crate::error::Result;
 use crate::io::decimal::Decimal;
 use crate::io::rows::Rows;
@@ -71,7 +71,7 @@ pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
         if number != expected {
             return Err(row.wrong(format!("vertex number {number} is out of sequence, expected {expected}")));
         }
-        nodes.points.push(place(row)?);
+        nodes.points.push(site(row)?);
         for _ in 0..attribute_count {
             nodes.attributes.push(row.finite("attribute")?);
         }

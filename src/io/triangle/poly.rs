@@ -14,7 +14,7 @@ use std::path::Path;
 
 use super::node::{self, Listed};
 use super::{Hole, LineGraph, Numbering, Region, Segment, Surplus, Triangulated};
-use super::{bytes_of, counted, listed, marker, place, read_rows};
+use super::{bytes_of, counted, listed, marker, read_rows, site};
 use crate::error::{Error, Result};
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows};
@@ -84,7 +84,7 @@ fn read_holes(rows: &mut Rows, surplus: &mut Surplus) -> Result<Vec<Hole>> {
     let header = rows.expect(|| "the number of holes".to_owned(), "HOLES, 0 if there are none")?;
     let count = count_alone(header, "holes")?;
     listed(rows, count, "hole", "NUMBER X Y", |row, _| {
-        let at = place(row)?;
+        let at = site(row)?;
         surplus.look(row);
         Ok(Hole { at, line: row.line })
     })
@@ -94,7 +94,7 @@ fn read_regions(rows: &mut Rows, surplus: &mut Surplus) -> Result<Vec<Region>> {
     let Some(header) = rows.next("REGIONS") else { return Ok(Vec::new()) };
     let count = count_alone(header, "regions")?;
     listed(rows, count, "region", "NUMBER X Y ATTRIBUTE AREA", |row, _| {
-        let at = place(row)?;
+        let at = site(row)?;
         let attribute = row.finite("attribute")?;
         let area = if row.has_more() { row.finite("largest area")? } else { attribute };
         surplus.look(row);

@@ -51,8 +51,8 @@ impl Compression {
                 .at("byte 104")
                 .cure("copy or download the file again")
         })?;
-        let place = |error: Error| error.at("record \"laszip encoded\"").cure("copy or download the file again");
-        Self::parse(payload, header).map_err(place)
+        let in_record = |error: Error| error.at("record \"laszip encoded\"").cure("copy or download the file again");
+        Self::parse(payload, header).map_err(in_record)
     }
 
     fn parse(payload: &[u8], header: &Header) -> Result<Self> {

@@ -92,7 +92,7 @@ impl Laz {
                  is wrong",
                 header.count
             );
-            options.cut.tell(text, input.length, warnings)?;
+            options.cut.refuse_or_warn(text, input.length, warnings)?;
         }
         if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > LARGEST_CHUNK) {
             return Err(Error::limit(format!(
@@ -173,8 +173,8 @@ impl Chunks {
             .into_par_iter()
             .map(|(i, (chunk, mut batch))| {
                 batch.clear();
-                let place = (chunk.start - start) as usize;
-                let bytes = bytes.get(place..place + chunk.bytes as usize).unwrap_or_default();
+                let offset = (chunk.start - start) as usize;
+                let bytes = bytes.get(offset..offset + chunk.bytes as usize).unwrap_or_default();
                 match chunk::decode(bytes, chunk.points, compression, layout, &mut batch) {
                     Ok(()) => Ok(batch),
                     Err(reason) => Err(damaged(chunk, number + i, &reason)),

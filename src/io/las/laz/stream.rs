@@ -91,7 +91,7 @@ impl Stream {
                 Some(Err(Stop::End)) => {
                     let total = std::mem::replace(&mut self.total, self.done);
                     let text = format!("the file ends within its compressed points: {} of {total} are read", self.done);
-                    self.cut.tell(text, self.length, warnings)?;
+                    self.cut.refuse_or_warn(text, self.length, warnings)?;
                 }
                 Some(Err(Stop::Failed(error))) => {
                     return Err(Error::from(error).at(format!("point {}", self.done)));

@@ -29,7 +29,7 @@ pub(super) struct Chunk {
 /// With the reason why there is no table to rely on.
 pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header) -> Result<Vec<Chunk>, String> {
     let points_start = header.layout.points_start;
-    let table = find(input, points_start).ok_or("the place of the chunk table was never written")?;
+    let table = find(input, points_start).ok_or("the position of the chunk table was never written")?;
     let damaged = |what: String| format!("the chunk table at byte {table} {what}");
     if table.saturating_add(8) > input.length {
         return Err(damaged(format!("lies beyond the end of the file at byte {}", input.length)));
@@ -82,12 +82,12 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
 /// the last bytes of the file.
 fn find(input: &mut Input, points_start: u64) -> Option<u64> {
     let last = input.length.checked_sub(8);
-    let mut place_at = |start| {
+    let mut offset_at = |start| {
         let bytes = input.bytes(start, 8).ok().filter(|bytes| bytes.len() == 8)?;
-        let place = u64_at(&bytes, 0);
-        (place >= points_start + POINTER && place <= i64::MAX as u64).then_some(place)
+        let offset = u64_at(&bytes, 0);
+        (offset >= points_start + POINTER && offset <= i64::MAX as u64).then_some(offset)
     };
-    place_at(points_start).or_else(|| place_at(last?))
+    offset_at(points_start).or_else(|| offset_at(last?))
 }
 
 /// Finds layered chunks without a table: each states its points and the bytes of its layers.

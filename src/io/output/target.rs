@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 
 /// What a path leads to.
-pub(super) enum Place {
+pub(super) enum TargetKind {
     /// A file at this path, there or to be; symbolic links are followed.
     File(PathBuf),
     /// A pipe or a device.
@@ -17,20 +17,20 @@ pub(super) enum Place {
 /// As many links in a row as Linux follows.
 const MAX_LINKS: usize = 40;
 
-impl Place {
+impl TargetKind {
     pub(super) fn of(path: &Path) -> Result<Self> {
         let mut path = path.to_path_buf();
         for _ in 0..MAX_LINKS {
             if open_file(&path).is_some() {
-                return Ok(Place::Stream);
+                return Ok(TargetKind::Stream);
             }
             match std::fs::symlink_metadata(&path) {
-                Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Place::File(path)),
+                Err(error) if error.kind() == ErrorKind::NotFound => return Ok(TargetKind::File(path)),
                 Err(error) => return Err(error.into()),
                 Ok(data) if data.is_symlink() => path = path.with_file_name("").join(std::fs::read_link(&path)?),
-                Ok(data) if data.is_dir() => return Err(folder_in_the_way()),
-                Ok(data) if data.is_file() => return Ok(Place::File(path)),
-                Ok(_) => return Ok(Place::Stream),
+                Ok(data) if data.is_dir() => return Err(folder_error()),
+                Ok(data) if data.is_file() => return Ok(TargetKind::File(path)),
+                Ok(_) => return Ok(TargetKind::Stream),
             }
         }
         Err(Error::usage("symbolic links lead in a circle"))
@@ -69,7 +69,7 @@ pub(super) fn replaceable(path: &Path) -> Result<Option<Metadata>> {
         old => old?,
     };
     if old.is_dir() {
-        return Err(folder_in_the_way());
+        return Err(folder_error());
     }
     if old.permissions().readonly() {
         let error = std::io::Error::new(ErrorKind::PermissionDenied, "the file is read-only, and is not replaced");
@@ -92,7 +92,7 @@ pub(super) fn take_over(new: &File, old: &Metadata) -> Result<()> {
 }
 
 #[cold]
-pub(super) fn folder_in_the_way() -> Error {
-    let error = std::io::Error::new(ErrorKind::IsADirectory, "a folder is in the way");
+pub(super) fn folder_error() -> Error {
+    let error = std::io::Error::new(ErrorKind::IsADirectory, "there is a folder with this name");
     Error::from(error).cure("give the output another name, or move the folder")
 }
