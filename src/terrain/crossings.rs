@@ -104,7 +104,7 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> 
     for line in triangulation.lines() {
         for pair in triangulation.line_vertices(line).windows(2).filter(|pair| pair[0] != pair[1]) {
             let [p, q] = [pair[0], pair[1]].map(|v| *triangulation.point(v));
-            passes.extend(triangulation.way(pair[0], pair[1]).into_iter().map(|vertex| {
+            passes.extend(triangulation.segment_chain(pair[0], pair[1]).into_iter().map(|vertex| {
                 let [x, y, _] = *triangulation.point(vertex);
                 Pass { vertex, line, height: height_along(p, q, [x, y]) }
             }));

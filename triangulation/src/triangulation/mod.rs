@@ -20,7 +20,7 @@ pub use engine::insert::Inserted;
 pub use error::{GapError, InputError, MoveError, PointError, RemovalError};
 pub use kinds::basic::Basic;
 pub use kinds::constrained::{Constrained, ConstraintError};
-pub use kinds::constrained_delaunay::{ConstrainedDelaunay, Walls};
+pub use kinds::constrained_delaunay::{ConstrainedDelaunay, ConstrainedEdges};
 pub use kinds::delaunay::Delaunay;
 pub use kinds::regular::Regular;
 pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, Delaunay3, Regular2};
@@ -44,10 +44,10 @@ use error::MAX_VERTICES;
 ///
 /// ```compile_fail
 /// use breakline_triangulation::geometry::Plane;
-/// use breakline_triangulation::{ConstrainedDelaunay, Triangulation, Walls};
+/// use breakline_triangulation::{ConstrainedDelaunay, Triangulation, ConstrainedEdges};
 ///
 /// let constrained: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
-/// let copy: Triangulation<Plane, 3, (), Walls> = (*constrained).clone();
+/// let copy: Triangulation<Plane, 3, (), ConstrainedEdges> = (*constrained).clone();
 /// ```
 ///
 /// Only what is true of all kinds can be checked of the view:

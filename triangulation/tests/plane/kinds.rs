@@ -6,8 +6,8 @@ use breakline_triangulation::geometry::{Plane, Space, Weighted};
 use breakline_triangulation::kernel::Adaptive;
 use breakline_triangulation::tds::{CellId, Tds, VertexId};
 use breakline_triangulation::{
-    Basic, Constrained, ConstraintError, Delaunay, Inserted, Level, MoveError, PointError, Regular, RemovalError,
-    Triangulation, Walls,
+    Basic, Constrained, ConstrainedEdges, ConstraintError, Delaunay, Inserted, Level, MoveError, PointError, Regular,
+    RemovalError, Triangulation,
 };
 use testkit::random::Random;
 
@@ -104,7 +104,7 @@ fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
 }
 
 /// The vertices on the way from one to another, these included, in order.
-fn way(t: &Triangulation<Plane, 3, (), Walls>, a: VertexId, b: VertexId) -> Vec<VertexId> {
+fn way(t: &Triangulation<Plane, 3, (), ConstrainedEdges>, a: VertexId, b: VertexId) -> Vec<VertexId> {
     let (p, q) = (*t.point(a), *t.point(b));
     if a == b {
         return vec![a];

@@ -293,7 +293,7 @@ fn lines_and_meshes() {
         for v in vertex_numbers(&t) {
             let _ = (t.is_added(v), t.constrained_around(v).count());
             for w in vertex_numbers(&t) {
-                let _ = (t.way(v, w), t.lines_through(v, w).count());
+                let _ = (t.segment_chain(v, w), t.lines_through(v, w).count());
             }
         }
         assert_eq!(t.nesting().len(), t.tds().cell_slots());

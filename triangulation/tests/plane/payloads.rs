@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use breakline_triangulation::geometry::{Geometry, Plane, Space, Weighted};
 use breakline_triangulation::tds::{CellId, VertexId};
 use breakline_triangulation::{
-    Basic, Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation, Walls,
+    Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, Delaunay, Level, OnCrossing, Regular, Triangulation,
 };
 use testkit::random::Random;
 
@@ -16,7 +16,7 @@ fn seen<G: Geometry<N>, const N: usize, V>(t: &Triangulation<G, N, V, u32>) -> S
     seen_as(t, |cell| *t.tds().cell_data(cell))
 }
 
-fn seen_between_walls<G: Geometry<3>, V>(t: &Triangulation<G, 3, V, Walls<u32>>) -> Seen {
+fn seen_between_walls<G: Geometry<3>, V>(t: &Triangulation<G, 3, V, ConstrainedEdges<u32>>) -> Seen {
     seen_as(t, |cell| *t.cell_data(cell))
 }
 

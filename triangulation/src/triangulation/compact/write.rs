@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use crate::geometry::{Crossing, Geometry};
 use crate::tds::{CellId, Tds, VertexId};
 
-use super::super::{Basic, Constrained, ConstrainedDelaunay, Delaunay, Regular, Triangulation, Walls};
+use super::super::{Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, Delaunay, Regular, Triangulation};
 use super::Law;
 use super::layout::{HEADER, Header, INFINITE, NONE, padded};
 
@@ -98,7 +98,7 @@ fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>
 }
 
 /// Bit `i` for the edge opposite vertex `i`.
-fn bits<C>(walls: &Walls<C>) -> u8 {
+fn bits<C>(walls: &ConstrainedEdges<C>) -> u8 {
     (0..3).map(|i| u8::from(walls.has(i)) << i).sum()
 }
 

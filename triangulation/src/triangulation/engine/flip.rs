@@ -2,60 +2,60 @@ use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, Tds, ccw, cw};
 
-use super::super::{Triangulation, Walls};
+use super::super::{ConstrainedEdges, Triangulation};
 
 /// What payloads of triangles tell of their edges, and what is left of them when triangles are exchanged.
 pub(in super::super) trait Edges<C>: Copy {
     /// Whether the edge opposite vertex `i` must stay.
-    fn is_wall(self, data: &C, i: usize) -> bool;
+    fn is_constrained(self, data: &C, i: usize) -> bool;
 
     /// The same payload with the edge opposite vertex `i` set as told.
-    fn with_wall(self, data: C, i: usize, wall: bool) -> C;
+    fn with_constraint(self, data: C, i: usize, is_constrained: bool) -> C;
 }
 
 /// Of triangulations without constraints, whatever the payload is.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Free;
+pub(in super::super) struct NoConstraints;
 
-impl<C> Edges<C> for Free {
+impl<C> Edges<C> for NoConstraints {
     #[inline(always)]
-    fn is_wall(self, _: &C, _: usize) -> bool {
+    fn is_constrained(self, _: &C, _: usize) -> bool {
         false
     }
 
     #[inline(always)]
-    fn with_wall(self, data: C, _: usize, _: bool) -> C {
+    fn with_constraint(self, data: C, _: usize, _: bool) -> C {
         data
     }
 }
 
 /// Where the payload is what is known of edges.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Forced;
+pub(in super::super) struct WithConstraints;
 
-impl<C: Copy> Edges<Walls<C>> for Forced {
+impl<C: Copy> Edges<ConstrainedEdges<C>> for WithConstraints {
     #[inline(always)]
-    fn is_wall(self, data: &Walls<C>, i: usize) -> bool {
+    fn is_constrained(self, data: &ConstrainedEdges<C>, i: usize) -> bool {
         data.has(i)
     }
 
     #[inline(always)]
-    fn with_wall(self, data: Walls<C>, i: usize, wall: bool) -> Walls<C> {
-        data.with(i, wall)
+    fn with_constraint(self, data: ConstrainedEdges<C>, i: usize, is_constrained: bool) -> ConstrainedEdges<C> {
+        data.with(i, is_constrained)
     }
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Flips edges that are no walls until no vertex sees another in its circle (Lawson 1977), starting from
     /// these cells; none is left in the list.
-    pub(in super::super) fn settle(&mut self, edges: impl Edges<C>, unsettled: &mut Vec<CellId>) {
-        while let Some(cell) = unsettled.pop() {
+    pub(in super::super) fn legalize(&mut self, edges: impl Edges<C>, to_legalize: &mut Vec<CellId>) {
+        while let Some(cell) = to_legalize.pop() {
             if self.tds.is_infinite(cell) {
                 continue;
             }
             let flippable = (0..3).find(|&i| {
                 let beside = self.tds.neighbor(cell, i);
-                if edges.is_wall(self.tds.cell_data(cell), i) || self.tds.is_infinite(beside) {
+                if edges.is_constrained(self.tds.cell_data(cell), i) || self.tds.is_infinite(beside) {
                     return false;
                 }
                 let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
@@ -64,7 +64,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             if let Some(i) = flippable {
                 let beside = self.tds.neighbor(cell, i);
                 self.exchange_diagonal(edges, cell, i);
-                unsettled.extend([cell, beside]);
+                to_legalize.extend([cell, beside]);
             }
         }
     }
@@ -132,8 +132,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         (beside, j): (CellId, usize),
     ) {
         self.tds.link(cell, i, beside, j);
-        let is_wall = edges.is_wall(self.tds.cell_data(beside), j);
+        let is_constrained = edges.is_constrained(self.tds.cell_data(beside), j);
         let data = self.tds.cell_data_mut(cell);
-        *data = edges.with_wall(*data, i, is_wall);
+        *data = edges.with_constraint(*data, i, is_constrained);
     }
 }

@@ -40,7 +40,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     pub(in super::super) fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
         let vertex = self.tds.add_vertex(data);
         match self.points.get_mut(vertex.index()) {
-            Some(place) => *place = p, // the hole of a removed one; or a bulk construction has put it there
+            Some(slot) => *slot = p, // the hole of a removed one; or a bulk construction has put it there
             None => self.points.push(p),
         }
         vertex

@@ -1,5 +1,5 @@
 //! Taking a vertex out of a triangulation of the plane: any vertex, of any degree, among walls. Most are taken out by a
-//! shorter way, see [`low_degree`](super::low_degree).
+//! shorter way, see [`remove_low_degree`](super::remove_low_degree).
 //!
 //! 1. The triangles around the vertex, the infinite ones included, leave a hole. Its rim is a ring of vertices
 //!    that the removed one saw; at the hull the infinite vertex is one of them.
@@ -64,8 +64,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         if self.fill_low_degree(edges, vertex) {
             self.tds.remove_vertex(vertex);
         } else {
-            let mut unsettled = self.remove_lawless(edges, vertex);
-            self.settle(edges, &mut unsettled);
+            let mut to_legalize = self.remove_lawless(edges, vertex);
+            self.legalize(edges, &mut to_legalize);
         }
     }
 

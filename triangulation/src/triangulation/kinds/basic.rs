@@ -5,7 +5,7 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
-use super::super::engine::flip::Free;
+use super::super::engine::flip::NoConstraints;
 use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
 };
@@ -216,7 +216,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);
         }
-        self.inner.remove_lawless(Free, vertex);
+        self.inner.remove_lawless(NoConstraints, vertex);
         Ok(*self.point(vertex))
     }
 
@@ -256,7 +256,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
     pub fn flip(&mut self, cell: CellId, i: usize) -> bool {
         let is_flippable = self.is_flippable(cell, i);
         if is_flippable {
-            self.inner.exchange_diagonal(Free, cell, i);
+            self.inner.exchange_diagonal(NoConstraints, cell, i);
         }
         is_flippable
     }

@@ -5,11 +5,11 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, cw};
 
-use super::super::engine::flip::Forced;
+use super::super::engine::flip::WithConstraints;
 use super::super::lines::trace::{Met, Scratch, Side};
 use super::super::{
-    Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
-    Walls,
+    ConstrainedEdges, Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError,
+    Triangulation,
 };
 
 /// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
@@ -34,7 +34,7 @@ use super::super::{
 /// ```
 #[derive(Debug)]
 pub struct Constrained<G: Geometry<3>, V = (), C = ()> {
-    pub(in super::super) inner: Triangulation<G, 3, V, Walls<C>>,
+    pub(in super::super) inner: Triangulation<G, 3, V, ConstrainedEdges<C>>,
     pub(in super::super) scratch: Scratch,
 }
 
@@ -65,7 +65,7 @@ impl fmt::Display for ConstraintError {
 impl std::error::Error for ConstraintError {}
 
 impl<G: Geometry<3>, V, C> Deref for Constrained<G, V, C> {
-    type Target = Triangulation<G, 3, V, Walls<C>>;
+    type Target = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 
     fn deref(&self) -> &Self::Target {
         &self.inner
@@ -121,7 +121,7 @@ impl<G: Coordinates<3>> Constrained<G> {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
-    pub(in super::super) fn over(inner: Triangulation<G, 3, V, Walls<C>>) -> Self {
+    pub(in super::super) fn over(inner: Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Self {
         Constrained { inner, scratch: Scratch::default() }
     }
 
@@ -181,8 +181,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
-        let split = self.inner.wall_at(location);
-        let inserted = self.inner.insert_at(p, location, data, takes(&p), |walls, i| walls.only(i));
+        let split = self.inner.constraint_at(location);
+        let inserted = self.inner.insert_at(p, location, data, takes(&p), |constrained, i| constrained.only(i));
         self.constrain_both_halves(split, inserted.vertex);
         inserted
     }
@@ -190,7 +190,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     /// Constrains the edges from a new vertex to the ends of the constraint that it has split, if it has.
     fn constrain_both_halves(&mut self, split: Option<[VertexId; 2]>, vertex: VertexId) {
         for end in split.into_iter().flatten() {
-            self.inner.wall_up(vertex, end);
+            self.inner.constrain_edge(vertex, end);
         }
     }
 
@@ -233,7 +233,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         let mut from = a;
         while from != b {
             let Met::Vertex(v) = self.inner.trace(from, b, &mut self.scratch) else { break };
-            let triangulate = |t: &Triangulation<G, 3, V, Walls<C>>, side: &Side, apexes: &mut Vec<u32>| {
+            let triangulate = |t: &Triangulation<G, 3, V, ConstrainedEdges<C>>, side: &Side, apexes: &mut Vec<u32>| {
                 t.wrap(side, Triangulation::is_within, apexes);
             };
             self.inner.insert_traced(from, v, &mut self.scratch, triangulate);
@@ -244,7 +244,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
 
     /// Takes the constraint off the edge between two vertices, which stays an edge; says whether there was one.
     pub fn release(&mut self, a: VertexId, b: VertexId) -> bool {
-        self.inner.wall_down(a, b).is_some()
+        self.inner.release_edge(a, b).is_some()
     }
 
     /// Removes a vertex and returns its point. The others keep their numbers; the next point that is added gets the
@@ -261,10 +261,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
             return Err(RemovalError::NoVertex);
         }
         let leaves_no_triangles = || self.inner.is_flat_without(vertex) && self.constrained_edges().next().is_some();
-        if self.inner.is_on_wall(vertex) || leaves_no_triangles() {
+        if self.inner.is_on_constraint(vertex) || leaves_no_triangles() {
             return Err(RemovalError::Constraint);
         }
-        self.inner.remove_lawless(Forced, vertex);
+        self.inner.remove_lawless(WithConstraints, vertex);
         Ok(*self.point(vertex))
     }
 
@@ -294,8 +294,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         let beside = self.inner.beside(vertex);
         self.remove(vertex)?;
         let location = self.inner.locate(&p, beside.and_then(|v| self.tds().cell_of(v)));
-        let split = self.inner.wall_at(location);
-        let moved = self.inner.insert_again(p, location, takes(&p), |walls, i| walls.only(i)).unwrap_or(vertex);
+        let split = self.inner.constraint_at(location);
+        let moved =
+            self.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i)).unwrap_or(vertex);
         self.constrain_both_halves(split, moved);
         Ok(moved)
     }
@@ -305,7 +306,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let mut flaws = self.flaws(level.min(Level::Orientation), |_, _| false);
         if flaws.is_empty() && level == Level::Law {
-            flaws.extend(self.one_sided_walls());
+            flaws.extend(self.one_sided_constraints());
         }
         flaws
     }
@@ -342,12 +343,12 @@ impl<G: Coordinates<3>, C: Copy + Default> Constrained<G, (), C> {
 /// Which cells beyond a facet a new point splits: those that it lies in or sees, up to the constraints.
 fn takes<G: Geometry<3>, V, C: Copy + Default>(
     p: &G::Point,
-) -> impl Fn(&Triangulation<G, 3, V, Walls<C>>, CellId, usize, CellId) -> bool {
+) -> impl Fn(&Triangulation<G, 3, V, ConstrainedEdges<C>>, CellId, usize, CellId) -> bool {
     |t, from, i, beyond| !t.tds.cell_data(from).has(i) && t.is_split_by(beyond, p)
 }
 
 /// What triangulations with constraints have in common.
-impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
     /// The payload of a triangle. O(1).
     pub fn cell_data(&self, cell: CellId) -> &C {
         self.tds.cell_data(cell).data()
@@ -357,7 +358,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     pub(in super::super) fn with_data_of_cells<D: Copy + Default>(
         self,
         mut data: impl FnMut(CellId) -> D,
-    ) -> Triangulation<G, 3, V, Walls<D>> {
+    ) -> Triangulation<G, 3, V, ConstrainedEdges<D>> {
         self.map_cell_data(|cell, walls| walls.with_data(data(cell)))
     }
 
@@ -390,30 +391,34 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Makes an edge a constraint; says whether it is there.
-    pub(in super::super) fn wall_up(&mut self, a: VertexId, b: VertexId) -> bool {
+    pub(in super::super) fn constrain_edge(&mut self, a: VertexId, b: VertexId) -> bool {
         let edge = self.tds.edge(a, b);
-        edge.map(|edge| self.set_wall(edge, true)).is_some()
+        edge.map(|edge| self.set_constrained(edge, true)).is_some()
     }
 
     /// Makes a constraint a mere edge, and returns the cells on both sides; `None` if there is none between the two.
-    pub(in super::super) fn wall_down(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {
+    pub(in super::super) fn release_edge(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {
         let constraint = self.tds.edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i))?;
-        Some(self.set_wall(constraint, false))
+        Some(self.set_constrained(constraint, false))
     }
 
     /// Tells the cells on both sides of an edge whether it is a constraint; returns them.
-    pub(in super::super) fn set_wall(&mut self, (cell, i): (CellId, usize), is_wall: bool) -> [CellId; 2] {
+    pub(in super::super) fn set_constrained(
+        &mut self,
+        (cell, i): (CellId, usize),
+        is_constrained: bool,
+    ) -> [CellId; 2] {
         let beside = self.tds.neighbor(cell, i);
         let j = self.tds.index_of_neighbor(beside, cell);
         for (cell, i) in [(cell, i), (beside, j)] {
             let data = self.tds.cell_data_mut(cell);
-            *data = data.with(i, is_wall);
+            *data = data.with(i, is_constrained);
         }
         [cell, beside]
     }
 
     /// The ends of the constraint that a place lies on in its inside.
-    pub(in super::super) fn wall_at(&self, location: Location) -> Option<[VertexId; 2]> {
+    pub(in super::super) fn constraint_at(&self, location: Location) -> Option<[VertexId; 2]> {
         match location {
             Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
                 let i = touching.trailing_zeros() as usize;
@@ -424,7 +429,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Whether a constraint ends in a vertex or runs through it.
-    pub(in super::super) fn is_on_wall(&self, vertex: VertexId) -> bool {
+    pub(in super::super) fn is_on_constraint(&self, vertex: VertexId) -> bool {
         self.constrained_around(vertex).next().is_some()
     }
 
@@ -436,7 +441,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
     }
 
     /// Edges that are constrained on one side only.
-    pub(in super::super) fn one_sided_walls(&self) -> Vec<Flaw> {
+    pub(in super::super) fn one_sided_constraints(&self) -> Vec<Flaw> {
         let edges = self.tds.cells().filter(|_| self.dimension() == 2).flat_map(|cell| (0..3).map(move |i| (cell, i)));
         let is_one_sided = |&(cell, i): &(CellId, usize)| {
             let beside = self.tds.neighbor(cell, i);

@@ -10,9 +10,10 @@ use super::super::{Flaw, InputError, Level, Triangulation};
 /// Which edges of a triangle are constraints, and its payload: bit `i` is set for the edge opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Walls<C = ()>(u8, C);
+#[cfg_attr(feature = "serde", serde(rename = "Walls"))] // as in saved files
+pub struct ConstrainedEdges<C = ()>(u8, C);
 
-impl<C> Walls<C> {
+impl<C> ConstrainedEdges<C> {
     /// Whether the edge opposite vertex `i` is one.
     #[inline(always)]
     pub fn has(&self, i: usize) -> bool {
@@ -31,19 +32,19 @@ impl<C> Walls<C> {
 
     /// The same with the edge opposite vertex `i` set as told.
     #[inline]
-    pub(in super::super) fn with(self, i: usize, wall: bool) -> Self {
-        Walls(self.0 & !(1 << i) | u8::from(wall) << i, self.1)
+    pub(in super::super) fn with(self, i: usize, is_constrained: bool) -> Self {
+        ConstrainedEdges(self.0 & !(1 << i) | u8::from(is_constrained) << i, self.1)
     }
 
     /// The same with only the edge opposite vertex `i` a constraint, if it was one.
     #[inline(always)]
     pub(in super::super) fn only(self, i: usize) -> Self {
-        Walls(self.0 & 1 << i, self.1)
+        ConstrainedEdges(self.0 & 1 << i, self.1)
     }
 
     /// The same with another payload.
-    pub(in super::super) fn with_data<D>(&self, data: D) -> Walls<D> {
-        Walls(self.0, data)
+    pub(in super::super) fn with_data<D>(&self, data: D) -> ConstrainedEdges<D> {
+        ConstrainedEdges(self.0, data)
     }
 
     /// Whether it marks a triangle that is being replaced.
@@ -52,10 +53,10 @@ impl<C> Walls<C> {
     }
 }
 
-impl<C: Default> Walls<C> {
+impl<C: Default> ConstrainedEdges<C> {
     /// Marks a triangle that is being replaced.
     pub(in super::super) fn taken_out() -> Self {
-        Walls(u8::MAX, C::default())
+        ConstrainedEdges(u8::MAX, C::default())
     }
 }
 
@@ -99,12 +100,12 @@ impl<C: Default> Walls<C> {
 /// ```
 #[derive(Debug)]
 pub struct ConstrainedDelaunay<G: Crossing, V = (), C = ()> {
-    pub(in super::super) inner: Triangulation<G, 3, V, Walls<C>>,
+    pub(in super::super) inner: Triangulation<G, 3, V, ConstrainedEdges<C>>,
     pub(in super::super) lines: Lines,
 }
 
 impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
-    type Target = Triangulation<G, 3, V, Walls<C>>;
+    type Target = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 
     fn deref(&self) -> &Self::Target {
         &self.inner
@@ -161,7 +162,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         if !flaws.is_empty() || level < Level::Law || self.dimension() < 2 {
             return flaws;
         }
-        let one_sided = self.one_sided_walls().into_iter();
+        let one_sided = self.one_sided_constraints().into_iter();
         one_sided.chain(self.lines.check(&self.inner)).collect()
     }
 }

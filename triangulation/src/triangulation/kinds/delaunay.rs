@@ -3,7 +3,7 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
-use super::super::engine::flip::Free;
+use super::super::engine::flip::NoConstraints;
 use super::super::{
     InputError, Inserted, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
 };
@@ -227,7 +227,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);
         }
-        self.inner.remove_vertex(Free, vertex);
+        self.inner.remove_vertex(NoConstraints, vertex);
         Ok(*self.point(vertex))
     }
 

@@ -6,7 +6,7 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
-use super::super::engine::flip::Free;
+use super::super::engine::flip::NoConstraints;
 use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
 };
@@ -312,7 +312,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
             } else {
                 self.hidden.take_under(self.inner.tds.around(vertex))
             };
-            self.inner.remove_vertex(Free, vertex);
+            self.inner.remove_vertex(NoConstraints, vertex);
             self.connect_again(hidden);
         } else {
             return Err(RemovalError::NoVertex);

@@ -113,8 +113,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let index = |v: VertexId| v.index() as u32;
         let segments = segments_of(lines.iter().map(|line| &**line), index);
         let arrangement = {
-            let place = |i: u32| geometry.plan(&sites.points[i as usize]);
-            Arrangement::new(sites.points.len(), place, &segments, geometry.step())
+            let position = |i: u32| geometry.plan(&sites.points[i as usize]);
+            Arrangement::new(sites.points.len(), position, &segments, geometry.step())
         };
         if on_crossing == OnCrossing::Reject {
             reject(&geometry, &sites.points, &lines, &arrangement, &segments)?;
@@ -131,8 +131,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         let mut triangulation = Self::from_sites(geometry, sites);
         triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
         triangulation.lines.added = added.into_iter().collect();
-        let pieces = triangulation.lines.paths.record(&arrangement, &segments, vertex);
-        if !triangulation.constrain_all(pieces, &arrangement).is_empty() {
+        let parts = triangulation.lines.paths.record(&arrangement, &segments, vertex);
+        if !triangulation.constrain_all(parts, &arrangement).is_empty() {
             triangulation.rearrange();
             triangulation.lines.rearrangements = 0;
         }
@@ -155,27 +155,27 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// only.
     pub(in super::super) fn constrain_all(
         &mut self,
-        mut pieces: Vec<[VertexId; 2]>,
+        mut parts: Vec<[VertexId; 2]>,
         arrangement: &Arrangement,
     ) -> Vec<[VertexId; 2]> {
         self.lines.rounding = (!arrangement.crossings().is_empty())
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         if self.dimension() < 2 {
-            self.lines.waiting = pieces;
+            self.lines.waiting = parts;
             // What lay between their ends, when there were triangles, may go.
             self.lines.paths.splits.clear();
             return Vec::new();
         }
         // Pieces next to each other are joined one after the other, until that has taken its time.
-        let enough = self.lines.scratch.met + PATIENCE * (self.vertex_count() + pieces.len());
+        let enough = self.lines.scratch.met + PATIENCE * (self.vertex_count() + parts.len());
         let mut crossing = Vec::new();
         let mut dice = Dice::default();
-        for next in 0..pieces.len() {
+        for next in 0..parts.len() {
             if self.lines.scratch.met > enough {
-                let left = pieces.len() - next;
-                pieces.swap(next, next + dice.below(left));
+                let left = parts.len() - next;
+                parts.swap(next, next + dice.below(left));
             }
-            let [a, b] = pieces[next];
+            let [a, b] = parts[next];
             if !self.lines.constrain(&mut self.inner, a, b) {
                 crossing.push([a, b]);
             }
@@ -232,14 +232,14 @@ pub(in super::super) fn points_added<G: Crossing>(
     let through = arrangement.through_added();
     let mut rest = &through[..];
     let mut ends: Vec<[G::Point; 2]> = Vec::new();
-    let meet = |(added, &place): (usize, &[f64; 2])| {
+    let meet = |(added, &position): (usize, &[f64; 2])| {
         let (here, others) = rest.split_at(rest.partition_point(|&(other, _)| other as usize <= added));
         rest = others;
         ends.clear();
         ends.extend(here.iter().map(|&(_, i)| segments[i as usize].map(&point)));
         match &ends[..] {
-            [[a, b], [c, d]] => geometry.meet(place, &[[a, b], [c, d]]), // nearly always
-            ends => geometry.meet(place, &ends.iter().map(|ends| ends.each_ref()).collect::<Vec<_>>()),
+            [[a, b], [c, d]] => geometry.meet(position, &[[a, b], [c, d]]), // nearly always
+            ends => geometry.meet(position, &ends.iter().map(|ends| ends.each_ref()).collect::<Vec<_>>()),
         }
     };
     arrangement.added().iter().enumerate().map(meet).collect()

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::geometry::Crossing;
 use crate::tds::VertexId;
 
-use super::super::{Flaw, Rounding, Triangulation, Walls};
+use super::super::{ConstrainedEdges, Flaw, Rounding, Triangulation};
 use super::Lines;
 use super::paths::undirected;
 
@@ -63,7 +63,7 @@ impl Lines {
     /// What is wrong with the tables. Linear in the lengths of all chains.
     pub(in super::super) fn check<G: Crossing, V, C: Copy + Default>(
         &self,
-        t: &Triangulation<G, 3, V, Walls<C>>,
+        t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
     ) -> Vec<Flaw> {
         let is_flat = t.dimension() < 2;
         let constraints: FxHashSet<[VertexId; 2]> = match is_flat {
@@ -90,7 +90,7 @@ impl Lines {
     /// Adds the flaws of segments whose chains do not lead over constraints to their ends, and of entries for others.
     fn check_chains<G: Crossing, V, C: Copy + Default>(
         &self,
-        t: &Triangulation<G, 3, V, Walls<C>>,
+        t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
         segments: &[[VertexId; 2]],
         constraints: &FxHashSet<[VertexId; 2]>,
         flaws: &mut Vec<LinesFlaw>,
@@ -129,7 +129,7 @@ impl Lines {
     /// Whether what is known of the rounding can be true.
     fn has_fitting_grid<G: Crossing, V, C>(
         &self,
-        t: &Triangulation<G, 3, V, Walls<C>>,
+        t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
         segments: &[[VertexId; 2]],
     ) -> bool
     where
@@ -151,7 +151,7 @@ impl Lines {
 
 /// Whether a sub-constraint runs in the direction of its segment, on both axes.
 fn runs_along<G: Crossing, V, C: Copy + Default>(
-    t: &Triangulation<G, 3, V, Walls<C>>,
+    t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
     segment: [VertexId; 2],
     part: [VertexId; 2],
 ) -> bool {

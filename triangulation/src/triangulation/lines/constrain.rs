@@ -3,14 +3,14 @@
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
-use super::super::engine::flip::Forced;
-use super::super::{Triangulation, Walls};
+use super::super::engine::flip::WithConstraints;
+use super::super::{ConstrainedEdges, Triangulation};
 use super::Lines;
 use super::paths::undirected;
 use super::trace::Met;
 
 /// The triangulation whose constraints lines hold.
-pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, Walls<C>>;
+pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 
 impl Lines {
     /// Inserts a point that was admitted, and returns its vertex; the one that is there, if the site is taken. A
@@ -22,11 +22,11 @@ impl Lines {
         near: Option<CellId>,
     ) -> VertexId {
         let location = t.locate(&p, near);
-        let split = t.wall_at(location);
+        let split = t.constraint_at(location);
         let takes = |t: &Mesh<G, V, C>, from, i, beyond| !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p);
-        let vertex = t.insert_at(p, location, V::default(), takes, |walls, i| walls.only(i)).vertex;
+        let vertex = t.insert_at(p, location, V::default(), takes, |constrained, i| constrained.only(i)).vertex;
         for end in split.into_iter().flatten() {
-            t.wall_up(vertex, end);
+            t.constrain_edge(vertex, end);
         }
         if let Some([a, b]) = split {
             self.split_edge(a, b, vertex);
@@ -53,7 +53,7 @@ impl Lines {
         let (mut first, mut parts) = (Some([a, b]), Vec::new());
         let mut is_whole = true;
         while let Some([a, b]) = first.take().or_else(|| parts.pop()) {
-            if a == b || t.wall_up(a, b) {
+            if a == b || t.constrain_edge(a, b) {
                 continue;
             }
             if let Some(&between) = self.paths.splits.get(&undirected(a, b)) {
@@ -103,7 +103,7 @@ impl Lines {
             let constrained = line.windows(2).filter(|pair| t.has_constraint(pair[0], pair[1]));
             self.waiting.extend(constrained.map(|pair| [pair[0], pair[1]]));
         }
-        t.remove_vertex(Forced, vertex);
+        t.remove_vertex(WithConstraints, vertex);
         Some(*t.point(vertex))
     }
 
@@ -113,7 +113,7 @@ impl Lines {
         t: &Mesh<G, V, C>,
         vertex: VertexId,
     ) -> bool {
-        t.is_on_wall(vertex) || self.waiting.iter().flatten().any(|&end| end == vertex)
+        t.is_on_constraint(vertex) || self.waiting.iter().flatten().any(|&end| end == vertex)
     }
 
     /// Takes the constraint off the edge between two vertices, which then is there only if the law wants it. Returns
@@ -127,13 +127,13 @@ impl Lines {
         a: VertexId,
         b: VertexId,
     ) -> bool {
-        let Some(sides) = t.wall_down(a, b) else {
+        let Some(sides) = t.release_edge(a, b) else {
             let waiting = self.waiting.len();
             self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);
             return self.waiting.len() < waiting;
         };
-        self.scratch.unsettled.extend(sides);
-        t.settle(Forced, &mut self.scratch.unsettled);
+        self.scratch.to_legalize.extend(sides);
+        t.legalize(WithConstraints, &mut self.scratch.to_legalize);
         true
     }
 }

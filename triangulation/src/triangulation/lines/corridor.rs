@@ -28,7 +28,7 @@ use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::super::locate::Dice;
-use super::super::{Triangulation, Walls};
+use super::super::{ConstrainedEdges, Triangulation};
 use super::trace::Side;
 
 /// No node.
@@ -36,16 +36,16 @@ const NONE: u32 = u32::MAX;
 
 /// A side being triangulated.
 struct Tree<'a, G: Geometry<3>, V, C> {
-    triangulation: &'a Triangulation<G, 3, V, Walls<C>>,
+    triangulation: &'a Triangulation<G, 3, V, ConstrainedEdges<C>>,
     side: &'a Side,
     /// The triangle `i < j < k` of each node `j`, as `[i, k]`.
     bounds: Vec<[u32; 2]>,
     children: Vec<[u32; 2]>,
     /// Nodes whose edge to their parent may have to be flipped.
-    unsettled: Vec<u32>,
+    to_legalize: Vec<u32>,
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
     /// Triangulates a side: the apexes of its parts, as positions, each part before its first and its second half.
     /// `None`, and nothing is added, if predicates contradict each other.
     ///
@@ -58,7 +58,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
             side,
             bounds: vec![[NONE; 2]; count],
             children: vec![[NONE; 2]; count],
-            unsettled: Vec::new(),
+            to_legalize: Vec::new(),
         };
         for &u in gone.iter().rev() {
             tree.insert(u, neighbors[u as usize])?;
@@ -140,11 +140,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         }
         if self.turn([p, n, u]) == Sign::Positive {
             self.link(u); // an ear
-            self.unsettled.push(u);
+            self.to_legalize.push(u);
         } else {
             self.cut(u)?;
         }
-        self.settle();
+        self.legalize();
         Some(())
     }
 
@@ -184,7 +184,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         let renewed = path.iter().chain(&hanging).chain([&u]).copied().filter(|&node| node != NONE);
         for node in renewed {
             self.link(node);
-            self.unsettled.push(node);
+            self.to_legalize.push(node);
         }
         Some(())
     }
@@ -207,8 +207,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
     }
 
     /// Flips edges until no vertex sees another in its circle (Lawson 1977).
-    fn settle(&mut self) {
-        while let Some(u) = self.unsettled.pop() {
+    fn legalize(&mut self) {
+        while let Some(u) = self.to_legalize.pop() {
             let Some((parent, child)) = self.parent(u) else { continue };
             let [i, k] = self.bounds[u as usize];
             let outer = self.bounds[parent as usize];
@@ -223,11 +223,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
             self.bounds[parent as usize][child] = u;
             self.children[parent as usize][child] = between;
             self.children[u as usize][1 - child] = parent;
-            if let Some((above, place)) = above {
-                self.children[above as usize][place] = u;
+            if let Some((above, child)) = above {
+                self.children[above as usize][child] = u;
             }
             let around = [u, self.children[u as usize][child]].into_iter().chain(self.children[parent as usize]);
-            self.unsettled.extend(around.filter(|&node| node != NONE));
+            self.to_legalize.extend(around.filter(|&node| node != NONE));
         }
     }
 
@@ -292,11 +292,11 @@ mod tests {
         let mut compared = 0;
         for round in 0..80 {
             let (width, height) = (12 + 6 * (round % 8), 2 + round % 9);
-            let mut place = || [dice.below(width) as f64, dice.below(height) as f64];
-            let points: Points = (0..10 * (1 + round)).map(|_| place()).collect();
-            let walls = (round % 4) as u32 * 10;
+            let mut position = || [dice.below(width) as f64, dice.below(height) as f64];
+            let points: Points = (0..10 * (1 + round)).map(|_| position()).collect();
+            let count = (round % 4) as u32 * 10;
             // From near to near: spikes.
-            let segments: Segments = (0..walls.min(points.len() as u32 / 2)).map(|i| [2 * i, 2 * i + 1]).collect();
+            let segments: Segments = (0..count.min(points.len() as u32 / 2)).map(|i| [2 * i, 2 * i + 1]).collect();
             let few: Segments = segments.into_iter().filter(|_| dice.below(3) == 0).collect();
             compared += compare(&build(&points, &few), &mut dice, 60);
         }

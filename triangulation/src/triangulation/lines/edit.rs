@@ -10,8 +10,8 @@ use crate::tds::VertexId;
 use super::super::{ConstrainedDelaunay, InputError, LineId, PointError, RemovalError};
 use super::Lines;
 use super::constrain::Mesh;
-use super::index::{Ends, place};
-use super::local::{Edit, NotLocal};
+use super::index::{Ends, position};
+use super::local_edit::{Edit, NotLocal};
 use super::paths::{LineVertices, segments_of, undirected};
 use super::rearrange::order_of_insertion;
 
@@ -45,7 +45,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             self.lines.touch();
             self.replace_point(vertex, p);
         }
-        if is_new && !is_ordinary(place(&self.inner, vertex)) {
+        if is_new && !is_ordinary(position(&self.inner, vertex)) {
             self.lines.index.take(); // the next one knows
         }
         if self.lines.paths.bent.is_empty() || !(is_new || was_added) {
@@ -276,14 +276,14 @@ impl Lines {
             let is_in = |segments: &[Ends], segment: &Ends| segments.binary_search(segment).is_ok();
             for &segment in gone.iter().filter(|segment| !is_in(&come, segment)) {
                 if self.measured(t)?.detach(segment, *line) {
-                    let ends = segment.map(|v| place(t, v));
+                    let ends = segment.map(|v| position(t, v));
                     self.measured(t)?.count_ends(ends, false)?;
                     Edit::on(t, self)?.remove_segment(segment)?;
                 }
             }
             for &segment in come.iter().filter(|segment| !is_in(&gone, segment)) {
                 if !self.measured(t)?.has_segment(segment) {
-                    let ends = segment.map(|v| place(t, v));
+                    let ends = segment.map(|v| position(t, v));
                     self.measured(t)?.count_ends(ends, true)?;
                     Edit::on(t, self)?.add_segment(segment)?;
                 }

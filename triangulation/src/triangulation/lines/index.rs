@@ -12,7 +12,7 @@ use crate::tds::VertexId;
 use super::super::LineId;
 use super::Lines;
 use super::constrain::Mesh;
-use super::local::NotLocal;
+use super::local_edit::NotLocal;
 use super::paths::{Paths, undirected};
 
 /// Two vertices, the smaller first: a segment, a sub-constraint, or an edge.
@@ -118,7 +118,7 @@ impl Index {
     /// and edges are split at vertices that lie on them.
     fn measure<G: Crossing, V, C: Copy + Default>(&mut self, lines: &Lines, t: &Mesh<G, V, C>) {
         self.is_measured = true;
-        let at = |v: VertexId| place(t, v);
+        let at = |v: VertexId| position(t, v);
         let segments = self.segments();
         for &end in segments.as_flattened() {
             self.count(at(end), true);
@@ -254,7 +254,7 @@ fn segments_of_line(vertices: &[VertexId]) -> impl Iterator<Item = Ends> + '_ {
 
 /// Where a vertex is; zeros have one sign.
 #[inline]
-pub(super) fn place<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
+pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
     t.geometry.plan(t.point(vertex)).map(|x| x + 0.0)
 }
 

@@ -24,18 +24,18 @@ pub(super) mod constrain;
 mod corridor;
 pub(super) mod edit;
 mod index;
-mod local;
-mod near;
+mod local_edit;
+mod near_segment;
 mod nesting;
-#[cfg(feature = "serde")]
-pub(super) mod parts;
 pub(super) mod paths;
 mod rearrange;
 #[cfg(test)]
 mod removal_tests;
-mod set;
+#[cfg(feature = "serde")]
+pub(super) mod saved_tables;
 mod simplify;
 pub(super) mod trace;
+mod vertex_set;
 
 pub use check::LinesFlaw;
 
@@ -46,8 +46,8 @@ use crate::tds::VertexId;
 use build::Rounding;
 use index::Index;
 use paths::Paths;
-use set::VertexSet;
 use trace::Scratch;
+use vertex_set::VertexSet;
 
 /// The lines of a triangulation: the owner of what holds its constrained edges.
 ///

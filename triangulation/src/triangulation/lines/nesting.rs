@@ -59,7 +59,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     }
 
     /// Levels grow by one over each wall.
-    fn nest(&self, is_wall: impl Fn(CellId, usize) -> bool) -> Vec<u32> {
+    fn nest(&self, is_constrained: impl Fn(CellId, usize) -> bool) -> Vec<u32> {
         const UNKNOWN: u32 = u32::MAX;
         let tds = self.tds();
         let mut levels = vec![0; tds.cell_slots()];
@@ -79,7 +79,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
                         continue;
                     }
                     // What several walls lead to may also be reached around them.
-                    if is_wall(cell, i) {
+                    if is_constrained(cell, i) {
                         beyond.push(beside);
                     } else {
                         levels[beside.index()] = level;

@@ -115,17 +115,17 @@ impl Paths {
         vertex: impl Fn(u32) -> VertexId,
     ) -> Vec<[VertexId; 2]> {
         self.bent.clear();
-        let mut pieces = Vec::with_capacity(segments.len());
+        let mut parts = Vec::with_capacity(segments.len());
         for (i, ends) in (0..).zip(segments) {
             let [a, b] = ends.map(&vertex);
             if !arrangement.is_led(i) {
-                pieces.push(undirected(a, b));
+                parts.push(undirected(a, b));
                 continue;
             }
             let mut between: Box<[VertexId]> = arrangement.chain(i).iter().map(|&site| vertex(site)).collect();
             let mut at = a;
             for &next in between.iter().chain([&b]) {
-                pieces.push(undirected(at, next));
+                parts.push(undirected(at, next));
                 at = next;
             }
             if a > b {
@@ -133,9 +133,9 @@ impl Paths {
             }
             self.bent.insert(undirected(a, b), between);
         }
-        pieces.sort_unstable();
-        pieces.dedup();
-        pieces
+        parts.sort_unstable();
+        parts.dedup();
+        parts
     }
 
     /// The segments of all lines, each once, from the smaller vertex to the larger, in order.
@@ -158,7 +158,7 @@ impl Paths {
     pub(in super::super) fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         let mut at = a;
         let mut steps = |site: VertexId| {
-            self.walk_piece(at, site, chain);
+            self.walk_part(at, site, chain);
             at = site;
         };
         if let Some(sites) = self.bent.get(&undirected(a, b)) {
@@ -172,7 +172,7 @@ impl Paths {
     }
 
     /// The same for a piece, which is led through nothing but may have been split.
-    pub(in super::super) fn walk_piece(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
+    pub(in super::super) fn walk_part(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         let mut at = a;
         let mut ahead = vec![b];
         while let Some(&next) = ahead.last() {
@@ -228,11 +228,11 @@ impl Paths {
 
     /// Adds what this table tells of a piece to another one.
     pub(in super::super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
-        let mut pieces = vec![undirected(a, b)];
-        while let Some([a, b]) = pieces.pop() {
+        let mut parts = vec![undirected(a, b)];
+        while let Some([a, b]) = parts.pop() {
             if let Some(&between) = self.splits.get(&[a, b]) {
                 to.insert([a, b], between);
-                pieces.extend([undirected(a, between), undirected(between, b)]);
+                parts.extend([undirected(a, between), undirected(between, b)]);
             }
         }
     }
@@ -288,7 +288,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     ///
     /// # Complexity
     /// Linear in the length of the result.
-    pub fn way(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
+    pub fn segment_chain(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
         let mut chain = Vec::new();
         if [a, b].into_iter().all(|v| self.tds().is_vertex(v)) {
             self.walk(a, b, &mut chain);
@@ -335,6 +335,6 @@ mod tests {
         assert_eq!(size_of::<VertexId>(), 4, "a vertex of a line, a site on a segment");
         assert_eq!(size_of::<([VertexId; 2], Box<[VertexId]>)>(), 24, "a segment that crosses others, in the table");
         assert_eq!(size_of::<([VertexId; 2], VertexId)>(), 12, "an edge that was split, in the table");
-        assert_eq!(size_of::<super::super::super::Walls>(), 1, "the flags of three edges, at each triangle");
+        assert_eq!(size_of::<super::super::super::ConstrainedEdges>(), 1, "the flags of three edges, at each triangle");
     }
 }

@@ -23,7 +23,7 @@ struct Demand {
     /// In order.
     given: Vec<VertexId>,
     /// Of each.
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     /// By positions among these.
     segments: Vec<[u32; 2]>,
 }
@@ -52,13 +52,13 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             return;
         }
         self.lines.waiting.clear();
-        let place = |i: u32| demand.places[i as usize];
+        let position = |i: u32| demand.positions[i as usize];
         let step = self.inner.geometry.step();
-        let arrangement = Arrangement::new(demand.given.len(), place, &demand.segments, step);
+        let arrangement = Arrangement::new(demand.given.len(), position, &demand.segments, step);
         self.lines.missing = self.carry_out(&arrangement, &demand, leaving);
         self.lines.recrossed = !self.lines.missing.is_empty();
         if self.lines.recrossed {
-            let arrangement = arrangement.settled(place, &demand.segments, step);
+            let arrangement = arrangement.settled(position, &demand.segments, step);
             self.lines.missing = self.carry_out(&arrangement, &demand, HashSet::new());
         }
     }
@@ -79,8 +79,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
         let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
         let segments = segments_of(self.lines.paths.each(), number);
-        let places = given.iter().map(|&v| self.plan_of(v)).collect();
-        Demand { given, places, segments }
+        let positions = given.iter().map(|&v| self.plan_of(v)).collect();
+        Demand { given, positions, segments }
     }
 
     /// Makes the triangulation that of an arrangement of what was asked for, without vertices that leave. Returns the
@@ -92,11 +92,11 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         mut leaving: HashSet<VertexId>,
     ) -> Vec<SubConstraint> {
         // Phase 1: sites that stay keep their vertices, others go.
-        let mut at_place: HashMap<[u64; 2], VertexId> =
+        let mut vertex_at: HashMap<[u64; 2], VertexId> =
             self.lines.added.iter().map(|v| (key(self.plan_of(v)), v)).collect();
         let mut sites: Vec<Option<VertexId>> = given.iter().copied().map(Some).collect();
-        sites.extend(arrangement.added().iter().map(|&place| at_place.remove(&key(place))));
-        leaving.extend(at_place.into_values());
+        sites.extend(arrangement.added().iter().map(|&position| vertex_at.remove(&key(position))));
+        leaving.extend(vertex_at.into_values());
 
         // Phase 2: which sub-constraints are there.
         let mut splits = FxHashMap::default();
@@ -111,7 +111,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 let Some((from, to)) = ends else { continue };
                 chain.clear();
                 chain.push(from);
-                self.lines.paths.walk_piece(from, to, &mut chain);
+                self.lines.paths.walk_part(from, to, &mut chain);
                 let is_there = chain.windows(2).all(|edge| self.inner.has_constraint(edge[0], edge[1]));
                 if is_there && !chain.iter().any(|v| leaving.contains(v)) {
                     kept.extend(chain.windows(2).map(|edge| undirected(edge[0], edge[1])));
@@ -185,6 +185,6 @@ pub(super) fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::P
 }
 
 /// Equal places have equal keys: coordinates of vertices have one zero only.
-fn key(place: [f64; 2]) -> [u64; 2] {
-    place.map(|x| (x + 0.0).to_bits())
+fn key(position: [f64; 2]) -> [u64; 2] {
+    position.map(|x| (x + 0.0).to_bits())
 }

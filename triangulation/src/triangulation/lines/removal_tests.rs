@@ -1,5 +1,5 @@
-//! Free vertices taken out between walls, and walls cleared: against a fresh build. `tests/plane/removal.rs` has the same
-//! without walls.
+//! Free vertices taken out between constraints, and constraints cleared: against a fresh build. `tests/plane/removal.rs` has the same
+//! without constraints.
 
 use std::collections::BTreeSet;
 
@@ -16,10 +16,10 @@ type Constrained = ConstrainedDelaunay<Plane>;
 /// The finite cells of any dimension as sorted points.
 fn cells(t: &Constrained) -> BTreeSet<Vec<[u64; 2]>> {
     // Bits order negative numbers wrongly, which does no harm here.
-    let place = |v: &VertexId| t.geometry().coordinates(t.point(*v)).map(f64::to_bits);
+    let position = |v: &VertexId| t.geometry().coordinates(t.point(*v)).map(f64::to_bits);
     t.finite_cells()
         .map(|cell| {
-            let mut corners: Vec<_> = t.tds().cell_vertices(cell).iter().map(place).collect();
+            let mut corners: Vec<_> = t.tds().cell_vertices(cell).iter().map(position).collect();
             corners.sort_unstable();
             corners
         })
@@ -39,10 +39,10 @@ fn lies_on([a, b]: &[Point; 2], p: &Point) -> bool {
     g.orientation([a, b, p]) == Sign::Zero && g.compare(low, p).is_le() && g.compare(p, high).is_le()
 }
 
-fn walled(points: &[Point], walls: &[[Point; 2]]) -> Constrained {
+fn with_constraints(points: &[Point], constraints: &[[Point; 2]]) -> Constrained {
     let (mut t, _) = Constrained::from_points(Plane::default(), points).unwrap();
-    for wall in walls {
-        let [a, b] = wall.map(|p| t.insert(p).unwrap());
+    for constraint in constraints {
+        let [a, b] = constraint.map(|p| t.insert(p).unwrap());
         insert_segment(&mut t, a, b);
     }
     t
@@ -58,122 +58,122 @@ fn flaws(t: &Constrained) -> Vec<Flaw> {
     t.check(Level::Law).into_iter().filter(|flaw| *flaw != Flaw::Lines(LinesFlaw::Stray)).collect()
 }
 
-fn same_walls(t: &Constrained, points: &[Point], walls: &[[Point; 2]]) {
-    assert_eq!(flaws(t), [], "{points:?} {walls:?}");
-    let expected = walled(points, walls);
+fn same_constraints(t: &Constrained, points: &[Point], constraints: &[[Point; 2]]) {
+    assert_eq!(flaws(t), [], "{points:?} {constraints:?}");
+    let expected = with_constraints(points, constraints);
     assert_eq!(
         (t.dimension(), t.vertex_count()),
         (expected.dimension(), expected.vertex_count()),
-        "{points:?} {walls:?}"
+        "{points:?} {constraints:?}"
     );
-    assert_eq!(cells(t), cells(&expected), "{points:?} {walls:?}");
+    assert_eq!(cells(t), cells(&expected), "{points:?} {constraints:?}");
     let edges = |t: &Constrained| -> BTreeSet<[[u64; 2]; 2]> {
         let sorted = |[a, b]: [[u64; 2]; 2]| if a < b { [a, b] } else { [b, a] };
         t.constrained_edges().map(|edge| sorted(edge.map(|v| t.point(v).map(f64::to_bits)))).collect()
     };
-    assert_eq!(edges(t), edges(&expected), "{points:?} {walls:?}");
+    assert_eq!(edges(t), edges(&expected), "{points:?} {constraints:?}");
 }
 
-/// Free vertices go one after the other; then the walls are cleared, edge by edge; then the rest goes, and the
+/// Free vertices go one after the other; then the constraints are cleared, edge by edge; then the rest goes, and the
 /// points come back.
-fn walls_hold(points: Vec<Point>, walls: Vec<[Point; 2]>, random: &mut Random) -> usize {
-    let mut t = walled(&points, &walls);
+fn constraints_hold(points: Vec<Point>, constraints: Vec<[Point; 2]>, random: &mut Random) -> usize {
+    let mut t = with_constraints(&points, &constraints);
     let mut left = points.clone();
     let mut removed = 0;
     let mut numbers: Vec<VertexId> = t.tds().vertices().collect();
     random.shuffle(&mut numbers);
     for &v in &numbers {
         let p = *t.point(v);
-        let on_wall = t.constrained_edges().flatten().any(|end| end == v);
-        // All that counts while the points are collinear and walls wait.
-        let is_met = walls.iter().any(|wall| lies_on(wall, &p));
+        let on_constraint = t.constrained_edges().flatten().any(|end| end == v);
+        // All that counts while the points are collinear and constraints wait.
+        let is_met = constraints.iter().any(|constraint| lies_on(constraint, &p));
         match t.lines.remove_free(&mut t.inner, v) {
             Some(point) => {
-                assert!(!on_wall && point == p);
+                assert!(!on_constraint && point == p);
                 left.retain(|q| *q != p);
                 removed += 1;
-                same_walls(&t, &left, &walls);
+                same_constraints(&t, &left, &constraints);
             }
-            None => assert!(on_wall || is_met, "{p:?} of {points:?} {walls:?}"),
+            None => assert!(on_constraint || is_met, "{p:?} of {points:?} {constraints:?}"),
         }
     }
-    let mut pieces: Vec<[VertexId; 2]> = t.constrained_edges().collect();
-    random.shuffle(&mut pieces);
+    let mut edges: Vec<[VertexId; 2]> = t.constrained_edges().collect();
+    random.shuffle(&mut edges);
     if t.dimension() == 2 {
-        while let Some([a, b]) = pieces.pop() {
+        while let Some([a, b]) = edges.pop() {
             assert!(t.lines.release(&mut t.inner, b, a));
             assert!(!t.lines.release(&mut t.inner, a, b));
-            let kept: Vec<[Point; 2]> = pieces.iter().map(|edge| edge.map(|v| *t.point(v))).collect();
-            same_walls(&t, &left, &kept);
-            // Ends in other walls' sight, which nothing holds any more.
+            let kept: Vec<[Point; 2]> = edges.iter().map(|edge| edge.map(|v| *t.point(v))).collect();
+            same_constraints(&t, &left, &kept);
+            // Ends in other constraints' sight, which nothing holds any more.
             let gone = if random.below(2) == 0 { t.lines.remove_free(&mut t.inner, a) } else { None };
             if let Some(p) = gone {
                 left.retain(|q| *q != p);
                 removed += 1;
-                same_walls(&t, &left, &kept);
+                same_constraints(&t, &left, &kept);
             }
         }
         for v in t.tds().vertices().collect::<Vec<_>>() {
             let p = t.lines.remove_free(&mut t.inner, v).unwrap();
             left.retain(|q| *q != p);
-            same_walls(&t, &left, &[]);
+            same_constraints(&t, &left, &[]);
         }
         for &p in &points {
             t.insert(p).unwrap();
         }
-        same_walls(&t, &points, &[]);
+        same_constraints(&t, &points, &[]);
     }
     removed
 }
 
 #[test]
-fn walls_stay_on_tiny_grids() {
+fn constraints_stay_on_tiny_grids() {
     let mut random = Random(4);
     let mut removed = 0;
     for _ in 0..3000 {
         let side = 2 + random.below(5);
         let points: Vec<Point> =
             (0..3 + random.below(22)).map(|_| [(); 2].map(|()| random.below(side) as f64)).collect();
-        let mut walls: Vec<[Point; 2]> = Vec::new();
+        let mut constraints: Vec<[Point; 2]> = Vec::new();
         for _ in 0..random.below(7) {
-            let wall = [random.pick(&points), random.pick(&points)];
-            if wall[0] != wall[1] && !walls.iter().any(|other| cross(other, &wall)) {
-                walls.push(wall);
+            let constraint = [random.pick(&points), random.pick(&points)];
+            if constraint[0] != constraint[1] && !constraints.iter().any(|other| cross(other, &constraint)) {
+                constraints.push(constraint);
             }
         }
-        removed += walls_hold(points, walls, &mut random);
+        removed += constraints_hold(points, constraints, &mut random);
     }
     assert!(removed > 10_000, "only {removed} were free");
 }
 
-/// Walls close to each other hide vertices that lie in each other's circles.
+/// Constraints close to each other hide vertices that lie in each other's circles.
 #[test]
-fn thin_corridors_between_walls() {
+fn thin_corridors_between_constraints() {
     let mut random = Random(5);
     let mut removed = 0;
     for _ in 0..60 {
-        let mut walls: Vec<[Point; 2]> = Vec::new();
+        let mut constraints: Vec<[Point; 2]> = Vec::new();
         let mut points: Vec<Point> = Vec::new();
         for _ in 0..40 {
             let [x, y] = [100.0 * random.unit(), 100.0 * random.unit()];
             let angle = random.pick(&[0.0, 0.1, 0.2]) + 0.01 * random.unit();
             let length = 60.0 * random.unit();
-            let wall = [[x, y], [x + length * f64::cos(angle), y + length * f64::sin(angle)]];
-            if !walls.iter().any(|other| cross(other, &wall)) {
-                walls.push(wall);
+            let constraint = [[x, y], [x + length * f64::cos(angle), y + length * f64::sin(angle)]];
+            if !constraints.iter().any(|other| cross(other, &constraint)) {
+                constraints.push(constraint);
             }
         }
         points.extend((0..random.below(12)).map(|_| [100.0 * random.unit(), 100.0 * random.unit()]));
-        points.extend(walls.iter().flatten());
-        removed += walls_hold(points, walls, &mut random);
+        points.extend(constraints.iter().flatten());
+        removed += constraints_hold(points, constraints, &mut random);
     }
     assert!(removed > 500, "only {removed} were free");
 }
 
 #[test]
-fn walls_wait_while_all_is_on_a_line() {
+fn constraints_wait_while_all_is_on_a_line() {
     let points = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
-    let mut t = walled(&points, &[]);
+    let mut t = with_constraints(&points, &[]);
     let apex = t.insert([1.0, 5.0]).unwrap();
     let [second, last] = [points[1], points[3]].map(|p| t.insert(p).unwrap());
     insert_segment(&mut t, second, last);

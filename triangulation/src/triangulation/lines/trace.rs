@@ -12,7 +12,7 @@ use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::super::{Triangulation, Walls};
+use super::super::{ConstrainedEdges, Triangulation};
 
 /// Buffers of the segment insertion, kept from one to the next.
 #[derive(Debug, Clone, Default)]
@@ -28,7 +28,7 @@ pub(in super::super) struct Scratch {
     /// How many triangles have been met by all traces.
     pub(in super::super) met: usize,
     /// Triangles whose edges may have to be flipped.
-    pub(in super::super) unsettled: Vec<CellId>,
+    pub(in super::super) to_legalize: Vec<CellId>,
 }
 
 /// One side of a segment: the border of what it crosses there, from its one end to the other.
@@ -46,7 +46,7 @@ pub(in super::super) struct Side {
 struct Edge {
     cell: CellId,
     i: usize,
-    is_wall: bool,
+    is_constrained: bool,
     /// Whether the triangle on the outer side is crossed, too: the corridor touches itself, around the edge's end.
     is_spike: bool,
 }
@@ -108,7 +108,7 @@ pub(in super::super) enum Met {
     Constraint(CellId, usize),
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
     /// Whether a vertex is in the circle of a counter-clockwise triangle.
     #[inline(always)]
     pub(in super::super) fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
@@ -141,7 +141,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         let edge = |cell: CellId, i: usize| {
             let outside = tds.neighbor(cell, i);
             let j = tds.index_of_neighbor(outside, cell);
-            Edge { cell: outside, i: j, is_wall: tds.cell_data(cell).has(i), is_spike: false }
+            Edge { cell: outside, i: j, is_constrained: tds.cell_data(cell).has(i), is_spike: false }
         };
         // The triangle at `a` through which the segment leaves, or a neighbor right on the way.
         let mut leaves = None;
@@ -205,7 +205,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
     ) {
         if scratch.corridor.is_empty() {
-            self.wall_up(a, v); // the edge is there
+            self.constrain_edge(a, v); // the edge is there
         } else {
             self.retriangulate(scratch, triangulate);
         }
@@ -223,7 +223,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
         triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
     ) {
         for &cell in corridor.iter() {
-            *self.tds.cell_data_mut(cell) = Walls::taken_out();
+            *self.tds.cell_data_mut(cell) = ConstrainedEdges::taken_out();
         }
         for edge in left.edges.iter_mut().chain(&mut right.edges) {
             edge.is_spike = self.tds.cell_data(edge.cell).is_taken_out();
@@ -269,21 +269,21 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
                 Some((other, i)) => self.tds.link(cell, BASE, other, i),
                 None => on_base = Some(cell),
             }
-            let mut walls = Walls::default();
+            let mut constrained = ConstrainedEdges::default();
             for (i, from, to) in [(0, apex, last), (1, first, apex)] {
                 if to - from > 1 {
                     parts.push((from, to, Some((cell, i))));
                     continue;
                 }
                 let edge = &mut side.edges[from];
-                walls = walls.with(i, edge.is_wall);
+                constrained = constrained.with(i, edge.is_constrained);
                 if edge.is_spike {
                     (edge.cell, edge.i) = (cell, i);
                 } else {
                     self.tds.link(cell, i, edge.cell, edge.i);
                 }
             }
-            *self.tds.cell_data_mut(cell) = walls;
+            *self.tds.cell_data_mut(cell) = constrained;
         }
         if side.edges.iter().any(|edge| edge.is_spike) {
             for [p, q] in side.spikes().into_iter().map(|pair| pair.map(|k| side.edges[k])) {

@@ -17,7 +17,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
         Domain::Hull { holes } => {
             let hull: Vec<(CellId, usize)> = t.tds().corners_around(VertexId::INFINITE).collect();
             for edge in hull {
-                t.inner.set_wall(edge, true);
+                t.inner.set_constrained(edge, true);
             }
             enclosed(t, holes)
         }

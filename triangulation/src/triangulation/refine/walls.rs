@@ -56,7 +56,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // rounding.
         let (cell, beside) = (edge.0, self.beyond(edge).0);
         let sides = [cell, beside].map(|side| self.regions[side.index()]);
-        self.t.inner.set_wall(edge, false);
+        self.t.inner.set_constrained(edge, false);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
         if let Some(start) = [cell, beside].into_iter().find(|&side| self.t.inner.in_conflict(side, &p)) {
             self.grow(&mut zone, start, &p, |_, _| false);
@@ -64,7 +64,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let Some([after_a, after_b]) = self.rim(&zone, &p, [a, b]) else {
             zone.finish();
             self.t.inner.zone = zone;
-            self.t.inner.set_wall(edge, true);
+            self.t.inner.set_constrained(edge, true);
             return false;
         };
         // The border goes around counter-clockwise: from `a` to `b` it is on the right.
@@ -79,7 +79,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
                 self.encroached.push_back(self.t.tds().edge_ends(cell, i));
             }
             if k == after_a || k == after_b {
-                self.t.inner.set_wall((cell, cw(i)), true);
+                self.t.inner.set_constrained((cell, cw(i)), true);
                 if self.is_encroached(cell, cw(i)) {
                     self.encroached.push_back(self.t.tds().edge_ends(cell, cw(i)));
                 }

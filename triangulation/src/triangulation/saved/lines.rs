@@ -16,8 +16,8 @@ use crate::geometry::Crossing;
 use crate::tds::VertexId;
 
 use super::super::lines::Lines;
-use super::super::lines::parts::Parts;
-use super::super::{ConstrainedDelaunay, Level, Rounding, Walls};
+use super::super::lines::saved_tables::SavedTables;
+use super::super::{ConstrainedDelaunay, ConstrainedEdges, Level, Rounding};
 use super::{Damage, Owned, first};
 
 /// What is saved: the names are those of the format. Vertices are written as their numbers.
@@ -44,13 +44,13 @@ fn number(v: &VertexId) -> u32 {
     v.index() as u32
 }
 
-impl<P, V, C: Copy + Default> WithLines<Owned<P, V, Walls<C>>> {
+impl<P, V, C: Copy + Default> WithLines<Owned<P, V, ConstrainedEdges<C>>> {
     fn restore<G: Crossing<Point = P> + Default>(self) -> Result<ConstrainedDelaunay<G, V, C>, Damage> {
         let inner = self.triangulation.restore::<G>()?;
         inner.has_no_hidden_points()?;
         inner.has_walls_on_edges_only()?;
         first(inner.flaws(Level::Law, |cell, i| !inner.is_constrained(cell, i)))?;
-        first(inner.one_sided_walls())?;
+        first(inner.one_sided_constraints())?;
 
         let vertex = |&number: &u32| match (number as usize) < inner.tds.vertex_slots() {
             true => Some(VertexId::new(number as usize)).filter(|&v| inner.tds.is_vertex(v)),
@@ -67,7 +67,7 @@ impl<P, V, C: Copy + Default> WithLines<Owned<P, V, Walls<C>>> {
             true => vertices(numbers),
             false => Err(Damage::Shape("numbers of vertices are not in order")),
         };
-        let parts = Parts {
+        let parts = SavedTables {
             given: self.lines.iter().map(|line| line.as_deref().map(vertices).transpose()).collect::<Result<_, _>>()?,
             bent: self.led.iter().map(|chain| vertices(chain)).collect::<Result<_, _>>()?,
             splits: self.splits.iter().map(|split| all(vertices(split)?)).collect::<Result<_, _>>()?,
@@ -111,7 +111,7 @@ where
     C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let saved = WithLines::<Owned<G::Point, V, Walls<C>>>::deserialize(deserializer)?;
+        let saved = WithLines::<Owned<G::Point, V, ConstrainedEdges<C>>>::deserialize(deserializer)?;
         saved.restore().map_err(D::Error::custom)
     }
 }

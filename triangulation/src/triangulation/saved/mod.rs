@@ -20,7 +20,9 @@ use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
 use super::lines::trace::Scratch;
-use super::{Basic, Constrained, Delaunay, Flaw, InputError, Level, MAX_VERTICES, Regular, Triangulation, Walls};
+use super::{
+    Basic, Constrained, ConstrainedEdges, Delaunay, Flaw, InputError, Level, MAX_VERTICES, Regular, Triangulation,
+};
 
 /// What is saved. Written from slices, read into vectors.
 #[derive(Serialize, Deserialize)]
@@ -140,7 +142,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, Walls<C>> {
+impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
     fn has_walls_on_edges_only(&self) -> Result<(), Damage> {
         let is_edge = |cell, i: usize| {
             i < 3 && self.dimension() == 2 && !self.tds.edge_ends(cell, i).contains(&VertexId::INFINITE)

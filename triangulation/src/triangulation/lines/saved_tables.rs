@@ -7,7 +7,7 @@ use super::Lines;
 use super::paths::Paths;
 
 /// The content of [`Lines`], in an order that depends on nothing else.
-pub(in super::super) struct Parts {
+pub(in super::super) struct SavedTables {
     /// By their ids: the vertices that each was given by; `None` where a line has been removed.
     pub(in super::super) given: Vec<Option<Vec<VertexId>>>,
     /// Segments that pass through sites, from the smaller end through all of them to the larger.
@@ -24,13 +24,13 @@ pub(in super::super) struct Parts {
 
 impl Lines {
     /// A copy of the content.
-    pub(in super::super) fn parts(&self) -> Parts {
+    pub(in super::super) fn parts(&self) -> SavedTables {
         let segments = self.paths.segments();
         let mut splits: Vec<[VertexId; 3]> =
             self.paths.splits.iter().map(|(&[a, b], &between)| [a, b, between]).collect();
         splits.sort_unstable();
         let bent = segments.iter().filter(|ends| self.paths.bent.contains_key(*ends));
-        Parts {
+        SavedTables {
             given: self.paths.given.iter().map(|line| line.as_deref().map(<[_]>::to_vec)).collect(),
             bent: bent.map(|&ends| self.paths.sites(ends)).collect(),
             splits,
@@ -46,7 +46,7 @@ impl Lines {
     ///
     /// # Errors
     /// What does not fit into the tables.
-    pub(in super::super) fn from_parts(parts: Parts) -> Result<Self, &'static str> {
+    pub(in super::super) fn from_parts(parts: SavedTables) -> Result<Self, &'static str> {
         if parts.given.len() >= LineId::LIMIT {
             return Err("there are too many lines");
         }

@@ -6,7 +6,7 @@ use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
 use super::constrain::Mesh;
-use super::index::{Ends, place};
+use super::index::{Ends, position};
 use super::paths::undirected;
 
 /// The points within some distance of a segment on each axis: a hexagon; of a point, a rectangle.
@@ -78,11 +78,11 @@ pub(super) fn near<G: Crossing, V, C: Copy + Default>(
     let (mut edges, mut vertices) = (Vec::new(), Vec::new());
     while let Some(cell) = open.pop() {
         let corners = *t.tds.corners(cell);
-        let places = corners.map(|v| place(t, v));
-        vertices.extend((0..3).filter(|&i| band.has(places[i])).map(|i| corners[i]));
+        let positions = corners.map(|v| position(t, v));
+        vertices.extend((0..3).filter(|&i| band.has(positions[i])).map(|i| corners[i]));
         for i in 0..3 {
             let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-            if !band.meets([places[j], places[k]]) {
+            if !band.meets([positions[j], positions[k]]) {
                 continue;
             }
             if t.is_constrained(cell, i) {

@@ -24,8 +24,8 @@ use crate::tds::VertexId;
 use super::super::Rounding;
 use super::Lines;
 use super::constrain::Mesh;
-use super::index::{Ends, place};
-use super::near::{Band, near};
+use super::index::{Ends, position};
+use super::near_segment::{Band, near};
 use super::paths::undirected;
 
 /// So many units around a segment or a site are searched. One would do, but for roundings.
@@ -126,7 +126,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         if was_added {
             self.retract(vec![vertex]);
         } else {
-            let at = place(self.t, vertex);
+            let at = position(self.t, vertex);
             let around = self.around(vertex);
             if around.into_iter().any(|segment| self.is_bent(segment) && lies_on(self.ends(segment), at)) {
                 self.heat(vertex);
@@ -149,7 +149,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     }
 
     fn ends(&self, segment: Ends) -> [[f64; 2]; 2] {
-        segment.map(|v| place(self.t, v))
+        segment.map(|v| position(self.t, v))
     }
 
     /// The segments near another one, and the vertices; without those that come or go.
@@ -162,7 +162,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// The segments that may meet the pixel of a vertex: with the one that comes, without the one that goes.
     fn around(&mut self, vertex: VertexId) -> Vec<Ends> {
         if !self.around.contains_key(&vertex) {
-            let band = Band::around([place(self.t, vertex); 2], self.rounder.unit().map(|unit| REACH * unit));
+            let band = Band::around([position(self.t, vertex); 2], self.rounder.unit().map(|unit| REACH * unit));
             let segments = self.segments_on(near(self.t, &band, vertex).0);
             self.around.insert(vertex, segments);
         }
@@ -204,7 +204,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     fn order_along(&self, segment: Ends) -> impl Fn(VertexId) -> [f64; 2] + use<'_, 'a, G, V, C> {
         let ends = self.ends(segment);
         let sign = if ends[0] <= ends[1] { 1.0 } else { -1.0 };
-        move |vertex| self.rounder.along(ends, place(self.t, vertex)).map(|x| sign * x)
+        move |vertex| self.rounder.along(ends, position(self.t, vertex)).map(|x| sign * x)
     }
 
     /// The sites of a segment as they are now.
@@ -226,11 +226,11 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Whether a segment whose pixel a site is in passes through it as a given point.
     fn is_exact(&self, segment: Ends, site: VertexId) -> bool {
-        self.is_given(site) && is_aligned(self.ends(segment), place(self.t, site))
+        self.is_given(site) && is_aligned(self.ends(segment), position(self.t, site))
     }
 
     fn meets_pixel(&self, segment: Ends, site: VertexId) -> bool {
-        !segment.contains(&site) && self.rounder.hits(self.ends(segment), place(self.t, site))
+        !segment.contains(&site) && self.rounder.hits(self.ends(segment), position(self.t, site))
     }
 
     fn is_hot(&self, vertex: VertexId) -> bool {
@@ -281,7 +281,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         while let Some(step) = self.steps.pop() {
             match step {
                 Step::Attract(site) => {
-                    if self.is_given(site) && self.rounder.is_even() && !self.rounder.holds(place(self.t, site)) {
+                    if self.is_given(site) && self.rounder.is_even() && !self.rounder.holds(position(self.t, site)) {
                         return Err(NotLocal); // it takes the grid along
                     }
                     for segment in self.around(site) {
@@ -325,7 +325,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                 if !self.is_exact(segment, v) {
                     self.steps.push(Step::Activate(v));
                 }
-            } else if self.is_given(v) && lies_on(ends, place(self.t, v)) {
+            } else if self.is_given(v) && lies_on(ends, position(self.t, v)) {
                 self.heat(v);
             }
         }
@@ -378,7 +378,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Whether the crossing of two of some segments is rounded to a site.
     fn is_crossing(&self, site: VertexId, segments: &[Ends]) -> bool {
-        let at = place(self.t, site);
+        let at = position(self.t, site);
         let crosses_here = |i: usize, j: usize| {
             self.rounder.crossing(self.ends(segments[i]), self.ends(segments[j])).is_some_and(|center| center == at)
         };
@@ -387,7 +387,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Whether a site is a given point on one of some segments.
     fn is_on_one(&self, site: VertexId, segments: &[Ends]) -> bool {
-        let at = place(self.t, site);
+        let at = position(self.t, site);
         self.is_given(site) && segments.iter().any(|&segment| lies_on(self.ends(segment), at))
     }
 
@@ -502,7 +502,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let ends: Vec<[G::Point; 2]> = segments.map(|ends| ends.map(|v| *self.t.point(v))).collect();
         let ends: Vec<[&G::Point; 2]> = ends.iter().map(|ends| ends.each_ref()).collect();
         if !ends.is_empty() {
-            let p = self.t.geometry.meet(place(self.t, site), &ends);
+            let p = self.t.geometry.meet(position(self.t, site), &ends);
             self.t.points[site.index()] = p;
         }
     }
