@@ -41,7 +41,7 @@ struct Inner {
     kind: Kind,
     message: String,
     path: Option<PathBuf>,
-    place: Option<String>,
+    location: Option<String>,
     cure: Option<String>,
     source: Option<Box<dyn std::error::Error + Send + Sync>>,
 }
@@ -49,7 +49,7 @@ struct Inner {
 impl Error {
     #[cold]
     fn new(kind: Kind, message: String) -> Self {
-        Error { inner: Box::new(Inner { kind, message, path: None, place: None, cure: None, source: None }) }
+        Error { inner: Box::new(Inner { kind, message, path: None, location: None, cure: None, source: None }) }
     }
 
     /// The data breaks the rules of its format.
@@ -99,8 +99,8 @@ impl Error {
 
     /// Adds the place in the file ("record 12", "byte 4096", "line 3"), unless one is named already.
     #[must_use]
-    pub fn at(mut self, place: impl Into<String>) -> Self {
-        self.inner.place.get_or_insert_with(|| place.into());
+    pub fn at(mut self, location: impl Into<String>) -> Self {
+        self.inner.location.get_or_insert_with(|| location.into());
         self
     }
 
@@ -132,8 +132,8 @@ impl fmt::Display for Error {
         if let Some(path) = &self.inner.path {
             write!(f, "{}: ", path.display())?;
         }
-        if let Some(place) = &self.inner.place {
-            write!(f, "{place}: ")?;
+        if let Some(location) = &self.inner.location {
+            write!(f, "{location}: ")?;
         }
         f.write_str(&self.inner.message)
     }

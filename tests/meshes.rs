@@ -35,7 +35,7 @@ fn content(surface: &impl Surface) -> Vec<([Side; 3], bool)> {
                 [0, 1, 2].map(|i| (surface.position(corners[i]).map(f64::to_bits), surface.edge_kind(f, i)));
             let first = (0..3).min_by_key(|&i| sides[i]).unwrap();
             sides.rotate_left(first);
-            Some((sides, surface.is_piece(f)))
+            Some((sides, surface.is_fragment(f)))
         })
         .collect();
     faces.sort_unstable();
@@ -75,7 +75,7 @@ fn ply_tells_breaklines_clip_lines_rim_and_pieces_apart() {
         faces: (0..3).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect(),
         constrained_edges: vec![[3, 2]],
         clip_edges: vec![[1, 0], [6, 7]],
-        pieces: vec![1, 4],
+        fragments: vec![1, 4],
         ..Triangles::default()
     });
     let cut = cut.unwrap();

@@ -197,8 +197,8 @@ impl Ring {
             .coords_iter()
             .chain(middles)
             .map(|at| coord_pos_relative_to_ring(at, &outer.line))
-            .find(|place| *place != CoordPos::OnBoundary)
-            .is_some_and(|place| place == CoordPos::Inside)
+            .find(|position| *position != CoordPos::OnBoundary)
+            .is_some_and(|position| position == CoordPos::Inside)
     }
 
     /// The line, turned so that its area has a sign.

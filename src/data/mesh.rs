@@ -15,7 +15,7 @@ pub struct Mesh {
     /// Plain, breakline or clip; what is rim follows from the neighbors.
     kinds: Vec<[EdgeKind; 3]>,
     /// In ascending order.
-    pieces: Vec<u32>,
+    fragments: Vec<u32>,
     crs: Option<Crs>,
 }
 
@@ -50,8 +50,8 @@ impl Surface for Mesh {
         }
     }
 
-    fn is_piece(&self, face: u32) -> bool {
-        self.pieces.binary_search(&face).is_ok()
+    fn is_fragment(&self, face: u32) -> bool {
+        self.fragments.binary_search(&face).is_ok()
     }
 
     fn crs(&self) -> Option<&Crs> {
@@ -93,7 +93,7 @@ impl Mesh {
     /// # Errors
     /// Those of [`new`](Self::new); a clip edge has to be an edge of a face, too.
     pub fn of(triangles: Triangles) -> Result<Self> {
-        let Triangles { vertices, mut faces, constrained_edges, clip_edges, pieces, crs, .. } = triangles;
+        let Triangles { vertices, mut faces, constrained_edges, clip_edges, fragments, crs, .. } = triangles;
         check_numbers(&vertices, &faces)?;
         check_values(&vertices, &faces)?;
         turn_counter_clockwise(&vertices, &mut faces)?;
@@ -106,7 +106,7 @@ impl Mesh {
         if let Some(flaw) = unmet.first() {
             return Err(Error::format(flaw.to_string()));
         }
-        Ok(Mesh { vertices, faces, neighbors, kinds, pieces, crs })
+        Ok(Mesh { vertices, faces, neighbors, kinds, fragments, crs })
     }
 
     /// Links triangles as far as they can be linked, for whoever wants to know what is wrong with them: a
@@ -118,7 +118,7 @@ impl Mesh {
     /// # Complexity
     /// That of [`new`](Self::new).
     pub fn link(triangles: Triangles) -> Result<(Self, Vec<LinkFlaw>)> {
-        let Triangles { vertices, mut faces, constrained_edges, clip_edges, pieces, neighbors: stated, crs } =
+        let Triangles { vertices, mut faces, constrained_edges, clip_edges, fragments, neighbors: stated, crs } =
             triangles;
         check_numbers(&vertices, &faces)?;
         let is_turned = is_clockwise(&vertices, &faces);
@@ -141,7 +141,7 @@ impl Mesh {
                 }
             }
         }
-        Ok((Mesh { vertices, faces, neighbors, kinds, pieces, crs }, flaws))
+        Ok((Mesh { vertices, faces, neighbors, kinds, fragments, crs }, flaws))
     }
 }
 

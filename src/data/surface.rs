@@ -71,7 +71,7 @@ pub trait Surface: Sync {
     }
 
     /// Whether the face is a piece of a triangle that was cut. The Delaunay law holds between whole triangles only.
-    fn is_piece(&self, _face: u32) -> bool {
+    fn is_fragment(&self, _face: u32) -> bool {
         false
     }
 

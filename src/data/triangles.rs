@@ -13,7 +13,7 @@ pub struct Triangles {
     /// Edges along which the surface was cut.
     pub clip_edges: Vec<[u32; 2]>,
     /// Positions of the faces that are pieces of triangles that were cut, in ascending order.
-    pub pieces: Vec<u32>,
+    pub fragments: Vec<u32>,
     /// The face opposite each corner, where the file says so.
     pub neighbors: Option<Vec<[Option<u32>; 3]>>,
     /// Coordinate system, if known.

@@ -111,7 +111,7 @@ fn draw<S: Surface + ?Sized, T>(
     let polled = Watched::polled(surface, context)?;
     let lines = terrain::contours(&polled, levels)?;
     finding.end()?;
-    let count = lines.piece_count() as u64;
+    let count = lines.arc_count() as u64;
     let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
     let is_wanted = |line: &ContourLine| drawing.add(line.points.len().saturating_sub(1) as u64).is_ok();
     let taken = take(&mut lines.take_while(is_wanted), count);

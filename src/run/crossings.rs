@@ -52,7 +52,7 @@ impl LineNames {
     /// If `out` cannot be written to.
     pub fn write_table(&self, crossings: &[CrossingHeights], out: &mut impl Write) -> std::io::Result<()> {
         writeln!(out, "x,y,z,vertex,difference,low_file,low_fid,low_part,low_z,high_file,high_fid,high_part,high_z")?;
-        for CrossingHeights { place: [x, y], heights, chosen, is_added } in crossings {
+        for CrossingHeights { site: [x, y], heights, chosen, is_added } in crossings {
             let mut heights = heights.clone();
             heights
                 .sort_by(|&(p, low), &(q, high)| low.total_cmp(&high).then(self.lines.get(p).cmp(&self.lines.get(q))));
@@ -89,12 +89,12 @@ pub(super) fn note(report: &TinReport, names: &LineNames, units: &Units, journal
     let Some(worst) = differing.iter().rev().max_by(by_difference) else { return };
     let note = |crossing: &CrossingHeights| {
         let [low, high] = crossing.extremes().map(|(line, z)| (z, names.name(line)));
-        CrossingNote { at: crossing.place, low, high, chosen: crossing.chosen }
+        CrossingNote { at: crossing.site, low, high, chosen: crossing.chosen }
     };
     journal.add(Notice::CrossingHeights {
         count: differing.len(),
         largest: units.height(worst.difference()),
-        at: worst.place,
+        at: worst.site,
         first: differing.iter().take(LISTED).map(note).collect(),
     });
 }
@@ -111,7 +111,7 @@ mod tests {
         }
         assert_eq!([0, 1].map(|line| names.name(line)), ["a,b.shp fid 7", "c.shp fid 0, part 2"]);
         let heights = vec![(0, 2.5), (1, 1.0), (2, 2.0)];
-        let crossing = CrossingHeights { place: [0.1, -2.0], heights, chosen: 1.0, is_added: true };
+        let crossing = CrossingHeights { site: [0.1, -2.0], heights, chosen: 1.0, is_added: true };
         let mut bytes = Vec::new();
         names.write_table(&[crossing], &mut bytes).unwrap();
         let rows: Vec<&str> = std::str::from_utf8(&bytes).unwrap().lines().skip(1).collect();

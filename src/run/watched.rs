@@ -106,8 +106,8 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         self.source.has_lines()
     }
 
-    fn is_piece(&self, face: u32) -> bool {
-        self.source.is_piece(face)
+    fn is_fragment(&self, face: u32) -> bool {
+        self.source.is_fragment(face)
     }
 
     fn crs(&self) -> Option<&Crs> {

@@ -9,7 +9,7 @@ use crate::triangulation::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, Rounding, spatial_order};
 
 use super::clip::Clip;
-use super::crossings::{Pass, refuse, settle_heights};
+use super::crossings::{Pass, choose_heights, refuse};
 use super::tin::Count;
 use super::window::uncertain;
 use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin, Window};
@@ -106,7 +106,7 @@ pub struct TinReport {
 }
 
 /// Zero has one sign only: places are compared bit by bit when sorted, and of two zeros neither is the lower.
-fn tidy([x, y, z]: [f64; 3]) -> [f64; 3] {
+fn positive_zero([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x + 0.0, y + 0.0, z + 0.0]
 }
 
@@ -118,12 +118,12 @@ impl TinBuilder {
     pub fn add_points(&mut self, x: &[f64], y: &[f64], z: &[f64]) {
         assert!(x.len() == y.len() && y.len() == z.len(), "columns of different lengths");
         self.points.reserve(x.len());
-        self.points.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| tidy([x, y, z])));
+        self.points.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| positive_zero([x, y, z])));
     }
 
     /// Adds points without a copy of them, where they are the first.
     pub fn add_owned_points(&mut self, mut points: Vec<[f64; 3]>) {
-        points.iter_mut().for_each(|point| *point = tidy(*point));
+        points.iter_mut().for_each(|point| *point = positive_zero(*point));
         if self.points.is_empty() {
             self.points = points;
         } else {
@@ -139,7 +139,7 @@ impl TinBuilder {
     /// Adds a breakline: its vertices and the straight pieces between them hold in the surface. A
     /// breakline's height wins over points at the same place.
     pub fn add_breakline(&mut self, line: &[[f64; 3]]) {
-        self.line_points.extend(line.iter().copied().map(tidy));
+        self.line_points.extend(line.iter().copied().map(positive_zero));
         self.line_ends.push(self.line_points.len());
     }
 
@@ -203,9 +203,9 @@ impl TinBuilder {
         report.crossings = triangulation.crossings().len();
         report.rounding = triangulation.rounding();
         report.crossing_heights =
-            settle_heights(&mut triangulation, disputed, self.crossing_heights, self.crossing_tolerance);
+            choose_heights(&mut triangulation, disputed, self.crossing_heights, self.crossing_tolerance);
         if let Some(bounds) = &self.bounds {
-            report.crossing_heights.retain(|crossing| bounds.holds(crossing.place[0], crossing.place[1]));
+            report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
         if self.crossing_heights == CrossingRule::Refuse {
             refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
@@ -252,7 +252,7 @@ impl TinBuilder {
         all.reserve_exact(self.line_points.len());
         all.append(&mut self.line_points);
         let order = spatial_order(all.len(), |i| [all[i][0], all[i][1]]).map_err(|e| Error::limit(e.to_string()))?;
-        let place = |i: u32| [all[i as usize][0], all[i as usize][1]];
+        let site = |i: u32| [all[i as usize][0], all[i as usize][1]];
         let mut vertices = Vec::new();
         if vertices.try_reserve_exact(all.len()).is_err() {
             return Err(Error::limit(format!("there is no memory for {} vertices", all.len())));
@@ -260,7 +260,7 @@ impl TinBuilder {
         let mut line_vertices = vec![u32::MAX; all.len() - lines_from];
         let mut disputed = Vec::new();
         let mut heights = Vec::new();
-        for group in order.chunk_by(|&i, &j| place(i) == place(j)) {
+        for group in order.chunk_by(|&i, &j| site(i) == site(j)) {
             if let &[only] = group
                 && (only as usize) < lines_from
             {
@@ -280,7 +280,7 @@ impl TinBuilder {
             };
             heights.clear();
             heights.extend(standing.iter().map(|&i| all[i as usize][2]));
-            let [x, y] = place(group[0]);
+            let [x, y] = site(group[0]);
             for &i in lines {
                 line_vertices[i as usize - lines_from] = vertices.len() as u32;
             }

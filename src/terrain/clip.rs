@@ -39,8 +39,8 @@ impl Clip {
         }
         for (_, ring) in &mut rings {
             // Zero has one sign only, and what is closer to it than the arithmetic goes is zero.
-            let tidy = |c: f64| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c };
-            ring.iter_mut().flatten().for_each(|c| *c = tidy(*c));
+            let positive_zero = |c: f64| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c };
+            ring.iter_mut().flatten().for_each(|c| *c = positive_zero(*c));
             ring.extend(ring.first().copied());
         }
         rings
@@ -67,7 +67,7 @@ impl Clip {
         let whole = |tin: &Tin| tin.inside.iter().filter(|&&inside| inside).count();
         let before = whole(tin);
         tin.cut = cut(&tin.triangulation, &mut tin.inside, &curves, |within| in_polygon(within) && in_bounds(within))?;
-        let in_pieces = tin.cut.as_ref().map_or(0, Cut::cut_count);
-        Ok((before - whole(tin) - in_pieces, in_pieces))
+        let in_fragments = tin.cut.as_ref().map_or(0, Cut::cut_count);
+        Ok((before - whole(tin) - in_fragments, in_fragments))
     }
 }

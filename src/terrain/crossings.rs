@@ -30,7 +30,7 @@ impl Default for CrossingRule {
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrossingHeights {
     /// In plan.
-    pub place: [f64; 2],
+    pub site: [f64; 2],
     /// Each line, by its position among those that were added, and its own height there; in order of the lines. A line
     /// that comes there twice, with two heights, is there twice.
     pub heights: Vec<(usize, f64)>,
@@ -69,7 +69,7 @@ pub(super) struct Pass {
 /// their places, those at which the heights differ by more than the tolerance.
 ///
 /// `disputed` are the lines at vertices that they were given by with different heights.
-pub(super) fn settle_heights(
+pub(super) fn choose_heights(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
     disputed: Vec<Pass>,
     rule: CrossingRule,
@@ -89,12 +89,12 @@ pub(super) fn settle_heights(
             triangulation.replace_point(vertex, [x, y, chosen]);
         }
         let heights = at_vertex.iter().map(|pass| (pass.line.index(), pass.height)).collect();
-        let crossing = CrossingHeights { place: [x, y], heights, chosen, is_added };
+        let crossing = CrossingHeights { site: [x, y], heights, chosen, is_added };
         if crossing.difference() > tolerance {
             reported.push(crossing);
         }
     }
-    reported.sort_by(by_place);
+    reported.sort_by(by_site);
     reported
 }
 
@@ -129,14 +129,14 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> 
     passes
 }
 
-fn by_place(p: &CrossingHeights, q: &CrossingHeights) -> Ordering {
-    p.place[0].total_cmp(&q.place[0]).then(p.place[1].total_cmp(&q.place[1]))
+fn by_site(p: &CrossingHeights, q: &CrossingHeights) -> Ordering {
+    p.site[0].total_cmp(&q.site[0]).then(p.site[1].total_cmp(&q.site[1]))
 }
 
 /// The error for breaklines that differ, if there are any; `name` tells of a line what the user calls it.
 pub(super) fn refuse(crossings: &[CrossingHeights], tolerance: f64, name: &dyn Fn(usize) -> String) -> Result<()> {
     let Some(first) = crossings.first() else { return Ok(()) };
-    let [x, y] = first.place;
+    let [x, y] = first.site;
     let [(low, lowest), (high, highest)] = first.extremes();
     let more = match crossings.len() {
         1 => String::new(),
@@ -190,9 +190,9 @@ mod tests {
             let tin = tin(&STAR, rule);
             assert_eq!(tin.elevation(0.0, 0.0), Some(expected), "{rule:?}");
             let heights = vec![(0, 1.0), (1, 4.0), (2, 2.5)];
-            let told = CrossingHeights { place: [0.0; 2], heights, chosen: expected, is_added: true };
-            assert_eq!((told.difference(), told.extremes()), (3.0, [(0, 1.0), (1, 4.0)]));
-            assert_eq!(tin.report().crossing_heights, [told]);
+            let reported = CrossingHeights { site: [0.0; 2], heights, chosen: expected, is_added: true };
+            assert_eq!((reported.difference(), reported.extremes()), (3.0, [(0, 1.0), (1, 4.0)]));
+            assert_eq!(tin.report().crossing_heights, [reported]);
         }
     }
 
@@ -243,18 +243,18 @@ mod tests {
             &[[2.0, -4.0, 5.0], [2.0, 0.0, 5.0]],
             &[[-4.0, 6.0, 5.0], [4.0, 6.0, 5.0]],
         ];
-        let told = |lines: &[Line]| {
+        let reported = |lines: &[Line]| {
             let tin = tin(lines, DuplicateRule::Highest);
             assert_eq!(tin.report().crossings, 0);
             let heights: Vec<_> = tin.report().crossing_heights.iter().map(|c| c.heights.clone()).collect();
-            assert!(tin.report().crossing_heights.iter().all(|c| !c.is_added && c.place == [2.0, 0.0]));
+            assert!(tin.report().crossing_heights.iter().all(|c| !c.is_added && c.site == [2.0, 0.0]));
             (tin.elevation(2.0, 0.0), heights)
         };
-        assert_eq!(told(&lines), (Some(5.0), vec![vec![(0, 1.5), (1, 7.0), (2, 5.0)]]));
-        assert_eq!(told(&lines[..2]), (Some(7.0), vec![vec![(0, 1.5), (1, 7.0)]]));
-        assert_eq!(told(&lines[1..]), (Some(5.0), vec![vec![(0, 7.0), (1, 5.0)]]));
+        assert_eq!(reported(&lines), (Some(5.0), vec![vec![(0, 1.5), (1, 7.0), (2, 5.0)]]));
+        assert_eq!(reported(&lines[..2]), (Some(7.0), vec![vec![(0, 1.5), (1, 7.0)]]));
+        assert_eq!(reported(&lines[1..]), (Some(5.0), vec![vec![(0, 7.0), (1, 5.0)]]));
         let level: Line = &[[2.0, 0.0, 1.5], [2.0, 4.0, 7.0]];
-        assert_eq!(told(&[lines[0], level]), (Some(1.5), vec![]));
+        assert_eq!(reported(&[lines[0], level]), (Some(1.5), vec![]));
     }
 
     #[test]
@@ -269,7 +269,7 @@ mod tests {
     fn a_ring_that_ends_at_another_height_than_it_began_is_told() {
         let ring: Line = &[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0, 0.0, 3.0]];
         let tin = tin(&[ring], DuplicateRule::Lowest);
-        let [told] = tin.report().crossing_heights.as_slice() else { panic!() };
-        assert_eq!((told.heights.as_slice(), told.chosen), ([(0, 1.0), (0, 3.0)].as_slice(), 1.0));
+        let [reported] = tin.report().crossing_heights.as_slice() else { panic!() };
+        assert_eq!((reported.heights.as_slice(), reported.chosen), ([(0, 1.0), (0, 3.0)].as_slice(), 1.0));
     }
 }

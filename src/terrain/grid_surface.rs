@@ -89,7 +89,7 @@ impl<'a> GridSurface<'a> {
 
     /// Column and row of a face's quad, and which of its four faces it is.
     fn quad_of(&self, face: u32) -> ([usize; 2], usize) {
-        (place(face / 4, self.quads[0]), face as usize % 4)
+        (cell_at(face / 4, self.quads[0]), face as usize % 4)
     }
 
     fn quad(&self, [column, row]: [usize; 2]) -> Quad {
@@ -161,7 +161,7 @@ fn center(cells: [[f64; 2]; 2]) -> f64 {
 }
 
 /// Column and row of what is numbered row by row. All numbers fit in 32 bits, which divide faster.
-fn place(number: u32, width: usize) -> [usize; 2] {
+fn cell_at(number: u32, width: usize) -> [usize; 2] {
     // Asked only for what exists, so that the width is not 0.
     let width = width as u32;
     [(number % width) as usize, (number / width) as usize]
@@ -176,11 +176,11 @@ impl Surface for GridSurface<'_> {
         let frame = &self.grid.frame;
         let cells = self.grid.values.len() as u32;
         if vertex < cells {
-            let [column, row] = place(vertex, frame.width);
+            let [column, row] = cell_at(vertex, frame.width);
             let [x, y] = frame.to_map(column as f64 + 0.5, row as f64 + 0.5);
             return [x, y, self.grid.value(column, row)];
         }
-        let [column, row] = place(vertex - cells, self.quads[0]);
+        let [column, row] = cell_at(vertex - cells, self.quads[0]);
         let [x, y] = frame.to_map(column as f64 + 1.0, row as f64 + 1.0);
         [x, y, center([0, 1].map(|down| [0, 1].map(|right| self.grid.value(column + right, row + down))))]
     }

@@ -153,7 +153,7 @@ fn bad_circles(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
         let points = corners.map(|v| surface.position(v));
         for i in (0..3).filter(|&i| !surface.is_constrained(face, i)) {
             let Some((beside, j)) = mirror(surface, face, corners, i) else { continue };
-            if surface.is_piece(face) || surface.is_piece(beside) {
+            if surface.is_fragment(face) || surface.is_fragment(beside) {
                 continue;
             }
             let Some(theirs) = surface.face(beside) else { continue };

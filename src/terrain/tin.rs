@@ -268,7 +268,7 @@ impl Surface for Tin {
         self.report.breaklines > 0 || self.cut.is_some()
     }
 
-    fn is_piece(&self, face: u32) -> bool {
+    fn is_fragment(&self, face: u32) -> bool {
         face as usize >= self.inside.len()
     }
 

@@ -99,17 +99,17 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn place(&self, vertex: VertexId) -> [f64; 2] {
+    fn site(&self, vertex: VertexId) -> [f64; 2] {
         let [x, y, _] = *self.triangulation.point(vertex);
         [x, y]
     }
 
     fn ends(&self, cell: CellId, i: usize) -> [[f64; 2]; 2] {
-        self.triangulation.tds().edge_ends(cell, i).map(|vertex| self.place(vertex))
+        self.triangulation.tds().edge_ends(cell, i).map(|vertex| self.site(vertex))
     }
 
     fn corners(&self, cell: CellId) -> [[f64; 2]; 3] {
-        self.triangulation.tds().corners(cell).map(|vertex| self.place(vertex))
+        self.triangulation.tds().corners(cell).map(|vertex| self.site(vertex))
     }
 
     fn box_of(&self, cell: CellId) -> Box2 {

@@ -119,7 +119,7 @@ fn a_raster_is_its_faces() {
     let surface = GridSurface::new(&grid).unwrap();
     let levels = [0.0, 0.25, 0.6, 1.0, 1.5, 2.0];
     let drawing = contours(&surface, &Levels::listed(&levels).unwrap()).unwrap();
-    let count = drawing.piece_count();
+    let count = drawing.arc_count();
     let lines = bits(&drawing.collect::<Vec<_>>());
     let drawn = lines.iter().map(|(_, points)| points.len() - 1).sum::<usize>();
     assert!(drawn <= count && count <= drawn + drawn / 100, "{count} pieces told, {drawn} drawn");

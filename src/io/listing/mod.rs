@@ -63,7 +63,7 @@ impl<'a> Listing<'a> {
     pub(super) fn lined_faces(&self) -> impl Iterator<Item = ([u32; 3], [EdgeKind; 3], bool)> + '_ {
         data::faces(self.surface).map(|face| {
             let corners = face.corners.map(|v| self.number[v as usize]);
-            (corners, face.edges, self.surface.is_piece(face.number))
+            (corners, face.edges, self.surface.is_fragment(face.number))
         })
     }
 

@@ -104,7 +104,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
         polygon::add_polygon(&triangles.vertices, corners, &mut triangles.faces)
             .map_err(|e| e.at(format!("face {i}")))?;
         if fragments.next_if_eq(&i).is_some() {
-            triangles.pieces.extend(first..triangles.faces.len() as u32);
+            triangles.fragments.extend(first..triangles.faces.len() as u32);
         }
         start = end;
     }

@@ -18,7 +18,7 @@ pub(super) struct Face {
 
 /// A part of the contour that lies in one face or on one edge. High ground is on its right.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) enum Piece {
+pub(super) enum ContourArc {
     /// Through the inside of the face, of which one corner is higher and one lower.
     Across(u32),
     /// Along the edge opposite the corner, from corner `i + 2` to corner `i + 1`. The face is the
@@ -28,7 +28,7 @@ pub(super) enum Piece {
 
 /// Along or against the direction of a piece.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum Direction {
     Forward,
     Backward,
 }
@@ -45,15 +45,15 @@ pub(super) enum Node {
 /// A piece that begins or ends at a vertex, as seen from the vertex.
 pub(super) struct Ray {
     pub(super) face: Face,
-    pub(super) piece: Piece,
+    pub(super) arc: ContourArc,
     /// Forward if the piece leaves the vertex, backward if it arrives there.
-    pub(super) way: Way,
+    pub(super) direction: Direction,
 }
 
-impl Piece {
+impl ContourArc {
     /// The face that it belongs to.
     pub(super) fn face(self) -> u32 {
-        let (Piece::Across(face) | Piece::Along(face, _)) = self;
+        let (ContourArc::Across(face) | ContourArc::Along(face, _)) = self;
         face
     }
 }
@@ -86,11 +86,11 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
     }
 
     /// The piece along the edge that lies on the level, of a face that lies below it otherwise.
-    pub(super) fn shore(&self, id: u32) -> Option<Piece> {
+    pub(super) fn shore(&self, id: u32) -> Option<ContourArc> {
         let face = self.face(id)?;
         let i = (0..3).find(|&i| face.has_level_edge(i))?;
         let (high, j) = self.across(&face, i)?;
-        (high.side[j] != Less).then_some(Piece::Along(high.id, j as u8))
+        (high.side[j] != Less).then_some(ContourArc::Along(high.id, j as u8))
     }
 
     /// Of the two faces at the edge opposite corner `i` the one that belongs to the high ground, if
@@ -110,16 +110,16 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
     /// The pieces at a corner, in the order in which a ray from there meets them, that turns from
     /// the inside of the face: counter-clockwise if forward, clockwise if backward. Ends where it
     /// began (without the piece across that face), or at the edge of the data.
-    pub(super) fn fan(&self, face: &Face, corner: usize, turn: Way) -> Fan<'_, 'a, S> {
+    pub(super) fn fan(&self, face: &Face, corner: usize, turn: Direction) -> Fan<'_, 'a, S> {
         Fan { cut: self, first: face.id, now: Some((*face, corner)), turn, waiting: None }
     }
 
     /// The piece that goes on where another one ends in a corner of its face (forward), or goes
     /// before one that begins there (backward): the turn rule within one fan of faces. None if
     /// the edge of the data comes first.
-    pub(super) fn continuation(&self, face: &Face, corner: usize, way: Way) -> Option<Ray> {
+    pub(super) fn continuation(&self, face: &Face, corner: usize, direction: Direction) -> Option<Ray> {
         // High ground lies between the two, so that the next is one of the other kind.
-        self.fan(face, corner, way).next().filter(|ray| ray.way == way)
+        self.fan(face, corner, direction).next().filter(|ray| ray.direction == direction)
     }
 
     /// The point of a node.
@@ -139,16 +139,16 @@ impl Face {
     }
 
     /// The node at which a piece ends (forward) or begins (backward).
-    pub(super) fn node(&self, piece: Piece, way: Way) -> Node {
-        match (piece, way) {
-            (Piece::Along(_, i), Way::Forward) => Node::Corner((usize::from(i) + 1) % 3),
-            (Piece::Along(_, i), Way::Backward) => Node::Corner((usize::from(i) + 2) % 3),
-            (Piece::Across(_), _) => {
+    pub(super) fn node(&self, arc: ContourArc, direction: Direction) -> Node {
+        match (arc, direction) {
+            (ContourArc::Along(_, i), Direction::Forward) => Node::Corner((usize::from(i) + 1) % 3),
+            (ContourArc::Along(_, i), Direction::Backward) => Node::Corner((usize::from(i) + 2) % 3),
+            (ContourArc::Across(_), _) => {
                 // Counter-clockwise around the face, a piece ends where the ground falls below the
                 // level and begins where it rises above.
-                let change = match way {
-                    Way::Forward => [Greater, Less],
-                    Way::Backward => [Less, Greater],
+                let change = match direction {
+                    Direction::Forward => [Greater, Less],
+                    Direction::Backward => [Less, Greater],
                 };
                 let edge = (0..3).find(|&i| [self.side[(i + 1) % 3], self.side[(i + 2) % 3]] == change);
                 let corner = || self.side.iter().position(|&side| side == Equal).unwrap_or(0);
@@ -164,12 +164,12 @@ impl Face {
 
     /// The piece across the face that begins or ends in a corner on the level.
     fn ray(&self, corner: usize) -> Option<Ray> {
-        let way = match [self.side[(corner + 1) % 3], self.side[(corner + 2) % 3]] {
-            [Greater, Less] => Way::Forward,
-            [Less, Greater] => Way::Backward,
+        let direction = match [self.side[(corner + 1) % 3], self.side[(corner + 2) % 3]] {
+            [Greater, Less] => Direction::Forward,
+            [Less, Greater] => Direction::Backward,
             _ => return None,
         };
-        Some(Ray { face: *self, piece: Piece::Across(self.id), way })
+        Some(Ray { face: *self, arc: ContourArc::Across(self.id), direction })
     }
 }
 
@@ -178,7 +178,7 @@ pub(super) struct Fan<'c, 'a, S: ?Sized> {
     cut: &'c Cut<'a, S>,
     first: u32,
     now: Option<(Face, usize)>,
-    turn: Way,
+    turn: Direction,
     waiting: Option<Ray>,
 }
 
@@ -193,8 +193,8 @@ impl<S: Surface + ?Sized> Iterator for Fan<'_, '_, S> {
             let (face, corner) = self.now.take()?;
             // The edge to be turned over, by the corner opposite of it; the same corner beyond it.
             let (i, beyond) = match self.turn {
-                Way::Forward => ((corner + 1) % 3, 1),
-                Way::Backward => ((corner + 2) % 3, 2),
+                Direction::Forward => ((corner + 1) % 3, 1),
+                Direction::Backward => ((corner + 2) % 3, 2),
             };
             let (next, j) = self.cut.across(&face, i)?;
             let next_corner = (j + beyond) % 3;
@@ -204,8 +204,8 @@ impl<S: Surface + ?Sized> Iterator for Fan<'_, '_, S> {
             }
             if let Some(high) = self.cut.high_side(&face, i) {
                 let (k, at) = if high.id == face.id { (i, corner) } else { (j, next_corner) };
-                let way = if at == (k + 2) % 3 { Way::Forward } else { Way::Backward };
-                return Some(Ray { face: high, piece: Piece::Along(high.id, k as u8), way });
+                let direction = if at == (k + 2) % 3 { Direction::Forward } else { Direction::Backward };
+                return Some(Ray { face: high, arc: ContourArc::Along(high.id, k as u8), direction });
             }
         }
     }
@@ -231,8 +231,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_are_small() {
-        assert_eq!(size_of::<Piece>(), 8);
+    fn arcs_are_small() {
+        assert_eq!(size_of::<ContourArc>(), 8);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Where a surface crosses levels: the pieces of contour, by all cores, a stretch of faces each.
 
-use super::cut::{Cut, Piece};
+use super::cut::{ContourArc, Cut};
 use super::index::LevelIndex;
 use crate::data::Surface;
 use rayon::prelude::*;
@@ -53,23 +53,23 @@ pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec
 }
 
 /// Returns each piece of some levels with its level, in the order of the faces.
-pub(super) fn pieces<S: Surface + ?Sized>(
+pub(super) fn arcs<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
     band: Range<usize>,
-) -> Vec<Vec<(usize, Piece)>> {
+) -> Vec<Vec<(usize, ContourArc)>> {
     let of_stretch = |numbers: Range<u32>| {
-        let mut pieces = Vec::new();
+        let mut arcs = Vec::new();
         faces_at(surface, index, band.clone(), numbers, |face, heights, levels| {
             let Crossed { across, along } = Crossed::of(heights, levels, index);
             let highest = across.end;
-            pieces.extend(across.map(|level| (level, Piece::Across(face))));
+            arcs.extend(across.map(|level| (level, ContourArc::Across(face))));
             if along {
                 let cut = Cut { surface, level: index.levels()[highest] };
-                pieces.extend(cut.shore(face).map(|piece| (highest, piece)));
+                arcs.extend(cut.shore(face).map(|arc| (highest, arc)));
             }
         });
-        pieces
+        arcs
     };
     stretches(surface).into_par_iter().map(of_stretch).collect()
 }

@@ -1,4 +1,4 @@
-use super::cut::Way;
+use super::cut::Direction;
 use super::trace::{LooseEnd, Trace};
 use crate::data::Surface;
 use crate::triangulation::kernel::{Exact, Kernel, Orientation2};
@@ -27,9 +27,9 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
             Trace::Open { points, start, end } => {
                 let line = open.len();
                 open.push(points);
-                for (loose, way) in [(start, Way::Forward), (end, Way::Backward)] {
+                for (loose, direction) in [(start, Direction::Forward), (end, Direction::Backward)] {
                     let Some(LooseEnd { vertex, toward }) = loose else { continue };
-                    ends.push((vertex, End { center: plan(vertex), toward: plan(toward), way, line }));
+                    ends.push((vertex, End { center: plan(vertex), toward: plan(toward), direction, line }));
                 }
             }
         }
@@ -46,22 +46,22 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
 /// Takes lines apart, lets pieces of no length go and opposite pieces cancel that coincide now that
 /// their points are rounded, and joins the rest anew, by the turn rule at each point.
 pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
-    let mut pieces: Vec<[[f64; 2]; 2]> =
+    let mut arcs: Vec<[[f64; 2]; 2]> =
         lines.iter().flat_map(|line| line.points.windows(2)).map(|p| [p[0], p[1]]).filter(|[a, b]| a != b).collect();
     let sorted = |[a, b]: [[f64; 2]; 2]| if a <= b { [a, b] } else { [b, a] };
-    let by_place = |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
-    pieces.sort_by(|&a, &b| by_place(&sorted(a), &sorted(b)).then_with(|| by_place(&a, &b)));
+    let by_points = |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+    arcs.sort_by(|&a, &b| by_points(&sorted(a), &sorted(b)).then_with(|| by_points(&a, &b)));
     let mut open = Vec::new();
-    for same in pieces.chunk_by(|&a, &b| sorted(a) == sorted(b)) {
-        let first_way = same.iter().take_while(|&&piece| piece == same[0]).count();
-        let cancelled = first_way.min(same.len() - first_way);
-        open.extend(same[cancelled..same.len() - cancelled].iter().map(|piece| piece.to_vec()));
+    for same in arcs.chunk_by(|&a, &b| sorted(a) == sorted(b)) {
+        let first_direction = same.iter().take_while(|&&arc| arc == same[0]).count();
+        let cancelled = first_direction.min(same.len() - first_direction);
+        open.extend(same[cancelled..same.len() - cancelled].iter().map(|arc| arc.to_vec()));
     }
     let mut ends = Vec::new();
     for (line, points) in open.iter().enumerate() {
         let [a, b] = [points[0], points[1]];
-        ends.push(End { center: a, toward: b, way: Way::Forward, line });
-        ends.push(End { center: b, toward: a, way: Way::Backward, line });
+        ends.push(End { center: a, toward: b, direction: Direction::Forward, line });
+        ends.push(End { center: b, toward: a, direction: Direction::Backward, line });
     }
     ends.sort_by(|a, b| a.center.partial_cmp(&b.center).unwrap_or(Ordering::Equal));
     let mut next = vec![None; open.len()];
@@ -79,7 +79,7 @@ struct End {
     center: [f64; 2],
     /// Says on which side of the center the line is.
     toward: [f64; 2],
-    way: Way,
+    direction: Direction,
     line: usize,
 }
 
@@ -95,9 +95,9 @@ fn pair(mut group: Vec<End>, next: &mut [Option<usize>]) {
     // The second round closes the circle: nothing arrives anew.
     for round in 0..2 {
         for (end, left) in group.iter().zip(&mut left) {
-            match end.way {
-                Way::Backward if round == 0 => arrived.push(end.line),
-                Way::Forward if !*left => {
+            match end.direction {
+                Direction::Backward if round == 0 => arrived.push(end.line),
+                Direction::Forward if !*left => {
                     if let Some(line) = arrived.pop() {
                         next[line] = Some(end.line);
                         *left = true;

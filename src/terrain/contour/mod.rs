@@ -75,7 +75,7 @@ mod trace;
 use super::Levels;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
-use cut::{Cut, Piece};
+use cut::{ContourArc, Cut};
 use index::LevelIndex;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -134,7 +134,7 @@ impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
 impl<S: Surface + ?Sized> Contours<'_, S> {
     /// The pieces of all lines, counted before any is drawn. A line has a vertex for each, and one more if it is open;
     /// the few that are shorter than a rounding have none.
-    pub fn piece_count(&self) -> usize {
+    pub fn arc_count(&self) -> usize {
         self.counts.iter().sum()
     }
 
@@ -149,17 +149,17 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
         let band = first..first + self.counts[first..].iter().take_while(fits).count();
         self.next_level = band.end;
         // Pieces are sorted by level, by counting.
-        let found = find::pieces(self.surface, &self.index, band.clone());
+        let found = find::arcs(self.surface, &self.index, band.clone());
         let mut starts = vec![0; band.len() + 1];
         found.iter().flatten().for_each(|(level, _)| starts[level - first + 1] += 1);
         for i in 1..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut sorted = vec![Piece::Across(0); starts[band.len()]];
+        let mut sorted = vec![ContourArc::Across(0); starts[band.len()]];
         let mut free = starts.clone();
-        for (level, piece) in found.into_iter().flatten() {
+        for (level, arc) in found.into_iter().flatten() {
             let slot = &mut free[level - first];
-            sorted[*slot] = piece;
+            sorted[*slot] = arc;
             *slot += 1;
         }
         let drawn: Vec<Vec<ContourLine>> = band
@@ -176,8 +176,8 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
     }
 }
 
-fn draw_level<S: Surface + ?Sized>(surface: &S, level: f64, pieces: &[Piece], done: &mut Done) -> Vec<ContourLine> {
-    let Traces { traces, touches_vertices } = trace::trace(&Cut { surface, level }, pieces, done);
+fn draw_level<S: Surface + ?Sized>(surface: &S, level: f64, arcs: &[ContourArc], done: &mut Done) -> Vec<ContourLine> {
+    let Traces { traces, touches_vertices } = trace::trace(&Cut { surface, level }, arcs, done);
     let mut joined = join::join(surface, traces);
     if touches_vertices || joined.iter().any(line::falls_together) {
         joined = join::rejoin(&joined);

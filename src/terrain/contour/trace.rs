@@ -1,4 +1,4 @@
-use super::cut::{Cut, Face, Node, Piece, Way};
+use super::cut::{ContourArc, Cut, Direction, Face, Node};
 use crate::data::Surface;
 use rustc_hash::FxHashSet;
 
@@ -39,10 +39,10 @@ impl Done {
     }
 
     /// Adds a piece; false if it was there.
-    fn insert(&mut self, piece: Piece) -> bool {
-        match piece {
-            Piece::Along(face, i) => self.along.insert((face, i)),
-            Piece::Across(face) => {
+    fn insert(&mut self, arc: ContourArc) -> bool {
+        match arc {
+            ContourArc::Along(face, i) => self.along.insert((face, i)),
+            ContourArc::Across(face) => {
                 let (word, bit) = (&mut self.across[face as usize / 64], 1 << (face % 64));
                 let new = *word & bit == 0;
                 *word |= bit;
@@ -51,20 +51,20 @@ impl Done {
         }
     }
 
-    fn clear(&mut self, pieces: &[Piece]) {
+    fn clear(&mut self, arcs: &[ContourArc]) {
         self.along.clear();
-        for piece in pieces {
-            self.across[piece.face() as usize / 64] = 0;
+        for arc in arcs {
+            self.across[arc.face() as usize / 64] = 0;
         }
     }
 }
 
 /// Joins the pieces of a level, each of which is given once.
-pub(super) fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, pieces: &[Piece], done: &mut Done) -> Traces {
+pub(super) fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, arcs: &[ContourArc], done: &mut Done) -> Traces {
     let mut tracer = Tracer { cut, done, touches_vertices: false };
-    let traces = pieces.iter().filter_map(|&seed| tracer.line_of(seed)).collect();
+    let traces = arcs.iter().filter_map(|&seed| tracer.line_of(seed)).collect();
     let touches_vertices = tracer.touches_vertices;
-    done.clear(pieces);
+    done.clear(arcs);
     Traces { traces, touches_vertices }
 }
 
@@ -83,20 +83,20 @@ enum Stop {
 
 impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
     /// The line that a piece is part of, unless it was found before.
-    fn line_of(&mut self, seed: Piece) -> Option<Trace> {
+    fn line_of(&mut self, seed: ContourArc) -> Option<Trace> {
         if !self.done.insert(seed) {
             return None;
         }
         let face = self.cut.face(seed.face())?;
         let mut after = Vec::new();
-        Some(match self.follow(face, seed, Way::Forward, &mut after) {
+        Some(match self.follow(face, seed, Direction::Forward, &mut after) {
             Stop::Seed => {
                 after.extend_from_within(..1);
                 Trace::Closed(after)
             }
             Stop::Data(end) => {
                 let mut points = Vec::new();
-                let start = match self.follow(face, seed, Way::Backward, &mut points) {
+                let start = match self.follow(face, seed, Direction::Backward, &mut points) {
                     Stop::Data(start) => start,
                     // Not possible: forward would have come here too.
                     Stop::Seed => None,
@@ -109,22 +109,22 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
     }
 
     /// Goes from the seed as far as it leads; adds the far node of each piece.
-    fn follow(&mut self, mut face: Face, seed: Piece, way: Way, points: &mut Vec<[f64; 2]>) -> Stop {
-        let mut piece = seed;
+    fn follow(&mut self, mut face: Face, seed: ContourArc, direction: Direction, points: &mut Vec<[f64; 2]>) -> Stop {
+        let mut arc = seed;
         loop {
-            let node = face.node(piece, way);
+            let node = face.node(arc, direction);
             let point = self.cut.point(&face, node);
             points.push(point);
             let next = match node {
                 Node::Edge(i) => {
                     self.touches_vertices |= face.ends_at(i, point);
-                    self.cut.across(&face, i).map(|(next, _)| (next, Piece::Across(next.id)))
+                    self.cut.across(&face, i).map(|(next, _)| (next, ContourArc::Across(next.id)))
                 }
-                Node::Corner(i) => self.cut.continuation(&face, i, way).map(|ray| (ray.face, ray.piece)),
+                Node::Corner(i) => self.cut.continuation(&face, i, direction).map(|ray| (ray.face, ray.arc)),
             };
             match next {
-                Some((next, next_piece)) if self.done.insert(next_piece) => (face, piece) = (next, next_piece),
-                Some((_, next_piece)) if next_piece == seed => return Stop::Seed,
+                Some((next, next_arc)) if self.done.insert(next_arc) => (face, arc) = (next, next_arc),
+                Some((_, next_arc)) if next_arc == seed => return Stop::Seed,
                 // The first of these only if the links between faces contradict each other.
                 Some(_) | None => {
                     return Stop::Data(match node {

@@ -19,20 +19,20 @@ const REACH: f64 = 2.0;
 /// # Complexity
 /// Linear.
 pub(super) fn divided(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
-    let mut walls = [0.0_f64; 2];
+    let mut limits = [0.0_f64; 2];
     for vertex in base.tds().vertices().filter(|&vertex| vertex != VertexId::INFINITE) {
         let p = base.point(vertex);
-        walls = [0, 1].map(|k| walls[k].max(REACH * p[k].abs()));
+        limits = [0, 1].map(|k| limits[k].max(REACH * p[k].abs()));
     }
     let mut divided = Vec::with_capacity(curves.len());
     for &(domain, [a, b]) in curves {
-        let is_far = (0..2).any(|k| a[k].abs().max(b[k].abs()) > walls[k]);
+        let is_far = (0..2).any(|k| a[k].abs().max(b[k].abs()) > limits[k]);
         let mut ends = vec![a, b];
         if is_far {
-            for (axis, wall) in [(0, -walls[0]), (0, walls[0]), (1, -walls[1]), (1, walls[1])] {
-                let place = crossing([a, b], axis, wall).map(|place| base.geometry().on_step(place));
-                let admitted = place.filter(|&[x, y]| base.geometry().admits(&[x, y, 0.0]));
-                ends.extend(admitted.filter(|place| (0..2).all(|k| place[k].abs() <= walls[k])));
+            for (axis, limit) in [(0, -limits[0]), (0, limits[0]), (1, -limits[1]), (1, limits[1])] {
+                let site = crossing([a, b], axis, limit).map(|site| base.geometry().on_step(site));
+                let admitted = site.filter(|&[x, y]| base.geometry().admits(&[x, y, 0.0]));
+                ends.extend(admitted.filter(|site| (0..2).all(|k| site[k].abs() <= limits[k])));
             }
         }
         let longer = usize::from((b[0] - a[0]).abs() < (b[1] - a[1]).abs());
@@ -48,16 +48,16 @@ pub(super) fn divided(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
 
 /// Where a segment crosses a line across an axis, if it does so between its ends: to within two units in the last place,
 /// however long the segment is; and exactly, if it runs along the axis.
-fn crossing([a, b]: Segment, axis: usize, wall: f64) -> Option<[f64; 2]> {
-    let is_between = a[axis] < wall && wall < b[axis] || b[axis] < wall && wall < a[axis];
+fn crossing([a, b]: Segment, axis: usize, limit: f64) -> Option<[f64; 2]> {
+    let is_between = a[axis] < limit && limit < b[axis] || b[axis] < limit && limit < a[axis];
     if !is_between {
         return None;
     }
     let other = 1 - axis;
     let difference = |k: usize| Dyadic::difference(b[k], a[k]);
-    let numerator = Dyadic::from(a[other]) * difference(axis) + Dyadic::difference(wall, a[axis]) * difference(other);
-    let mut place = [wall; 2];
+    let numerator = Dyadic::from(a[other]) * difference(axis) + Dyadic::difference(limit, a[axis]) * difference(other);
+    let mut site = [limit; 2];
     let (low, high) = (a[other].min(b[other]), a[other].max(b[other]));
-    place[other] = numerator.quotient(&difference(axis)).clamp(low, high) + 0.0; // zero has one sign only
-    Some(place)
+    site[other] = numerator.quotient(&difference(axis)).clamp(low, high) + 0.0; // zero has one sign only
+    Some(site)
 }

@@ -62,7 +62,7 @@ type Side = (u32, usize);
 pub(super) struct Cut {
     patch: Patch,
     remains: Remains,
-    first_piece: usize,
+    first_fragment: usize,
     first_vertex: usize,
 }
 
@@ -101,8 +101,8 @@ pub(super) fn cut(
     let within = regions::domains_at(base.geometry(), patched.corners(start), &patched.drawn(curves));
     let kept = regions::keep(&patched, patched.count(), start, within, is_kept);
     let remains = patched.remains(inside, &kept);
-    let (first_piece, first_vertex) = (base.tds().cell_slots(), base.tds().vertex_slots());
-    Ok(Some(Cut { patch, remains, first_piece, first_vertex }))
+    let (first_fragment, first_vertex) = (base.tds().cell_slots(), base.tds().vertex_slots());
+    Ok(Some(Cut { patch, remains, first_fragment, first_vertex }))
 }
 
 impl Cut {
@@ -118,7 +118,7 @@ impl Cut {
 
     /// One more than the largest number of a face.
     pub(super) fn face_count(&self) -> usize {
-        self.first_piece + self.remains.is_piece.len()
+        self.first_fragment + self.remains.is_fragment.len()
     }
 
     /// One more than the largest number of a vertex.
@@ -137,10 +137,10 @@ impl Cut {
     }
 
     /// The face of the patch with a number, if it is a piece.
-    fn piece(&self, face: u32) -> Option<CellId> {
-        let at = (face as usize).checked_sub(self.first_piece)?;
-        let is_piece = *self.remains.is_piece.get(at)?;
-        is_piece.then(|| CellId::new(at))
+    fn fragment(&self, face: u32) -> Option<CellId> {
+        let at = (face as usize).checked_sub(self.first_fragment)?;
+        let is_fragment = *self.remains.is_fragment.get(at)?;
+        is_fragment.then(|| CellId::new(at))
     }
 
     /// The corners of a piece, counter-clockwise.
@@ -149,15 +149,15 @@ impl Cut {
             Some(vertex) => vertex.index() as u32,
             None => (self.first_vertex + vertex.index()) as u32,
         };
-        Some(self.patch.triangulation.tds().corners(self.piece(face)?).map(number))
+        Some(self.patch.triangulation.tds().corners(self.fragment(face)?).map(number))
     }
 
     /// What lies beyond a side, if it or the face is a piece.
     pub(super) fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
-        if let Some(piece) = self.piece(face) {
-            let beyond = self.patch.triangulation.tds().neighbor(piece, i);
-            if self.remains.is_piece[beyond.index()] {
-                return Some((self.first_piece + beyond.index()) as u32);
+        if let Some(fragment) = self.fragment(face) {
+            let beyond = self.patch.triangulation.tds().neighbor(fragment, i);
+            if self.remains.is_fragment[beyond.index()] {
+                return Some((self.first_fragment + beyond.index()) as u32);
             }
         }
         self.remains.beside.get(&(face, i)).copied()
@@ -165,7 +165,7 @@ impl Cut {
 
     /// What a side of a piece is.
     pub(super) fn edge_kind(&self, face: u32, i: usize) -> Option<EdgeKind> {
-        self.piece(face).map(|piece| self.remains.kinds[piece.index()][i])
+        self.fragment(face).map(|fragment| self.remains.kinds[fragment.index()][i])
     }
 
     /// Whether a breakline runs along the side of a whole triangle, as it is seen from the piece beside it.
@@ -181,15 +181,15 @@ impl Cut {
     /// The height at a place in plan that is admitted, if it lies in a piece.
     pub(super) fn elevation(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let triangulation = &self.patch.triangulation;
-        let is_piece = |cell: &CellId| self.remains.is_piece[cell.index()];
+        let is_fragment = |cell: &CellId| self.remains.is_fragment[cell.index()];
         let location = triangulation.locate(&[x, y, 0.0], None);
         match location {
             Location::Vertex(vertex) => {
-                triangulation.tds().around(vertex).any(|cell| is_piece(&cell)).then(|| self.point(vertex)[2])
+                triangulation.tds().around(vertex).any(|cell| is_fragment(&cell)).then(|| self.point(vertex)[2])
             }
             Location::Cell { cell, .. } => {
                 let beside = location.facets().map(|(cell, i)| triangulation.tds().neighbor(cell, i));
-                let cell = std::iter::once(cell).chain(beside).find(is_piece)?;
+                let cell = std::iter::once(cell).chain(beside).find(is_fragment)?;
                 Some(linear(triangulation.tds().corners(cell).map(|vertex| self.point(vertex)), [x, y]))
             }
             Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,

@@ -109,7 +109,7 @@ impl Drawing {
     /// spikes and gaps that are narrower than a rounding. An edge that is such a line, too, is arranged once. Returns
     /// the segment of each line, too.
     fn arrange(&self, step: f64) -> (Arrangement, Vec<u32>) {
-        let place = |i: u32| [self.points[i as usize][0], self.points[i as usize][1]];
+        let site = |i: u32| [self.points[i as usize][0], self.points[i as usize][1]];
         let cut: FxHashMap<Ends, u32> = self.lines[..self.first_edge].iter().copied().zip(0..).collect();
         let mut distinct = self.lines[..self.first_edge].to_vec();
         let mut at: Vec<u32> = (0..self.first_edge as u32).collect();
@@ -119,8 +119,8 @@ impl Drawing {
                 distinct.push(*line);
             }
         }
-        let arrangement = Arrangement::with_snapped(self.points.len(), place, &distinct, self.first_edge, step)
-            .settled(place, &distinct, step);
+        let arrangement = Arrangement::with_snapped(self.points.len(), site, &distinct, self.first_edge, step)
+            .settled(site, &distinct, step);
         (arrangement, at)
     }
 }

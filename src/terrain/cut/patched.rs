@@ -30,7 +30,7 @@ pub(super) struct Patched<'a> {
 #[derive(Debug)]
 pub(super) struct Remains {
     /// For each face of the patch, whether it is part of the surface as a piece.
-    pub(super) is_piece: Vec<bool>,
+    pub(super) is_fragment: Vec<bool>,
     /// What the sides of the pieces are.
     pub(super) kinds: Vec<[EdgeKind; 3]>,
     /// Across sides between a piece and a whole triangle, from either.
@@ -75,33 +75,35 @@ impl<'a> Patched<'a> {
     }
 
     pub(super) fn count(&self) -> usize {
-        self.first_piece() + self.patch.cells.len()
+        self.first_fragment() + self.patch.cells.len()
     }
 
-    fn first_piece(&self) -> usize {
+    fn first_fragment(&self) -> usize {
         self.base.tds().cell_slots()
     }
 
     fn number(&self, face: CellId) -> u32 {
-        (self.first_piece() + face.index()) as u32
+        (self.first_fragment() + face.index()) as u32
     }
 
     /// A face of the patch by its number, or `None` if it is one of the triangulation.
-    fn piece(&self, face: u32) -> Option<CellId> {
-        (face as usize).checked_sub(self.first_piece()).map(CellId::new)
+    fn fragment(&self, face: u32) -> Option<CellId> {
+        (face as usize).checked_sub(self.first_fragment()).map(CellId::new)
     }
 
     /// Any face.
     pub(super) fn first(&self) -> Option<u32> {
         let whole = self.base.finite_cells().find(|cell| !self.is_replaced[cell.index()]);
-        let piece = || self.patch.cells.iter().position(Option::is_some).map(|at| self.number(CellId::new(at)));
-        whole.map(|cell| cell.index() as u32).or_else(piece)
+        let fragment = || self.patch.cells.iter().position(Option::is_some).map(|at| self.number(CellId::new(at)));
+        whole.map(|cell| cell.index() as u32).or_else(fragment)
     }
 
     /// The corners of a face, counter-clockwise.
     pub(super) fn corners(&self, face: u32) -> [[f64; 3]; 3] {
-        match self.piece(face) {
-            Some(piece) => self.patch.triangulation.tds().corners(piece).map(|v| *self.patch.triangulation.point(v)),
+        match self.fragment(face) {
+            Some(fragment) => {
+                self.patch.triangulation.tds().corners(fragment).map(|v| *self.patch.triangulation.point(v))
+            }
             None => self.base.tds().corners(CellId::new(face as usize)).map(|v| *self.base.point(v)),
         }
     }
@@ -114,12 +116,12 @@ impl<'a> Patched<'a> {
                 drawn.push((domain, segment));
                 continue;
             };
-            let place = |v: VertexId| {
+            let site = |v: VertexId| {
                 let [x, y, _] = *self.patch.triangulation.point(v);
                 [x, y]
             };
             let chain = self.patch.triangulation.chain(*line);
-            drawn.extend(chain.windows(2).map(|pair| (domain, [place(pair[0]), place(pair[1])])));
+            drawn.extend(chain.windows(2).map(|pair| (domain, [site(pair[0]), site(pair[1])])));
         }
         drawn
     }
@@ -133,23 +135,24 @@ impl<'a> Patched<'a> {
         for (cell, inside) in inside.iter_mut().enumerate() {
             *inside &= if self.is_replaced[cell] { whole.contains(&CellId::new(cell)) } else { kept[cell] };
         }
-        let in_pieces: FxHashSet<CellId> =
+        let in_fragments: FxHashSet<CellId> =
             was_inside.into_iter().filter(|(cell, was)| *was && !whole.contains(cell)).map(|(cell, _)| cell).collect();
-        let is_piece: Vec<bool> = (0..self.patch.cells.len())
+        let is_fragment: Vec<bool> = (0..self.patch.cells.len())
             .map(|face| {
-                kept[self.first_piece() + face] && self.patch.cells[face].is_some_and(|cell| in_pieces.contains(&cell))
+                kept[self.first_fragment() + face]
+                    && self.patch.cells[face].is_some_and(|cell| in_fragments.contains(&cell))
             })
             .collect();
         let mut remains = Remains {
-            kinds: vec![[EdgeKind::Plain; 3]; is_piece.len()],
+            kinds: vec![[EdgeKind::Plain; 3]; is_fragment.len()],
             beside: FxHashMap::default(),
             breaklines: FxHashSet::default(),
             clipped: self.clipped(),
             cut: 0,
-            is_piece,
+            is_fragment,
         };
         let mut cut: Vec<CellId> = Vec::new();
-        for face in (0..remains.is_piece.len()).filter(|&face| remains.is_piece[face]).map(CellId::new) {
+        for face in (0..remains.is_fragment.len()).filter(|&face| remains.is_fragment[face]).map(CellId::new) {
             cut.extend(self.patch.cells[face.index()]);
             for i in 0..3 {
                 let beyond = self.patch.triangulation.tds().neighbor(face, i);
@@ -157,7 +160,7 @@ impl<'a> Patched<'a> {
                 if let Some(side) = whole {
                     remains.beside.extend([((self.number(face), i), side.0), (side, self.number(face))]);
                 }
-                let is_rim = whole.is_none() && !remains.is_piece[beyond.index()];
+                let is_rim = whole.is_none() && !remains.is_fragment[beyond.index()];
                 let kind = self.kind(face, i, is_rim);
                 remains.breaklines.extend(whole.filter(|_| kind == EdgeKind::Breakline));
                 remains.kinds[face.index()][i] = kind;
@@ -177,7 +180,7 @@ impl<'a> Patched<'a> {
             if let Some(cell) = cell {
                 let [all, left] = faces.entry(*cell).or_default();
                 *all += 1;
-                *left += usize::from(kept[self.first_piece() + face]);
+                *left += usize::from(kept[self.first_fragment() + face]);
             }
         }
         let is_whole = |cell: &CellId| inside[cell.index()] && faces.get(cell).is_some_and(|[all, left]| all == left);
@@ -253,22 +256,22 @@ impl Faces for Patched<'_> {
         let tds = self.patch.triangulation.tds();
         let across_border = self.border.get(&(face, side)).copied();
         // The side of a piece, on whichever side of it, and what is beyond.
-        let (piece, i, beyond) = match (self.piece(face), across_border) {
-            (Some(piece), Some((beyond, _))) => (piece, side, beyond),
-            (Some(piece), None) => {
-                let beyond = tds.neighbor(piece, side);
+        let (fragment, i, beyond) = match (self.fragment(face), across_border) {
+            (Some(fragment), Some((beyond, _))) => (fragment, side, beyond),
+            (Some(fragment), None) => {
+                let beyond = tds.neighbor(fragment, side);
                 self.patch.cells[beyond.index()]?;
-                (piece, side, self.number(beyond))
+                (fragment, side, self.number(beyond))
             }
-            (None, Some((beyond, i))) => (self.piece(beyond)?, i, beyond),
+            (None, Some((beyond, i))) => (self.fragment(beyond)?, i, beyond),
             (None, None) => {
                 let beyond = self.base.tds().neighbor(CellId::new(face as usize), side);
                 let is_there = !self.base.tds().is_infinite(beyond) && !self.is_replaced[beyond.index()];
                 return is_there.then_some(beyond.index() as u32);
             }
         };
-        if self.patch.triangulation.is_constrained(piece, i) {
-            let [p, q] = tds.edge_ends(piece, i);
+        if self.patch.triangulation.is_constrained(fragment, i) {
+            let [p, q] = tds.edge_ends(fragment, i);
             let lines = self.patch.triangulation.lines_through(p, q);
             lines.filter_map(|line| self.domains.get(line.index())).for_each(|of_line| domains.extend(of_line));
         }

@@ -41,10 +41,10 @@ pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
         }));
     }
     let step = base.geometry().step();
-    let place = |i: u32| points[i as usize];
+    let site = |i: u32| points[i as usize];
     let arrangement =
-        Arrangement::with_snapped(points.len(), place, &segments, segments.len(), step).settled(place, &segments, step);
-    let place = |site: u32| match (site as usize).checked_sub(points.len()) {
+        Arrangement::with_snapped(points.len(), site, &segments, segments.len(), step).settled(site, &segments, step);
+    let site = |site: u32| match (site as usize).checked_sub(points.len()) {
         Some(added) => arrangement.added()[added],
         None => points[site as usize],
     };
@@ -59,7 +59,7 @@ pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
             chain.reverse();
         }
         let chain: Vec<u32> = std::iter::once(a).chain(chain).chain([b]).collect();
-        snapped.extend(chain.windows(2).map(|pair| (domain, [place(pair[0]), place(pair[1])])));
+        snapped.extend(chain.windows(2).map(|pair| (domain, [site(pair[0]), site(pair[1])])));
     }
     snapped
 }

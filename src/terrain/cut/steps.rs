@@ -197,12 +197,12 @@ impl Arranged<'_> {
         let right = [q[1] - p[1], p[0] - q[0]];
         let longer = right[0].abs().max(right[1].abs());
         let [i, j] = right.map(|side| (side / longer * f64::from(distance)).round());
-        let is_that_way = |other: &u32| {
+        let is_that_direction = |other: &u32| {
             let [u, v, _] = self.points[*other as usize];
             let [u, v] = [(u - x) / self.unit[0], (v - y) / self.unit[1]];
             u * j == v * i && u * i + v * j > 0.0
         };
-        if let Some(next) = self.beside_on(chain, site).into_iter().flatten().find(is_that_way) {
+        if let Some(next) = self.beside_on(chain, site).into_iter().flatten().find(is_that_direction) {
             return Some(next);
         }
         // If it does meet another, then a little to one side, or not as far.
@@ -222,18 +222,18 @@ impl Arranged<'_> {
 
     /// Whether a chain can be led through a new point in place of a site without meeting others.
     fn is_free(&self, site: u32, moved: &[f64; 3], chain: usize, others: &[usize]) -> bool {
-        let place = |site: u32| &self.points[site as usize];
+        let point = |site: u32| &self.points[site as usize];
         let side = |p, q, r| self.base.geometry().orientation([p, q, r]);
         let crosses = |end: u32, [c, d]: [u32; 2]| {
-            let (b, p, q) = (place(end), place(c), place(d));
+            let (b, p, q) = (point(end), point(c), point(d));
             end != c
                 && end != d
                 && side(moved, b, p) * side(moved, b, q) != Sign::Positive
                 && side(p, q, moved) * side(p, q, b) != Sign::Positive
         };
-        let mut pieces = others.iter().flat_map(|&other| self.chains[other].windows(2).map(|pair| [pair[0], pair[1]]));
+        let mut edges = others.iter().flat_map(|&other| self.chains[other].windows(2).map(|pair| [pair[0], pair[1]]));
         let ends = self.beside_on(chain, site);
-        pieces.all(|piece| !ends.into_iter().flatten().any(|end| crosses(end, piece)))
+        edges.all(|edge| !ends.into_iter().flatten().any(|end| crosses(end, edge)))
     }
 
     /// The points before and after a site on a chain.

@@ -45,7 +45,7 @@ impl FaceIndex {
                 let mut found = Vec::new();
                 for face in chunk * CHUNK..(chunk + 1).saturating_mul(CHUNK).min(face_count) {
                     let Some(corners) = surface.triangle(face) else { continue };
-                    let corners = corners.map(|p| placement.place(p));
+                    let corners = corners.map(|p| placement.to_plane(p));
                     empty.bins_of(&corners, placement, |bin| found.push((bin, face)));
                 }
                 found

@@ -64,7 +64,7 @@ impl<S: Surface + ?Sized> BlockSource for Dem<'_, S> {
             let columns = columns.start - column..columns.end - column;
             for &face in faces {
                 let Some(corners) = self.surface.triangle(face) else { continue };
-                let corners = corners.map(|p| self.placement.place(p));
+                let corners = corners.map(|p| self.placement.to_plane(p));
                 scan.draw(corners, &rows, &columns);
             }
         }

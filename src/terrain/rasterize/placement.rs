@@ -48,7 +48,7 @@ impl Placement {
 
     /// Where a vertex is in the plane of the scan.
     #[inline]
-    pub(super) fn place(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    pub(super) fn to_plane(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         match &self.mapping {
             Mapping::Mirror([sign_x, sign_y]) => [sign_x * x, sign_y * y, z],
             Mapping::Pixels(to_pixels, rounding) => {
