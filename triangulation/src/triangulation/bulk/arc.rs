@@ -1,8 +1,10 @@
-//! Points on an arc, from one end of it to the other.
+//! Triangulates points on an arc, from one end of it to the other.
 //!
-//! Halves of an arc along which the curvature falls are fans. A merge of two of them destroys one, so that each level
-//! of divide and conquer destroys half of all triangles. Beginning at the sharp end, one by one, a point is joined to
-//! the end points of the last edge, and nothing is destroyed:
+//! Halves of an arc along which the curvature falls are fans. A merge of two of them destroys one,
+//! so that each level of divide and conquer destroys half of all triangles. If the points are
+//! inserted one by one from the sharp end, each is joined to the ends of the last edge, and nothing
+//! is destroyed:
+//!
 //!
 //! ```text
 //!            . e
@@ -12,12 +14,13 @@
 //!     a. '
 //! ```
 //!
-//! An arc here is convex and rises or falls all the way; so an end point beyond it sees one edge only. Where triangles
-//! are destroyed all the same, edges are flipped (Lawson 1977) as long as that is less work than merges would be. Work
-//! in vain is a few steps a point at most: after an attempt, none is made with more than three quarters as many points.
+//! An arc here is convex and rises or falls all along, so that an end point beyond it sees one edge
+//! only. Where triangles are destroyed all the same, edges are flipped (Lawson 1977), as long as
+//! that is less work than merges would be. The work lost on failed attempts is a few steps a point
+//! at most: after one, the next is made with at most three quarters as many points.
 //!
-//! `PERF:` 100 000 points on a parabola: 211 instead of 484 million instructions, with reading the file. Insertion in
-//! random order (Chew 1990), which suits any arc: 567.
+//! `PERF:` 100 000 points on a parabola: 211 instead of 484 million instructions, with reading the
+//! file. Insertion in random order (Chew 1990), which suits any arc: 567.
 
 use std::cmp::Ordering;
 
@@ -29,28 +32,29 @@ use super::faces::Range;
 use super::filter::NOWHERE;
 use super::{Axis, Part};
 
-/// Fewer points are merged: to look whether they are on an arc takes as long.
+/// Smaller ranges are merged: the test for an arc takes as long.
 pub(super) const LEAST: usize = 200;
 
-/// More points are halved, so that threads can share them.
+/// Larger ranges are cut in two, so that threads can share them.
 pub(super) const MOST: usize = 1 << 17;
 
-/// So many are put in order by comparison.
+/// Ranges of up to so many points are sorted by comparison.
 const FEW: usize = 8;
 
-/// Of flips, for each point that is there already: merges take about one for each level.
+/// Flips allowed for each point inserted so far: merges take about one for each level.
 const FLIPS: usize = 3;
 
-/// Of flips, on top: where an arc begins, its curvature is lost in roundings.
+/// Flips allowed on top: at the start of an arc, its curvature is lost in roundings.
 const FIRST_FLIPS: usize = 64;
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
-    /// A range of points on an arc; `None`, and faces to be overwritten, if it is none, or takes too long.
+    /// Triangulates a range of points on an arc; `None` if they are not on one or it takes too
+    /// long, with faces in an undefined state, to be overwritten.
     #[inline(never)]
     pub(super) fn arc(&mut self, lo: usize, hi: usize) -> Option<Part> {
         let samples = [0, 1, 2, 3].map(|k| VertexId::new(lo + (hi - 1 - lo) * k / 3));
-        let places = samples.map(|v| self.seen.place(v));
-        let rises = |i: usize, j: usize| (places[j][0] - places[i][0]) * (places[j][1] - places[i][1]);
+        let sites = samples.map(|v| self.seen.site(v));
+        let rises = |i: usize, j: usize| (sites[j][0] - sites[i][0]) * (sites[j][1] - sites[i][1]);
         let slopes = [rises(0, 1), rises(0, 2), rises(0, 3), rises(1, 2), rises(1, 3), rises(2, 3)];
         if slopes.iter().all(|&s| s >= 0.0) || slopes.iter().all(|&s| s <= 0.0) {
             return self.sampled_arc(lo, hi, slopes.iter().any(|&s| s > 0.0));
@@ -61,7 +65,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     #[cold]
     fn sampled_arc(&mut self, lo: usize, hi: usize, rises: bool) -> Option<Part> {
         let (mut chain, mut turn) = self.along(lo, hi, rises)?;
-        // From where the curvature is larger: the circle through three points of the arc leaves the fourth outside.
+        // Start where the curvature is larger: the circle through three points of the arc does not
+        // contain the fourth.
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| chain[(chain.len() - 1) * k / 3]);
         let ends = if turn == Sign::Positive { [a, b] } else { [b, a] };
         if self.seen.in_circle(c, ends, d) {
@@ -71,11 +76,12 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         self.insert_along(&chain, turn, 2 * lo as u32)
     }
 
-    /// The points of a range by rising `x`, or by rising `y` and falling `x`, and to which side they turn.
+    /// Returns the points of a range by rising `x`, or by rising `y` and falling `x`, and the side
+    /// that they turn to.
     fn along(&self, lo: usize, hi: usize, rises: bool) -> Option<(Vec<VertexId>, Sign)> {
-        // Turned to the right if the arc falls: neither coordinate falls along it then.
-        let place = |v: VertexId| {
-            let [x, y] = self.seen.place(v);
+        // Rotated to the right if the arc falls: neither coordinate falls along it then.
+        let site = |v: VertexId| {
+            let [x, y] = self.seen.site(v);
             if rises { [x, y] } else { [y, -x] }
         };
         let mut chain: Vec<VertexId> = Vec::with_capacity(hi - lo);
@@ -92,7 +98,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 continue;
             }
             few.clear();
-            few.extend((lo..hi).map(VertexId::new).map(|v| (place(v), v)));
+            few.extend((lo..hi).map(VertexId::new).map(|v| (site(v), v)));
             few.sort_unstable_by(|(p, _), (q, _)| p.partial_cmp(q).unwrap_or(Ordering::Equal));
             for &(r, vertex) in &few {
                 let [p, q] = last;
@@ -115,14 +121,14 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let &[a, b, ref rest @ ..] = chain else { return None };
         let turns_left = turn == Sign::Positive;
         let mut open = self.pair([a, b], first_face)[usize::from(turns_left)];
-        let mut unsettled = Vec::new();
+        let mut unchecked = Vec::new();
         let mut flips = 0;
         for (count, (&next, fresh)) in rest.iter().zip((first_face + 2..).step_by(2)).enumerate() {
             let before_and_after = self.add(next, open, fresh);
-            unsettled.push(std::mem::replace(&mut open, before_and_after[usize::from(turns_left)]));
-            while let Some(face) = unsettled.pop() {
+            unchecked.push(std::mem::replace(&mut open, before_and_after[usize::from(turns_left)]));
+            while let Some(face) = unchecked.pop() {
                 if let Some(beside) = self.flip_outward(face) {
-                    unsettled.extend([face, beside]);
+                    unchecked.extend([face, beside]);
                     flips += 1;
                 }
             }
@@ -133,8 +139,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         Some(Part { bottom: open, top: open, first: first_face / 2 })
     }
 
-    /// A ghost becomes the triangle to a vertex that sees no other edge of the hull. Returns the ghosts of the edges to
-    /// the vertex and from there.
+    /// Turns a ghost into the triangle to a vertex that sees no other edge of the hull. Returns the
+    /// ghosts of the edges to the vertex and from it.
     #[inline(always)]
     fn add(&mut self, vertex: VertexId, ghost: u32, fresh: u32) -> [u32; 2] {
         let (to, from) = (fresh, fresh + 1);
@@ -151,8 +157,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         [to, from]
     }
 
-    /// Flips the first edge of a face if the vertex in the last slot lies in the circle beyond; both faces then have it
-    /// there. Returns the other one.
+    /// Flips the first edge of a face if the vertex in the last slot lies in the circle of the face
+    /// beyond; then both faces have that vertex in their last slot. Returns the other face.
     #[inline(always)]
     fn flip_outward(&mut self, face: u32) -> Option<u32> {
         let [p, q, vertex] = self.face(face).vertices;

@@ -1,20 +1,20 @@
-//! Where points lie on a space filling curve.
+//! The position of points on a space-filling curve.
 
 use crate::parallel::*;
 
 /// A Morton curve (Morton 1966) through the box around some points of one to three coordinates.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
-    /// Times `unit`.
+    /// The least coordinates, times `unit`.
     min: [f64; 3],
-    /// Powers of two that bring the extent to where it and its inverse are numbers: 1, but at the extremes; 0 on an
-    /// axis on which all points are equal by comparison.
+    /// Powers of two that scale the extent to where it and its inverse are finite: 1, except at the
+    /// extremes; 0 on an axis on which all points are equal by comparison.
     unit: [f64; 3],
-    /// Steps in a unit; the same on all axes, so that parts are squares and cubes.
+    /// Steps in a unit; the same on all axes, so that cells of the curve are squares and cubes.
     scale: f64,
 }
 
-/// Least and largest coordinate on each axis, and how many axes there are.
+/// The least and the largest coordinate on each axis, and the number of axes.
 #[derive(Clone, Copy)]
 pub(super) struct Span {
     min: [f64; 3],
@@ -29,7 +29,7 @@ impl Span {
     pub(super) fn with(mut self, point: &[f64]) -> Self {
         self.axes = point.len().min(3);
         for (axis, &x) in point.iter().take(3).enumerate() {
-            // `f64::min` takes NaN into account, which costs.
+            // `f64::min` handles NaN, which takes time.
             self.min[axis] = if x < self.min[axis] { x } else { self.min[axis] };
             self.max[axis] = if x > self.max[axis] { x } else { self.max[axis] };
         }
@@ -46,7 +46,7 @@ impl Span {
 }
 
 impl Curve {
-    /// The curve through `count` points; `chunk` of them are looked at together by one thread.
+    /// Returns the curve through `count` points; one thread reads `chunk` of them at a time.
     pub(super) fn through<A: AsRef<[f64]>>(
         count: usize,
         coordinates: impl Fn(usize) -> A + Sync,
@@ -60,7 +60,7 @@ impl Curve {
         Self::along(chunks.map(|c| span_of(c * chunk, count.min((c + 1) * chunk))).reduce(|| Span::EMPTY, Span::and))
     }
 
-    /// The curve through all of a box.
+    /// Returns the curve through all of a box.
     pub(super) fn along(Span { min, max, axes }: Span) -> Self {
         let extent = |unit: f64| (0..axes).map(|axis| max[axis] * unit - min[axis] * unit).fold(0.0, f64::max);
         let unit = match extent(1.0) {
@@ -77,24 +77,24 @@ impl Curve {
         Curve { min, unit, scale }
     }
 
-    /// Whether all points are in one place.
+    /// Returns true if all points are equal.
     pub(super) fn is_point(&self) -> bool {
         self.scale == 0.0
     }
 
-    /// Which of the `2^31` (of three axes: `2^21`) steps along an axis a coordinate is in: never one less for a larger
-    /// coordinate.
+    /// Returns which of the `2^31` (with three axes: `2^21`) steps along an axis a coordinate is
+    /// in. A larger coordinate never has a smaller step.
     #[inline(always)]
     fn step(&self, axis: usize, x: f64) -> u64 {
-        // In the doubles from 2^52 to 2^53 the low bits are a whole number. A conversion has to look for overflow and
-        // NaN, which takes three times as long.
+        // The low bits of a double from 2^52 to 2^53 are a whole number. A conversion tests for
+        // overflow and NaN, which takes three times as long.
         const WHOLE: f64 = (1u64 << 52) as f64;
         let steps = (x * self.unit[axis] - self.min[axis]) * self.scale;
         u64::from((steps + WHOLE).to_bits() as u32)
     }
 
-    /// Where a point lies on the curve, in the high bits. The highest bit is one of the first axis, the others follow
-    /// in turn; a larger coordinate never has the smaller bits.
+    /// Returns the position of a point on the curve, in the high bits. The highest bit is one of
+    /// the first axis, the others follow in turn; a larger coordinate never has smaller bits.
     #[inline(always)]
     pub(super) fn key(&self, point: &[f64]) -> u64 {
         match *point {
@@ -109,19 +109,21 @@ impl Curve {
     }
 }
 
-/// Squares of one size (segments, cubes), such that all points of one have the same highest bits of their keys.
+/// Squares of one size (segments, cubes), such that all points in one of them have the same highest
+/// bits of their keys.
 ///
-/// `PERF:` which of them a point is in is found without spreading bits.
+/// `PERF:` the square of a point is found without spreading bits.
 pub(super) struct Squares<'a> {
     curve: &'a Curve,
     axes: usize,
-    /// Of a step on each axis, the bits that tell the squares apart, and those below.
+    /// For each axis, the number of bits of a step that distinguish squares, and of those below.
     bits: [u32; 3],
     low: [u32; 3],
 }
 
 impl<'a> Squares<'a> {
-    /// The squares that the highest `bits` bits of keys tell apart, for points of some axes: one to three.
+    /// Returns the squares that the highest `bits` bits of keys distinguish, for points with one to
+    /// three axes.
     pub(super) fn new(curve: &'a Curve, axes: usize, bits: u32) -> Self {
         let axes = axes.min(3);
         let of_step = if axes == 3 { 21 } else { 31 };
@@ -132,7 +134,7 @@ impl<'a> Squares<'a> {
         Squares { curve, axes, bits, low: bits.map(|bits| of_step - bits) }
     }
 
-    /// The square that a point is in, counted row by row.
+    /// Returns the square that a point is in, counted row by row.
     #[inline(always)]
     pub(super) fn of(&self, point: &[f64]) -> usize {
         let part = |axis: usize| (self.curve.step(axis, point[axis]) >> self.low[axis]) as usize;
@@ -144,7 +146,7 @@ impl<'a> Squares<'a> {
         }
     }
 
-    /// The highest bits of the keys in a square.
+    /// Returns the highest bits of the keys in a square.
     pub(super) fn key_bits(&self, square: usize) -> usize {
         let [x, y, z] = self.bits;
         let steps = [square >> (y + z), square >> z & ((1 << y) - 1), square & ((1 << z) - 1)];
@@ -158,7 +160,7 @@ impl<'a> Squares<'a> {
     }
 }
 
-/// The bits of a 32-bit number at the even places of 64.
+/// Returns the bits of a 32-bit number at the even positions of 64.
 #[inline(always)]
 fn spread_by_two(x: u64) -> u64 {
     let x = (x | x << 16) & 0x0000_FFFF_0000_FFFF;
@@ -168,7 +170,7 @@ fn spread_by_two(x: u64) -> u64 {
     (x | x << 1) & 0x5555_5555_5555_5555
 }
 
-/// The bits of a 21-bit number at every third place of 63.
+/// Returns the bits of a 21-bit number at every third position of 63.
 #[inline(always)]
 fn spread_by_three(x: u64) -> u64 {
     let x = (x | x << 32) & 0x001F_0000_0000_FFFF;

@@ -1,4 +1,5 @@
-//! Faces while they are built: edges are numbered, and slots for neighbors hold the twin of an edge.
+//! Faces under construction: edges are numbered, and the slots for neighbors hold the twin of an
+//! edge.
 
 use std::num::NonZeroU32;
 
@@ -9,7 +10,8 @@ use super::Grain;
 use super::filter::Seen;
 use super::order::Keys;
 
-/// The edge of a face from the vertex in a slot to the next one: `4 * face + slot + 1`.
+/// The edge of a face from the vertex in a slot to the next one, as the number
+/// `4 * face + slot + 1`.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Edge(NonZeroU32);
 
@@ -30,28 +32,28 @@ impl Edge {
         (self.0.get() as usize & 3).wrapping_sub(1)
     }
 
-    /// The slot of the next edge of the face.
+    /// Returns the slot of the next edge of the face.
     ///
-    /// `PERF:` a table in a constant. Of `if slot == 2 { 0 } else { slot + 1 }` the compiler makes a branch, and two
-    /// mispredictions a point.
+    /// `PERF:` a table in a constant. The compiler turns `if slot == 2 { 0 } else { slot + 1 }`
+    /// into a branch, which is two mispredictions a point.
     #[inline(always)]
     pub(super) fn next_slot(self) -> usize {
         (0b00_10_01_00 >> (2 * (self.0.get() & 3)) & 3) as usize
     }
 
-    /// The slot of the previous edge, and of the vertex opposite.
+    /// Returns the slot of the previous edge, which is also that of the vertex opposite.
     #[inline(always)]
     pub(super) fn previous_slot(self) -> usize {
         (0b01_00_10_00 >> (2 * (self.0.get() & 3)) & 3) as usize
     }
 
-    /// As it is kept in the slots for neighbors.
+    /// Returns the edge as the slots for neighbors store it.
     #[inline(always)]
     fn kept(self) -> CellId {
         CellId::from_stored(self.0)
     }
 
-    /// What is kept there.
+    /// Returns the edge that a slot for neighbors stores.
     #[inline(always)]
     pub(super) fn of(kept: CellId) -> Self {
         Edge(kept.stored())
@@ -60,11 +62,11 @@ impl Edge {
 
 /// The faces of a range of points, and what is needed to build them.
 ///
-/// `PERF:` indexes are checked: without that it is 7 % fewer instructions, and no difference in time that stands out of
-/// the noise (183 against 185 ns a point of 100 000).
+/// `PERF:` indexes are checked. Without the checks there are 7 % fewer instructions, and no
+/// difference in time beyond the noise (183 against 185 ns a point of 100 000).
 pub(super) struct Range<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> {
     pub(super) seen: &'a Seen<'a, G, N, FILTERED>,
-    /// Of the points from number `first` on.
+    /// Keys of the points from number `first` on.
     pub(super) keys: &'a Keys,
     pub(super) first: usize,
     /// The faces from number `offset` on.
@@ -89,26 +91,26 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         self.face(face).vertices[slot]
     }
 
-    /// The same edge as the face beside has it.
+    /// Returns the same edge as the face on its other side has it.
     #[inline(always)]
     pub(super) fn twin(&self, face: u32, slot: usize) -> Edge {
         Edge::of(self.face(face).neighbors[slot])
     }
 
-    /// The vertex opposite an edge in its face.
+    /// Returns the vertex opposite an edge in its face.
     #[inline(always)]
     pub(super) fn opposite(&self, edge: Edge) -> VertexId {
         self.vertex(edge.face(), edge.previous_slot())
     }
 
-    /// Makes two edges, as face and slot, twins.
+    /// Makes two edges twins, each given by face and slot.
     #[inline(always)]
     pub(super) fn link(&mut self, a: (u32, usize), b: (u32, usize)) {
         self.face_mut(a.0).neighbors[a.1] = Edge::new(b.0, b.1).kept();
         self.face_mut(b.0).neighbors[b.1] = Edge::new(a.0, a.1).kept();
     }
 
-    /// The same with an edge that is there.
+    /// Makes an edge, given by face and slot, the twin of another one.
     #[inline(always)]
     pub(super) fn link_to(&mut self, a: (u32, usize), edge: Edge) {
         self.face_mut(a.0).neighbors[a.1] = edge.kept();

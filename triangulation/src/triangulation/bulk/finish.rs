@@ -1,4 +1,4 @@
-//! From twins of edges to neighbors of faces.
+//! Turns twins of edges into neighbors of faces.
 
 use crate::parallel::*;
 use crate::tds::{CellId, Links, VertexId};
@@ -16,14 +16,15 @@ pub(super) struct Cells {
 struct Found {
     has_finite: bool,
     infinite: Option<CellId>,
-    /// Cells of vertices that other ranges have.
+    /// Cells of vertices in other ranges.
     elsewhere: Vec<(VertexId, CellId)>,
 }
 
 /// Replaces twins of edges by the neighbors opposite vertices; `None` if no face is finite.
 ///
-/// Most faces that are made with a range of points are at these points still, so that threads can fill
-/// ranges of the cells of vertices. The ranges do not depend on the number of threads, and so the cells do not.
+/// Most faces that were built with a range of points still have vertices in that range, so that
+/// threads can fill ranges of the cells of vertices. The ranges do not depend on the number of
+/// threads, and therefore neither do the cells.
 pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Option<Cells> {
     let mut of_vertices: Vec<CellId> =
         (0..count).into_par_iter().with_min_len(grain.points).map(|_| CellId::NONE).collect();
@@ -33,28 +34,28 @@ pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Opti
         return None;
     }
     for &(vertex, cell) in found.iter().flat_map(|found| &found.elsewhere) {
-        let place = &mut of_vertices[vertex.index()];
-        if *place == CellId::NONE {
-            *place = cell;
+        let known = &mut of_vertices[vertex.index()];
+        if *known == CellId::NONE {
+            *known = cell;
         }
     }
     let of_infinite = found.iter().find_map(|found| found.infinite)?;
     Some(Cells { of_vertices, of_infinite })
 }
 
-/// The faces of the vertices from number `first` on.
+/// Converts the faces of the vertices from number `first` on.
 fn finish_range(faces: &mut [Links<3>], cells: &mut [CellId], first: usize) -> Found {
     let mut found = Found { has_finite: false, infinite: None, elsewhere: Vec::new() };
     for (i, links) in faces.iter_mut().enumerate() {
         let cell = CellId::new(2 * first + i);
-        let places = links.vertices.map(|vertex| vertex.index().wrapping_sub(first));
+        let offsets = links.vertices.map(|vertex| vertex.index().wrapping_sub(first));
         // `PERF:` one branch for nearly all faces instead of three.
-        if places[0].max(places[1]).max(places[2]) < cells.len() {
-            places.into_iter().for_each(|place| cells[place] = cell);
+        if offsets[0].max(offsets[1]).max(offsets[2]) < cells.len() {
+            offsets.into_iter().for_each(|i| cells[i] = cell);
         } else {
-            for (vertex, place) in links.vertices.into_iter().zip(places) {
-                match cells.get_mut(place) {
-                    Some(place) => *place = cell,
+            for (vertex, offset) in links.vertices.into_iter().zip(offsets) {
+                match cells.get_mut(offset) {
+                    Some(known) => *known = cell,
                     None if vertex == VertexId::INFINITE => found.infinite = Some(cell),
                     None => found.elsewhere.push((vertex, cell)),
                 }

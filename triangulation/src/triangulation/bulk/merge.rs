@@ -1,81 +1,88 @@
-//! Merging two halves.
+//! Merges two halves into one triangulation.
 //!
-//! Everything comes in two mirror images, `LEFT` and `RIGHT`: the slot, in the ghost of a hull edge, of the edge's
-//! end that is further up. A ghost is `(end, start, infinite)` of an edge counter-clockwise around the hull:
+//! The gap between the halves is zipped from the lower common tangent upward. Above each base `a b`
+//! there are two candidates, the next hull vertices `c` and `d`. The one whose circle with the base
+//! does not contain the other becomes the apex of the next triangle, whose free edge is the next
+//! base. A hull edge is flipped away first if the vertex `q` behind it lies in that circle:
 //!
 //! ```text
-//!    left half                          right half
-//!
-//!        c                                  d
-//!        |\  ghost (c, a, infinite)       /|    ghost (b, d, infinite)
-//!      q | \                             / | q
-//!        |  \                           /  |
-//!         \  \                         /  /
-//!           \-a ......... base ...... b-/
+//!    left half         right half         d in circle (a b c): d is chosen, a d is the new base
+//!          c           d                         c           d
+//!         /|           |\                        |     . - ' |
+//!      q < |           | > q         ->          | . '       |
+//!         \|           |/                        |'          |
+//!          a---base----b                         a---base----b
 //! ```
+//!
+//! All code has two mirror images, `LEFT` and `RIGHT`. The number is the slot in a ghost of the
+//! upper end of its hull edge. A ghost is `(end, start, infinite)` of an edge that runs
+//! counter-clockwise around the hull: `(c, a, infinite)` on the left half, `(b, d, infinite)` on
+//! the right.
 
 use crate::geometry::Coordinates;
 use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::faces::{Edge, Range};
-use super::filter::{Arrow, Circle, NOWHERE, Place, turn};
+use super::filter::{Arrow, Circle, NOWHERE, Site, turn};
 use super::{Axis, Part};
 
-/// No face.
+/// Stands for no face.
 pub(super) const NONE: u32 = u32::MAX;
 
 const LEFT: usize = 0;
 const RIGHT: usize = 1;
 
-/// The slot of the edge from the nearer end of the hull edge to infinity, or back: over it lies the ghost further up
-/// ...
+/// Returns the slot of the edge between the lower end of a hull edge and infinity, or between
+/// infinity and it: the ghost further up lies across it ...
 const fn onward(side: usize) -> usize {
     2 - side
 }
 
-/// ... and over this one the ghost further down.
+/// ... and the ghost further down across this one.
 const fn back(side: usize) -> usize {
     1 + side
 }
 
-/// Where a half touches the base edge.
+/// The vertex of a half that the base edge ends at.
 #[derive(Clone, Copy)]
 struct Foot {
     vertex: VertexId,
-    at: Place,
-    /// Of the hull edge that goes up from there; [`NONE`] for a single point.
+    at: Site,
+    /// The ghost of the hull edge that goes up from the vertex; [`NONE`] for a single point.
     ghost: u32,
 }
 
-/// The next hull edge up on one side, all that is asked of it at hand.
+/// The next hull edge up on one side, with all that the merge needs to know of it.
 #[derive(Clone, Copy)]
 struct Climb {
-    /// [`NONE`] for a single point.
+    /// The ghost of the hull edge; [`NONE`] for a single point.
     ghost: u32,
     /// The twin of the hull edge, in the face behind it.
     behind: Edge,
-    /// The edge of the next ghost that this one shares.
+    /// The edge that the next ghost shares with this one.
     onward: Edge,
     /// The upper end of the hull edge: the candidate.
     vertex: VertexId,
-    candidate: Place,
-    /// Of the vertex behind the hull edge.
-    apex: Place,
+    candidate: Site,
+    /// The coordinates of the vertex opposite the hull edge, in the face behind it.
+    apex: Site,
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
-    /// Joins two halves, of which the right one starts at point `mid`.
+    /// Joins two halves; the right one starts at point `mid`.
     ///
-    /// A candidate that is valid stays so while the other side climbs. Say `d` was chosen, and `c` is above `a b` but
-    /// not above `a d`. Then `c`, which is not in the circle of `a b d`, is beyond `b d` as seen from `a`: in the right
-    /// half, but it is one of the left.
+    /// A candidate that is valid stays valid while the other side climbs. Say `d` was chosen, and
+    /// `c` is above `a b` but not above `a d`. Then `c`, which is not in the circle of `a b d`,
+    /// lies beyond `b d` as seen from `a`. That is the side of the right half, but `c` belongs to
+    /// the left one: a contradiction.
     ///
-    /// `PERF:` (callgrind and time of 100 000 points) questions are asked of valid candidates only, and an invalid one
-    /// is not asked for its circle: -10 % on a parabola, where one side alone climbs for long, and no loss elsewhere.
-    /// What the loop needs of a hull edge is in variables, and a ghost is written once after all its flips: -8 % of the
-    /// instructions, -5 % on the parabola. Reading places one ghost ahead, as the prototype did against mispredictions:
-    /// +7 % instructions, no gain. Asking both candidates without branches: 8.6 instead of 11.6 simulated
+    /// `PERF:` (callgrind and time of 100 000 points) Only valid candidates are tested, and no
+    /// circle is computed for an invalid one: -10 % on a parabola, where one side alone climbs for
+    /// long, and no loss elsewhere. What the loop needs of a hull edge is in variables, and a ghost
+    /// is written once after all its flips: -8 % of the instructions, -5 % on the parabola. Reading
+    /// coordinates one ghost ahead, as the prototype did against mispredictions: +7 % instructions,
+    /// no gain. Testing both candidates without branches: 8.6 instead of 11.6 simulated
     /// mispredictions a point, no gain on 1 million uniform points, and +10 % on a parabola.
     pub(super) fn merge(&mut self, left: Part, right: Part, mid: usize, axis: Axis) -> Part {
         let [Foot { vertex: mut a, at: mut at_a, ghost: gl }, Foot { vertex: mut b, at: mut at_b, ghost: gr }] =
@@ -134,7 +141,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                     circle_c = Circle::through(base, to_q);
                 }
                 if has_flipped {
-                    self.settle::<LEFT>(&l);
+                    self.update_ghost::<LEFT>(&l);
                 }
             }
             if valid_d {
@@ -157,7 +164,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                     circle_d = Circle::through(base, to_d);
                 }
                 if has_flipped {
-                    self.settle::<RIGHT>(&r);
+                    self.update_ghost::<RIGHT>(&r);
                 }
             }
             if !(valid_c | valid_d) {
@@ -189,8 +196,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         Part { bottom: below, top: above, first: left.first }
     }
 
-    /// The vertex of a half that is nearest to the other, of these the lowest. Climbs the ring of ghosts either way,
-    /// from where the half's own merge has ended: one or two steps, as the axes take turns.
+    /// Returns the vertex of a half that is nearest to the other half; of several, the lowest.
+    /// Climbs the ring of ghosts in either direction, from where the half's own merge has ended:
+    /// one or two steps, because the axes alternate.
     #[inline(always)]
     fn extreme<const SIDE: usize>(&self, half: Part, axis: Axis) -> Foot {
         // Along a rotated lexicographic order, so that both axes are treated alike.
@@ -211,7 +219,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         };
         if ghost == NONE {
             let vertex = VertexId::new(half.first as usize);
-            return Foot { vertex, at: self.seen.place(vertex), ghost };
+            return Foot { vertex, at: self.seen.site(vertex), ghost };
         }
         // The start of the ghost's hull edge.
         let mut furthest = along(self.vertex(ghost, 1));
@@ -238,14 +246,15 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
         let vertex = self.vertex(ghost, 1);
         let ghost = if SIDE == LEFT { ghost } else { self.twin(ghost, 1).face() };
-        Foot { vertex, at: self.seen.place(vertex), ghost }
+        Foot { vertex, at: self.seen.site(vertex), ghost }
     }
 
-    /// Climbs down both rings until no vertex is below the line through the two. A collinear vertex does not move
-    /// it: it is further away.
+    /// Returns the feet of the lower common tangent: climbs down both rings until no vertex lies
+    /// below the line through the two feet. A collinear vertex does not move a foot: it is further
+    /// away.
     #[inline(always)]
     fn lower_tangent(&self, mut left: Foot, mut right: Foot) -> [Foot; 2] {
-        // Once around, at the most: wrong answers would lead around and around.
+        // At most once around: wrong answers would lead to an endless loop.
         let (first_left, first_right) = (left.ghost, right.ghost);
         loop {
             let mut moved = false;
@@ -265,7 +274,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
     }
 
-    /// The next vertex down on one side, if it lies below the line through the two feet.
+    /// Returns the next vertex down on one side if it lies below the line through the two feet.
     #[inline(always)]
     fn lower<const SIDE: usize>(&self, foot: &Foot, [left, right]: [&Foot; 2]) -> Option<Foot> {
         if foot.ghost == NONE {
@@ -273,7 +282,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
         let ghost = self.twin(foot.ghost, back(SIDE)).face();
         let vertex = self.vertex(ghost, 1 - SIDE);
-        let at = self.seen.place(vertex);
+        let at = self.seen.site(vertex);
         let turn = turn(left.at, right.at, at);
         let is_below = if self.seen.is_open(turn) {
             self.seen.turn_slowly([left.vertex, right.vertex, vertex]) == Sign::Negative
@@ -283,7 +292,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         is_below.then_some(Foot { vertex, at, ghost })
     }
 
-    /// Looks at a hull edge.
+    /// Reads a hull edge.
     #[inline(always)]
     fn climb<const SIDE: usize>(&self, ghost: u32) -> Climb {
         if ghost == NONE {
@@ -298,13 +307,13 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             behind,
             onward: self.twin(ghost, onward(SIDE)),
             vertex,
-            candidate: self.seen.place(vertex),
-            apex: self.seen.place(self.opposite(behind)),
+            candidate: self.seen.site(vertex),
+            apex: self.seen.site(self.opposite(behind)),
         }
     }
 
-    /// Takes out a hull edge: the triangle behind it becomes the ghost of its far edge, the near one is the next to
-    /// look at.
+    /// Removes a hull edge: the triangle behind it becomes the ghost of its far edge, and the near
+    /// edge is the next to test.
     ///
     /// ```text
     ///       c                    c
@@ -314,7 +323,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     ///       a                    a  the ghost's
     /// ```
     ///
-    /// The ghost itself is left as it was, until [`settle`](Self::settle).
+    /// The ghost itself is not changed before [`update_ghost`](Self::update_ghost).
     #[inline(always)]
     fn flip<const SIDE: usize>(&mut self, climb: &mut Climb) {
         let edge = climb.behind;
@@ -335,19 +344,19 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         climb.behind = beyond_near;
         climb.vertex = q;
         climb.candidate = climb.apex;
-        climb.apex = self.seen.place(self.opposite(beyond_near));
+        climb.apex = self.seen.site(self.opposite(beyond_near));
     }
 
-    /// Makes the ghost that of the hull edge that is left.
+    /// Makes the ghost that of the hull edge that remains after flips.
     #[inline(always)]
-    fn settle<const SIDE: usize>(&mut self, climb: &Climb) {
+    fn update_ghost<const SIDE: usize>(&mut self, climb: &Climb) {
         self.face_mut(climb.ghost).vertices[SIDE] = climb.vertex;
         self.link_to((climb.ghost, 0), climb.behind);
         self.link_to((climb.ghost, onward(SIDE)), climb.onward);
     }
 
-    /// The chosen candidate's ghost becomes the triangle on the base, whose other end is given. Returns the edge that
-    /// is open then, and its new end.
+    /// Turns the chosen candidate's ghost into the triangle on the base, whose other end is given.
+    /// Returns the edge that is open then, and its new end.
     #[inline(always)]
     fn step<const SIDE: usize>(&mut self, climb: &mut Climb, open: Edge, other: VertexId) -> (Edge, VertexId) {
         let Climb { ghost, vertex, onward: next, .. } = *climb;

@@ -1,11 +1,12 @@
-//! Triangulating many points at once: divide and conquer on faces with ghosts.
+//! Triangulates many points at once, by divide and conquer on faces with ghosts.
 //!
-//! After Guibas and Stolfi (1985), with the cuts of Dwyer's variant (1987, both directions in turn) taken
-//! from a Morton order, and without an edge structure: a part of the plane is kept as a *sphere* of
-//! faces, where each edge of its hull has a ghost face that ends in the infinite vertex.
+//! The algorithm is that of Guibas and Stolfi (1985). The cuts are those of Dwyer's variant (1987),
+//! both directions in turn, but taken from a Morton order. There is no edge structure: a part of
+//! the triangulation is a *sphere* of faces, in which each edge of the part's hull has a *ghost*, a
+//! face that ends in the infinite vertex.
 //!
-//! 1. [`order`]: the points come in Morton order. A range of them is cut where the highest bit in which its keys
-//!    differ changes, so that one coordinate strictly separates the halves.
+//! 1. [`order`]: the points are sorted in Morton order. A range of them is cut where the highest
+//!    bit in which its keys differ changes, so that one coordinate strictly separates the halves.
 //!
 //!    ```text
 //!      +-------+-------+        +-------+-------+
@@ -15,11 +16,12 @@
 //!      +-------+-------+        +-------+-------+
 //!       first cut, in x          then in y
 //!    ```
-//! 2. [`small`]: ranges of up to four points are made directly.
-//! 3. [`merge`]: two halves are joined. Their lower common tangent is found on the rings of ghosts, then the gap is
-//!    zipped from there up. On each side the next hull vertex is a candidate; before, hull edges whose triangle
-//!    it would destroy are flipped out. The ghost of the chosen candidate *becomes* the new
-//!    triangle.
+//! 2. [`small`]: ranges of up to four points are triangulated directly.
+//! 3. [`merge`]: two halves are joined. Their lower common tangent is found on the rings of ghosts.
+//!    The gap is then zipped from there upward. On each side the next hull vertex is a candidate;
+//!    hull edges whose triangle it would destroy are flipped away first. The ghost of the chosen
+//!    candidate *becomes* the new triangle.
+//!
 //!
 //!    ```text
 //!        \ |      | /          \ |      | /
@@ -29,19 +31,23 @@
 //!      --- a------b ---      ---a-----\ b ---
 //!         left  right          d in the circle of a b c: a b d is next
 //!    ```
-//! 4. [`arc`]: ranges that are part of a curve are made from one end, as merges of these destroy what they join.
+//! 4. [`arc`]: a range of points on an arc is built from one end, because merges of such ranges
+//!    destroy what they join.
 //! 5. [`finish`]: twins of edges become neighbors of faces.
 //!
-//! A range of `m` points has exactly `2 m - 2` faces, and a merge adds exactly two: range `[lo, hi)` owns the
-//! faces `2 lo .. 2 hi - 2`, a merge at `mid` adds `2 mid - 2` and `2 mid - 1`. So nothing is allocated, and
-//! halves can be built by different threads. Ties are broken as everywhere, so that the result is the
-//! same, cell for cell, as by any other road. Collinear points have ghosts only.
+//! A range of `m` points has exactly `2 m - 2` faces, and a merge adds exactly two: range
+//! `[lo, hi)` owns the faces `2 lo .. 2 hi - 2`, a merge at `mid` adds `2 mid - 2` and `2 mid - 1`.
+//! So nothing is allocated, and different threads can build the halves. Ties are broken as
+//! everywhere else, so that the result is the same, cell for cell, as that of any other algorithm.
+//! Collinear points have ghosts only.
 //!
-//! [`filter`] holds the arithmetic. It is used if the geometry has [exact
-//! plans](Coordinates::exact_plan) of all points; else the same algorithm asks the geometry everything.
+//! [`filter`] contains the arithmetic. It is used if the geometry has [exact
+//! plans](Coordinates::exact_plan) of all points; otherwise the same algorithm evaluates every
+//! predicate through the geometry.
 //!
-//! `PERF:` what was tried and left. *Huge pages* (glibc's `malloc.hugetlb=1`, 1 million uniform points): 2 600
-//! page faults instead of 30 600, and no less time; what the program saved, the system of the virtual machine took.
+//! `PERF:` tried and dropped: *huge pages* (glibc's `malloc.hugetlb=1`, 1 million uniform points)
+//! took 2 600 page faults instead of 30 600, and no less time. What the program saved, the system
+//! of the virtual machine spent.
 
 mod arc;
 mod curve;
@@ -69,19 +75,19 @@ use order::Keys;
 pub(crate) use order::Sites;
 pub use order::spatial_order;
 
-/// The most points whose edges can be numbered: `2 n - 2` faces with four numbers each. More are
-/// left to insertion one by one.
+/// The largest number of points whose edges can be numbered: `2 n - 2` faces with four numbers
+/// each. Larger inputs are inserted one by one.
 const MAX_POINTS: usize = 1 << 29;
 const _: () = assert!(4 * (2 * MAX_POINTS as u64 - 2) <= u32::MAX as u64);
 
 /// How much work one thread does at a time, in points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grain {
-    /// Of passes over all points.
+    /// Points per chunk of a pass over all points.
     points: usize,
-    /// Of groups that are sorted: two arrays of records stay in a core's cache.
+    /// Points per group of the sort: two arrays of records fit a core's cache.
     group: usize,
-    /// Larger ranges are halved between threads.
+    /// Larger ranges are divided between threads.
     range: usize,
 }
 
@@ -91,8 +97,8 @@ impl Default for Grain {
     }
 }
 
-/// Two ghosts of a finished part, at opposite ends of it (of an arc the one that has both), to start looking from;
-/// [`NONE`] for one point.
+/// A finished range: two ghosts at opposite ends of it, where searches start (for an arc both are
+/// the same ghost); [`NONE`] for a single point.
 #[derive(Clone, Copy)]
 struct Part {
     bottom: u32,
@@ -100,15 +106,15 @@ struct Part {
     first: u32,
 }
 
-/// The direction in which a merge looks: its halves are apart in x or in y.
+/// The coordinate that separates the halves of a merge.
 #[derive(Clone, Copy, PartialEq)]
 enum Axis {
     X,
     Y,
 }
 
-/// Triangulates sites; `None` if they are all collinear, more than [`MAX_POINTS`], or not in the plane. Vertices are
-/// numbered as the points.
+/// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
+/// are all collinear, more than [`MAX_POINTS`], or not in the plane.
 ///
 /// # Complexity
 /// O(n log n) at worst; linear for points that are spread evenly.
@@ -127,8 +133,8 @@ where
     if N != 3 || !(3..=MAX_POINTS).contains(&count) {
         return (points, None);
     }
-    // PERF: filling in the faces of each part just before it is built, when its memory is then in the cache, made no
-    // difference (262 against 253 ns a point), at the price of unsafe code.
+    // PERF: initializing the faces of each part just before it is built, when its memory is then in
+    // the cache, made no difference (262 against 253 ns a point), and needs unsafe code.
     let mut faces: Vec<Links<3>> =
         (0..2 * count - 2).into_par_iter().with_min_len(grain.points).map(|_| Links::UNUSED).collect();
     if have_plans {
@@ -138,7 +144,7 @@ where
     }
     drop(keys);
     let finished = finish::finish(&mut faces, count, grain);
-    // The same type, as `N` is 3, which the compiler does not know.
+    // The same type: `N` is 3 here, but the compiler does not know it.
     let faces: Box<dyn Any> = Box::new(faces);
     let tds = match (finished, faces.downcast::<Vec<Links<N>>>()) {
         (Some(cells), Ok(faces)) => Some(Tds::from_links(*faces, cells.of_vertices, cells.of_infinite)),
@@ -147,7 +153,7 @@ where
     (points, tds)
 }
 
-/// Builds the faces, with the twins of edges in the slots for neighbors.
+/// Builds the faces; the slots for neighbors hold twins of edges.
 fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
     geometry: &G,
     points: &[G::Point],
@@ -161,7 +167,7 @@ fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
-    /// Triangulates a range, looking for arcs of up to so many points.
+    /// Triangulates a range; ranges of up to `arcs` points are tested for being an arc.
     fn build(&mut self, lo: usize, hi: usize, mut arcs: usize) -> Part {
         match hi - lo {
             1 => return Part { bottom: NONE, top: NONE, first: lo as u32 },
@@ -196,7 +202,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         self.merge(left, right, mid, axis)
     }
 
-    /// Where the keys halve a range, and along which axis; `None` if they do not tell its points apart.
+    /// Returns where the keys cut a range in two, and along which axis; `None` if the keys of all
+    /// its points are equal.
     #[inline(always)]
     fn halve(&self, lo: usize, hi: usize) -> Option<(usize, Axis)> {
         let differing = self.keys.difference(lo - self.first, hi - 1 - self.first);
@@ -208,9 +215,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         Some((self.cut(lo, hi, bit), if bit % 2 == 1 { Axis::X } else { Axis::Y }))
     }
 
-    /// The first point of a range whose key has the bit.
+    /// Returns the first point of a range whose key has the bit set.
     ///
-    /// `PERF:` without branches on what is compared, as these are not predictable.
+    /// `PERF:` without branches on comparisons, which would be unpredictable.
     #[inline(always)]
     fn cut(&self, lo: usize, hi: usize, bit: u32) -> usize {
         const FEW: usize = 16;
@@ -227,8 +234,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         from + usize::from(!has(from))
     }
 
-    /// A range of points that the keys do not tell apart: more bits of them do, or keys along the curve through these
-    /// points alone, see [`order`].
+    /// Triangulates a range whose points have equal keys. Uses more bits of the keys, or keys along
+    /// a curve through these points alone; see [`order`].
     #[cold]
     fn build_dense(&mut self, lo: usize, hi: usize, arcs: usize) -> Part {
         let count = hi - lo;

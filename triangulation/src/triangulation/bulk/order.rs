@@ -1,21 +1,23 @@
-//! Spatial order: points that are near each other come near each other.
+//! Spatial order: points that are close in the plane or in space come close to each other.
 //!
-//! A *record* holds a key on the [curve](Curve) in its high bits and the position of the point in its low bits:
+//! A *record* holds a key on the [curve](Curve) in its high bits and the position of the point in
+//! its low bits:
 //!
 //! ```text
 //!   63                                     0
 //!   | x y x y x y ... of the key | position |
 //! ```
 //!
-//! 1. One pass counts the points in each *bucket* (the highest bits of the key), a second puts the records there.
-//! 2. Groups of buckets that fit a core's cache are sorted by the bits that are left, from the lowest up (both kinds of
-//!    radix sort are of Hollerith's machines, 1887; see Knuth 1973, 5.2.5).
-//! 3. Records hold the bits that tell a few million evenly spread points apart. Where these are equal, the whole
-//!    key decides; where that is equal, too, a curve of their own, through these points alone; and so on. So no
-//!    dynamic range is too large.
+//! 1. One pass counts the points in each *bucket* (the highest bits of the key), a second writes
+//!    the records of each bucket.
+//! 2. Groups of buckets that fit a core's cache are sorted by the remaining bits, from the lowest
+//!    up. (Both kinds of radix sort are of Hollerith's machines, 1887; see Knuth 1973, 5.2.5.)
+//! 3. Records hold the bits that distinguish a few million evenly spread points. Where these are
+//!    equal, the whole key decides; where that is equal, too, a curve of its own through these
+//!    points alone; and so on. So no dynamic range is too large.
 //!
-//! Threads share nothing but the arrays they write to, each place of which is written once; hence atomics that are
-//! never waited for: `PERF:` they compile to ordinary stores.
+//! Threads share nothing but the arrays they write to, and each entry is written once. Hence
+//! atomics that never wait; `PERF:` they compile to ordinary stores.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
@@ -27,22 +29,22 @@ use super::super::{InputError, MAX_VERTICES};
 use super::Grain;
 use super::curve::{Curve, Span, Squares};
 
-/// Bits of the buckets at the most: as many as there are lines in a core's cache to write to.
+/// The largest number of bits for buckets: as many buckets as a core's cache has lines to write to.
 const BUCKET_BITS: u32 = 11;
 
-/// The digit of the sort within a group.
+/// The bits of a digit in the sort of a group.
 const DIGIT_BITS: u32 = 11;
 
-/// The keys of points in spatial order, in the high bits.
+/// The keys of points in spatial order, in the high bits of records.
 #[derive(Debug, Default)]
 pub(crate) struct Keys {
     records: Vec<AtomicU64>,
-    /// The bits that are no key.
+    /// A mask of the bits that are not part of the key.
     low: u64,
 }
 
 impl Keys {
-    /// Those of points that are in spatial order already.
+    /// Returns the keys of points that are in spatial order already.
     pub(super) fn of<A: AsRef<[f64]>>(
         count: usize,
         coordinates: impl Fn(usize) -> A + Sync,
@@ -53,13 +55,13 @@ impl Keys {
         Keys { records: (0..count).into_par_iter().with_min_len(grain.points).map(key).collect(), low: 0 }
     }
 
-    /// The bits in which the keys of two points differ.
+    /// Returns the bits in which the keys of two points differ.
     #[inline(always)]
     pub(super) fn difference(&self, i: usize, j: usize) -> u64 {
         (self.records[i].load(Relaxed) ^ self.records[j].load(Relaxed)) & !self.low
     }
 
-    /// Whether the key of a point is smaller than that of another one.
+    /// Returns true if the key of point `i` is smaller than that of point `j`.
     #[inline(always)]
     fn is_before(&self, i: usize, j: usize) -> bool {
         self.records[i].load(Relaxed) < self.records[j].load(Relaxed)
@@ -69,34 +71,34 @@ impl Keys {
         self.records.is_empty()
     }
 
-    /// Whether all bits that the curve gives are there.
+    /// Returns true if the records contain all bits that the curve gives.
     pub(super) fn are_whole(&self) -> bool {
         self.low == 0
     }
 
-    /// Whether the key of a point has a bit.
+    /// Returns true if the key of a point has the bit set.
     #[inline(always)]
     pub(super) fn has(&self, i: usize, bit: u32) -> bool {
         self.records[i].load(Relaxed) >> bit & 1 == 1
     }
 }
 
-/// Points, each site once, in spatial order.
+/// Points, one for each site, in spatial order.
 #[derive(Debug)]
 pub(crate) struct Sites<P> {
     pub(crate) points: Vec<P>,
     pub(super) keys: Keys,
-    /// The curve along which they are in order.
+    /// The curve that the points are ordered along.
     pub(super) curve: Curve,
-    /// Whether all have an exact plan.
+    /// True if all points have an exact plan.
     pub(super) have_plans: bool,
 }
 
 /// The result of sorting.
 struct Sorted {
-    /// Of each site the first point on it.
+    /// Keys and positions of the first point of each site.
     keys: Keys,
-    /// Of every other point its position, and the rank of its site.
+    /// The position of every other point, and the rank of its site.
     others: Vec<(u32, u32)>,
 }
 
@@ -107,16 +109,19 @@ impl Sorted {
     }
 }
 
-/// The positions `0..count` in the order of a Morton curve through the points' coordinates (one to three of them;
-/// Morton 1966). Points that it cannot tell apart are in the order of a curve through these alone, and so on; points in
-/// one place keep the order of their positions. For distinct points the order is a function of the set.
+/// Returns the positions `0..count` in the order of a Morton curve through the points' coordinates
+/// (one to three of them; Morton 1966).
+///
+/// Points that the curve cannot distinguish are in the order of a curve through these alone, and so
+/// on. Points with equal coordinates keep the order of their positions. For distinct points the
+/// order is a function of the set.
 ///
 /// # Errors
 /// If there are more than 2^31 - 2 points.
 ///
 /// # Complexity
-/// O(n), on all threads, for points that are spread evenly; where many fall into one of a few million squares, O(n log
-/// n) for each factor of 2^31 in their distances. 12 bytes a point.
+/// O(n), on all threads, for points that are spread evenly; where many share one of a few million
+/// squares, O(n log n) for each factor of 2^31 in their distances. 12 bytes a point.
 pub fn spatial_order<A: AsRef<[f64]>>(
     count: usize,
     coordinates: impl Fn(usize) -> A + Sync,
@@ -131,10 +136,10 @@ pub fn spatial_order<A: AsRef<[f64]>>(
 }
 
 impl<P: Copy + Send + Sync> Sites<P> {
-    /// The sites of points, and of each point its site.
+    /// Returns the sites of points, and the site of each point.
     ///
     /// # Errors
-    /// The first point that is refused, by its position; or too many.
+    /// The first point that the geometry refuses, by its position; or too many points.
     pub(crate) fn of<G: Coordinates<N, Point = P>, const N: usize>(
         geometry: &G,
         points: &[P],
@@ -162,10 +167,10 @@ impl<P: Copy + Send + Sync> Sites<P> {
         Ok((Sites { points: sites, keys: sorted.keys, curve, have_plans }, vertices))
     }
 
-    /// Points that are all different and in [`spatial_order`] already.
+    /// Returns the sites of points that are all different and in [`spatial_order`] already.
     ///
     /// # Errors
-    /// As for [`of`](Self::of); and the first point that is not in order.
+    /// Those of [`of`](Self::of), and the first point that is not in order.
     pub(crate) fn sorted<G: Coordinates<N, Point = P>, const N: usize>(
         geometry: &G,
         points: Vec<P>,
@@ -184,7 +189,8 @@ impl<P: Copy + Send + Sync> Sites<P> {
     }
 }
 
-/// Checks that all points may come in; the curve through them, and whether all have an exact plan.
+/// Checks that the geometry admits all points. Returns the curve through them, and true if all have
+/// an exact plan.
 ///
 /// `PERF:` in one pass instead of three.
 fn survey<G: Coordinates<N>, const N: usize>(
@@ -208,10 +214,11 @@ fn survey<G: Coordinates<N>, const N: usize>(
     Ok((Curve::along(span), have_plans))
 }
 
-/// Sorts; `is_same` says of two points in one place whether they are on one site.
+/// Sorts points. `is_same` returns true if two points of equal keys share a site.
 ///
-/// `PERF:` with 7 bits less in the records, groups take two passes instead of three: 2 % of the time of 1 million uniform
-/// points; but clusters take 10 % more, for the many that are then equal.
+/// `PERF:` with 7 bits less in the records, groups take two passes instead of three: 2 % of the
+/// time of 1 million uniform points. But clusters take 10 % more, because many records are equal
+/// then.
 fn sort<A: AsRef<[f64]>>(
     count: usize,
     coordinates: &(impl Fn(usize) -> A + Sync),
@@ -246,7 +253,8 @@ fn sort<A: AsRef<[f64]>>(
     Sorted { keys: Keys { records, low }, others }
 }
 
-/// The records in the order of their buckets, and where each bucket starts, with the end.
+/// Returns the records in the order of their buckets, and the start of each bucket, followed by the
+/// end.
 fn distribute<A: AsRef<[f64]>>(
     count: usize,
     coordinates: &(impl Fn(usize) -> A + Sync),
@@ -265,7 +273,8 @@ fn distribute<A: AsRef<[f64]>>(
     let chunk = count.div_ceil(current_num_threads()).max(grain.points);
     let range = |c: usize| c * chunk..count.min((c + 1) * chunk);
     let counted = |c: usize| {
-        // `PERF:` two of each, in turn, so that points in one square need not wait for each other.
+        // `PERF:` two counts for each square, in turn, so that points in one square need not wait
+        // for each other.
         let mut counts = vec![[0u32; 2]; 1 << bits];
         range(c).for_each(|i| counts[squares.of(coordinates(i).as_ref())][i % 2] += 1);
         let mut by_bucket = vec![0u32; 1 << bits];
@@ -273,7 +282,8 @@ fn distribute<A: AsRef<[f64]>>(
         by_bucket
     };
     let mut counts: Vec<Vec<u32>> = (0..count.div_ceil(chunk)).into_par_iter().map(counted).collect();
-    // Of each bucket in turn the share of each chunk in turn.
+    // Where each chunk writes its share of each bucket: buckets in order, and in each the chunks in
+    // order.
     let mut starts = Vec::with_capacity((1 << bits) + 1);
     let mut start = 0;
     for bucket in 0..1 << bits {
@@ -283,18 +293,18 @@ fn distribute<A: AsRef<[f64]>>(
         }
     }
     starts.push(count);
-    counts.par_iter_mut().enumerate().for_each(|(c, places)| {
+    counts.par_iter_mut().enumerate().for_each(|(c, nexts)| {
         for i in range(c) {
             let key = curve.key(coordinates(i).as_ref());
-            let place = &mut places[bucket(key)];
-            records[*place as usize].store(key & !low | i as u64, Relaxed);
-            *place += 1;
+            let next = &mut nexts[bucket(key)];
+            records[*next as usize].store(key & !low | i as u64, Relaxed);
+            *next += 1;
         }
     });
     (records, starts)
 }
 
-/// Ends of groups of whole buckets, from 0 on.
+/// Returns the ends of groups of whole buckets, beginning with 0.
 fn groups(starts: &[usize], grain: Grain) -> Vec<usize> {
     let mut ends = vec![0];
     let mut last = 0;
@@ -307,7 +317,7 @@ fn groups(starts: &[usize], grain: Grain) -> Vec<usize> {
     ends
 }
 
-/// Room for a group, twice.
+/// Two buffers for a group.
 #[derive(Default)]
 struct Scratch {
     records: Vec<u64>,
@@ -323,8 +333,8 @@ struct Sorter<'a, C, S> {
 }
 
 impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<'_, C, S> {
-    /// Sorts a group, moves the sites to its front and counts them; the points that are not the first on their site
-    /// come beside.
+    /// Sorts a group, moves the sites to its front and counts them. Points that are not the first
+    /// of their site are returned separately.
     fn sort(&self, group: &[AtomicU64], scratch: &mut Scratch) -> (usize, Vec<(u32, u32)>) {
         let Scratch { records, spare } = scratch;
         records.clear();
@@ -361,7 +371,7 @@ impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<
         (sites, others)
     }
 
-    /// Records with equal bits of their keys.
+    /// Sorts records whose stored bits of the key are equal.
     #[cold]
     fn sort_run(&self, run: &mut [u64]) {
         let mut positions: Vec<(u64, u32)> = run.iter().map(|record| (0, (record & self.low) as u32)).collect();
@@ -371,7 +381,7 @@ impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<
         }
     }
 
-    /// By whole keys; then, where these are equal, by those of a curve through the points that share one.
+    /// Sorts by whole keys; where these are equal, along a curve through the points that share one.
     fn sort_along(&self, curve: &Curve, points: &mut [(u64, u32)]) {
         let coordinates = |position: u32| (self.coordinates)(position as usize);
         if points.len() > self.grain.points {
@@ -390,16 +400,17 @@ impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<
     }
 }
 
-/// Sorts records by their keys (the bits above `low`), equal ones by position, which is how they come.
+/// Sorts records by their keys, the bits above `low`; equal ones stay in order of position, as they
+/// come.
 fn sort_records(records: &mut Vec<u64>, spare: &mut Vec<u64>, low: u64) {
-    /// Below this, clearing and summing the counts takes longer.
+    /// Below this, clearing and summing the counts takes longer than a comparison sort.
     const FEW: usize = 1 << 10;
     if records.len() < FEW {
         records.sort_unstable();
         return;
     }
-    // A group has the smallest and the largest key in its first and last bucket; what lies below the first one is in no
-    // record.
+    // A group has the smallest and the largest key in its first and last bucket, so that no record
+    // needs the keys below the first one.
     let (least, largest) = records.iter().fold((u64::MAX, 0), |(least, largest), &r| (least.min(r), largest.max(r)));
     let shift = low.count_ones();
     let key = |record: u64| (record >> shift) - (least >> shift);
@@ -420,9 +431,9 @@ fn sort_records(records: &mut Vec<u64>, spare: &mut Vec<u64>, low: u64) {
         let mut start = 0;
         counts.iter_mut().for_each(|count| start += std::mem::replace(count, start));
         for &record in records.iter() {
-            let place = &mut counts[digit(record, pass)];
-            spare[*place as usize] = record;
-            *place += 1;
+            let next = &mut counts[digit(record, pass)];
+            spare[*next as usize] = record;
+            *next += 1;
         }
         std::mem::swap(records, spare);
     }

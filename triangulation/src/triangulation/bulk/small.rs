@@ -1,4 +1,4 @@
-//! Ranges of up to four points.
+//! Triangulates ranges of up to four points.
 
 use crate::geometry::Coordinates;
 use crate::num::Sign;
@@ -10,7 +10,7 @@ use super::faces::Range;
 const INFINITE: VertexId = VertexId::INFINITE;
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
-    /// Two points: a hull of two edges, there and back. Returns their ghosts.
+    /// Makes the two ghosts of an edge between two points, one for each direction. Returns them.
     #[inline(always)]
     pub(super) fn pair(&mut self, [a, b]: [VertexId; 2], first_face: u32) -> [u32; 2] {
         let ghosts = [first_face, first_face + 1];
@@ -19,7 +19,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         ghosts
     }
 
-    /// Three points: a triangle, or a chain seen from both sides.
+    /// Triangulates three points: a triangle, or a chain with ghosts on both sides.
     pub(super) fn triple(&mut self, lo: usize) -> Part {
         let [mut a, mut b, mut c] = [0, 1, 2].map(|k| VertexId::new(lo + k));
         let [f, g, h, i] = [0, 1, 2, 3].map(|k| 2 * lo as u32 + k);
@@ -44,9 +44,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         Part { bottom: g, top: i, first: lo as u32 }
     }
 
-    /// Four points, if no three of them are collinear: two triangles, or three around the point within.
+    /// Triangulates four points of which no three are collinear: two triangles, or three around the
+    /// point within. `None` if three are collinear.
     ///
-    /// `PERF:` makes a quarter of the merges unnecessary (0.46 to 0.35 a point; -3 to -4 % of their time in the
+    /// `PERF:` saves a quarter of the merges (0.46 to 0.35 a point; -3 to -4 % of their time in the
     /// prototype).
     pub(super) fn quadruple(&mut self, lo: usize) -> Option<Part> {
         let mut v = [0, 1, 2, 3].map(|k| VertexId::new(lo + k));
@@ -55,7 +56,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             Sign::Negative => v.swap(1, 2),
             Sign::Zero => return None,
         }
-        // Of which edges of the triangle the fourth point lies on the right.
+        // The edges of the triangle that have the fourth point on their right, one bit each.
         let mut right = 0;
         for (k, [p, q]) in [[0, 1], [1, 2], [2, 0]].into_iter().enumerate() {
             match self.seen.turn([v[p], v[q], v[3]]) {

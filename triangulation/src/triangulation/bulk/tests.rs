@@ -1,4 +1,5 @@
-//! In bulk and one by one, on what is small and degenerate, in small grains.
+//! Compares bulk construction with insertion one by one, on small and degenerate inputs, in small
+//! grains.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +18,7 @@ const TINY: Grain = Grain { points: 3, group: 2, range: 3 };
 
 type Cells = BTreeSet<[[u64; 2]; 3]>;
 
-/// A generator of numbers (SplitMix64, Steele and others 2014).
+/// A generator of pseudo-random numbers (SplitMix64, Steele and others 2014).
 struct Random(u64);
 
 impl Random {
@@ -32,7 +33,7 @@ impl Random {
         self.next() % limit
     }
 
-    /// From 0 to 1.
+    /// Returns a number from 0 to 1.
     fn unit(&mut self) -> f64 {
         self.next() as f64 / u64::MAX as f64
     }
@@ -44,14 +45,14 @@ impl Random {
     }
 }
 
-fn place(p: [f64; 2]) -> [u64; 2] {
+fn site(p: [f64; 2]) -> [u64; 2] {
     p.map(|x| (x + 0.0).to_bits())
 }
 
-/// The finite cells, each from its least corner on.
+/// Returns the finite cells, each from its least corner on.
 fn cells<G: Geometry<3, Point = [f64; 2]>>(t: &Delaunay<G, 3>) -> Cells {
     let cell = |cell| {
-        let mut corners = t.tds().corners(cell).map(|v| place(*t.point(v)));
+        let mut corners = t.tds().corners(cell).map(|v| site(*t.point(v)));
         let least = (0..3).min_by_key(|&i| corners[i]).unwrap_or(0);
         corners.rotate_left(least);
         corners
@@ -71,9 +72,9 @@ fn in_bulk<G: Coordinates<3, Point = [f64; 2]>>(geometry: G, points: &[[f64; 2]]
     let (sites, vertices) = Sites::of(&geometry, points, grain).unwrap();
     assert_eq!(vertices.len(), points.len());
     for (&p, v) in points.iter().zip(vertices) {
-        assert_eq!(place(sites.points[v.index()]), place(p));
+        assert_eq!(site(sites.points[v.index()]), site(p));
     }
-    let distinct: BTreeSet<_> = points.iter().map(|&p| place(p)).collect();
+    let distinct: BTreeSet<_> = points.iter().map(|&p| site(p)).collect();
     assert_eq!(sites.points.len(), distinct.len());
     let mut t = Delaunay::new(geometry);
     let (points, tds) = build(&t.inner.geometry, sites, grain);
@@ -88,14 +89,14 @@ fn in_bulk<G: Coordinates<3, Point = [f64; 2]>>(geometry: G, points: &[[f64; 2]]
 /// Makes a point.
 type Draw = dyn Fn(&mut Random) -> [f64; 2];
 
-/// One of many kinds of small inputs.
+/// Generates one of many kinds of small inputs.
 fn points(random: &mut Random, round: u64) -> Vec<[f64; 2]> {
     let count = 1 + random.below(if round.is_multiple_of(50) { 400 } else { 40 });
     let point: Box<Draw> = match round % 10 {
         0 => Box::new(|r| [r.unit(), r.unit()]),
         1 => Box::new(|r| [0, 1].map(|_| r.below(6) as f64)),
         2 => Box::new(|r| [0, 1].map(|_| r.below(30) as f64 * 0.37)),
-        // Collinear, but for a few.
+        // Collinear, with a few exceptions.
         3 => Box::new(|r| {
             let x = r.below(60) as f64;
             [x, 3.0 * x + f64::from(u8::from(r.below(20) == 0))]
@@ -105,7 +106,7 @@ fn points(random: &mut Random, round: u64) -> Vec<[f64; 2]> {
             let [x, y] = [[3.0, 4.0], [0.0, 5.0], [4.0, 3.0], [5.0, 0.0]][r.below(4) as usize];
             [x * [1.0, -1.0][r.below(2) as usize], y * [1.0, -1.0][r.below(2) as usize]].map(|x| x * 13.0)
         }),
-        // Neighboring numbers.
+        // Neighboring floating-point numbers.
         5 => Box::new(|r| [0, 1].map(|_| f64::from_bits(1f64.to_bits() + r.below(8)))),
         // Two columns.
         6 => Box::new(|r| [1e6 * r.below(2) as f64 + 1e-9 * r.unit(), r.unit()]),
@@ -114,7 +115,7 @@ fn points(random: &mut Random, round: u64) -> Vec<[f64; 2]> {
             let scale = 10f64.powi(-4 * r.below(9) as i32);
             [0, 1].map(|_| scale * r.below(12) as f64)
         }),
-        // Fewer and fewer on a parabola.
+        // Less and less dense on a parabola.
         8 => Box::new(|r| {
             let x = r.unit() - 0.5;
             [x, x * x]
@@ -129,7 +130,7 @@ fn points(random: &mut Random, round: u64) -> Vec<[f64; 2]> {
     points
 }
 
-/// Answers itself: nothing is known of its plans.
+/// Evaluates predicates itself: it has no exact plans.
 #[derive(Clone, Copy, Default)]
 struct Closed(Plane<Adaptive>);
 
@@ -178,7 +179,7 @@ fn bulk_is_one_by_one() {
     }
 }
 
-/// Of three points that are nearly collinear, plain floating point may say that each is below the others.
+/// Plain floating point may say of three nearly collinear points that each is below the others.
 #[test]
 fn ends_with_wrong_answers() {
     let [p, q, r] = [
@@ -196,13 +197,13 @@ fn ends_with_wrong_answers() {
     }
 }
 
-/// Plain floating point may be wrong, but ends.
+/// Plain floating point may be wrong, but terminates.
 fn in_bulk_fast(points: &[[f64; 2]]) {
     let (sites, _) = Sites::of(&Plane::<Fast>::default(), points, TINY).unwrap();
     build::<_, 3, (), ()>(&Plane::<Fast>::default(), sites, TINY);
 }
 
-/// Whether points are triangulated along an arc, as a whole.
+/// Returns true if points are triangulated along an arc, as a whole.
 fn is_arc(points: &[[f64; 2]]) -> bool {
     let geometry = Plane::<Adaptive>::default();
     let Sites { points, keys, curve, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
@@ -218,7 +219,7 @@ fn arcs_from_their_sharp_ends() {
     let mut left = 0;
     for round in 0..160 {
         let count = 200 + random.below(200);
-        // The curvature falls, or rises and falls, or is the same for all of the lattice's points on a circle.
+        // The curvature falls, or rises and falls, or all lattice points lie on one circle.
         let mut arc: Vec<[f64; 2]> = match round / 8 % 4 {
             0 => (0..count).map(|_| random.unit()).map(|x| [x, x * x]).collect(),
             1 => (0..count).map(|_| 1.57 * random.unit()).map(|t| [20.0 * t.sin(), 3.0 - 3.0 * t.cos()]).collect(),

@@ -7,8 +7,9 @@ use super::super::engine::check::{is_convex, is_empty, is_positive};
 use super::{Compact, Damaged, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Looks at everything, up to a level: no error means that the bytes are a triangulation, of the law that they
-    /// claim if that is the level. Exact, in time proportional to the number of cells, and in constant memory.
+    /// Checks all bytes, up to a level. No error means that they are a triangulation; at
+    /// [`Level::Law`], also that it satisfies the law that it claims. Exact, in time proportional
+    /// to the number of cells, and in constant memory.
     ///
     /// # Errors
     /// The first damage that is found.
@@ -30,7 +31,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         (0..self.cell_count()).map(CellId::new)
     }
 
-    /// Every number exists, every point is admitted, and neighbors know each other and share their facet turned around.
+    /// Checks that every number exists, that every point is admitted, and that neighbors know each
+    /// other and share their facet with opposite orientations.
     fn check_links(&self) -> Result<(), Damaged> {
         let vertices = plane::vertices(self).chain(self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE)));
         for vertex in vertices {
@@ -51,7 +53,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
                 let beside = self.neighbor(cell, i)?;
                 let j = self.index_of_neighbor(beside, cell)?;
                 let others = self.corners(beside)?;
-                // From the vertex opposite on, one time around: as in a mirror on the other side.
+                // Once around from the vertex opposite the facet: in mirrored order on the other
+                // side.
                 let is_shared = (1..width).all(|k| corners[(i + k) % width] == others[(j + width - k) % width]);
                 let is_turned = width != 2 || i != j;
                 self.ensure(cell, || beside != cell && is_shared && is_turned)?;
@@ -60,8 +63,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         Ok(())
     }
 
-    /// The cells that one meets around each vertex are all that have it. With Euler's numbers, which the header has
-    /// been held against, and what comes next that leaves a sphere.
+    /// Checks that the cells met around each vertex are all that contain it. With Euler's formula,
+    /// which the header satisfies, and the orientation check only a sphere remains.
     fn check_manifold(&self) -> Result<(), Damaged> {
         if self.dimension() < 1 {
             return Ok(());
@@ -76,8 +79,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         if corners == self.width() * self.cell_count() { Ok(()) } else { Err(Damaged::Header("pieces hang apart")) }
     }
 
-    /// Finite cells are turned counter-clockwise, and the hull is convex: see [`Level::Orientation`]. On a line all
-    /// follow each other.
+    /// Checks that finite cells are counter-clockwise and the hull is convex, see
+    /// [`Level::Orientation`]; on a line, that all points follow each other.
     fn check_orientation(&self) -> Result<(), Damaged> {
         for cell in self.cells().filter(|_| self.dimension() > 0) {
             let corners = self.corners(cell)?;
@@ -109,17 +112,18 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         Ok(())
     }
 
-    /// Constraints have two sides; circles are empty, as far as the law says so.
+    /// Checks that constraints are set on both sides, and that circles are empty as far as the law
+    /// demands.
     fn check_law(&self) -> Result<(), Damaged> {
         let is_delaunay = matches!(self.law(), Law::Delaunay | Law::ConstrainedDelaunay);
         for cell in self.cells() {
             let is_finite = !self.is_infinite(cell)?;
             for i in 0..3 {
                 let beside = self.neighbor(cell, i)?;
-                let is_wall = self.is_constrained(cell, i)?;
+                let is_constrained = self.is_constrained(cell, i)?;
                 let is_other = self.is_constrained(beside, self.index_of_neighbor(beside, cell)?)?;
-                self.ensure(cell, || is_wall == is_other)?;
-                let is_lawful = !is_delaunay || !is_finite || is_wall || is_empty(self, cell, i)?;
+                self.ensure(cell, || is_constrained == is_other)?;
+                let is_lawful = !is_delaunay || !is_finite || is_constrained || is_empty(self, cell, i)?;
                 self.ensure(cell, || is_lawful)?;
             }
         }

@@ -1,9 +1,9 @@
-//! What the header says, and where the arrays are that follow from it.
+//! The header, and the positions of the arrays that follow from it.
 
 use super::{Damaged, Law};
 use crate::tds::CellId;
 
-/// The first bytes of a file; its line ends and control character do not survive a transfer as text.
+/// The first bytes of a file. A transfer as text destroys its line ends and its control character.
 const MAGIC: [u8; 8] = *b"brkTIN\n\x1a";
 pub(super) const VERSION: u32 = 1;
 pub(super) const HEADER: usize = 48;
@@ -11,36 +11,36 @@ pub(super) const HEADER: usize = 48;
 /// Bytes of a cell: three vertices and three neighbors.
 pub(super) const CELL: usize = 24;
 
-/// Stands for the vertex at infinity.
+/// Stands for the infinite vertex.
 pub(super) const INFINITE: u32 = u32::MAX;
 
-/// Stands for what is not there below full dimension.
+/// Stands for vertices and neighbors that a cell does not have below full dimension.
 pub(super) const NONE: u32 = u32::MAX - 1;
 
-/// What the header says.
+/// The contents of the header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Header {
-    /// Vertices to a cell: the dimension and one.
+    /// Vertices of a cell: the dimension plus one.
     pub(super) width: u32,
     /// Coordinates of a point.
     pub(super) doubles: u32,
     pub(super) law: Law,
     pub(super) vertices: u64,
     pub(super) cells: u64,
-    /// One that has the infinite vertex.
+    /// A cell that has the infinite vertex.
     pub(super) infinite_cell: u32,
 }
 
-/// Where each array begins, and where all ends.
+/// The offset of each array, and of the end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offsets {
     pub(super) cells_of_vertices: usize,
     pub(super) cells: usize,
-    pub(super) walls: usize,
+    pub(super) constraints: usize,
     pub(super) end: usize,
 }
 
-/// The first bytes of a slice as a number of that many bytes.
+/// Takes the first `W` bytes off a slice; zeros if there are fewer.
 fn taken<const W: usize>(bytes: &mut &[u8]) -> [u8; W] {
     let (first, rest) = bytes.split_first_chunk().unwrap_or((&[0; W], &[]));
     *bytes = rest;
@@ -57,7 +57,7 @@ impl Header {
         bytes
     }
 
-    /// Reads a header and holds what it says against itself.
+    /// Reads a header and checks that its numbers are consistent.
     pub(super) fn read(mut bytes: &[u8]) -> Result<Self, Damaged> {
         let found = bytes.len();
         let bytes = &mut bytes;
@@ -93,24 +93,24 @@ impl Header {
         Ok(Header { width, doubles, law, vertices, cells, infinite_cell })
     }
 
-    /// Where the arrays are; `None` if there is not so much memory in the world of this machine.
+    /// Returns the offsets of the arrays; `None` if they exceed the address space of this machine.
     pub(super) fn offsets(&self) -> Option<Offsets> {
         let points = self.vertices.checked_mul(8)?.checked_mul(self.doubles.into())?;
         let cells_of_vertices = points.checked_add(HEADER as u64)?;
         let cells = cells_of_vertices.checked_add(padded(4 * self.vertices))?;
-        let walls = cells.checked_add(CELL as u64 * self.cells)?;
-        let end = walls.checked_add(if self.law.has_walls() { padded(self.cells) } else { 0 })?;
-        let [cells_of_vertices, cells, walls] = [cells_of_vertices, cells, walls].map(usize::try_from);
+        let constraints = cells.checked_add(CELL as u64 * self.cells)?;
+        let end = constraints.checked_add(if self.law.has_constraints() { padded(self.cells) } else { 0 })?;
+        let [cells_of_vertices, cells, constraints] = [cells_of_vertices, cells, constraints].map(usize::try_from);
         Some(Offsets {
             cells_of_vertices: cells_of_vertices.ok()?,
             cells: cells.ok()?,
-            walls: walls.ok()?,
+            constraints: constraints.ok()?,
             end: usize::try_from(end).ok()?,
         })
     }
 }
 
-/// Up to the next multiple of 8.
+/// Rounds up to the next multiple of 8.
 pub(super) fn padded(bytes: u64) -> u64 {
     bytes.div_ceil(8) * 8
 }

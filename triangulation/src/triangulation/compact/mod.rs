@@ -1,4 +1,5 @@
-//! The compact, read-only triangulation, looked at where it lies: in bytes, or a file mapped to memory.
+//! The compact, read-only triangulation, which is used in place: in bytes, or in a file mapped to
+//! memory.
 
 mod check;
 mod layout;
@@ -16,13 +17,13 @@ use layout::{CELL, HEADER, Header, Offsets};
 /// The law that a file claims for its triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
-    /// None: what a [`Basic`](crate::Basic) or [`Regular`](crate::Regular) triangulation wrote.
+    /// No law: written by a [`Basic`](crate::Basic) or [`Regular`](crate::Regular) triangulation.
     None = 0,
-    /// That of [`Delaunay`](crate::Delaunay).
+    /// The law of [`Delaunay`](crate::Delaunay).
     Delaunay = 1,
-    /// Some edges are constrained: what [`Constrained`](crate::Constrained) wrote.
+    /// Some edges are constrained: written by [`Constrained`](crate::Constrained).
     Constrained = 2,
-    /// That of [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
+    /// The law of [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
     ConstrainedDelaunay = 3,
 }
 
@@ -31,48 +32,48 @@ impl Law {
         [Law::None, Law::Delaunay, Law::Constrained, Law::ConstrainedDelaunay].into_iter().find(|&l| l as u32 == number)
     }
 
-    fn has_walls(self) -> bool {
+    fn has_constraints(self) -> bool {
         matches!(self, Law::Constrained | Law::ConstrainedDelaunay)
     }
 }
 
-/// Why a [`Compact`] triangulation has no answer.
+/// The reason why a [`Compact`] triangulation has no answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Damaged {
-    /// It does not begin as such a file does.
+    /// The first bytes are not those of a compact triangulation.
     Foreign,
-    /// It is of a version that is not known.
+    /// The version of the format is unknown.
     Version(u32),
-    /// This in the header cannot be.
+    /// An entry of the header is impossible.
     Header(&'static str),
-    /// It has fewer or more bytes than its header says.
+    /// There are fewer or more bytes than the header says.
     Length {
-        /// Bytes, as the header says.
+        /// Bytes according to the header.
         expected: u64,
-        /// Bytes that are there.
+        /// Bytes present.
         found: u64,
     },
-    /// Its points have another number of coordinates than those of the geometry.
+    /// The number of coordinates of a point is not that of the geometry.
     Coordinates {
-        /// Of a point of the geometry.
+        /// Coordinates of a point of the geometry.
         expected: usize,
-        /// Of a point of the file.
+        /// Coordinates of a point of the file.
         found: usize,
     },
-    /// There is no such vertex, or its point or its cell cannot be.
+    /// The vertex does not exist, or its point or its cell is impossible.
     Vertex(VertexId),
-    /// There is no such cell, or one of its vertices or neighbors cannot be.
+    /// The cell does not exist, or one of its vertices or neighbors is impossible.
     Cell(CellId),
-    /// The question is one for Delaunay triangulations, and the file is of another law.
+    /// The query is one for Delaunay triangulations, but the file has another law.
     Unanswerable(Law),
 }
 
 impl fmt::Display for Damaged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Damaged::Foreign => write!(f, "not a compact triangulation: the first bytes are others"),
+            Damaged::Foreign => write!(f, "not a compact triangulation: wrong magic bytes"),
             Damaged::Version(version) => {
-                write!(f, "a compact triangulation of version {version}; known is {}", layout::VERSION)
+                write!(f, "a compact triangulation of version {version}; the known version is {}", layout::VERSION)
             }
             Damaged::Header(what) => write!(f, "the header is damaged: {what}"),
             Damaged::Length { expected, found } => {
@@ -90,28 +91,30 @@ impl fmt::Display for Damaged {
 
 impl std::error::Error for Damaged {}
 
-/// A triangulation of the plane that is read where it lies, and cannot be changed.
+/// A read-only triangulation of the plane that is used where its bytes are, without being loaded.
 ///
 /// The kinds write it: [`Delaunay::write_compact`](crate::Delaunay::write_compact),
-/// [`ConstrainedDelaunay::write_compact`](crate::ConstrainedDelaunay::write_compact) and so on. `B` is whatever lends
-/// bytes: a slice, a vector, or a file that another crate maps to memory. Opening looks at the header and at the
-/// number of bytes, in constant time however many points there are; a question then touches the bytes that it needs.
-/// Answers are those of the triangulation that was written.
+/// [`ConstrainedDelaunay::write_compact`](crate::ConstrainedDelaunay::write_compact) and so on. `B`
+/// is anything that can be borrowed as bytes: a slice, a vector, or a file that another crate maps
+/// to memory. Opening reads the header and the number of bytes, in constant time however many
+/// points there are; a query then reads the bytes that it needs. Answers are those of the
+/// triangulation that was written.
 ///
-/// Nothing in the bytes is trusted: each number is held against its limits where it is used, each point is one that
-/// the geometry [admits](Geometry::admits), and walks are bounded by the number of cells. So damaged bytes lead to an
-/// error that names the cell or vertex, or to an answer that is wrong, never to a panic or an endless loop.
-/// [`check`](Self::check) looks at all of them.
+/// Nothing in the bytes is trusted: each number is checked against its limits where it is used,
+/// each point is one that the geometry [admits](Geometry::admits), and walks are bounded by the
+/// number of cells. So damaged bytes lead to an error that names the cell or vertex, or to a wrong
+/// answer, but never to a panic or an endless loop. [`check`](Self::check) reads all bytes.
 ///
-/// To map a file is left to the caller, who knows whether the file stays as it is meanwhile; with the crate `memmap2`:
+/// Mapping a file is up to the caller, who knows whether the file stays unchanged meanwhile. With
+/// the crate `memmap2`:
 ///
 /// ```text
 /// let map = unsafe { memmap2::Mmap::map(&File::open("valley.tin")?)? }; // nobody writes to it
 /// let compact = Compact::open(Plane::default(), map)?;
 /// ```
 ///
-/// A point takes 8 bytes a coordinate, 4 bytes for a cell of its vertex, and 48 bytes for its two triangles; two
-/// bytes more with constraints. The format is described in `docs/formats.md`.
+/// A point takes 8 bytes a coordinate, 4 bytes for a cell of its vertex, and 48 bytes for its two
+/// triangles; two bytes more with constraints. The format is described in `docs/formats.md`.
 ///
 /// ```
 /// use breakline_triangulation::{geometry::Plane, Compact, Damaged, Delaunay};
@@ -137,10 +140,11 @@ pub struct Compact<G, B> {
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Looks at the header and at the number of bytes. O(1).
+    /// Opens a compact triangulation; checks its header and the number of bytes. O(1).
     ///
     /// # Errors
-    /// If these do not fit, or the points are not such as the geometry has.
+    /// If the header or the number of bytes is wrong, or if the points do not have the geometry's
+    /// number of coordinates.
     pub fn open(geometry: G, bytes: B) -> Result<Self, Damaged> {
         let all = bytes.as_ref();
         let header = Header::read(&all[..all.len().min(HEADER)])?;
@@ -154,52 +158,53 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         Ok(Compact { geometry, bytes, header, offsets })
     }
 
-    /// The law that the file claims.
+    /// Returns the law that the file claims.
     pub fn law(&self) -> Law {
         self.header.law
     }
 
-    /// The geometry.
+    /// Returns the geometry.
     pub fn geometry(&self) -> &G {
         &self.geometry
     }
 
-    /// -1 without a point, 0 with one, 1 if all are collinear, and so on.
+    /// Returns the dimension: -1 without points, 0 for a single point, 1 if all points are
+    /// collinear, else 2.
     pub fn dimension(&self) -> i32 {
         Complex::dimension(self)
     }
 
-    /// Vertices; they are numbered below this without gaps.
+    /// Returns the number of vertices, which are numbered from 0 without gaps.
     pub fn vertex_count(&self) -> usize {
         self.vertex_slots()
     }
 
-    /// Cells, the infinite ones included; they are numbered below this without gaps.
+    /// Returns the number of cells, infinite ones included; they are numbered from 0 without gaps.
     pub fn cell_count(&self) -> usize {
         self.cell_slots()
     }
 
-    /// The point of a finite vertex.
+    /// Returns the point of a finite vertex.
     ///
     /// # Errors
-    /// If there is none, or the geometry does not admit it.
+    /// If the vertex does not exist, or the geometry does not admit its point.
     pub fn point(&self, vertex: VertexId) -> Result<[f64; D], Damaged> {
         Embedded::point(self, vertex)
     }
 
-    /// Whether the edge opposite vertex `i` of a cell is constrained.
+    /// Returns true if the edge opposite vertex `i` of a cell is constrained.
     ///
     /// # Errors
-    /// If there is no such cell.
+    /// If the cell does not exist.
     pub fn is_constrained(&self, cell: CellId, i: usize) -> Result<bool, Damaged> {
         if !self.is_used(cell) {
             return Err(Damaged::Cell(cell));
         }
-        if !self.header.law.has_walls() {
+        if !self.header.law.has_constraints() {
             return Ok(false);
         }
-        match self.number(self.offsets.walls + cell.index()) {
-            Some([walls]) if walls < 8 => Ok(i < 3 && walls >> i & 1 == 1),
+        match self.number(self.offsets.constraints + cell.index()) {
+            Some([constraints]) if constraints < 8 => Ok(i < 3 && constraints >> i & 1 == 1),
             _ => Err(Damaged::Cell(cell)),
         }
     }
@@ -209,10 +214,11 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         self.bytes.as_ref().get(at..)?.first_chunk().copied()
     }
 
-    /// The number at a place of the cells' array.
+    /// Returns a number from the array of cells: a vertex for slots 0 to 2, a neighbor for slots 3
+    /// to 5.
     #[inline]
-    fn link(&self, cell: CellId, place: usize) -> Result<u32, Damaged> {
-        let at = self.offsets.cells + CELL * cell.index() + 4 * place;
+    fn link(&self, cell: CellId, slot: usize) -> Result<u32, Damaged> {
+        let at = self.offsets.cells + CELL * cell.index() + 4 * slot;
         let number = self.is_used(cell).then(|| self.number(at)).flatten();
         number.map(u32::from_le_bytes).ok_or(Damaged::Cell(cell))
     }
@@ -248,8 +254,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3
     #[inline]
     fn corners(&self, cell: CellId) -> Result<[VertexId; 3], Damaged> {
         let mut corners = [VertexId::NONE; 3];
-        for (place, corner) in corners.iter_mut().enumerate().take(self.width()) {
-            *corner = match self.link(cell, place)? {
+        for (slot, corner) in corners.iter_mut().enumerate().take(self.width()) {
+            *corner = match self.link(cell, slot)? {
                 layout::INFINITE => VertexId::INFINITE,
                 stored if u64::from(stored) < self.header.vertices => VertexId::new(stored as usize),
                 _ => return Err(Damaged::Cell(cell)),

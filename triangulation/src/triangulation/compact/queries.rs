@@ -1,4 +1,5 @@
-//! The queries of the other kinds; each may end with an error where bytes are damaged.
+//! Queries of a compact triangulation: those of the other kinds, each of which may end with an
+//! error where bytes are damaged.
 
 use crate::geometry::{Coordinates, Geometry, Metric};
 use crate::tds::{CellId, VertexId, plane};
@@ -8,20 +9,22 @@ use super::super::query::{self, ConflictZone, Passage};
 use super::{Compact, Damaged, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Where a point lies: see [`Triangulation::locate`](crate::triangulation::Triangulation::locate). Without a cell
-    /// nearby, a long walk goes on from the nearest of `n^(1/3)` of the `n` vertices.
+    /// Returns where a point lies; see
+    /// [`Triangulation::locate`](crate::triangulation::Triangulation::locate). A long walk
+    /// continues from the nearest of `n^(1/3)` of the `n` vertices.
     ///
     /// # Errors
-    /// If what it meets is damaged.
+    /// If a cell or vertex that the walk meets is damaged.
     pub fn locate(&self, q: &[f64; D], near: Option<CellId>) -> Result<Location, Damaged> {
         query::locate(self, q, near)
     }
 
-    /// All that a segment meets: see [`Triangulation::along`](crate::triangulation::Triangulation::along). Ends at
-    /// the first error.
+    /// Returns all that a segment meets, in order; see
+    /// [`Triangulation::along`](crate::triangulation::Triangulation::along). Ends at the first
+    /// error.
     ///
     /// # Errors
-    /// If what it meets is damaged.
+    /// If a cell or vertex that is met is damaged.
     pub fn along(
         &self,
         ends: [&[f64; D]; 2],
@@ -30,11 +33,11 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         query::along(self, ends, near)
     }
 
-    /// The vertices in a rectangle: see
+    /// Returns the vertices in a rectangle; see
     /// [`Triangulation::within_rectangle`](crate::triangulation::Triangulation::within_rectangle).
     ///
     /// # Errors
-    /// If what it meets is damaged.
+    /// If a cell or vertex that is met is damaged.
     pub fn within_rectangle(&self, corners: [&[f64; D]; 2]) -> Result<Vec<VertexId>, Damaged>
     where
         G: Coordinates<3>,
@@ -42,11 +45,12 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         query::within_rectangle(self, corners, None)
     }
 
-    /// All finite faces in constant memory: see
-    /// [`Triangulation::faces_from`](crate::triangulation::Triangulation::faces_from). Ends at the first error.
+    /// Returns all finite faces, in constant memory; see
+    /// [`Triangulation::faces_from`](crate::triangulation::Triangulation::faces_from). Ends at the
+    /// first error.
     ///
     /// # Errors
-    /// If there is no such vertex, or its cell or its point cannot be.
+    /// If the vertex does not exist, or its cell or point is damaged.
     pub fn faces_from(
         &self,
         start: VertexId,
@@ -57,11 +61,12 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         query::faces_from(self, start)
     }
 
-    /// The vertices that a vertex has an edge to, counter-clockwise, the infinite one included; of
-    /// [`INFINITE`](VertexId::INFINITE) those on the hull, clockwise. Ends at the first error.
+    /// Returns the vertices that share an edge with a vertex, counter-clockwise, the infinite one
+    /// included; those around [`INFINITE`](VertexId::INFINITE), on the hull, are clockwise. Ends at
+    /// the first error.
     ///
     /// # Errors
-    /// If there is no such vertex, or its cell cannot be.
+    /// If the vertex does not exist, or its cell is damaged.
     pub fn vertices_around(
         &self,
         vertex: VertexId,
@@ -69,27 +74,28 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         plane::vertices_around(self, vertex)
     }
 
-    /// The cell to the left of an edge: see [`Tds::edge`](crate::tds::Tds::edge).
+    /// Returns the cell to the left of an edge; see [`Tds::edge`](crate::tds::Tds::edge).
     ///
     /// # Errors
-    /// If what is around the first vertex is damaged.
+    /// If a cell around the first vertex is damaged.
     pub fn edge(&self, a: VertexId, b: VertexId) -> Result<Option<(CellId, usize)>, Damaged> {
         plane::edge(self, a, b)
     }
 
-    /// The face with these vertices: see [`Tds::face`](crate::tds::Tds::face).
+    /// Returns the face with three vertices; see [`Tds::face`](crate::tds::Tds::face).
     ///
     /// # Errors
-    /// If what is around the first vertex is damaged.
+    /// If a cell around the first vertex is damaged.
     pub fn face(&self, corners: [VertexId; 3]) -> Result<Option<CellId>, Damaged> {
         plane::face(self, corners)
     }
 
-    /// What a new point would destroy: see [`Delaunay::conflict_zone`](crate::triangulation::Delaunay::conflict_zone)
-    /// and [`ConstrainedDelaunay::conflict_zone`](crate::triangulation::ConstrainedDelaunay::conflict_zone).
+    /// Returns what the insertion of a point would destroy; see
+    /// [`Delaunay::conflict_zone`](crate::Delaunay::conflict_zone) and
+    /// [`ConstrainedDelaunay::conflict_zone`](crate::ConstrainedDelaunay::conflict_zone).
     ///
     /// # Errors
-    /// If what it meets is damaged, and on other kinds.
+    /// If a cell or vertex that is met is damaged, or if the law is not one of these two.
     pub fn conflict_zone(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<ConflictZone>, Damaged> {
         match self.law() {
             Law::Delaunay | Law::ConstrainedDelaunay => {
@@ -102,20 +108,23 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
 }
 
 impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// The vertex nearest to a place: see [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
+    /// Returns the vertex nearest to a point; see
+    /// [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
     ///
     /// # Errors
-    /// If what it meets is damaged, and on other kinds than Delaunay triangulations.
+    /// If a cell or vertex that is met is damaged, or if the law is not that of a Delaunay
+    /// triangulation.
     pub fn nearest(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<VertexId>, Damaged> {
         self.demand_delaunay()?;
         query::nearest(self, q, near)
     }
 
-    /// All vertices from the nearest on: see
-    /// [`Delaunay::nearest_first`](crate::triangulation::Delaunay::nearest_first). Ends at the first error.
+    /// Returns all vertices, nearest first; see
+    /// [`Delaunay::nearest_first`](crate::triangulation::Delaunay::nearest_first). Ends at the
+    /// first error.
     ///
     /// # Errors
-    /// See [`nearest`](Self::nearest).
+    /// Those of [`nearest`](Self::nearest).
     pub fn nearest_first(
         &self,
         q: &[f64; D],
@@ -125,11 +134,11 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         query::nearest_first(self, q, near)
     }
 
-    /// The vertices in a circle: see [`Delaunay::within`](crate::triangulation::Delaunay::within). Ends at the first
-    /// error.
+    /// Returns the vertices in a circle, nearest first; see
+    /// [`Delaunay::within`](crate::triangulation::Delaunay::within). Ends at the first error.
     ///
     /// # Errors
-    /// See [`nearest`](Self::nearest).
+    /// Those of [`nearest`](Self::nearest).
     pub fn within(
         &self,
         center: &[f64; D],

@@ -7,7 +7,7 @@ use super::super::{Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, De
 use super::Law;
 use super::layout::{HEADER, Header, INFINITE, NONE, padded};
 
-/// Numbers without gaps, in the same order.
+/// Numbers without gaps for used slots, in the same order; `None` if there are no gaps.
 struct Dense(Option<Vec<u32>>);
 
 impl Dense {
@@ -44,7 +44,7 @@ impl Numbers {
     }
 }
 
-/// Zeros up to a multiple of 8 bytes.
+/// Writes zeros up to a multiple of 8 bytes.
 fn pad(out: &mut impl Write, written: usize) -> io::Result<()> {
     let gap = padded(written as u64) as usize - written;
     out.write_all(&[0; 8][..gap])
@@ -53,7 +53,7 @@ fn pad(out: &mut impl Write, written: usize) -> io::Result<()> {
 fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>(
     t: &Triangulation<G, 3, V, C>,
     law: Law,
-    walls: impl Fn(&C) -> u8,
+    constraints: impl Fn(&C) -> u8,
     out: &mut impl Write,
 ) -> io::Result<()> {
     let tds: &Tds<3, V, C> = t.tds();
@@ -88,24 +88,25 @@ fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>
             out.write_all(&numbers.cell(tds.neighbor(cell, i)).to_le_bytes())?;
         }
     }
-    if law.has_walls() {
+    if law.has_constraints() {
         for cell in tds.cells() {
-            out.write_all(&[walls(tds.cell_data(cell))])?;
+            out.write_all(&[constraints(tds.cell_data(cell))])?;
         }
         pad(out, tds.cell_count())?;
     }
     Ok(())
 }
 
-/// Bit `i` for the edge opposite vertex `i`.
-fn bits<C>(walls: &ConstrainedEdges<C>) -> u8 {
-    (0..3).map(|i| u8::from(walls.has(i)) << i).sum()
+/// Returns bit `i` set if the edge opposite vertex `i` is constrained.
+fn bits<C>(constraints: &ConstrainedEdges<C>) -> u8 {
+    (0..3).map(|i| u8::from(constraints.has(i)) << i).sum()
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Basic<G, 3, V, C> {
-    /// Writes the triangulation for [`Compact`](super::Compact) to read, without payloads. Numbers of vertices and
-    /// cells stay as they are, unless some have been removed: then the gaps close. In small pieces: `out` is better
-    /// buffered.
+    /// Writes the triangulation in the format of [`Compact`](super::Compact), without payloads.
+    ///
+    /// Vertices and cells keep their numbers, unless some have been removed: then the gaps close.
+    /// Writes a few bytes at a time, so `out` should be buffered.
     ///
     /// # Errors
     /// Those of `out`.
@@ -115,7 +116,8 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Bas
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Regular<G, V, C> {
-    /// See [`Basic::write_compact`]; without the law, and without points that are hidden.
+    /// Writes the triangulation like [`Basic::write_compact`], without its law and without hidden
+    /// points.
     ///
     /// # Errors
     /// Those of `out`.
@@ -125,7 +127,8 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Reg
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Delaunay<G, 3, V, C> {
-    /// See [`Basic::write_compact`]; with its law, which makes questions for what is nearest possible.
+    /// Writes the triangulation like [`Basic::write_compact`], with its law, which queries for
+    /// nearest vertices need.
     ///
     /// # Errors
     /// Those of `out`.
@@ -135,7 +138,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Del
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Constrained<G, V, C> {
-    /// See [`Basic::write_compact`]; with the constraints.
+    /// Writes the triangulation like [`Basic::write_compact`], with its constraints.
     ///
     /// # Errors
     /// Those of `out`.
@@ -145,7 +148,8 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Con
 }
 
 impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize> ConstrainedDelaunay<G, V, C> {
-    /// See [`Basic::write_compact`]; with the constrained edges. What is known of their lines stays behind.
+    /// Writes the triangulation like [`Basic::write_compact`], with its law and its constrained
+    /// edges, but without its lines.
     ///
     /// # Errors
     /// Those of `out`.

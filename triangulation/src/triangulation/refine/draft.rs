@@ -1,4 +1,4 @@
-//! A mesh in the making: vertices are put on constrained edges, or between them.
+//! A mesh under construction: adds vertices between constrained edges.
 
 use std::collections::VecDeque;
 
@@ -12,32 +12,33 @@ use super::OUTSIDE;
 use super::shape::{area, is_in_lens, minus};
 use super::shells::Shells;
 
-/// Which vertices a constrained edge must not have near to it.
+/// The region around a constrained edge that must contain no vertex.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Law {
-    /// In the circle through its ends and a vertex on the other side.
+    /// The circle through its ends and a vertex on the other side, without its border.
     Delaunay,
-    /// In or on the circle that has it as its diameter.
+    /// The circle that has it as its diameter, with its border.
     Gabriel,
-    /// In the lens from which it is seen under an angle whose cosine is less than the negative of this (Chew 1993).
+    /// The lens from which it is seen under an angle whose cosine is less than the negative of this
+    /// (Chew 1993).
     Lens(f64),
 }
 
-/// Where a vertex comes from.
+/// The reason why a vertex exists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// It was there.
+    /// It was there before.
     Given,
     /// It splits a constrained edge, which had these ends.
-    Wall([VertexId; 2]),
+    OnConstraint([VertexId; 2]),
     /// It destroyed a triangle.
     Free,
 }
 
-/// What came of an attempt to add a vertex.
+/// The outcome of an attempt to add a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Attempt {
-    /// It is there.
+    /// The vertex was added.
     Added,
     /// It would encroach upon a constrained edge, which is queued.
     Encroaches,
@@ -47,11 +48,11 @@ pub(super) enum Attempt {
 
 pub(super) struct Draft<G: Crossing, V> {
     pub(super) t: ConstrainedDelaunay<G, V>,
-    /// By cell number: in which region it is, or [`OUTSIDE`].
+    /// The region of each cell, or [`OUTSIDE`], by cell number.
     pub(super) regions: Vec<u32>,
-    /// Cells that have changed; some may have gone since.
+    /// Cells that have changed; some may no longer exist.
     pub(super) fresh: Vec<CellId>,
-    /// How many vertices may still be added.
+    /// The number of vertices that may still be added.
     pub(super) budget: usize,
     /// Constrained edges that are to be split.
     pub(super) encroached: VecDeque<[VertexId; 2]>,
@@ -90,23 +91,24 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         self.regions[cell.index()] != OUTSIDE
     }
 
-    /// Whether an edge is constrained and has a vertex near to it that the law forbids.
+    /// Returns true if an edge is constrained and has a vertex near it that the law forbids.
     pub(super) fn is_encroached(&self, cell: CellId, i: usize) -> bool {
         let is_far_apex_near = || {
             let beside = self.t.tds().neighbor(cell, i);
             self.is_apex_near(beside, self.t.tds().index_of_neighbor(beside, cell))
         };
-        // Of four points in circles one answer is enough.
+        // Of four points in circles one test is enough.
         let is_symmetric = matches!(self.law, Law::Delaunay);
         self.t.is_constrained(cell, i) && (self.is_apex_near(cell, i) || !is_symmetric && is_far_apex_near())
     }
 
-    /// The same, asked of the vertex of this cell only: where it is new, the one on the other side has been asked.
+    /// Like [`is_encroached`](Self::is_encroached), but tests the vertex of this cell only: if the
+    /// cell is new, the one on the other side has been tested before.
     pub(super) fn is_encroached_by_apex(&self, cell: CellId, i: usize) -> bool {
         self.t.is_constrained(cell, i) && self.is_apex_near(cell, i)
     }
 
-    /// Whether the vertex of a cell in the domain is too near to the edge opposite it.
+    /// Returns true if the vertex of a cell in the domain is too near to the edge opposite it.
     fn is_apex_near(&self, cell: CellId, i: usize) -> bool {
         let tds = self.t.tds();
         let apex = tds.vertex(cell, i);
@@ -123,19 +125,20 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         self.encroaches(tds.edge_ends(cell, i), self.t.plan_of(apex))
     }
 
-    /// Whether a place is too near to an edge with these ends.
-    fn encroaches(&self, ends: [VertexId; 2], place: [f64; 2]) -> bool {
+    /// Returns true if a point is too near to an edge with these ends.
+    fn encroaches(&self, ends: [VertexId; 2], site: [f64; 2]) -> bool {
         let [a, b] = ends.map(|v| self.t.plan_of(v));
-        let angle = || Wide::sign(&DotProduct([a, place, b]));
+        let angle = || Wide::sign(&DotProduct([a, site, b]));
         match self.law {
             Law::Delaunay => false,
             Law::Gabriel => angle() != Sign::Positive,
-            Law::Lens(cosine) => is_in_lens(minus(a, place), minus(b, place), cosine),
+            Law::Lens(cosine) => is_in_lens(minus(a, site), minus(b, site), cosine),
         }
     }
 
-    /// Grows the zone of a point that is in conflict with a cell, up to constraints; or to the first of these of which
-    /// `stops` says so, given from within. That one is returned.
+    /// Grows the zone of a point that is in conflict with a cell, up to constraints, or to the
+    /// first constraint for which `stops` returns true, given as an edge of a cell in the zone.
+    /// Returns that one.
     pub(super) fn grow(
         &self,
         zone: &mut Zone,
@@ -156,8 +159,9 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         stopped
     }
 
-    /// Replaces a zone by the star of a new vertex, the cells of which are then [fresh](Self::fresh). `region` says in
-    /// which region they are, by their position on the border.
+    /// Replaces a zone by the star of a new vertex, the cells of which are then
+    /// [fresh](Self::fresh). `region` returns the region of a cell, given its position on the
+    /// border.
     pub(super) fn star(
         &mut self,
         mut zone: Zone,
@@ -166,7 +170,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         region: impl Fn(usize) -> u32,
     ) -> VertexId {
         let vertex = self.t.inner.add_vertex(p, V::default());
-        let star = self.t.inner.tds.star(&mut zone, vertex, |walls, i| walls.only(i));
+        let star = self.t.inner.tds.star(&mut zone, vertex, |mask, i| mask.only(i));
         self.t.inner.last = star.last().copied();
         self.regions.resize(self.t.inner.tds.cell_slots(), OUTSIDE);
         for (k, &cell) in star.iter().enumerate() {
@@ -179,24 +183,25 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         vertex
     }
 
-    /// Adds a vertex that destroys the triangle in whose circle it is, unless it is too near to constrained edges, or
-    /// beyond them.
+    /// Adds a vertex that destroys the triangle in whose circle it lies, unless it is too near to
+    /// constrained edges or beyond them.
     ///
-    /// No walk is needed. Across an edge that is not constrained the power of a place to the circles of the triangles
-    /// falls on the way there; so all triangles on a way from the one in question have the place in their circles, and
-    /// the zone that grows from that one holds them. It ends at a constrained edge that has the place on its other side
-    /// if the place cannot be seen.
-    pub(super) fn add_in(&mut self, cell: CellId, place: [f64; 2]) -> Attempt {
+    /// No walk is needed. Across an edge that is not constrained, the power of a point to the
+    /// circles of the triangles falls toward the point. So all triangles between the one in
+    /// question and the point have the point in their circles, and the zone that grows from that
+    /// one contains them. If the point cannot be seen, the zone ends at a constrained edge that has
+    /// the point on its other side.
+    pub(super) fn add_in(&mut self, cell: CellId, site: [f64; 2]) -> Attempt {
         let [a, b, _] = self.t.tds().corners(cell).map(|v| self.t.point(v));
-        let place = self.t.geometry().on_step(place);
-        let p = self.t.geometry().meet(place, &[[a, b]]);
+        let site = self.t.geometry().on_step(site);
+        let p = self.t.geometry().meet(site, &[[a, b]]);
         if self.t.inner.admit(&p).is_err() || !self.t.inner.in_conflict(cell, &p) {
             return Attempt::TooFine;
         }
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        // Of several the first is enough: once it is split, most of the others need not be.
+        // The first of several is enough: once it is split, most of the others need not be.
         let is_near = |from, i| {
-            self.encroaches(self.t.tds().edge_ends(from, i), place)
+            self.encroaches(self.t.tds().edge_ends(from, i), site)
                 || self.t.inner.side_of_facet(from, i, &p) != Sign::Positive
         };
         if let Some((from, i)) = self.grow(&mut zone, cell, &p, is_near) {
@@ -206,20 +211,20 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             return Attempt::Encroaches;
         }
         let region = self.regions[cell.index()];
-        let p = self.interpolate(zone.cells(), place);
+        let p = self.interpolate(zone.cells(), site);
         self.star(zone, p, Origin::Free, |_| region);
         self.budget -= 1;
         Attempt::Added
     }
 
-    /// The point at a place in one of some triangles: on the way from a corner to the other side, which it meets where
-    /// the way goes on.
-    fn interpolate(&self, cells: &[CellId], place: [f64; 2]) -> G::Point {
+    /// Returns the point at a site in one of some triangles. It lies on a line from a corner to the
+    /// opposite side, whose foot on that side is interpolated first.
+    fn interpolate(&self, cells: &[CellId], site: [f64; 2]) -> G::Point {
         let weights = |&cell: &CellId| {
             let [a, b, c] = self.t.tds().corners(cell).map(|v| self.t.plan_of(v));
-            [area([b, c, place]), area([c, a, place]), area([a, b, place])]
+            [area([b, c, site]), area([c, a, site]), area([a, b, site])]
         };
-        // As near to the inside of one as rounded areas can tell.
+        // As near to the inside of one as rounded areas can show.
         let least = |weights: [f64; 3]| weights.into_iter().fold(f64::INFINITY, f64::min);
         let mut host = (cells[0], weights(&cells[0]));
         for cell in &cells[1..] {
@@ -233,7 +238,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         }
         let (cell, weights) = (host.0, host.1.map(|weight| weight.max(0.0)));
         let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
-        // From the furthest corner the other side is met at the best angle.
+        // From the furthest corner the line meets the other side at the best angle.
         let lesser = |i: usize, j: usize| if weights[j] < weights[i] { j } else { i };
         let apex = lesser(lesser(0, 1), 2);
         let [j, k] = [ccw(apex), cw(apex)];
@@ -241,6 +246,6 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let [from, to] = [j, k].map(|k| self.t.geometry().plan(corners[k]));
         let foot = [0, 1].map(|axis| from[axis] * (1.0 - part) + to[axis] * part);
         let foot = self.t.geometry().meet(foot, &[[corners[j], corners[k]]]);
-        self.t.geometry().meet(place, &[[corners[apex], &foot]])
+        self.t.geometry().meet(site, &[[corners[apex], &foot]])
     }
 }

@@ -1,4 +1,5 @@
-//! Delaunay refinement: triangles that are too thin or too large are destroyed by a vertex in their circles.
+//! Delaunay refinement: destroys triangles that are too thin or too large by a vertex in their
+//! circles.
 
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId, ccw};
@@ -8,26 +9,26 @@ use super::queue::{Bad, Queue};
 use super::shape::{Shape, length, minus};
 use super::{Quality, Shortfall};
 
-/// Two lengths that differ by less than this part are those of one circle, rounded.
+/// Two lengths that differ by less than this fraction are radii of the same circle, rounded.
 const SAME_CIRCLE: f64 = 1e-3;
 
-/// A shortest edge below so many last places of a coordinate is not worth a vertex.
+/// A triangle whose shortest edge is below so many last places of a coordinate gets no vertex.
 const LAST_PLACES: f64 = 64.0;
 
-/// The part of the distance, at which the smallest angle is just the one that is wanted, to which off-centers go: a
-/// little nearer, so that the rounded angle is not missed.
+/// Off-centers go this fraction of the distance at which the smallest angle is just the requested
+/// one: a little nearer, so that the rounded angle is not missed.
 const REACH: f64 = 0.95;
 
 pub(super) struct Refiner<'a, G: Crossing, V> {
     pub(super) draft: Draft<G, V>,
     quality: &'a Quality<'a>,
     queue: Queue,
-    /// Triangles that are not what is asked for but were left as they are; some may have gone since.
+    /// Triangles that do not satisfy the bounds but remain as they are; some may no longer exist.
     left: Vec<Bad>,
-    /// The square of the cosine of the smallest angle that is wanted.
+    /// The square of the cosine of the requested smallest angle.
     cosine: f64,
     reach: f64,
-    /// Whether there is any bound on areas: every new triangle asks, and mostly there is none.
+    /// True if there is any bound on areas: every new triangle is tested, and mostly there is none.
     bounds_areas: bool,
 }
 
@@ -42,7 +43,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     }
 
     pub(super) fn run(&mut self) {
-        self.draft.settle();
+        self.draft.split_encroached();
         self.draft.fresh.clear();
         let cells: Vec<CellId> = self.draft.t.tds().cells().collect();
         cells.into_iter().for_each(|cell| self.test(cell));
@@ -52,10 +53,10 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
             let Some(shape) = self.still_bad(&bad) else { continue };
             match self.draft.add_in(bad.cell, shape.off_center(self.reach)) {
                 Attempt::Added => {}
-                Attempt::Encroaches if self.draft.settle() => self.queue.push(bad),
+                Attempt::Encroaches if self.draft.split_encroached() => self.queue.push(bad),
                 Attempt::Encroaches | Attempt::TooFine => self.left.push(bad),
             }
-            // Where a split comes to nothing, vertices may have been taken out all the same.
+            // Vertices may have been removed even if a split failed.
             let mut fresh = std::mem::take(&mut self.draft.fresh);
             fresh.drain(..).for_each(|cell| self.test(cell));
             self.draft.fresh = fresh;
@@ -74,7 +75,8 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         }
     }
 
-    /// The shape of a cell, if it is a triangle of the domain that is not what is asked for.
+    /// Returns the shape of a cell if it is a triangle of the domain that does not satisfy the
+    /// bounds.
     #[inline]
     fn bad(&self, cell: CellId) -> Option<Shape> {
         let is_asked = self.draft.t.tds().is_used(cell) && self.draft.is_inside(cell);
@@ -82,7 +84,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         (self.is_too_large(cell, &shape) || self.is_too_thin(&shape)).then_some(shape)
     }
 
-    /// Takes down a cell that is not what is asked for.
+    /// Records a cell that does not satisfy the bounds.
     fn note(&mut self, cell: CellId, shape: &Shape) {
         let bad = Bad { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
         if self.is_too_large(cell, shape) || self.why_thin(cell, shape).is_none() {
@@ -92,8 +94,9 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         }
     }
 
-    /// The shape of a triangle that was taken down, if it is still there and still not what is asked for: vertices are
-    /// taken out, and both its number and those of its corners may have come to others since.
+    /// Returns the shape of a recorded triangle if it still exists and still does not satisfy the
+    /// bounds. Vertices are removed, so that both its number and those of its corners may have been
+    /// reused.
     fn still_bad(&self, bad: &Bad) -> Option<Shape> {
         if *self.draft.t.tds().corners(bad.cell) == bad.corners { self.bad(bad.cell) } else { None }
     }
@@ -116,7 +119,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         shape.cosine() > self.cosine
     }
 
-    /// Why a triangle that is too thin is left as it is, if it is.
+    /// Returns why a triangle that is too thin remains as it is; `None` if it is to be destroyed.
     fn why_thin(&self, cell: CellId, shape: &Shape) -> Option<Shortfall> {
         let corners = self.draft.t.tds().corners(cell);
         let ends = [corners[shape.first()], corners[ccw(shape.first())]];
@@ -128,11 +131,13 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         (shape.shortest().sqrt() < LAST_PLACES * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
     }
 
-    /// Whether an edge leads across a small angle between two constraints, from the one to the other, on a circle
-    /// around the apex. A triangle over it can be no better than that angle is, and splitting it would make the next
-    /// one as thin (Miller, Pav and Walkington 2003).
+    /// Returns true if an edge spans a small angle between two constraints, from one to the other,
+    /// on a circle around the apex. A triangle over it can be no better than that angle, and
+    /// splitting it would make the next one as thin (Miller, Pav and Walkington 2003).
     fn spans_small_angle(&self, [a, b]: [VertexId; 2]) -> bool {
-        let (Origin::Wall(ab), Origin::Wall(cd)) = (self.draft.origin(a), self.draft.origin(b)) else { return false };
+        let (Origin::OnConstraint(ab), Origin::OnConstraint(cd)) = (self.draft.origin(a), self.draft.origin(b)) else {
+            return false;
+        };
         let apex = ab.into_iter().find(|v| cd.contains(v));
         ab != cd
             && apex.is_some_and(|apex| {
@@ -141,8 +146,8 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
             })
     }
 
-    /// The triangles that are not what was asked for, in order of their numbers, and why. All others have been tested
-    /// since they came to be.
+    /// Returns the triangles that do not satisfy the bounds, in order of their numbers, each with
+    /// the reason. All others have been tested since they were created.
     pub(super) fn shortfall(&mut self) -> Vec<(CellId, Shortfall)> {
         let mut bad = std::mem::take(&mut self.left);
         bad.extend(std::iter::from_fn(|| self.queue.pop()));

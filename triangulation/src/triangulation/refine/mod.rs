@@ -1,31 +1,35 @@
-//! Quality meshes: vertices are added until constraints keep to the law of Delaunay, or triangles to an angle and an
-//! area.
+//! Quality meshes: adds vertices until constrained edges are Delaunay edges, or until triangles
+//! satisfy bounds on angles and areas.
 //!
 //! | to | use |
 //! |---|---|
-//! | make a Delaunay triangulation of it by splitting | [`ConstrainedDelaunay::conformed`], [`Conformity::Delaunay`] |
-//! | have nothing in the circle on a constraint as its diameter | the same, [`Conformity::Gabriel`] |
-//! | have no angle below 20.7 degrees, and areas bounded | [`ConstrainedDelaunay::refined`] |
+//! | turn constraints into edges of a Delaunay triangulation, by splitting | [`ConstrainedDelaunay::conformed`], [`Conformity::Delaunay`] |
+//! | keep the circle on each constraint as its diameter empty | [`ConstrainedDelaunay::conformed`], [`Conformity::Gabriel`] |
+//! | have no angle below 20.7 degrees, and bounded areas | [`ConstrainedDelaunay::refined`] |
 //!
-//! What comes out, [`Refined`], is for reading: it is a triangulation with all questions of one, lines and their chains
-//! included, but the places of added vertices follow from all that is there, so that a line could not be taken out
-//! again as if it had never been. To edit, edit the triangulation and refine a copy.
+//! The result, [`Refined`], is read-only. It answers every query of a triangulation, those of lines
+//! and their chains included. But the positions of added vertices follow from everything that was
+//! there, so that a line could not be removed as if it had never been. To edit, edit the
+//! triangulation and refine a copy.
 //!
-//! **Method.** Constrained edges that are encroached upon are split in the middle, at small angles on concentric
-//! circles (Ruppert 1995). Then triangles, the one with the shortest edge first, get a vertex at the center of their
-//! circle, or at the off-center if that is nearer (Üngör 2004), unless it encroaches upon a constrained edge: the first
-//! that is met is split instead, and the triangle is left if that edge cannot be. What lies in the lens of a constrained
-//! edge, as Chew (1993) and Shewchuk (2002) have it, encroaches upon it; vertices that were added before and lie in its
-//! circle are taken out before it is split.
+//! **Method.** Constrained edges that are encroached upon are split in the middle, or on concentric
+//! circles near small angles (Ruppert 1995). Then triangles, the one with the shortest edge first,
+//! get a vertex at their circumcenter, or at the off-center if that is nearer (Üngör 2004). If that
+//! vertex encroaches upon a constrained edge, the first such edge that is met is split instead; if
+//! the edge cannot be split, the triangle remains. Whatever lies in the lens of a constrained edge,
+//! as Chew (1993) and Shewchuk (2002) define it, encroaches upon it. Vertices that were added
+//! before and lie in its circle are removed before it is split.
 //!
-//! **Ends.** Angles up to 20.7 degrees are proven to be reached, up to about 33 in practice; where constraints
-//! themselves meet at less than 60 degrees, no better than they allow: triangles across a small angle are left (Miller,
-//! Pav and Walkington 2003). A bound on the number of vertices and one on the smallest edge that coordinates can tell
-//! make an end whatever was asked for. [`Refined::shortfall`] names every triangle that is not as it should be, and
-//! why.
+//! **Termination.** Angles up to 20.7 degrees are proven to be reached, and angles up to about 33
+//! are reached in practice. Where constraints themselves meet at less than 60 degrees, angles are
+//! no better than these allow: triangles across a small angle remain (Miller, Pav and Walkington
+//! 2003). A bound on the number of vertices, and one on the smallest edge that coordinates can
+//! represent, end the refinement whatever was requested. [`Refined::shortfall`] names every
+//! triangle that does not satisfy the bounds, and why.
 //!
-//! Added vertices are rounded, and constraints go through the rounded places: by a last place beside the segments that
-//! were given. All tests that decide who is whose neighbor are exact nevertheless.
+//! Added vertices are rounded, and constraints go through the rounded sites. These may be off the
+//! original segments by a unit in the last place. Nevertheless all tests that decide which vertices
+//! are neighbors are exact.
 
 mod draft;
 mod improve;
@@ -33,7 +37,7 @@ mod queue;
 mod regions;
 mod shape;
 mod shells;
-mod walls;
+mod split;
 
 use std::fmt;
 use std::ops::Deref;
@@ -45,80 +49,87 @@ use super::ConstrainedDelaunay;
 use draft::{Draft, Law, Origin};
 use improve::Refiner;
 
-/// Of a cell that is in no region, since it is not in the domain.
+/// The region of a cell outside of the domain.
 const OUTSIDE: u32 = u32::MAX;
 
-/// Vertices that splitting constraints may add: that comes to an end, in memory that a machine has.
+/// The limit of vertices that splitting constraints may add: it is reached in finite time and in
+/// the memory of a machine.
 const MAX_SPLITS: usize = 10_000_000;
 
-/// What constrained edges are to be.
+/// The property that [`conformed`](ConstrainedDelaunay::conformed) gives to constrained edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Conformity {
-    /// Edges of a Delaunay triangulation: no vertex lies inside of any triangle's circle, behind a constraint or not.
+    /// Edges of a Delaunay triangulation: no vertex lies inside of any triangle's circle, behind a
+    /// constraint or not.
     Delaunay,
-    /// Edges of the Gabriel graph: no vertex lies in or on the circle that has one as its diameter.
+    /// Edges of the Gabriel graph: no vertex lies in or on the circle that has the edge as its
+    /// diameter.
     Gabriel,
 }
 
-/// What is to be improved. Places are rounded to the [step](Crossing::step) of the geometry, if it has one.
+/// The part of a triangulation to refine. Points are rounded to the [step](Crossing::step) of the
+/// geometry, if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Domain {
-    /// All triangles, but holes. The edges of the hull become constraints, which added vertices may bend by a rounding:
-    /// what then lies beyond them, and still in the hull, is outside.
+    /// All triangles except holes. The edges of the hull become constraints. Added vertices may
+    /// bend these by a rounding; what then lies beyond them, but still in the hull, is outside.
     Hull {
-        /// As for [`Domain::Enclosed`].
+        /// A point in each hole, as for [`Domain::Enclosed`].
         holes: Vec<[f64; 2]>,
     },
-    /// What constraints close off from outside, but holes.
+    /// What constraints enclose, except holes.
     Enclosed {
-        /// A place in each hole; ones outside of the hull make no difference.
+        /// A point in each hole; points outside of the hull have no effect.
         holes: Vec<[f64; 2]>,
     },
-    /// What an odd number of constraints closes off: polygons with holes and islands, as
-    /// [`ConstrainedDelaunay::nesting`] counts.
+    /// What an odd number of constraints encloses: polygons with holes and islands, as counted by
+    /// [`ConstrainedDelaunay::nesting`].
     Nested,
-    /// What constraints close off around some places.
+    /// What constraints enclose around given points.
     Seeded {
-        /// The places; ones that are not closed off make no difference.
+        /// A point in each part; points that are not enclosed have no effect.
         seeds: Vec<[f64; 2]>,
     },
 }
 
-/// An area that constraints close off, with a bound of its own.
+/// An area that constraints enclose, with a bound of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
-    /// A place in it, rounded as those of a [`Domain`]; one outside of the domain makes no difference.
+    /// A point in the region, rounded like those of a [`Domain`]; a point outside of the domain has
+    /// no effect.
     pub seed: [f64; 2],
-    /// For triangles, in the square of the unit of the coordinates.
+    /// The largest area of a triangle, in the square of the unit of the coordinates.
     pub max_area: f64,
 }
 
-/// What triangles are to be. Of several bounds on an area the smallest counts.
+/// The bounds that [`refined`](ConstrainedDelaunay::refined) triangles satisfy. If several bounds
+/// on an area apply, the smallest counts.
 #[derive(Clone)]
 pub struct Quality<'a> {
-    /// In degrees, between 0 and 60 (others are taken for these): up to 20.7 is proven to be reached, up to about 33 is
-    /// in practice.
+    /// The smallest angle, in degrees. Values are clamped to 0 to 60; up to 20.7 is proven to be
+    /// reached, up to about 33 is reached in practice.
     pub min_angle: f64,
-    /// In the square of the unit of the coordinates.
+    /// The largest area of a triangle, in the square of the unit of the coordinates.
     pub max_area: f64,
-    /// Areas with bounds of their own.
+    /// Regions with bounds of their own.
     pub regions: Vec<Region>,
-    /// A bound that depends on the place of a triangle's center.
+    /// A bound on the area of a triangle that depends on its centroid.
     pub area_at: Option<&'a dyn Fn([f64; 2]) -> f64>,
-    /// Where.
+    /// The region to refine.
     pub domain: Domain,
-    /// Limit of the vertices that are put in; those taken out again count, too. An angle that cannot be reached takes as many
-    /// as there may be, and about 350 bytes for each.
+    /// The largest number of vertices to insert; those that are removed again count, too. An angle
+    /// that cannot be reached uses up the limit, and about 350 bytes for each vertex.
     pub max_added: usize,
 }
 
 impl Quality<'_> {
-    /// The limit of vertices that are put in, if nothing else is said.
+    /// The default limit of inserted vertices.
     pub const MAX_ADDED: usize = 1_000_000;
 }
 
 impl Default for Quality<'_> {
-    /// 20.7 degrees in all that constraints close off, of any size; [`MAX_ADDED`](Self::MAX_ADDED) vertices at the most.
+    /// 20.7 degrees in all that constraints enclose, areas unbounded; at most
+    /// [`MAX_ADDED`](Self::MAX_ADDED) vertices.
     fn default() -> Self {
         Quality {
             min_angle: 20.7,
@@ -146,7 +157,7 @@ impl fmt::Debug for Quality<'_> {
 }
 
 impl Quality<'_> {
-    /// In degrees, within what has a meaning.
+    /// Returns the smallest angle in degrees, clamped to the useful range.
     fn angle(&self) -> f64 {
         if self.min_angle.is_nan() { 0.0 } else { self.min_angle.clamp(0.0, 60.0) }
     }
@@ -157,10 +168,10 @@ impl Quality<'_> {
     }
 }
 
-/// Why a triangle is not what was asked for.
+/// The reason why a triangle does not satisfy the bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shortfall {
-    /// It spans a small angle between constraints, or the rest of one.
+    /// It spans a small angle between constraints, or what remains of one.
     SmallAngle,
     /// [`Quality::max_added`] was reached.
     Limit,
@@ -168,7 +179,7 @@ pub enum Shortfall {
     Coordinates,
 }
 
-/// A triangulation with vertices added, for reading.
+/// A triangulation with added vertices, read-only.
 #[derive(Debug, Clone)]
 pub struct Refined<G: Crossing, V = ()> {
     t: ConstrainedDelaunay<G, V>,
@@ -191,47 +202,49 @@ impl<G: Crossing, V: Default> Refined<G, V> {
         Refined { t: draft.t, regions: draft.regions, added, shortfall }
     }
 
-    /// Without triangles there is nothing to improve.
+    /// Returns a triangulation without triangles as it is: there is nothing to refine.
     fn unchanged(t: ConstrainedDelaunay<G, V>) -> Self {
         Refined { t, regions: Vec::new(), added: Vec::new(), shortfall: Vec::new() }
     }
 
-    /// The vertices that were added, in order of their numbers.
+    /// Returns the vertices that were added, in order of their numbers.
     pub fn added(&self) -> &[VertexId] {
         &self.added
     }
 
-    /// Whether a cell is in the domain that was to be improved.
+    /// Returns true if a cell is in the domain that was to be refined.
     pub fn is_inside(&self, cell: CellId) -> bool {
         self.regions.get(cell.index()).is_some_and(|&region| region != OUTSIDE)
             && self.tds().is_used(cell)
             && !self.tds().is_infinite(cell)
     }
 
-    /// The triangles of the domain, in order of their numbers.
+    /// Returns the triangles of the domain, in order of their numbers.
     pub fn inside(&self) -> impl Iterator<Item = CellId> + '_ {
         self.finite_cells().filter(|&cell| self.is_inside(cell))
     }
 
-    /// The region of [`Quality::regions`] that a cell is in, by its position.
+    /// Returns the region that a cell is in, as an index into [`Quality::regions`].
     pub fn region(&self, cell: CellId) -> Option<usize> {
         if self.is_inside(cell) { (self.regions[cell.index()] as usize).checked_sub(1) } else { None }
     }
 
-    /// The triangles that are not what was asked for, or have an edge that is not, in order of their numbers, and why.
+    /// Returns the triangles that do not satisfy the bounds, or have an edge that does not conform,
+    /// each with the reason; in order of their numbers.
     pub fn shortfall(&self) -> &[(CellId, Shortfall)] {
         &self.shortfall
     }
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Splits constrained edges until all of them conform. All is domain.
+    /// Splits constrained edges until all of them conform. The domain is the whole triangulation.
     ///
-    /// Where constraints cross or meet at less than 60 degrees, around clusters of them, edges are split at distances
-    /// from the common vertex that are powers of two apart.
+    /// Where constraints cross or meet at less than 60 degrees, the edges of such a cluster are
+    /// split at distances from the common vertex that are powers of two apart.
     ///
     /// # Complexity
-    /// For each vertex that is added, the triangles it replaces; how many are added depends on lengths and angles.
+    /// For each added vertex, proportional to the triangles that it replaces. The number of added
+    /// vertices depends on lengths and angles.
     pub fn conformed(self, conformity: Conformity) -> Refined<G, V> {
         if self.dimension() < 2 {
             return Refined::unchanged(self);
@@ -242,16 +255,17 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             Conformity::Gabriel => Law::Gabriel,
         };
         let mut draft = Draft::new(self, regions, law, MAX_SPLITS);
-        draft.settle();
+        draft.split_encroached();
         let why = if draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
         let does_not_conform = |&cell: &CellId| (0..3).any(|i| draft.is_encroached(cell, i));
         let shortfall = draft.t.tds().cells().filter(does_not_conform).map(|cell| (cell, why)).collect();
         Refined::of(draft, shortfall)
     }
 
-    /// Adds vertices until the triangles of a domain have no smaller angles and no larger areas than is asked for.
+    /// Adds vertices until the triangles of a domain have no smaller angles and no larger areas
+    /// than requested.
     ///
-    /// Added vertices are on the surface as it was when they came, where points have heights.
+    /// Where points have heights, added vertices lie on the surface as it was when they were added.
     ///
     /// ```
     /// use breakline_triangulation::geometry::Plane;
@@ -269,15 +283,15 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// ```
     ///
     /// # Complexity
-    /// Expected time proportional to the triangles that come out, in practice; the number of these is within a constant
-    /// of the least possible (Ruppert 1995).
+    /// In practice, expected time proportional to the triangles of the result. Their number is
+    /// within a constant factor of the least possible (Ruppert 1995).
     pub fn refined(mut self, quality: &Quality<'_>) -> Refined<G, V> {
         if self.dimension() < 2 {
             return Refined::unchanged(self);
         }
         let regions = regions::regions_of(&mut self, &quality.domain, &quality.regions);
-        // Where areas only are asked for, too, nothing may come within a rounding of a constraint: it could not be split
-        // then.
+        // Even if only areas are bounded, nothing may come within a rounding of a constraint: the
+        // constraint could not be split then.
         let angle = if quality.bounds_areas() { quality.angle().max(1.0) } else { quality.angle() };
         let lens = if angle > 0.0 { (2.0 * angle.to_radians()).cos() } else { f64::INFINITY };
         let draft = Draft::new(self, regions, Law::Lens(lens), quality.max_added);

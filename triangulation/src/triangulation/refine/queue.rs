@@ -1,37 +1,42 @@
 use crate::tds::{CellId, VertexId};
 
-/// A triangle that is to be destroyed, with its corners as they were: another one may have got its number since.
+/// A triangle that is to be destroyed, with its corners as they were: its number may have been
+/// reused since.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bad {
     pub(super) cell: CellId,
     pub(super) corners: [VertexId; 3],
-    /// The square of its shortest edge.
+    /// The square of the length of its shortest edge.
     pub(super) shortest: f64,
 }
 
-/// How many words of scales there are: numbers have 11 bits of exponent, and the first bit behind the point counts.
+/// The number of words of scales: floating-point numbers have 11 bits of exponent, and the first
+/// bit of the fraction counts.
 const WORDS: usize = (1 << 12) / 64;
 
 /// Stands for no entry: entries are numbered from 1.
 const NONE: u32 = 0;
 
-/// Triangles by their shortest edges, the shortest first, up to a factor of 1.23; of those the last that came. What is
-/// repaired on a small scale is not disturbed again from a larger one (Shewchuk 2002).
+/// Triangles by their shortest edges: the shortest first, up to a factor of 1.23; of those, the
+/// last that was queued. What is repaired on a small scale is not disturbed again from a larger one
+/// (Shewchuk 2002).
 ///
-/// `PERF:` with the first that came instead, 370 000 vertices (`la` of Triangle's samples, area 0.001) took about 1.4
-/// times as long, beside Triangle in the same minute, and there were as many: the last is still in the cache. In arrays, a
-/// push takes 56 instructions instead of 196 with a map of lists (`la`, callgrind), and nothing is allocated for a
-/// scale. Stacks are made for the words that are met, mostly one: all of them are 17 000 instructions, of 230 000 that a
-/// small refinement takes (`double_hex3`).
+/// `PERF:` with the first that was queued instead, 370 000 vertices (`la` of Triangle's samples,
+/// area 0.001) took about 1.4 times as long, measured next to Triangle in the same minute, and
+/// there were as many: the last is still in the cache. In arrays, a push takes 56 instructions
+/// instead of 196 with a map of lists (`la`, callgrind), and no scale needs an allocation. Stacks
+/// are created for the words that occur, mostly one: all of them are 17 000 instructions, of 230
+/// 000 that a small refinement takes (`double_hex3`).
 #[derive(Debug)]
 pub(super) struct Queue {
-    /// Triangles, each with the entry below it on the stack of its scale, or of those that are free.
+    /// Triangles, each with the entry below it on the stack of its scale, or on that of free
+    /// entries.
     entries: Vec<(Bad, u32)>,
     free: u32,
     /// The topmost entries of the scales of a word.
     tops: Vec<[u32; 64]>,
-    /// Where in `tops` those of each word are, counted from 1; 0 if it was not met.
-    places: [u8; WORDS],
+    /// The index in `tops` of each word's entries, counted from 1; 0 if the word has not occurred.
+    stacks: [u8; WORDS],
     /// A bit for each scale that has entries, and one for each word of these that is not zero.
     scales: [u64; WORDS],
     words: u64,
@@ -39,7 +44,7 @@ pub(super) struct Queue {
 
 impl Default for Queue {
     fn default() -> Self {
-        Queue { entries: Vec::new(), free: NONE, tops: Vec::new(), places: [0; WORDS], scales: [0; WORDS], words: 0 }
+        Queue { entries: Vec::new(), free: NONE, tops: Vec::new(), stacks: [0; WORDS], scales: [0; WORDS], words: 0 }
     }
 }
 
@@ -47,11 +52,11 @@ impl Queue {
     pub(super) fn push(&mut self, bad: Bad) {
         let scale = (bad.shortest.to_bits() >> 51) as usize; // there is no sign
         let (word, bit) = (scale / 64 % WORDS, scale % 64);
-        if self.places[word] == 0 {
+        if self.stacks[word] == 0 {
             self.tops.push([NONE; 64]);
-            self.places[word] = self.tops.len() as u8;
+            self.stacks[word] = self.tops.len() as u8;
         }
-        let top = &mut self.tops[self.places[word] as usize - 1][bit];
+        let top = &mut self.tops[self.stacks[word] as usize - 1][bit];
         let below = std::mem::replace(top, self.free);
         if self.free == NONE {
             self.entries.push((bad, below));
@@ -70,7 +75,7 @@ impl Queue {
         }
         let word = self.words.trailing_zeros() as usize;
         let bit = self.scales[word].trailing_zeros() as usize;
-        let top = &mut self.tops[self.places[word] as usize - 1][bit];
+        let top = &mut self.tops[self.stacks[word] as usize - 1][bit];
         let entry = &mut self.entries[*top as usize - 1];
         let (bad, below) = *entry;
         entry.1 = self.free;
@@ -90,7 +95,7 @@ mod tests {
     use super::{Bad, Queue};
     use crate::tds::{CellId, VertexId};
 
-    /// Against a list that is sorted: the smallest scale first, the last that came of it.
+    /// Compares with a sorted list: the smallest scale first, and of it the last entry.
     #[test]
     fn the_shortest_come_first() {
         let (mut queue, mut list) = (Queue::default(), Vec::new());

@@ -1,4 +1,4 @@
-//! Which triangles are to be improved, and in which region each lies.
+//! The triangles to refine, and the region that each lies in.
 
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
@@ -6,8 +6,8 @@ use crate::tds::{CellId, VertexId};
 use super::super::{ConstrainedDelaunay, Location};
 use super::{Domain, OUTSIDE, Region};
 
-/// Of each cell, by its number: [`OUTSIDE`], or 0, or one more than the position of its region. Makes the hull's edges
-/// constraints where the domain needs it.
+/// Returns for each cell, by number: [`OUTSIDE`], or 0, or one more than the index of its region.
+/// Makes the hull's edges constraints where the domain needs it.
 pub(super) fn regions_of<G: Crossing, V: Default>(
     t: &mut ConstrainedDelaunay<G, V>,
     domain: &Domain,
@@ -43,7 +43,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
     marks
 }
 
-/// All that cannot be reached from outside of the hull, nor from a hole.
+/// Marks all cells that cannot be reached from outside of the hull or from a hole.
 fn enclosed<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, holes: &[[f64; 2]]) -> Vec<u32> {
     let mut marks = vec![0; t.tds().cell_slots()];
     let mut outer: Vec<CellId> = t.tds().around(VertexId::INFINITE).collect();
@@ -52,7 +52,7 @@ fn enclosed<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, holes: &[[f6
     marks
 }
 
-/// Marks all that can be reached from some cells without crossing a constraint.
+/// Marks all cells that can be reached from given cells without crossing a constraint.
 fn spread<G: Crossing, V: Default>(
     t: &ConstrainedDelaunay<G, V>,
     marks: &mut [u32],
@@ -67,11 +67,12 @@ fn spread<G: Crossing, V: Default>(
     }
 }
 
-/// The finite cell in which a place lies, rounded to what the geometry admits; none for one outside of the hull.
-fn cell_at<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, place: [f64; 2]) -> Option<CellId> {
+/// Returns the finite cell that a point lies in, rounded to what the geometry admits; `None`
+/// outside of the hull.
+fn cell_at<G: Crossing, V: Default>(t: &ConstrainedDelaunay<G, V>, site: [f64; 2]) -> Option<CellId> {
     let cell = t.finite_cells().next()?;
     let [a, b, _] = t.tds().corners(cell).map(|v| t.point(v));
-    let p = t.geometry().meet(t.geometry().on_step(place), &[[a, b]]);
+    let p = t.geometry().meet(t.geometry().on_step(site), &[[a, b]]);
     match t.locate(&p, None) {
         Location::Cell { cell, .. } => Some(cell),
         Location::Vertex(vertex) => t.tds().around(vertex).find(|&cell| !t.tds().is_infinite(cell)),

@@ -1,4 +1,5 @@
-//! Measures of triangles, and where to put a vertex that destroys one. Rounded: nothing but the quality depends on it.
+//! Measures of triangles, and positions of vertices that destroy them. Rounded: only the quality
+//! depends on it.
 
 use std::ops::Range;
 
@@ -14,8 +15,8 @@ pub(super) fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[0] + u[1] * v[1]
 }
 
-/// Squares of lengths, products of two of which neither overflow nor underflow. The ways around these where they would
-/// take a fifth of the time of a refinement.
+/// Squares of lengths of which no product of two overflows or underflows. Handling the others
+/// everywhere would take a fifth of the time of a refinement.
 const ORDINARY: Range<f64> = 1e-140..1e140;
 
 #[inline]
@@ -24,7 +25,8 @@ pub(super) fn length(v: [f64; 2]) -> f64 {
     if ORDINARY.contains(&square) { square.sqrt() } else { v[0].hypot(v[1]) }
 }
 
-/// Whether the cosine of the angle between two vectors is at most the negative of another cosine, and the angle obtuse.
+/// Returns true if the angle between two vectors is obtuse and its cosine at most the negative of
+/// another cosine.
 #[inline]
 pub(super) fn is_in_lens(u: [f64; 2], v: [f64; 2], cosine: f64) -> bool {
     let along = -dot(u, v);
@@ -33,16 +35,16 @@ pub(super) fn is_in_lens(u: [f64; 2], v: [f64; 2], cosine: f64) -> bool {
     }
     let (uu, vv) = (dot(u, u), dot(v, v));
     if ORDINARY.contains(&uu) && ORDINARY.contains(&vv) {
-        // Without roots.
+        // Without square roots.
         along > 0.0 && (cosine <= 0.0 || along * along >= cosine * cosine * (uu * vv))
     } else {
-        // Of vectors as long as one, so that nothing underflows.
+        // With unit vectors, so that nothing underflows.
         let along = -dot(u.map(|x| x / length(u)), v.map(|x| x / length(v)));
         along > 0.0 && along >= cosine
     }
 }
 
-/// Of a triangle, positive if it is counter-clockwise.
+/// Returns the area of a triangle, positive if it is counter-clockwise.
 #[inline]
 pub(super) fn area([p, q, r]: [[f64; 2]; 3]) -> f64 {
     let [u, v] = [minus(q, p), minus(r, p)];
@@ -53,11 +55,11 @@ pub(super) fn area([p, q, r]: [[f64; 2]; 3]) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
     corners: [[f64; 2]; 3],
-    /// Of the edges from each corner to the next, the squares of their lengths.
+    /// The squared lengths of the edges from each corner to the next.
     squares: [f64; 3],
 }
 
-/// One instruction, no branch; `f64::min` takes five, for NaN.
+/// Returns the smaller number. One instruction, no branch; `f64::min` takes five, for NaN.
 #[inline]
 fn least(x: f64, y: f64) -> f64 {
     if x < y { x } else { y }
@@ -78,29 +80,29 @@ impl Shape {
         Shape { corners, squares: [square(0), square(1), square(2)] }
     }
 
-    /// The square of the shortest edge.
+    /// Returns the squared length of the shortest edge.
     #[inline]
     pub(super) fn shortest(&self) -> f64 {
         let [a, b, c] = self.squares;
         least(least(a, b), c)
     }
 
-    /// The corner at which the shortest edge begins.
+    /// Returns the corner at which the shortest edge begins.
     #[inline]
     pub(super) fn first(&self) -> usize {
         let shorter = |j: usize, k: usize| if self.squares[k] < self.squares[j] { k } else { j };
         shorter(shorter(0, 1), 2)
     }
 
-    /// The square of the cosine of the smallest angle, by the law of cosines.
+    /// Returns the square of the cosine of the smallest angle, by the law of cosines.
     ///
-    /// `PERF:` all triangles that come to be are asked for it, and which edge is the shortest is not predictable.
+    /// `PERF:` computed for every new triangle, and which edge is the shortest is not predictable.
     #[inline]
     pub(super) fn cosine(&self) -> f64 {
         let [a, b, c] = self.squares;
         let (short, long) = (self.shortest(), largest(largest(a, b), c));
         if ORDINARY.contains(&short) && ORDINARY.contains(&long) {
-            // No more than a few bits are lost: it is a quarter of the longest at least.
+            // At most a few bits are lost: it is at least a quarter of the longest.
             let middle = (a + b + c) - (short + long);
             let along = 0.5 * (middle + long - short);
             along * along / (middle * long)
@@ -111,7 +113,7 @@ impl Shape {
         }
     }
 
-    /// The corners, the two ends of the shortest edge first.
+    /// Returns the corners, the two ends of the shortest edge first.
     fn shortest_first(&self) -> [[f64; 2]; 3] {
         let first = self.first();
         [0, 1, 2].map(|k| self.corners[(first + k) % 3])
@@ -126,9 +128,10 @@ impl Shape {
         [0, 1].map(|axis| self.corners.iter().map(|p| p[axis] / 3.0).sum())
     }
 
-    /// The center of the circumscribed circle, or the off-center if that is nearer to the shortest edge: the place
-    /// above its middle, `reach` times its length away, from which it is seen under the smallest angle that is wanted
-    /// (Üngör 2004). Fewer vertices do than with circumscribed circles only.
+    /// Returns the circumcenter, or the off-center if that is nearer to the shortest edge: the
+    /// point above the middle of that edge, `reach` times its length away, from which it is seen
+    /// under the requested smallest angle (Üngör 2004). Takes fewer vertices than circumcenters
+    /// only.
     pub(super) fn off_center(&self, reach: f64) -> [f64; 2] {
         let [p, q, r] = self.shortest_first();
         let [u, v] = [minus(q, p), minus(r, p)];

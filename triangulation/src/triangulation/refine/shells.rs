@@ -1,8 +1,10 @@
-//! Where constrained edges are split: in the middle, and around small angles on concentric circles.
+//! Where constrained edges are split: in the middle, or on concentric circles around small angles.
 //!
-//! Where two constraints meet at a small angle, middles on one come too near to the other, which is split in turn, and
-//! so on without end. Split at distances from the apex that are powers of two apart, the pieces of both end on common
-//! circles, and no vertex encroaches upon a piece of the other (Ruppert 1995, section 5; Shewchuk 2002, section 4).
+//! Where two constraints meet at a small angle, the middle of one may be too near to the other,
+//! which is split in turn, and so on without end. If constraints are split at distances from the
+//! apex that are powers of two apart, the sub-constraints of both end on common circles, and no
+//! vertex encroaches upon a sub-constraint of the other (Ruppert 1995, section 5; Shewchuk 2002,
+//! section 4).
 
 use rustc_hash::FxHashMap;
 
@@ -13,27 +15,31 @@ use crate::tds::VertexId;
 use super::super::ConstrainedDelaunay;
 use super::shape::{dot, length, minus};
 
-/// Around each vertex, constraints that follow each other at less than 60 degrees form a cluster, which shares its
-/// circles. One of them has as its radius the shortest edge that the cluster has at its apex.
+/// Clusters of constraints, and the radii of their circles.
 ///
-/// The clusters of a vertex are looked for before the first of its constraints is split.
+/// Around each vertex, constraints that follow each other at less than 60 degrees form a cluster,
+/// which shares its circles. One circle has as its radius the shortest edge of the cluster at its
+/// apex.
+///
+/// The clusters of a vertex are searched for before the first of its constraints is split.
 #[derive(Debug, Default)]
 pub(super) struct Shells {
-    /// Of the vertices that were there in the beginning: whether its clusters have been looked for.
+    /// For each original vertex: true if its clusters have been searched for.
     is_known: Vec<bool>,
-    /// By apex and other end of a constrained edge, as the edges were in the beginning: the cluster.
+    /// The cluster by apex and other end of a constrained edge, as the edges were originally.
     cluster: FxHashMap<[VertexId; 2], u32>,
-    /// Of the clusters.
+    /// The radius of each cluster.
     radius: Vec<f64>,
 }
 
 impl Shells {
-    /// Of a triangulation in which nothing has been split.
+    /// Returns the shells of a triangulation in which nothing has been split.
     pub(super) fn new(vertex_slots: usize) -> Self {
         Shells { is_known: vec![false; vertex_slots], ..Shells::default() }
     }
 
-    /// Looks for the clusters at both ends of a constraint that is about to be split for the first time.
+    /// Finds the clusters at both ends of a constraint that is about to be split for the first
+    /// time.
     pub(super) fn learn<G: Crossing, V: Default>(&mut self, t: &ConstrainedDelaunay<G, V>, constraint: [VertexId; 2]) {
         for apex in constraint {
             if !std::mem::replace(&mut self.is_known[apex.index()], true) {
@@ -43,7 +49,7 @@ impl Shells {
         }
     }
 
-    /// Takes in the clusters of a vertex, given the other ends of its constraints counter-clockwise.
+    /// Adds the clusters of a vertex, given the other ends of its constraints counter-clockwise.
     fn add<G: Crossing, V: Default>(&mut self, t: &ConstrainedDelaunay<G, V>, apex: VertexId, ends: &[VertexId]) {
         let count = ends.len();
         if count < 2 {
@@ -70,7 +76,8 @@ impl Shells {
         }
     }
 
-    /// The cluster of a constraint, given as it was in the beginning, at one of its ends; none at other vertices on it.
+    /// Returns the cluster of an original constraint at one of its ends; `None` at other vertices
+    /// on it.
     fn cluster_at(&self, end: VertexId, constraint: [VertexId; 2]) -> Option<usize> {
         let other = match constraint {
             [p, q] if p == end => q,
@@ -80,12 +87,13 @@ impl Shells {
         self.cluster.get(&[end, other]).map(|&cluster| cluster as usize)
     }
 
-    /// Whether a constraint meets another one at a small angle at one of its ends.
+    /// Returns true if a constraint meets another one at a small angle at one of its ends.
     pub(super) fn is_in_cluster(&self, constraint: [VertexId; 2]) -> bool {
         constraint.into_iter().any(|end| self.cluster_at(end, constraint).is_some())
     }
 
-    /// How far along a piece from `a` to `b` of a constraint it is to be split, as a fraction between 1/3 and 2/3.
+    /// Returns where to split a sub-constraint from `a` to `b`, as a fraction between 1/3 and 2/3
+    /// of its length.
     pub(super) fn fraction(&mut self, [a, b]: [VertexId; 2], constraint: [VertexId; 2], length: f64) -> f64 {
         let clusters = [a, b].map(|end| self.cluster_at(end, constraint));
         let fraction = match clusters {
@@ -102,7 +110,8 @@ impl Shells {
     }
 }
 
-/// The fraction of a length at which a power of two times the radius comes nearest to the middle.
+/// Returns the fraction of a length at which a power of two times the radius is nearest to the
+/// middle.
 fn nearest_to_middle(radius: f64, length: f64) -> f64 {
     let mut fraction = radius / length;
     if !fraction.is_normal() {
@@ -117,7 +126,8 @@ fn nearest_to_middle(radius: f64, length: f64) -> f64 {
     fraction
 }
 
-/// Whether the way from `u` counter-clockwise to `w` around the apex is that short.
+/// Returns true if the angle from `u` counter-clockwise to `w` around the apex is less than 60
+/// degrees.
 fn is_below_60_degrees<G: Crossing, V: Default>(
     t: &ConstrainedDelaunay<G, V>,
     u: VertexId,

@@ -1,13 +1,15 @@
-//! Constrained Delaunay triangulations, with their lines: beside the triangulation, the tables that tell the ways of
-//! lines, and which vertices came with lines or were added where they cross.
+//! Serde for constrained Delaunay triangulations with their lines. Saved with the triangulation are
+//! the tables of the chains of lines, and of the vertices that lines own or that were added where
+//! lines cross.
 //!
-//! *What is checked.* Constraints stand on both sides of an edge, and the law holds between them. Every line's way from
-//! one of its vertices to the next ends there, meets no vertex twice, and consists of constrained edges; where it bends,
-//! it runs in order on both axes. The tables hold nothing that is on no way. Added vertices lie on constraints, and
-//! were not given with a line.
+//! *What is checked.* Constraints are set on both sides of an edge, and the law holds between them.
+//! Every line's chain from one of its vertices to the next ends there, meets no vertex twice, and
+//! consists of constrained edges; where it bends, it is monotone on both axes. Every entry of the
+//! tables belongs to a chain. Added vertices lie on constraints, and were not given with a line.
 //!
-//! Not checked is what would take the arrangement of all lines: whether a way is the one that the rounding of the
-//! crossings asks for. The next edit that arranges the lines makes it so.
+//! *What is not checked*, because it would take the arrangement of all lines, is that chains are
+//! those that the rounding of the crossings demands. The next edit that arranges the lines makes
+//! them so.
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -20,24 +22,29 @@ use super::super::lines::saved_tables::SavedTables;
 use super::super::{ConstrainedDelaunay, ConstrainedEdges, Level, Rounding};
 use super::{Damage, Owned, first};
 
-/// What is saved: the names are those of the format. Vertices are written as their numbers.
+/// What is saved; the serialized names are those of the format. Vertices are written as their
+/// numbers.
 #[derive(Serialize, Deserialize)]
 struct WithLines<T> {
     triangulation: T,
-    /// By their ids: the vertices that each was given by; `None` where a line has been removed.
+    /// The vertices that each line was given by, by line id; `None` where a line has been removed.
     lines: Vec<Option<Vec<u32>>>,
-    /// Segments of lines that are led through sites, from the smaller end through all of them to the larger.
-    led: Vec<Vec<u32>>,
-    /// Pieces of ways that were split: the smaller end, the larger, and the vertex between.
+    /// Segments that go through other sites, from the smaller end through all of these to the
+    /// larger end.
+    #[serde(rename = "led")]
+    bent: Vec<Vec<u32>>,
+    /// Split sub-constraints: the smaller end, the larger end, and the vertex between them.
     splits: Vec<[u32; 3]>,
     /// Constraints among collinear points.
     waiting: Vec<[u32; 2]>,
-    /// Vertices that were added where lines cross, in order.
+    /// Vertices that were added where lines cross, in order of their numbers.
     added: Vec<u32>,
-    /// Vertices that go with the last of their lines, in order.
-    lent: Vec<u32>,
+    /// Vertices that are removed with the last of their lines, in order of their numbers.
+    #[serde(rename = "lent")]
+    owned: Vec<u32>,
     rounding: Option<Rounding>,
-    was_tangled: bool,
+    #[serde(rename = "was_tangled")]
+    recrossed: bool,
 }
 
 fn number(v: &VertexId) -> u32 {
@@ -48,7 +55,7 @@ impl<P, V, C: Copy + Default> WithLines<Owned<P, V, ConstrainedEdges<C>>> {
     fn restore<G: Crossing<Point = P> + Default>(self) -> Result<ConstrainedDelaunay<G, V, C>, Damage> {
         let inner = self.triangulation.restore::<G>()?;
         inner.has_no_hidden_points()?;
-        inner.has_walls_on_edges_only()?;
+        inner.constrains_edges_only()?;
         first(inner.flaws(Level::Law, |cell, i| !inner.is_constrained(cell, i)))?;
         first(inner.one_sided_constraints())?;
 
@@ -69,13 +76,13 @@ impl<P, V, C: Copy + Default> WithLines<Owned<P, V, ConstrainedEdges<C>>> {
         };
         let parts = SavedTables {
             given: self.lines.iter().map(|line| line.as_deref().map(vertices).transpose()).collect::<Result<_, _>>()?,
-            bent: self.led.iter().map(|chain| vertices(chain)).collect::<Result<_, _>>()?,
+            bent: self.bent.iter().map(|chain| vertices(chain)).collect::<Result<_, _>>()?,
             splits: self.splits.iter().map(|split| all(vertices(split)?)).collect::<Result<_, _>>()?,
             waiting: self.waiting.iter().map(|ends| all(vertices(ends)?)).collect::<Result<_, _>>()?,
             added: in_order(&self.added)?,
-            owned: in_order(&self.lent)?,
+            owned: in_order(&self.owned)?,
             rounding: self.rounding,
-            recrossed: self.was_tangled,
+            recrossed: self.recrossed,
         };
         let lines = Lines::from_parts(parts).map_err(Damage::Shape)?;
         first(lines.check(&inner))?;
@@ -92,13 +99,13 @@ impl<G: Crossing<Point: Serialize>, V: Serialize, C: Serialize + Copy + Default>
         let saved = WithLines {
             triangulation: self.save(),
             lines: parts.given.iter().map(|line| line.as_deref().map(numbers)).collect(),
-            led: parts.bent.iter().map(|chain| numbers(chain)).collect(),
+            bent: parts.bent.iter().map(|chain| numbers(chain)).collect(),
             splits: parts.splits.iter().map(|split| split.each_ref().map(number)).collect(),
             waiting: parts.waiting.iter().map(|ends| ends.each_ref().map(number)).collect(),
             added: numbers(&parts.added),
-            lent: numbers(&parts.owned),
+            owned: numbers(&parts.owned),
             rounding: parts.rounding,
-            was_tangled: parts.recrossed,
+            recrossed: parts.recrossed,
         };
         saved.serialize(serializer)
     }

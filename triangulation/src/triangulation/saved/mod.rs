@@ -1,12 +1,12 @@
-//! Serde, behind the feature `serde`: a triangulation of the plane as its points, payloads, and the vertices of its
-//! cells.
+//! Serde, behind the feature `serde`: saves a triangulation of the plane as its points, its
+//! payloads, and the vertices of its cells.
 //!
-//! The geometry is not saved: what is read has the default one. Vertices keep their numbers, and so do those that have
-//! been removed; cells are numbered anew. Neighbors follow from common edges.
+//! The geometry is not saved: a triangulation that is read has the default one. Vertices keep their
+//! numbers, and so do removed ones; cells are numbered anew. Neighbors follow from common edges.
 //!
-//! What is read is checked like what a stranger says: [links and manifold](Level::Manifold), orientation and convexity,
-//! the law of the kind, with exact predicates, in linear time. Damage is an error, and never a panic. What there is to
-//! [lines](self::lines) is told and checked there.
+//! Input is not trusted. [Links and manifold](Level::Manifold), orientation and convexity, and the
+//! law of the kind are checked with exact predicates, in linear time. Damage is an error, and never
+//! a panic. The checks of lines are described in [lines](self::lines).
 
 mod lines;
 
@@ -31,16 +31,16 @@ struct Saved<Points, VertexData, CellData> {
     /// By number, those of removed vertices included.
     points: Points,
     vertex_data: VertexData,
-    /// Numbers of removed vertices, the next to be used last.
+    /// Numbers of removed vertices; the next to be reused is the last.
     removed: Vec<u32>,
-    /// The vertices of the cells, `dimension + 1` each; the infinite one is `None`.
+    /// The vertices of the cells, `dimension + 1` each; the infinite vertex is `None`.
     cells: Vec<Option<u32>>,
     cell_data: CellData,
 }
 
-/// Why a saved triangulation cannot be read.
+/// The reason why a saved triangulation cannot be read.
 enum Damage {
-    /// Lengths or numbers do not fit.
+    /// Lengths or numbers do not match.
     Shape(&'static str),
     Point(InputError),
     Flaw(Flaw),
@@ -63,7 +63,8 @@ fn first(flaws: Vec<Flaw>) -> Result<(), Damage> {
 type Owned<P, V, C> = Saved<Vec<P>, Vec<V>, Vec<C>>;
 
 impl<P, V, C: Copy + Default> Owned<P, V, C> {
-    /// The triangulation, if it is one; not yet whether it keeps to a law, nor what hides points that are in no cell.
+    /// Returns the triangulation if it is one. Not yet checked: the law, and that every point that
+    /// is in no cell is hidden.
     fn restore<G: Geometry<3, Point = P> + Default>(self) -> Result<Triangulation<G, 3, V, C>, Damage> {
         let Saved { dimension, points, vertex_data, removed, cells, cell_data } = self;
         let geometry = G::default();
@@ -115,8 +116,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
     }
 
-    /// Of dimension 1: whether all points are collinear, and each edge leads from a smaller to a larger one, so that
-    /// none lies over another. Of dimension 0 and -1: whether there is one finite cell, or none.
+    /// Returns true if the points fit the dimension. In dimension 1: all points are collinear, and
+    /// each edge runs from a smaller point to a larger one, so that no edge overlaps another. In
+    /// dimension 0: there is one finite cell.
     fn is_in_order_on_line(&self) -> bool {
         let tds = &self.tds;
         match self.dimension() {
@@ -143,7 +145,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
-    fn has_walls_on_edges_only(&self) -> Result<(), Damage> {
+    fn constrains_edges_only(&self) -> Result<(), Damage> {
         let is_edge = |cell, i: usize| {
             i < 3 && self.dimension() == 2 && !self.tds.edge_ends(cell, i).contains(&VertexId::INFINITE)
         };
@@ -154,7 +156,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     }
 }
 
-/// Reads a triangulation of some kind, and does the rest that its kind asks for.
+/// Reads a triangulation of some kind; `finish` does what remains for that kind.
 fn read<'de, D: Deserializer<'de>, G, V, C, T>(
     deserializer: D,
     finish: impl FnOnce(Triangulation<G, 3, V, C>) -> Result<T, Damage>,
@@ -246,7 +248,7 @@ where
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         read(deserializer, |inner| {
             inner.has_no_hidden_points()?;
-            inner.has_walls_on_edges_only()?;
+            inner.constrains_edges_only()?;
             let t = Constrained { inner, scratch: Scratch::default() };
             first(t.check(Level::Law)).map(|()| t)
         })

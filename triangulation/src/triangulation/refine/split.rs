@@ -1,4 +1,4 @@
-//! Constrained edges, split.
+//! Splits constrained edges.
 
 use crate::geometry::Crossing;
 use crate::kernel::{DotProduct, Kernel, Wide};
@@ -9,9 +9,10 @@ use super::draft::{Draft, Law, Origin};
 use super::shape::{length, minus};
 
 impl<G: Crossing, V: Default> Draft<G, V> {
-    /// Splits constrained edges until none is encroached upon that could be split. Says whether any was: if none was,
-    /// vertices may have been taken out beside one, and cells are [fresh](Self::fresh) all the same.
-    pub(super) fn settle(&mut self) -> bool {
+    /// Splits constrained edges until none remains that is encroached upon and can be split.
+    /// Returns true if any was split; otherwise vertices near one may have been removed all the
+    /// same, and cells are [fresh](Self::fresh).
+    pub(super) fn split_encroached(&mut self) -> bool {
         let before = self.budget;
         while self.budget > 0
             && let Some(ends) = self.encroached.pop_front()
@@ -24,11 +25,11 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         self.budget < before
     }
 
-    /// Splits a constrained edge, given by the cell on its left, and its ends. Says whether the coordinates are fine
-    /// enough.
+    /// Splits a constrained edge, given by the cell on its left, and its ends. Returns false if the
+    /// coordinates are too coarse.
     fn split(&mut self, mut edge: (CellId, usize), [a, b]: [VertexId; 2]) -> bool {
         let ends_of = |v: VertexId| match self.origin(v) {
-            Origin::Wall(ends) => Some(ends),
+            Origin::OnConstraint(ends) => Some(ends),
             _ => None,
         };
         let constraint = ends_of(a).or(ends_of(b)).unwrap_or([a, b]);
@@ -41,19 +42,19 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             edge = self.beyond(beyond);
         }
 
-        // Phase 1: where.
+        // Phase 1: the new point.
         let [from, to] = [a, b].map(|v| self.t.plan_of(v));
         let fraction = self.shells.fraction([a, b], constraint, length(minus(to, from)));
-        let place = [0, 1].map(|axis| from[axis] * (1.0 - fraction) + to[axis] * fraction + 0.0); // one zero
-        let place = self.t.geometry().on_step(place);
-        let p = self.t.geometry().meet(place, &[[self.t.point(a), self.t.point(b)]]);
+        let site = [0, 1].map(|axis| from[axis] * (1.0 - fraction) + to[axis] * fraction + 0.0); // one zero
+        let site = self.t.geometry().on_step(site);
+        let p = self.t.geometry().meet(site, &[[self.t.point(a), self.t.point(b)]]);
         if self.t.inner.admit(&p).is_err() {
             return false;
         }
 
-        // Phase 2: the triangles on both sides that see the new vertex, which may lie beside the edge by a rounding,
-        // and have it in their circles, are replaced by its star; unless something is nearer to the edge than the
-        // rounding.
+        // Phase 2: the star of the new vertex replaces the triangles on both sides that see it and
+        // have it in their circles. The vertex may lie off the edge by a rounding. Nothing is
+        // replaced if something is nearer to the edge than the rounding.
         let (cell, beside) = (edge.0, self.beyond(edge).0);
         let sides = [cell, beside].map(|side| self.regions[side.index()]);
         self.t.inner.set_constrained(edge, false);
@@ -67,10 +68,10 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             self.t.inner.set_constrained(edge, true);
             return false;
         };
-        // The border goes around counter-clockwise: from `a` to `b` it is on the right.
+        // The border is counter-clockwise: from `a` to `b` it is on the right.
         let is_right =
             |k| if after_a < after_b { (after_a..after_b).contains(&k) } else { !(after_b..after_a).contains(&k) };
-        let vertex = self.star(zone, p, Origin::Wall(constraint), |k| sides[usize::from(is_right(k))]);
+        let vertex = self.star(zone, p, Origin::OnConstraint(constraint), |k| sides[usize::from(is_right(k))]);
         self.t.lines.split_edge(a, b, vertex);
         for k in 0..self.t.inner.zone.star.len() {
             let cell = self.t.inner.zone.star[k];
@@ -88,8 +89,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         true
     }
 
-    /// Where on the border of a zone the edges are that begin at two vertices; `None` if one of them is not on it, or
-    /// if a point does not see all of it from within.
+    /// Returns the positions on the border of a zone of the edges that begin at two vertices;
+    /// `None` if one of them is not on it, or if a point does not see all of it from within.
     fn rim(&self, zone: &Zone, p: &G::Point, ends: [VertexId; 2]) -> Option<[usize; 2]> {
         let mut at = [None; 2];
         for (k, (cell, i)) in zone.border().enumerate() {
@@ -108,14 +109,15 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         Some([first, second])
     }
 
-    /// The same edge as the cell on its other side has it.
+    /// Returns the same edge as the cell on its other side has it.
     fn beyond(&self, (cell, i): (CellId, usize)) -> (CellId, usize) {
         let beside = self.t.tds().neighbor(cell, i);
         (beside, self.t.tds().index_of_neighbor(beside, cell))
     }
 
-    /// Takes out vertices that were added between constraints and now are in the circle with a constrained edge as its
-    /// diameter, on the side of the cell, in sight (Chew 1993). Returns the edge, which may have another cell now.
+    /// Removes vertices that were added between constraints and now lie in the circle with a
+    /// constrained edge as its diameter, on the side of the cell, in sight (Chew 1993). Returns the
+    /// edge, whose cell may have changed.
     fn clear_circle(&mut self, mut edge: (CellId, usize)) -> (CellId, usize) {
         let [a, b] = self.t.tds().edge_ends(edge.0, edge.1);
         loop {
