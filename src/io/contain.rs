@@ -1,4 +1,4 @@
-//! Keeps a panic of a decoder from becoming a panic of the program.
+//! Turns panics of decoders into errors.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
@@ -8,12 +8,12 @@ thread_local! {
     static CONTAINED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `decode`; `None` if it panicked.
+/// Runs `decode` and returns its result, or `None` if it panicked.
 ///
-/// Decoders from other crates may index tables by what they decode. The message that a panic prints
-/// is held back for the calling thread alone: the first use puts a hook before the one in place, and
-/// that hook still gets every other panic. What `decode` was writing to is to be thrown away when
-/// this returns `None`.
+/// Decoders from other crates may index tables with the values that they decode. The message of
+/// such a panic is suppressed, on the calling thread only: the first use installs a hook in front
+/// of the current one, which still receives every other panic. After `None`, discard whatever
+/// `decode` was writing to.
 pub(crate) fn contain<T>(decode: impl FnOnce() -> T) -> Option<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {

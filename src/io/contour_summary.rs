@@ -1,22 +1,22 @@
 use crate::data::{Bounds, ContourLine};
 
-/// What was written: contours, counted.
+/// What a contour file contains, counted.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContourSummary {
-    /// Lines.
+    /// Number of lines.
     pub lines: usize,
-    /// Vertices of all lines; the last of a closed line counts.
+    /// Vertices of all lines; a closed line counts its first vertex again as its last.
     pub vertices: usize,
-    /// Lines that end where they begin.
+    /// Number of closed lines.
     pub closed: usize,
-    /// In plan and in height.
+    /// Extent of all lines, in plan and in height.
     pub bounds: Bounds,
-    /// What a user should be told.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl ContourSummary {
-    /// Counts a line.
+    /// Adds a line to the counts.
     pub(super) fn add(&mut self, line: &ContourLine) {
         self.lines += 1;
         self.vertices += line.points.len();

@@ -1,4 +1,4 @@
-//! Contours to a file.
+//! Writes contours to a file.
 
 pub use super::contour_summary::ContourSummary;
 use super::formats::{self, Product, Writers};
@@ -7,20 +7,22 @@ use crate::crs::Crs;
 use crate::data::ContourLine;
 use crate::error::{Error, Result};
 
-/// Returns an error if lines of so many vertices in all are too large for the format of `target`.
+/// Returns an error if lines with `vertices` vertices in total are too large for the format of
+/// `target`.
 ///
 /// # Errors
-/// With the size that they would have at least.
+/// If the file would be too large; the message states the minimum size.
 pub fn foresee<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
     let target = target.into();
     let foresee = formats::of_name(&target.format_path()).and_then(|format| format.writers.foresee);
     foresee.map_or(Ok(()), |foresee| foresee(vertices).map_err(|e| e.in_file(target.path())))
 }
 
-/// Writes contours in the format that the extension of `target` names, see [`FORMATS`](formats::FORMATS).
+/// Writes contours in the format that the extension of `target` names, see
+/// [`FORMATS`](formats::FORMATS).
 ///
 /// # Errors
-/// If the extension is another, or a file cannot be written.
+/// If contours cannot be written in a format with this extension, or a file cannot be written.
 pub fn write<'a>(
     target: impl Into<Destination<'a>>,
     lines: &mut dyn Iterator<Item = ContourLine>,

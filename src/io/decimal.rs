@@ -1,7 +1,8 @@
 use std::fmt;
 
-/// A number as text: the fewest digits that give the same double back, with an exponent where plain
-/// digits would be many (readers of Triangle's files take a thousand bytes a line).
+/// A number displayed with the fewest digits that read back as the same double. Where plain
+/// notation would be long, an exponent is used: readers of Triangle's files accept about a thousand
+/// bytes per line.
 pub(super) struct Decimal(pub(super) f64);
 
 impl fmt::Display for Decimal {

@@ -1,8 +1,8 @@
-//! Attributes of vector layers, by name.
+//! Attributes of vector layers, looked up by name.
 
 use crate::error::Error;
 
-/// The error for an attribute that is not there.
+/// Returns the error for an attribute that does not exist; it lists the ones that do.
 pub(super) fn no_such_field<'a>(name: &str, fields: impl Iterator<Item = &'a str>) -> Error {
     let fields: Vec<&str> = fields.collect();
     let error = Error::usage(format!("there is no field {name}"));

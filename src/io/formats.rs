@@ -1,8 +1,10 @@
-//! The file formats: what tells each, what it holds, and who reads and writes it.
+//! The file formats: how each is recognized, what it can contain, and which functions read and
+//! write it.
 //!
-//! [`FORMATS`] is the only place that names them all. Readers of any format, the verbs' lists of outputs, the help of
-//! the program and the table in `docs/formats.md` come from it. A format is a row here and a file or folder beside this
-//! one; see `docs/how-to-add-a-format.md`.
+//! [`FORMATS`] is the only table of formats. The readers that accept any format, the verbs' lists
+//! of outputs, the help of the program and the table in `docs/formats.md` are derived from it. To
+//! add a format, add a row here and a file or folder next to this one; see
+//! `docs/how-to-add-a-format.md`.
 
 use std::fmt::Write;
 use std::fs::File;
@@ -21,7 +23,7 @@ use crate::crs::Crs;
 use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
 use crate::error::{Error, Result};
 
-/// What a file is read as.
+/// The kind of data that a file is read as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Content {
     /// Points.
@@ -34,11 +36,11 @@ pub enum Content {
     Mesh,
     /// Shades in cells, but no heights.
     Picture,
-    /// Points and segments in the plane, or a part of their triangulation.
+    /// Points and segments in the plane, or part of their triangulation.
     Plane,
 }
 
-/// What a file can hold.
+/// The kinds of data that a format can store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Holding {
     /// Points with heights.
@@ -47,24 +49,24 @@ pub enum Holding {
     Lines,
     /// Polygons.
     Polygons,
-    /// Cells.
+    /// Raster cells.
     Raster,
     /// Triangles.
     Mesh,
-    /// Classes, returns, times and what else a lidar point says of itself.
+    /// Attributes of lidar points: classes, returns, times and so on.
     Attributes,
-    /// Which edges of triangles lie on breaklines.
+    /// Marks for the triangle edges that lie on breaklines.
     Edges,
-    /// A coordinate system, in the file or in one beside it.
+    /// A coordinate system, in the file itself or in a file next to it.
     Crs,
     /// Compressed data.
     Compression,
 }
 
-/// What can be written to a file.
+/// The products that can be written to a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Product {
-    /// Points, from LAS with all that they have there.
+    /// Points; from LAS with all attributes that they have there.
     Points,
     /// A surface, as a mesh.
     Surface,
@@ -78,25 +80,26 @@ pub enum Product {
     Plane,
 }
 
-/// How a file is recognized.
+/// How the format of a file is recognized.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum KnownBy {
-    /// By its first bytes, whatever its name; by its extension if these are others.
+    /// By its first bytes, whatever its name; by its extension if the first bytes differ.
     Bytes,
     /// By its extension; by its first bytes if no format has that extension.
     Name,
-    /// By its extension. Its first bytes only name it in messages: other formats begin alike.
+    /// By its extension. The first bytes only serve to name the format in messages, since other
+    /// formats start with the same bytes.
     NameAlone,
-    /// By its extension and first bytes together: other formats have the same extension.
+    /// By its extension and first bytes together, since other formats share the extension.
     NameAndBytes,
-    /// By neither: it is what is left.
+    /// By neither: the format of files that match no other.
     Rest,
 }
 
-/// First bytes of a file.
+/// Magic bytes of a format.
 #[derive(Debug, Clone, Copy)]
 enum Magic {
-    /// These bytes, at this position.
+    /// These bytes, at this offset.
     At(usize, &'static [u8]),
     /// This word, in any case.
     Word(&'static str),
@@ -115,30 +118,30 @@ impl Magic {
 
 type Points = Result<Box<dyn PointSource + Send>>;
 
-/// Reads a file.
+/// The function that reads a format.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Reader {
     Points {
         file: fn(&Path, Options) -> Points,
-        /// Reads what can be read only once; the path is its name in messages.
+        /// Reads input that can be read only once; messages show the path as its name.
         stream: fn(Box<dyn Read + Send>, &Path, Options) -> Points,
     },
     Layer(fn(&Path, Option<&str>) -> Result<Layer>),
     Raster(fn(&Path) -> Result<GeoTiffReader>),
     Mesh(fn(&Path) -> Result<Triangles>),
-    /// Triangles without exact coordinates: counted, and not read.
+    /// Triangles without exact coordinates: counted, but not read.
     Solid(fn(&Path) -> Result<stl::Solid>),
     /// Points and segments of the plane, see [`triangle::read`].
     Own,
-    /// Not read, but `info` tells what it is.
+    /// Not read, but `info` describes it.
     InfoOnly,
-    /// By GDAL, in a build with the feature `gdal`.
+    /// Read by GDAL, in a build with the feature `gdal`.
     Gdal,
-    /// Nobody reads it.
+    /// Not read at all.
     Nobody,
 }
 
-/// Local coordinates: what was subtracted from all of them, and the file that says so.
+/// A local origin: what was subtracted from all coordinates, and the file that states it.
 pub(super) type Origin = Option<([f64; 3], PathBuf)>;
 
 type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Origin>;
@@ -149,65 +152,65 @@ type WriteContours = fn(Destination, &mut dyn Iterator<Item = ContourLine>, Opti
 
 type Sink<'a> = Result<Box<dyn PointSink + 'a>>;
 
-/// Writes points.
+/// The functions that write points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointWriter {
-    /// What it needs to be read of them.
+    /// The detail that must be read of the points to be written.
     pub(super) detail: Detail,
     pub(super) create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
 }
 
-/// What writes each product; `None` for a product that is not written in the format.
+/// The functions that write each product; `None` if the format does not support it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Writers {
     pub(super) points: Option<PointWriter>,
     pub(super) surface: Option<WriteSurface>,
     pub(super) contours: Option<WriteContours>,
-    /// Returns an error if contours of so many vertices are too large for the format.
+    /// Returns an error if contours with this many vertices are too large for the format.
     pub(super) foresee: Option<fn(u64) -> Result<()>>,
     pub(super) heights: Option<WriteHeights>,
     pub(super) shades: Option<WriteShades>,
-    /// Several files together, see [`triangle::write`].
+    /// Writes several files together, see [`triangle::write`].
     pub(super) plane: Option<WritePlane>,
 }
 
-/// A file format; all of them are in [`FORMATS`].
+/// A file format; [`FORMATS`] lists them all.
 #[derive(Debug)]
 pub struct Format {
-    /// What it is called in lists: "GeoTIFF".
+    /// The name of the format in lists: "GeoTIFF".
     pub name: &'static str,
-    /// What a file of it is called in a sentence: "a TIFF file".
+    /// What a sentence calls a file of this format: "a TIFF file".
     pub noun: &'static str,
-    /// Extensions in lower case without the dot, the usual one first.
+    /// Extensions in lower case without the dot, the most common one first.
     pub extensions: &'static [&'static str],
     magic: &'static [Magic],
     known_by: KnownBy,
-    /// What a file is read as.
+    /// The kind of data that a file is read as.
     pub content: Content,
-    /// What a file can hold.
+    /// The kinds of data that a file can contain.
     pub holds: &'static [Holding],
-    /// Extensions of the files that are written with it; of one that begins with its own extension, the rest is put
-    /// behind the whole name.
+    /// Extensions of the files written along with it. If one starts with the format's own
+    /// extension, the rest is appended to the whole file name.
     pub beside: &'static [&'static str],
     /// Extensions of files that belong to it, whoever wrote them.
     pub parts: &'static [&'static str],
-    /// What GDAL calls it, for those formats that are written.
+    /// GDAL's name for the format, if breakline writes it.
     pub gdal_name: Option<&'static str>,
     pub(super) reader: Reader,
     pub(super) writers: Writers,
-    /// What to do with a file where points are expected.
+    /// What to do with such a file where points are expected.
     pub(super) cure: &'static str,
-    /// What is read or written of it, in one line.
+    /// What is read or written in this format, in one line.
     pub help: &'static str,
 }
 
 impl Format {
-    /// Returns true if a file can hold this.
+    /// Returns true if a file of this format can contain `holding`.
     pub fn can_hold(&self, holding: Holding) -> bool {
         self.holds.contains(&holding)
     }
 
-    /// Returns true if this product is written in the format.
+    /// Returns true if `product` can be written in this format.
     pub fn writes(&self, product: Product) -> bool {
         match product {
             Product::Points => self.writers.points.is_some(),
@@ -219,7 +222,7 @@ impl Format {
         }
     }
 
-    /// Returns true if it is read without GDAL.
+    /// Returns true if the format is read without GDAL.
     pub fn is_read(&self) -> bool {
         !matches!(self.reader, Reader::Gdal | Reader::Nobody)
     }
@@ -234,23 +237,27 @@ impl Format {
     }
 }
 
-/// Returns the format that a product is written in, by the extension of the target.
+/// Returns the format for writing a product, by the extension of the target.
 pub fn for_output(path: &Path, product: Product) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.writes(product) && format.has_extension(path))
 }
 
-/// Bytes that are enough to recognize a file.
+/// Number of bytes that suffice to recognize a file.
 pub(super) const HEAD: usize = 1024;
 
-/// Returns the format that a file's extension names, read or not; not those that share it with another.
+/// Returns the format that a file's extension names, whether it can be read or not. Formats that
+/// share their extension with another are not returned.
 pub fn of_name(path: &Path) -> Option<&'static Format> {
     FORMATS
         .iter()
         .find(|format| !matches!(format.known_by, KnownBy::Rest | KnownBy::NameAndBytes) && format.has_extension(path))
 }
 
-/// Returns the format that a file is to be read as, by its first bytes (1024 are enough) and its name. `None` for a
-/// binary file that none is known to begin like, and for one that only its first bytes name.
+/// Returns the format that a file is to be read as, by its first bytes (1024 are enough) and its
+/// name.
+///
+/// Returns `None` for a binary file whose first bytes are unknown, and for a format whose first
+/// bytes only serve to name it.
 pub fn detect(head: &[u8], path: &Path) -> Option<&'static Format> {
     let find = |rule: KnownBy, matches: &dyn Fn(&Format) -> bool| {
         FORMATS.iter().find(|format| format.known_by == rule && matches(format))
@@ -262,7 +269,8 @@ pub fn detect(head: &[u8], path: &Path) -> Option<&'static Format> {
         .or_else(|| find(KnownBy::Rest, &|_| !is_binary(head) && of_bytes(head).is_none()))
 }
 
-/// Like [`detect`], but opens the file. What cannot be read twice (a pipe) is known by its name only.
+/// Like [`detect`], but opens the file. Input that cannot be read twice (a pipe) is recognized by
+/// its name only.
 ///
 /// # Errors
 /// If the file cannot be opened.
@@ -279,17 +287,18 @@ pub fn detect_file(path: &Path) -> Result<Option<&'static Format>> {
     Ok(detect(&head, path))
 }
 
-/// Returns the format that first bytes name, whether they decide or not.
+/// Returns the format that matches the first bytes, even if they alone do not decide.
 pub(super) fn of_bytes(head: &[u8]) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.begins_like(head))
 }
 
-/// Returns the format that first bytes or a name tell, to be named in a message.
+/// Returns the format that the first bytes or the name suggest, for use in a message.
 pub(super) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
     of_bytes(head).or_else(|| of_name(path))
 }
 
-/// Returns the format of the layer that a file is only a part of, and the extension that says so: `.dbf`, say.
+/// Returns the format of the layer that a file is only part of, and the extension that shows it,
+/// such as `.dbf`.
 pub(super) fn whole_of(path: &Path) -> Option<(&'static Format, &'static str)> {
     let extension = path.extension()?;
     FORMATS.iter().filter(|format| matches!(format.reader, Reader::Layer(_))).find_map(|format| {
@@ -298,18 +307,20 @@ pub(super) fn whole_of(path: &Path) -> Option<(&'static Format, &'static str)> {
     })
 }
 
-/// Returns true for bytes that are not text. UTF-16 has zeros, too; the reader of text refuses it by name.
+/// Returns true if the bytes are not text. UTF-16 contains zeros too; the text reader refuses it by
+/// name.
 fn is_binary(head: &[u8]) -> bool {
     let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
     head.contains(&0) && !is_utf16
 }
 
-/// The extensions of files that a product is written to.
+/// Returns the extensions in which a product can be written.
 pub fn extensions(product: Product) -> Vec<&'static str> {
     FORMATS.iter().filter(|format| format.writes(product)).flat_map(|format| format.extensions).copied().collect()
 }
 
-/// The extensions of files that a product is written to, in a sentence: ".shp, .geojson or .json".
+/// Returns the extensions in which a product can be written, for a sentence: ".shp, .geojson or
+/// .json".
 pub(super) fn extensions_or(product: Product) -> String {
     let all: Vec<String> = extensions(product).iter().map(|extension| format!(".{extension}")).collect();
     match &all[..] {
@@ -365,7 +376,7 @@ impl Reader {
     }
 }
 
-/// The formats that are read or written by this crate, a line each, for the help of the program.
+/// Returns the formats that this crate reads or writes, one per line, for the help of the program.
 pub fn help() -> String {
     let mut text = String::from("Formats, by extension (more are read with the feature `gdal`):\n");
     for format in FORMATS.iter().filter(|format| format.is_read()) {
@@ -376,7 +387,7 @@ pub fn help() -> String {
     text
 }
 
-/// The table of formats in `docs/formats.md`, in Markdown.
+/// Returns the table of formats in `docs/formats.md`, in Markdown.
 pub fn markdown() -> String {
     let mut text = String::from("| format | extensions | read | written | can hold |\n|---|---|---|---|---|\n");
     for format in FORMATS.iter().filter(|format| !format.extensions.is_empty()) {
@@ -399,7 +410,7 @@ const AS_PLANE: &str = "`breakline triangulate` reads it and writes its triangul
 const AS_MESH: &str = "save its vertices as text or LAS";
 const UNPACK: &str = "unpack it";
 
-/// A format that GDAL may read and nobody here; rows name what differs.
+/// A format that only GDAL may read; rows of the table override what differs.
 const ROW: Format = Format {
     name: "",
     noun: "",
@@ -466,7 +477,7 @@ const fn vector(
     }
 }
 
-/// A file of Triangle.
+/// Returns the row for one of Triangle's files.
 const fn plane(
     name: &'static str,
     noun: &'static str,
@@ -708,7 +719,7 @@ pub static FORMATS: &[Format] = &[
             "neighbors in a triangulation in the plane (Triangle)",
         )
     },
-    // Read by GDAL, or named in messages.
+    // Formats read by GDAL, or only named in messages.
     Format {
         known_by: KnownBy::NameAndBytes,
         ..raster("Esri ASCII grid", "an ESRI ASCII grid", &["asc"], &[Magic::Word("ncols"), Magic::Word("nrows")])

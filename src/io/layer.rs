@@ -1,4 +1,4 @@
-//! Vector layers of any format.
+//! Reads vector layers of any format.
 
 use std::path::{Path, PathBuf};
 
@@ -6,12 +6,15 @@ use super::formats::{self, Reader};
 use crate::data::Layer;
 use crate::error::{Error, Result};
 
-/// Reads `FILE` or `FILE:FIELD`, by extension and, where that says nothing, by its first bytes.
-/// `FIELD` names the attribute that holds the heights; see [`shapefile::read_layer`](super::shapefile::read_layer) and
+/// Reads `FILE` or `FILE:FIELD`; the format follows from the extension or, failing that, from the
+/// first bytes.
+///
+/// `FIELD` names the attribute that contains the heights; see
+/// [`shapefile::read_layer`](super::shapefile::read_layer) and
 /// [`geojson::read_layer`](super::geojson::read_layer).
 ///
 /// # Errors
-/// If the file is not there or is of another format.
+/// If the file does not exist or is not a vector layer.
 pub fn read(spec: &str) -> Result<Layer> {
     let (path, field) = split(spec);
     if field == Some("") {
@@ -31,8 +34,10 @@ pub fn read(spec: &str) -> Result<Layer> {
     }
 }
 
-/// Takes `FILE:FIELD` apart. A file of the whole name comes first; the colon behind a drive letter
-/// and colons before the last separator belong to the path.
+/// Splits `FILE:FIELD` into its parts.
+///
+/// If a file with the whole name exists, it takes precedence. The colon after a drive letter and
+/// colons before the last separator belong to the path.
 pub fn split(spec: &str) -> (PathBuf, Option<&str>) {
     let whole = (PathBuf::from(spec), None);
     if Path::new(spec).exists() {
@@ -44,7 +49,8 @@ pub fn split(spec: &str) -> (PathBuf, Option<&str>) {
     }
 }
 
-/// The error for formats that GDAL may read; what follows the colon then names a layer, not a field.
+/// Returns the error for formats that only GDAL may read; what follows the colon is then a layer,
+/// not a field.
 fn unsupported(path: &Path) -> Error {
     Error::unsupported("not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)")
         .in_file(path)

@@ -1,30 +1,35 @@
-//! Triangle meshes: PLY, OBJ, OFF and STL; to read, Triangle's `.ele` too.
+//! Triangle meshes: PLY, OBJ, OFF and STL; Triangle's `.ele` is read as well.
 //!
 //! | format | coordinates | lines, coordinate system | read |
 //! |---|---|---|---|
 //! | PLY | doubles | yes | yes |
-//! | OBJ | decimals that give the same doubles back | coordinate system, as a comment | yes |
-//! | OFF | the same | the same | yes |
+//! | OBJ | decimals that read back as the same doubles | coordinate system, as a comment | yes |
+//! | OFF | as OBJ | as OBJ | yes |
 //! | STL | 32-bit floats from a local origin | no | no |
-//! | `.ele` with its `.node` | the same as OBJ; heights are 0 | breaklines | yes; to write, see [`super::triangle`] |
+//! | `.ele` with its `.node` | as OBJ; heights are 0 | breaklines | yes; to write it, see [`super::triangle`] |
 //!
-//! Vertices and faces come in the order of the surface, which for a TIN is a function of its points and
-//! lines: along a curve, so that neighbors stand near each other. Vertices without a face are not written.
+//! Vertices and faces are written in the order of the surface. For a TIN this order depends only on
+//! its points and lines and follows a space-filling curve, so that neighbors are close to each
+//! other in the file. Vertices without a face are not written.
 //!
-//! # What PLY files hold
+//! # What PLY files contain
 //! `format binary_little_endian 1.0`, then the elements
 //! - `vertex`: `double x`, `double y`, `double z`;
-//! - `face`: `list uchar int vertex_indices`, three each, counter-clockwise in plan; where the surface has lines,
-//!   then `uchar edge1`, `uchar edge2`, `uchar edge3`, what the edges from the first corner to the second and so on around
-//!   are (0 plain, 1 on a breakline, 2 on a clip line, 3 at the rim), and `uchar piece`, 1 for a piece of a triangle
-//!   that was cut. QGIS shows these as values of the faces; of files with the element `edge` it would show the lines
-//!   only, and it opens none with an element that it does not know.
+//! - `face`: `list uchar int vertex_indices`, three per face, counter-clockwise in plan. If the
+//!   surface has lines, then `uchar edge1`, `uchar edge2`, `uchar edge3` give the kinds of the
+//!   edges, starting with the edge from the first corner to the second (0 plain, 1 on a breakline,
+//!   2 on a clip line, 3 at the rim), and `uchar piece` is 1 for a fragment of a triangle that was
+//!   cut.
 //!
-//! Files of earlier versions have breaklines as an element `constrained_edge` instead, with `vertex1` and `vertex2`.
+//! QGIS shows these as values of the faces. If a file has the element `edge`, QGIS shows only the
+//! lines; if it has an element that QGIS does not know, it does not open the file.
 //!
-//! The coordinate system stands in the header as `comment crs: EPSG:25832`, or as WKT in the place of the code. Some
-//! readers take no line over 1024 bytes, so that WKT of 1000 bytes and more is cut into lines `comment crs PART`, to be
-//! joined. The comments of OBJ and OFF are alike, with `#`.
+//! Files of earlier versions store breaklines in an element `constrained_edge` instead, with
+//! `vertex1` and `vertex2`.
+//!
+//! The header states the coordinate system as `comment crs: EPSG:25832`, or with WKT instead of the
+//! code. Some readers refuse lines over 1024 bytes, so WKT of 1000 bytes or more is split into
+//! lines `comment crs PART`, to be joined. OBJ and OFF have the same comments, with `#`.
 
 use std::path::{Path, PathBuf};
 
@@ -35,27 +40,27 @@ pub use super::stl::Solid;
 use crate::data::{Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
 
-/// What was written.
+/// What a mesh file contains, counted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSummary {
-    /// Vertices.
+    /// Number of vertices.
     pub vertices: usize,
-    /// Triangles.
+    /// Number of triangles.
     pub faces: usize,
-    /// Edges on breaklines and clip lines.
+    /// Number of edges on breaklines and clip lines.
     pub constrained_edges: usize,
-    /// How many of these cannot be told from others in the file: all, unless the format has
-    /// [edges](Holding::Edges).
+    /// How many of the constrained edges cannot be distinguished from others in the file: all of
+    /// them, unless the format stores [edges](Holding::Edges).
     pub lost_edges: usize,
-    /// What was subtracted from all coordinates, and the file beside the mesh that says so.
+    /// What was subtracted from all coordinates, and the file next to the mesh that states it.
     pub origin: Option<([f64; 3], PathBuf)>,
 }
 
-/// Writes a surface, in the format that the extension of `target` names.
+/// Writes a surface in the format that the extension of `target` names.
 ///
 /// # Errors
-/// If the extension names no mesh format, the surface is too large for the format, or the file cannot
-/// be written.
+/// If the extension names no mesh format, the surface is too large for the format, or the file
+/// cannot be written.
 pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> Result<MeshSummary> {
     let target = target.into();
     let format = formats::of_name(&target.format_path()).filter(|format| format.content == Content::Mesh);
@@ -79,11 +84,11 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
     })
 }
 
-/// Reads what a file of single triangles without exact coordinates holds (STL), which is not read as a surface. `None`
-/// for a file of another format.
+/// Describes a file of unconnected triangles without exact coordinates (STL), which is not read as
+/// a surface. Returns `None` for a file of another format.
 ///
 /// # Errors
-/// If it is damaged or text, or the file with its origin is.
+/// If the file is text or damaged, or the file that states its origin is damaged.
 pub fn describe_solid(path: &Path) -> Option<Result<Solid>> {
     match formats::of_name(path)?.reader {
         Reader::Solid(describe) => Some(describe(path).map_err(|e| e.in_file(path))),
@@ -91,27 +96,27 @@ pub fn describe_solid(path: &Path) -> Option<Result<Solid>> {
     }
 }
 
-/// Returns true if a file of this name tells which edges lie on breaklines. Without that, the Delaunay law cannot be
-/// asked of it.
+/// Returns true if files with this name mark the edges that lie on breaklines. Without these marks,
+/// the Delaunay law cannot be checked.
 pub fn keeps_lines(path: &Path) -> bool {
     formats::of_name(path).is_some_and(|format| format.can_hold(Holding::Edges))
 }
 
-/// Reads a mesh that is a surface, own or foreign, of any format but STL. Polygons are divided into triangles.
+/// Reads a mesh that forms a surface, written by any program, in any format but STL.
 ///
-/// The file is held in memory while it is read.
+/// Polygons are divided into triangles. The file is kept in memory while it is read.
 ///
 /// # Errors
-/// If the file is damaged, is no surface ([`Mesh::new`] says what is none), has no faces or polygons
-/// that are far from convex, or the format is not one that is read.
+/// If the file is damaged, is not a surface (see [`Mesh::new`]), has no faces, has polygons that
+/// are far from convex, or its format cannot be read.
 pub fn read(path: &Path) -> Result<Mesh> {
     Mesh::of(read_triangles(path)?).map_err(|e| e.in_file(path))
 }
 
-/// Reads the triangles of a mesh, whether they are a surface or not: for a check, say.
+/// Reads the triangles of a mesh even if they do not form a surface, for example to check them.
 ///
 /// # Errors
-/// As [`read`], but for what is no surface.
+/// As [`read`], except that the triangles need not form a surface.
 pub fn read_triangles(path: &Path) -> Result<Triangles> {
     let read = match formats::of_name(path).map(|format| (format, format.reader)) {
         Some((_, Reader::Mesh(read))) => read,

@@ -1,38 +1,40 @@
-//! Formats: bytes to [`data`](crate::data) and back. Knows no triangulation.
+//! File formats: maps bytes to [`data`](crate::data) and data to bytes. Independent of
+//! triangulations.
 //!
-//! | I have, or want | of any format | one format |
+//! | task | any format | one format |
 //! |---|---|---|
-//! | points | [`points::open`] | [`las::open`], [`text::open`], [`points::from_layer`] |
-//! | to write points | [`points::create`] | [`las::create`], [`text::create`] |
-//! | lines and polygons | [`layer::read`] | [`shapefile::read_layer`], [`geojson::read_layer`], [`gdal::read_layer`] |
-//! | a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
-//! | to write a raster | | [`geotiff::write()`]; a picture: [`png::write_gray`] |
-//! | a mesh, to read or to write | [`mesh::read`], [`mesh::write`] | |
-//! | points and segments in the plane, triangulated: Triangle's files | | [`triangle::read`], [`triangle::write`] |
-//! | to write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`] |
-//! | to write other shapes | | [`shapefile::write_layer`] |
-//! | other coordinates | | [`proj::transform`] |
+//! | read points | [`points::open`] | [`las::open`], [`text::open`], [`points::from_layer`] |
+//! | write points | [`points::create`] | [`las::create`], [`text::create`] |
+//! | read lines and polygons | [`layer::read`] | [`shapefile::read_layer`], [`geojson::read_layer`], [`gdal::read_layer`] |
+//! | read a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
+//! | write a raster | | [`geotiff::write()`]; as a picture: [`png::write_gray`] |
+//! | read or write a mesh | [`mesh::read`], [`mesh::write`] | |
+//! | read or write Triangle's files: points and segments in the plane, and their triangulation | | [`triangle::read`], [`triangle::write`] |
+//! | write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`] |
+//! | write other shapes | | [`shapefile::write_layer`] |
+//! | transform coordinates | | [`proj::transform`] |
 //!
-//! All formats, and what can be read and written of each, are in one table: [`formats`].
+//! One table lists all formats, and what can be read and written in each: [`formats`].
 //!
 //! # Conventions
 //!
-//! - x is the easting or longitude, y the northing or latitude, whatever the axis order of the coordinate
-//!   system; z is the height. Units are those of the file; nothing is converted unasked.
-//! - A height that is not there is NaN. Nothing is made up for it.
-//! - What is odd but can be read is a warning in what is returned; damage is an
-//!   [`Error`](crate::Error) that names file, place and value. The tables on the formats' pages say which is
-//!   which.
-//! - Counts and offsets in a file are never trusted: what they claim is held against the bytes that are
-//!   there before anything is allocated. A decoder from another crate that panics gives an error.
-//! - A file that is written appears whole or not at all, see [`Output`]; several together, see [`OutputSet`]. The same data gives the same
-//!   bytes, whatever the number of threads.
+//! - x is the easting or longitude, y the northing or latitude, whatever the axis order of the
+//!   coordinate system; z is the height. Units are those of the file; nothing is converted unless
+//!   requested.
+//! - A missing height is NaN. No height is ever invented.
+//! - Unusual input that can be read leads to a warning, which is returned with the data; damaged
+//!   input leads to an [`Error`](crate::Error) that names the file, the position and the value. The
+//!   tables on the formats' pages say which is which.
+//! - Counts and offsets in a file are never trusted: they are checked against the size of the file
+//!   before anything is allocated. A panic in a decoder from another crate becomes an error.
+//! - An output file appears complete or not at all, see [`Output`]; several files appear together,
+//!   see [`OutputSet`]. The same data gives the same bytes, whatever the number of threads.
 //!
-//! # What it does not do
+//! # Limits
 //!
-//! The readers of any format choose among those of this crate. GDAL's are called by name, in a build with the
-//! feature `gdal`; reprojection needs the feature `proj`. Without them these functions are there and return
-//! an error that says so.
+//! The readers that accept any format choose among the readers of this crate. GDAL's are called by
+//! name, in a build with the feature `gdal`; reprojection needs the feature `proj`. Without these
+//! features the functions exist and return an error that says so.
 
 mod contain;
 mod contour_summary;

@@ -1,10 +1,10 @@
-//! Points from a file of any kind that has them.
+//! Reads points from any file that contains them, and writes points.
 //!
 //! | file | known by | read by |
 //! |---|---|---|
 //! | LAS, LAZ, COPC | first bytes `LASF`; `.las`, `.laz` | [`las`] |
 //! | shapefile of points | first bytes; `.shp` | [`from_layer`] |
-//! | text | what else is text: `.xyz`, `.txt`, `.csv`, `.asc`, `.pts` | [`text`] |
+//! | text | any other text: `.xyz`, `.txt`, `.csv`, `.asc`, `.pts` | [`text`] |
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -23,13 +23,13 @@ const BATCH: usize = 1 << 16;
 /// Opens a file of points; `-` is the standard input (LAS, LAZ or text).
 ///
 /// # Errors
-/// If the file cannot be read or holds no points that can be read; the message says what it is
-/// instead.
+/// If the file cannot be read or contains no points that can be read; the message says what it
+/// contains instead.
 pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn PointSource + Send>> {
     open_with(path, Options::default())
 }
 
-/// Like [`open`], but reads as the options say.
+/// Like [`open`], but with options.
 ///
 /// # Errors
 /// As [`open`].
@@ -51,7 +51,7 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     }
 }
 
-/// The same for what can be read only once.
+/// Like [`open_with`], but for input that can be read only once.
 fn open_stream(
     mut stream: impl Read + Send + 'static,
     name: &Path,
@@ -69,19 +69,19 @@ fn open_stream(
     }
 }
 
-/// What has to be read of points that are to be written to this target.
+/// Returns the detail that must be read of points that are to be written to `target`.
 ///
 /// # Errors
-/// If its extension names no format that points are written in.
+/// If its extension names no format in which points can be written.
 pub fn detail_for<'a>(target: impl Into<Destination<'a>>) -> Result<Detail> {
     writer(target.into()).map(|writer| writer.detail)
 }
 
-/// Starts to write points of these sources, in the format that the extension of the target names.
+/// Starts to write the points of `sources`, in the format that the extension of `target` names.
 ///
 /// # Errors
-/// If the extension names no format that points are written in, the points cannot be written there without a loss, or the
-/// target cannot be written.
+/// If points cannot be written in a format with this extension, or not without loss, or the target
+/// cannot be written.
 pub fn create<'a>(
     target: impl Into<Destination<'a>>,
     sources: &[&PointInfo],
@@ -105,7 +105,7 @@ fn head(source: &mut impl Read) -> io::Result<Vec<u8>> {
     Ok(head)
 }
 
-/// The error for a file that has no points for us.
+/// Returns the error for a file without points that can be read.
 fn refusal(head: &[u8], path: &Path) -> Error {
     const SUPPORTED: &str = "points are read from LAS, LAZ, COPC, shapefiles and text (x y z)";
     let error = match formats::named(head, path) {
@@ -116,7 +116,7 @@ fn refusal(head: &[u8], path: &Path) -> Error {
     error.in_file(path)
 }
 
-/// The points of a vector layer; shapes of other kinds are left out with a warning.
+/// Returns the points of a vector layer; other shapes are left out with a warning.
 ///
 /// # Errors
 /// If the layer has shapes but no points, or a point has no height.
@@ -150,7 +150,7 @@ pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
     Ok(LayerPoints { info, points: points.into_iter() })
 }
 
-/// The points of a layer; made by [`from_layer`].
+/// The points of a layer, made by [`from_layer`].
 #[derive(Debug)]
 pub struct LayerPoints {
     info: PointInfo,

@@ -1,18 +1,21 @@
-//! Reprojection by [PROJ](https://proj.org), behind the feature `proj`.
+//! Reprojection with [PROJ](https://proj.org), behind the feature `proj`.
 //!
-//! Coordinates are always easting (or longitude) first. In plan PROJ does what it does: it picks the best operation
-//! that it has grids for, point by point. None of the large grids are shipped, so it may fall back on an operation of
-//! metres, or of unknown accuracy; [`Transform::warnings`](crate::crs::Transform::warnings) says which operations were
-//! used and how good they are. Heights are converted between units, and never between vertical datums: the warnings say
-//! so where it matters.
+//! Coordinates are always easting (or longitude) first. Plan coordinates are left to PROJ, which
+//! picks, point by point, the best operation for which it has grids. None of the large grids are
+//! included, so it may fall back on an operation with an accuracy of meters, or of unknown
+//! accuracy; [`Transform::warnings`](crate::crs::Transform::warnings) lists the operations that
+//! were used and their accuracy. Heights are converted between units, but never between vertical
+//! datums; a warning says so where it matters.
 
-/// The operation that takes coordinates from one system to another.
+/// Returns the operation that transforms coordinates from one system to another.
 ///
-/// It may be used from many threads; each gets a PROJ context of its own. Of geocentric systems only the source may be
-/// one: X, Y and Z then become longitude, latitude and ellipsoidal height first.
+/// It may be used from many threads; each gets its own PROJ context. Only the source may be a
+/// geocentric system: its X, Y and Z are first converted to longitude, latitude and ellipsoidal
+/// height.
 ///
 /// # Errors
-/// If PROJ does not know one of the systems or no way between them; without the feature `proj`, always.
+/// If PROJ does not know one of the systems or no operation between them; without the feature
+/// `proj`, always.
 #[cfg(not(feature = "proj"))]
 pub fn transform(from: &crate::crs::Crs, to: &crate::crs::Crs) -> crate::error::Result<Box<dyn crate::crs::Transform>> {
     Err(crate::error::Error::unsupported(format!(
@@ -37,10 +40,11 @@ mod with_proj {
     use crate::crs::{Crs, CrsKind, Transform};
     use crate::error::{Error, Result};
 
-    /// PROJ objects that a thread keeps; more transforms than this at once are made anew when they are used.
+    /// PROJ objects that a thread keeps. If more transforms are used at once, objects are created
+    /// again on use.
     const KEPT: usize = 8;
 
-    /// An accuracy worse than this, in metres, is told: lidar is better.
+    /// An accuracy worse than this, in meters, is reported, because lidar is better.
     const REPORTED: f64 = 0.1;
 
     thread_local! {
@@ -50,20 +54,20 @@ mod with_proj {
     static NEXT: AtomicU64 = AtomicU64::new(0);
 
     struct Operation {
-        /// Names it in [`OBJECTS`].
+        /// Its key in [`OBJECTS`].
         id: u64,
         from: Crs,
         to: Crs,
-        /// What PROJ is asked for; heights are not in it.
+        /// The definitions that PROJ receives; they do not cover heights.
         definitions: (String, String),
-        /// From a geocentric source to the geographic system on the same datum.
+        /// The transform from a geocentric source to the geographic system on the same datum.
         geocentric: Option<proj_core::Transform>,
-        /// Units of height in the target for one in the source.
+        /// The factor from units of height in the source to those in the target.
         height: f64,
         warnings: Mutex<BTreeSet<String>>,
     }
 
-    /// See the other [`transform`](super::transform), which stands in the documentation.
+    /// See the documented [`transform`](super::transform).
     pub fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
         for crs in [from, to] {
             if crs.kind == CrsKind::Local {
@@ -92,13 +96,14 @@ mod with_proj {
             from: from.clone(),
             to: to.clone(),
         };
-        // Made now, so that what cannot work fails before anything is read.
+        // Created now, so that an impossible operation fails before anything is read.
         let object = operation.object()?;
         operation.learn(&object.proj_info());
         Ok(Box::new(operation))
     }
 
-    /// What PROJ understands: the code of the horizontal part, or the definition.
+    /// Returns a definition that PROJ understands: the code of the horizontal part, or the full
+    /// definition.
     fn definition(crs: &Crs) -> String {
         match crs.epsg {
             Some(code) => format!("EPSG:{code}"),
@@ -116,7 +121,7 @@ mod with_proj {
         Ok((first, format!("EPSG:{base}")))
     }
 
-    /// The factor of the heights, and what is to be said of them.
+    /// Returns the factor for heights, and a warning about them if there is one.
     fn heights(from: &Crs, to: &Crs) -> (f64, Option<String>) {
         let (Some(source), target) = (&from.vertical_unit, &to.vertical_unit) else {
             let nothing = to.vertical_epsg.map(|code| {
@@ -164,7 +169,7 @@ mod with_proj {
     }
 
     impl Operation {
-        /// This thread's PROJ object.
+        /// Returns this thread's PROJ object.
         fn object(&self) -> Result<Rc<Proj>> {
             let kept =
                 OBJECTS.with_borrow(|kept| kept.iter().find(|entry| entry.0 == self.id).map(|entry| entry.1.clone()));
@@ -186,10 +191,10 @@ mod with_proj {
             Ok(object)
         }
 
-        /// Notes how good the operation is that was used last.
+        /// Records the accuracy of the operation that was used last.
         fn learn(&self, info: &ProjInfo) {
             let name = info.description.as_deref().unwrap_or("an operation without a name");
-            // Before the first point PROJ has not chosen among several.
+            // Before the first point, PROJ has not yet chosen among several operations.
             if info.id.as_deref() == Some("unknown") && name.starts_with("unavailable until") {
                 return;
             }

@@ -1,4 +1,4 @@
-//! Opens a raster by what its first bytes say it is.
+//! Opens a raster in the format that its first bytes indicate.
 
 use std::fs::File;
 use std::io::Read;
@@ -8,11 +8,11 @@ use super::formats::{self, Content, Format, HEAD, Reader};
 use super::geotiff::GeoTiffReader;
 use crate::error::{Error, Result};
 
-/// Opens a raster of heights. GeoTIFF is read by this crate itself.
+/// Opens a raster of heights. Only GeoTIFF is read without GDAL.
 ///
 /// # Errors
-/// If the file cannot be opened, is damaged, or is of another format; the message names the format
-/// where its first bytes tell it.
+/// If the file cannot be opened, is damaged, or has another format; the message names the format if
+/// the first bytes identify it.
 pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
     let path = path.as_ref();
     let head = first_bytes(path).map_err(|e| e.in_file(path))?;

@@ -1,9 +1,9 @@
-//! From stored bytes to values, one block at a time.
+//! Decodes stored bytes to values, one block at a time.
 //!
-//! The decoding itself (compression, predictor, byte order) is done by the `tiff` crate. It is
-//! given one block as a small TIFF file of its own, in memory, whose directory is made here from
-//! checked numbers: so nothing that a damaged file says about counts, offsets or directories gets
-//! there, tiles and strips are the same, and blocks can be decoded on all cores.
+//! The `tiff` crate does the decoding itself (compression, predictor, byte order). It receives each
+//! block as a small TIFF file in memory, whose directory is written here from checked numbers. So
+//! the decoder never sees what a damaged file says about counts, offsets or directories, tiles and
+//! strips need no distinction, and blocks can be decoded on all cores.
 
 use std::io::Cursor;
 
@@ -18,11 +18,12 @@ use crate::data::Window;
 use crate::error::{Error, Kind, Result};
 use crate::io::contain;
 
-/// Cells whose values are handed out at once: as stored samples they take an eighth of the room.
+/// Limit for the cells whose values are passed on at once; as stored samples they take an eighth of
+/// the memory.
 const BAND_CELLS: usize = 1 << 20;
 
-/// Hands out the values of the part of a piece that lies in a window, in bands of whole rows: row by row, NaN where there
-/// is none. Nothing of a block that is not in the file.
+/// Passes on the values of the part of a span that lies in a window, in bands of whole rows; NaN is
+/// nodata. For a block that is not in the file, nothing is passed on.
 pub(super) fn values(
     layout: &Layout,
     nodata: &Nodata,
@@ -39,8 +40,8 @@ pub(super) fn values(
         let start = file.len() - length as usize;
         check_jpeg(&file[start..], layout, span).map_err(in_block)?;
     }
-    // The decoders beneath are well tested, but not proven: a panic in one of them is a damaged
-    // block, not the end of the program.
+    // The decoders are well tested, but not proven: a panic in one of them means a damaged block
+    // and must not end the program.
     let decode_and_pick = || {
         let decoded = decode(file)?;
         let rows = (BAND_CELLS / part.width.max(1)).max(1);
@@ -64,7 +65,7 @@ fn in_compression(error: Error, compression: u16) -> Error {
     }
 }
 
-/// A TIFF header with one directory for one strip, whose bytes follow.
+/// Returns a TIFF header with one directory for one strip, whose bytes follow.
 fn header(layout: &Layout, span: &Span, length: u64) -> Vec<u8> {
     let format = match layout.sample.kind {
         super::SampleKind::Unsigned => 1,
@@ -81,7 +82,7 @@ fn header(layout: &Layout, span: &Span, length: u64) -> Vec<u8> {
         (tags::IMAGE_LENGTH, long, 1, span.rows as u32),
         (tags::BITS_PER_SAMPLE, short, 1, u32::from(layout.sample.bits)),
         (tags::COMPRESSION, short, 1, u32::from(layout.compression)),
-        // BlackIsZero: samples come out as they are stored.
+        // BlackIsZero: samples are decoded as they are stored.
         (tags::PHOTOMETRIC, short, 1, 1),
         (tags::STRIP_OFFSETS, long, 1, data_at),
         (tags::SAMPLES_PER_PIXEL, short, 1, u32::from(layout.interleaved)),
@@ -123,7 +124,8 @@ fn put32(out: &mut Vec<u8>, order: ByteOrder, value: u32) {
     out.extend_from_slice(&if order == ByteOrder::Little { value.to_le_bytes() } else { value.to_be_bytes() });
 }
 
-/// A JPEG states its own size, and its decoder believes it: it must be the block's.
+/// Returns an error unless the size that a JPEG states, which its decoder trusts, is that of the
+/// block.
 fn check_jpeg(data: &[u8], layout: &Layout, span: &Span) -> Result<()> {
     let short = || Error::format("the JPEG header is cut short");
     let mut at = 2;
@@ -131,7 +133,7 @@ fn check_jpeg(data: &[u8], layout: &Layout, span: &Span) -> Result<()> {
         let [0xff, marker, high, low] = *data.get(at..at + 4).ok_or_else(short)? else {
             return Err(Error::format("the JPEG header is damaged"));
         };
-        // Start of frame, all kinds; C4, C8 and CC are something else.
+        // Start of frame of any kind; C4, C8 and CC have other meanings.
         if matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc) {
             let frame = data.get(at + 4..at + 10).ok_or_else(short)?;
             let rows = usize::from(u16::from_be_bytes([frame[1], frame[2]]));
@@ -161,13 +163,13 @@ fn from_tiff(error: TiffError) -> Error {
     let kind = match &error {
         TiffError::UnsupportedError(_) | TiffError::UsageError(_) => Kind::Unsupported,
         TiffError::LimitsExceeded => Kind::Limit,
-        // There is no file beneath: what fails to be read is the compressed data.
+        // The input is in memory, so what cannot be read is damaged compressed data.
         TiffError::FormatError(_) | TiffError::IntSizeError | TiffError::IoError(_) => Kind::Format,
     };
     Error::caused_by(kind, error)
 }
 
-/// Band 1 of a part of a decoded piece.
+/// Returns band 1 of a part of a decoded span.
 fn pick(decoded: &DecodingResult, layout: &Layout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
     if layout.sample.bits < 8 {
         let DecodingResult::U8(packed) = decoded else { return vec![f64::NAN; part.width * part.height] };
@@ -194,7 +196,7 @@ fn is<T: PartialEq>(nodata: Option<T>) -> impl Fn(T) -> bool {
     move |sample| nodata.as_ref() == Some(&sample)
 }
 
-/// An infinite height is no height.
+/// Returns NaN for infinite values, which are not heights.
 fn finite(value: f64) -> f64 {
     if value.is_finite() { value } else { f64::NAN }
 }
@@ -219,7 +221,8 @@ impl Picker<'_> {
     }
 }
 
-/// Samples of 1, 2 or 4 bits: the first of a byte is in its highest bits, rows begin with a byte.
+/// Returns samples of 1, 2 or 4 bits: the first of a byte is in its highest bits, and each row
+/// starts a new byte.
 fn pick_bits(packed: &[u8], layout: &Layout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
     let bits = usize::from(layout.sample.bits);
     let row_bytes = (span.width * bits).div_ceil(8);

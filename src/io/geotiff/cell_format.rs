@@ -1,20 +1,21 @@
-//! How cells are stored.
+//! How cells are stored in a written raster.
 
-/// Stands in a file for a height that is not there.
+/// The stored value for a missing height.
 pub(super) const NO_HEIGHT: f32 = -9999.0;
 
 /// What the cells of a raster hold, and how they are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CellFormat {
-    /// Float32, predictor 3; nodata is -9999 (so a height of exactly -9999 reads back as nodata).
+    /// Heights: Float32, predictor 3; nodata is -9999, so a height of exactly -9999 reads back as
+    /// nodata.
     #[default]
     Heights,
-    /// One byte, 1 to 255, predictor 2; nodata is 0. Values are rounded and clamped.
+    /// Shades: one byte, 1 to 255, predictor 2; nodata is 0. Values are rounded and clamped.
     Shades,
 }
 
 impl CellFormat {
-    /// Bits of a cell.
+    /// Returns the bits of a cell.
     pub(super) fn bits(self) -> u16 {
         match self {
             CellFormat::Heights => 32,
@@ -22,7 +23,7 @@ impl CellFormat {
         }
     }
 
-    /// The value that reading will give for a cell; NaN if it will be nodata.
+    /// Returns the value that a cell will have when read back; NaN if that is nodata.
     pub(super) fn written(self, cell: f32) -> f32 {
         match self {
             _ if !cell.is_finite() => f32::NAN,

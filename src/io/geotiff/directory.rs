@@ -50,8 +50,8 @@ impl Values {
     }
 }
 
-/// The header, the directory and all its values. Its length depends on the number of values only,
-/// so it can be written again when they are known.
+/// Returns the header, the directory and all its values. The length depends only on the number of
+/// values, so the header can be rewritten once they are known.
 pub(super) fn header(offsets: Offsets, tags: &[(u16, Values)]) -> Vec<u8> {
     debug_assert!(tags.is_sorted_by_key(|(tag, _)| *tag));
     let (start, width) = match offsets {
@@ -95,7 +95,7 @@ pub(super) fn header(offsets: Offsets, tags: &[(u16, Values)]) -> Vec<u8> {
     out
 }
 
-/// The tags that place a raster: a pixel scale and a tiepoint where they can say it (north up),
+/// Returns the tags that locate a raster: a pixel scale and a tiepoint if they suffice (north up),
 /// else the full transformation.
 pub(super) fn placement(frame: &Frame) -> Vec<(u16, Values)> {
     let t = frame.transform;
@@ -109,7 +109,7 @@ pub(super) fn placement(frame: &Frame) -> Vec<(u16, Values)> {
     vec![(tags::MODEL_TRANSFORMATION, Values::Double(rows.concat()))]
 }
 
-/// The tags of a coordinate system.
+/// Returns the tags of a coordinate system.
 pub(super) fn geo_keys(keys: GeoKeys) -> Vec<(u16, Values)> {
     let mut out = Vec::new();
     if !keys.directory.is_empty() {

@@ -1,20 +1,20 @@
-//! From the model tags of GeoTIFF (OGC 19-008r4) to one affine transform in GDAL's order.
+//! Converts the model tags of GeoTIFF (OGC 19-008r4) to one affine transform in GDAL's order.
 
-/// The tags that place a raster, as they are in the file.
+/// The tags that locate a raster, as stored in the file.
 #[derive(Debug, Default)]
 pub(super) struct ModelTags {
     pub(super) pixel_scale: Option<Vec<f64>>,
     pub(super) tiepoints: Option<Vec<f64>>,
     pub(super) transformation: Option<Vec<f64>>,
-    /// The coordinates are those of cell centers (PixelIsPoint).
+    /// True if the coordinates are those of cell centers (PixelIsPoint).
     pub(super) is_point: bool,
 }
 
-/// Tiepoints that lie on one affine transform within this part of a cell are taken for it.
+/// Tiepoints within this fraction of a cell of an affine transform are considered to lie on it.
 const TIEPOINT_TOLERANCE: f64 = 1e-4;
 
 impl ModelTags {
-    /// The transform, and what a user should be told about it.
+    /// Returns the transform, and warnings for the user.
     pub(super) fn transform(&self) -> (Option<[f64; 6]>, Vec<String>) {
         let mut warnings = Vec::new();
         let transform = self.exact(&mut warnings).map(|t| if self.is_point { shifted_by_half(t) } else { t });
@@ -62,8 +62,8 @@ fn shifted_by_half(t: [f64; 6]) -> [f64; 6] {
     [t[0] - (t[1] + t[2]) / 2.0, t[1], t[2], t[3] - (t[4] + t[5]) / 2.0, t[4], t[5]]
 }
 
-/// The affine transform through all tiepoints, by least squares about their mean; `None` if they do
-/// not determine one or are not met by it.
+/// Returns the affine transform through all tiepoints, by least squares about their mean; `None` if
+/// they do not determine one or do not lie on it.
 fn fit(tiepoints: &[f64]) -> Option<[f64; 6]> {
     let points: Vec<&[f64]> = tiepoints.chunks_exact(6).collect();
     let n = points.len() as f64;

@@ -1,7 +1,7 @@
 //! The raw layer: bytes of the file, and the entries of its first image directory.
 //!
-//! Mirrors the format (TIFF 6.0, 1992, and BigTIFF) and judges nothing but this: a value that a
-//! directory points to must lie in the file. So no array here is larger than the file itself.
+//! Follows the format (TIFF 6.0, 1992, and BigTIFF) and checks only one thing: a value that a
+//! directory points to must be within the file. So no array here is larger than the file itself.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry as MapEntry;
@@ -32,7 +32,7 @@ impl ByteOrder {
     }
 }
 
-/// A file of known length that can be read at any place, from many threads.
+/// A file of known length that many threads can read at any offset.
 #[derive(Debug)]
 pub(super) struct Bytes {
     file: Mutex<File>,
@@ -53,7 +53,7 @@ impl Bytes {
         self.len
     }
 
-    /// Whether `length` bytes at `offset` are in the file.
+    /// Returns true if `length` bytes at `offset` are within the file.
     pub(super) fn holds(&self, offset: u64, length: u64) -> bool {
         offset.checked_add(length).is_some_and(|end| end <= self.len)
     }
@@ -81,7 +81,7 @@ impl Bytes {
     }
 }
 
-/// Where a tag's values are.
+/// An entry of a directory: the type and the position of a tag's values.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     kind: u16,
@@ -98,7 +98,7 @@ pub(super) struct Directory {
     next: u64,
 }
 
-/// Bytes in one value of a field type; `None` for types that TIFF does not know.
+/// Returns the bytes of one value of a field type; `None` for types that TIFF does not define.
 fn size_of(kind: u16) -> Option<u64> {
     match kind {
         1 | 2 | 6 | 7 => Some(1),
@@ -130,12 +130,12 @@ impl Directory {
         Self::read(bytes, order, is_big, offset)
     }
 
-    /// The directory after this one, if there is one.
+    /// Reads the directory after this one; `None` if there is none.
     pub(super) fn following(&self, bytes: &Bytes) -> Option<Result<Self>> {
         (self.next != 0).then(|| Self::read(bytes, self.order, self.is_big, self.next))
     }
 
-    /// Where the directory after this one is; 0 if there is none.
+    /// Returns the offset of the next directory; 0 if there is none.
     pub(super) fn next_offset(&self) -> u64 {
         self.next
     }
@@ -162,7 +162,7 @@ impl Directory {
             } else {
                 order.unsigned(&raw[value_at..])
             };
-            // A tag that is there twice: the first counts, as in libtiff.
+            // If a tag occurs twice, the first counts, as in libtiff.
             if let MapEntry::Vacant(free) = entries.entry(tag) {
                 free.insert(Entry { kind, count: values, offset });
             }
@@ -190,7 +190,7 @@ impl Directory {
         Ok(Some((entry, raw)))
     }
 
-    /// The values of a tag of one of the unsigned types.
+    /// Returns the values of a tag of one of the unsigned types.
     pub(super) fn unsigned(&self, bytes: &Bytes, tag: u16) -> Result<Option<Vec<u64>>> {
         let Some((entry, raw)) = self.raw(bytes, tag)? else { return Ok(None) };
         match entry.kind {
@@ -204,12 +204,12 @@ impl Directory {
         }
     }
 
-    /// The first value of a tag of one of the unsigned types.
+    /// Returns the first value of a tag of one of the unsigned types.
     pub(super) fn number(&self, bytes: &Bytes, tag: u16) -> Result<Option<u64>> {
         Ok(self.unsigned(bytes, tag)?.and_then(|values| values.first().copied()))
     }
 
-    /// The values of a tag of type DOUBLE or FLOAT.
+    /// Returns the values of a tag of type DOUBLE or FLOAT.
     pub(super) fn floats(&self, bytes: &Bytes, tag: u16) -> Result<Option<Vec<f64>>> {
         let Some((entry, raw)) = self.raw(bytes, tag)? else { return Ok(None) };
         let values = match entry.kind {
@@ -222,7 +222,7 @@ impl Directory {
         Ok(Some(values))
     }
 
-    /// The text of a tag, up to its first NUL.
+    /// Returns the text of a tag, up to its first NUL.
     pub(super) fn text(&self, bytes: &Bytes, tag: u16) -> Result<Option<String>> {
         Ok(self.raw(bytes, tag)?.map(|(_, raw)| {
             let end = raw.iter().position(|&b| b == 0).unwrap_or(raw.len());
@@ -230,7 +230,7 @@ impl Directory {
         }))
     }
 
-    /// The bytes of a tag as they are.
+    /// Returns the bytes of a tag as stored.
     pub(super) fn bytes(&self, bytes: &Bytes, tag: u16) -> Result<Option<Vec<u8>>> {
         Ok(self.raw(bytes, tag)?.map(|(_, raw)| raw))
     }

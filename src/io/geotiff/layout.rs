@@ -1,13 +1,14 @@
-//! How the cells of the first image lie in the file: the typed layer over [`ifd`](super::ifd).
+//! How the cells of the first image are arranged in the file: the typed layer on top of
+//! [`ifd`](super::ifd).
 //!
-//! Everything that decoding relies on is checked here, once, so that the decoder below only ever
-//! sees blocks of a stated and bounded size.
+//! All assumptions of the decoding are checked here, once, so that the decoder only receives blocks
+//! of a stated and bounded size.
 
 use super::ifd::{ByteOrder, Bytes, Directory};
 use super::{MAX_BLOCK_BYTES, MAX_BLOCKS, tags};
 use crate::error::{Error, Result};
 
-/// How a sample is to be understood.
+/// How the bits of a sample are interpreted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SampleKind {
     /// Unsigned integers.
@@ -18,12 +19,12 @@ pub enum SampleKind {
     Float,
 }
 
-/// The type of the samples of a raster; shown as `float32`, `int16`, `uint8`.
+/// The type of the samples of a raster, displayed as `float32`, `int16`, `uint8`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SampleType {
-    /// How a sample is to be understood.
+    /// How the bits are interpreted.
     pub kind: SampleKind,
-    /// Bits in a sample.
+    /// Number of bits.
     pub bits: u16,
 }
 
@@ -38,10 +39,11 @@ impl std::fmt::Display for SampleType {
     }
 }
 
-/// Uncompressed strips may be as large as the raster; they are read in pieces of about this size.
+/// Uncompressed strips may be as large as the raster; they are read in spans of about this many
+/// bytes.
 const SPAN_BYTES: u64 = 1 << 20;
 
-/// Checked description of where the samples of band 1 are.
+/// A checked description of where the samples of band 1 are.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub(super) order: ByteOrder,
@@ -54,9 +56,10 @@ pub(super) struct Layout {
     pub(super) is_tiled: bool,
     /// Columns and rows of a tile, or the width and the rows of a strip.
     pub(super) block: [usize; 2],
-    /// Rows that are decoded at once: those of a block, fewer for an uncompressed strip.
+    /// Rows that are decoded at once: all rows of a block, or fewer for an uncompressed strip.
     span_height: usize,
-    /// Samples of one cell that lie together: all bands, or 1 where bands have blocks of their own.
+    /// Samples of a cell that are stored together: those of all bands, or 1 if each band has its
+    /// own blocks.
     pub(super) interleaved: u16,
     across: usize,
     offsets: Vec<u64>,
@@ -64,10 +67,10 @@ pub(super) struct Layout {
     pub(super) jpeg_tables: Option<Vec<u8>>,
 }
 
-/// A run of rows of one block: what is decoded at once.
+/// A span of rows of one block, which are decoded at once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
-    /// Which block this is part of, for messages.
+    /// The block that contains the span, for messages.
     pub(super) block: usize,
     pub(super) first_column: usize,
     pub(super) first_row: usize,
@@ -76,12 +79,12 @@ pub(super) struct Span {
     pub(super) stored: Stored,
 }
 
-/// Where the bytes of a [`Piece`] are.
+/// Where the bytes of a [`Span`] are.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stored {
-    /// Nowhere: the block was left out of a sparse file.
+    /// Nowhere: a sparse file leaves out this block.
     Nowhere,
-    /// In the file.
+    /// In the file, at these bytes.
     At { offset: u64, length: u64 },
 }
 
@@ -186,7 +189,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Refuses by name what cannot be decoded.
+    /// Returns an error that names what cannot be decoded.
     fn check_supported(&self, bytes: &Bytes, directory: &Directory) -> Result<()> {
         let name = tags::compression_name(self.compression);
         match self.compression {
@@ -238,33 +241,33 @@ impl Layout {
         }
     }
 
-    /// Bytes in a row of a block.
+    /// Returns the bytes of a row of a block.
     fn row_bytes(&self) -> u64 {
         (self.block[0] as u64 * u64::from(self.interleaved) * u64::from(self.sample.bits)).div_ceil(8)
     }
 
-    /// Largest number of bytes that decoding one piece gives.
+    /// Returns the largest number of bytes that a decoded span can have.
     pub(super) fn span_bytes(&self) -> u64 {
         self.row_bytes() * self.span_height as u64
     }
 
-    /// Cells of one piece.
+    /// Returns the number of cells of a span.
     pub(super) fn span_cells(&self) -> u64 {
         self.block[0] as u64 * self.span_height as u64
     }
 
-    /// Columns of blocks.
+    /// Returns the number of blocks in a row of blocks.
     pub(super) fn across(&self) -> usize {
         self.across
     }
 
-    /// Blocks that are not in the file.
+    /// Returns the number of blocks that are not in the file.
     pub(super) fn missing_blocks(&self) -> usize {
         let blocks = self.across * self.height.div_ceil(self.block[1]);
         (0..blocks).filter(|&block| self.is_missing(block)).count()
     }
 
-    /// Blocks that a whole file would have.
+    /// Returns the number of blocks of a complete file.
     pub(super) fn block_count(&self) -> usize {
         self.across * self.height.div_ceil(self.block[1])
     }
@@ -277,16 +280,16 @@ impl Layout {
         }
     }
 
-    /// The piece that holds a row, in a column of blocks.
+    /// Returns the span that contains a row, in a column of blocks.
     ///
     /// # Errors
-    /// If its bytes are not in the file, or too few to give what they should.
+    /// If its bytes are not in the file, or too few for its cells.
     pub(super) fn span(&self, across: usize, row: usize, bytes: &Bytes) -> Result<Span> {
         let [block_width, block_height] = self.block;
         let (block_row, row_in_block) = (row / block_height, row % block_height);
         let skipped = row_in_block / self.span_height * self.span_height;
         let first_row = block_row * block_height + skipped;
-        // Some writers leave out the rows of a tile that are below the raster.
+        // Some writers leave out the rows of a tile below the raster.
         let rows = self.span_height.min(block_height - skipped).min(self.height - first_row);
         let block = block_row * self.across + across;
         let stored = self
@@ -326,7 +329,7 @@ impl Layout {
     }
 }
 
-/// More bytes than one compressed byte can give, by the format's rules.
+/// Returns how many bytes one compressed byte can yield at most, by the rules of the format.
 fn most_from_one_byte(compression: u16) -> u64 {
     match compression {
         tags::COMPRESSION_NONE => 1,
@@ -338,12 +341,12 @@ fn most_from_one_byte(compression: u16) -> u64 {
         tags::COMPRESSION_LZW => 4096,
         // A block of 128 kB of one byte takes 4 bytes.
         tags::COMPRESSION_ZSTD => 1 << 15,
-        // The size stands in the JPEG header, and is checked there.
+        // The JPEG header states the size, which is checked there.
         _ => u64::MAX,
     }
 }
 
-/// The one type of all samples.
+/// Returns the common type of all samples.
 fn sample_type(bytes: &Bytes, directory: &Directory) -> Result<SampleType> {
     let all_equal = |tag, default| -> Result<u64> {
         let values = directory.unsigned(bytes, tag)?.filter(|values| !values.is_empty());

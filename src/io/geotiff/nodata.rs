@@ -1,19 +1,19 @@
-//! Which stored samples mean "no value", and how the others become values.
+//! Which stored samples mean "no value", and how the others are converted to values.
 
 use super::layout::{SampleKind, SampleType};
 
-/// The nodata value of a file, as its text says it, in a form that each sample type can be compared
-/// with.
+/// The nodata value of a file, parsed from its text, in forms that can be compared with each sample
+/// type.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Nodata {
     /// The value as a number.
     pub(super) value: Option<f64>,
-    /// The value, if it is whole: 64-bit integers do not fit into `value`.
+    /// The value if it is an integer: 64-bit integers do not fit into `value`.
     whole: Option<i128>,
 }
 
 impl Nodata {
-    /// Reads tag 42113: a number, "nan", "inf" or "-inf", with blanks or NULs around.
+    /// Parses tag 42113: a number, "nan", "inf" or "-inf", possibly surrounded by blanks or NULs.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
         let value = match text.to_ascii_lowercase().as_str() {
@@ -25,33 +25,35 @@ impl Nodata {
         Some(Nodata { value: Some(value), whole })
     }
 
-    /// What cells have whose block was left out of the file: no value, or 0 where none stands for that, as in GDAL.
+    /// Returns the value of cells whose block was left out of the file: NaN, or 0 if the file has
+    /// no nodata value, as in GDAL.
     pub(super) fn of_missing_blocks(&self) -> f64 {
         if self.value.is_some() { f64::NAN } else { 0.0 }
     }
 
-    /// The value as an integer type, if it is one of its values.
+    /// Returns the value as an integer type, if it can be represented.
     pub(super) fn integer<T: TryFrom<i128>>(&self) -> Option<T> {
         self.whole.and_then(|whole| T::try_from(whole).ok())
     }
 
-    /// The value as it is stored in a 32-bit float.
+    /// Returns the value as stored in a 32-bit float.
     pub(super) fn single(&self) -> Option<f32> {
         self.value.map(|value| value as f32)
     }
 
-    /// Whether a half precision sample is the value, brought to half precision by rounding or, as
-    /// GDAL does, by cutting off.
+    /// Returns true if a half precision sample is the value, converted to half precision by
+    /// rounding or, as in GDAL, by truncation.
     pub(super) fn is_half(&self, sample: f64) -> bool {
         self.value.is_some_and(|value| {
             let exponent = (value.to_bits() >> 52 & 0x7ff) as i32 - 1023;
-            // From one half precision number to the next: 10 bits behind the first, none below 2^-24.
+            // The step from one half precision number to the next: 10 fraction bits, none below
+            // 2^-24.
             let step = 2f64.powi(exponent.max(-14) - 10);
             value == sample || (value - sample).abs() < step
         })
     }
 
-    /// Whether no sample of this type can be the value.
+    /// Returns true if no sample of this type can equal the value.
     pub(super) fn is_out_of_range(&self, sample: SampleType) -> bool {
         let Some(value) = self.value else { return false };
         let bits = i32::from(sample.bits);
@@ -66,7 +68,7 @@ impl Nodata {
     }
 }
 
-/// Scale and offset of band 1 in GDAL's metadata (tag 42112):
+/// Returns scale and offset of band 1 from GDAL's metadata (tag 42112):
 /// `<Item name="SCALE" sample="0" role="scale">0.1</Item>`.
 pub(super) fn scale_and_offset(metadata: &str) -> (Option<f64>, Option<f64>) {
     let (mut scale, mut offset) = (None, None);
@@ -128,7 +130,7 @@ mod tests {
 
     #[test]
     fn half_precision_is_compared_in_half_precision() {
-        // -9999 is no half; its neighbors are -10000 and -9992.
+        // -9999 is not a half precision number; its neighbors are -10000 and -9992.
         let nodata = Nodata::parse("-9999").unwrap();
         assert!(nodata.is_half(-10000.0) && nodata.is_half(-9992.0));
         assert!(!nodata.is_half(-10008.0) && !nodata.is_half(-9984.0) && !nodata.is_half(5.0));

@@ -13,50 +13,52 @@ use crate::data::{BlockSource, Frame, Grid, Window};
 use crate::error::{Error, Kind, Result};
 use crate::io::world_file;
 
-/// What the header of a GeoTIFF says.
+/// What the header of a GeoTIFF states.
 #[derive(Debug, Clone)]
 pub struct GeoTiffInfo {
-    /// Columns.
+    /// Number of columns.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// Bands; the first one is read.
+    /// Number of bands; the first one is read.
     pub bands: u16,
     /// Type of the stored samples.
     pub sample: SampleType,
-    /// "none", "DEFLATE", "LZW", ...
+    /// Compression: "none", "DEFLATE", "LZW", ...
     pub compression: &'static str,
-    /// 1 none, 2 differences, 3 differences of float bytes.
+    /// Predictor: 1 none, 2 differences, 3 differences of float bytes.
     pub predictor: u16,
-    /// Tiles, or else strips.
+    /// True if the raster is stored in tiles, false if in strips.
     pub is_tiled: bool,
     /// Columns and rows of a block (a tile or a strip).
     pub block: [usize; 2],
     /// Byte order of the file.
     pub byte_order: ByteOrder,
-    /// Whether offsets have 64 bits.
+    /// True if offsets have 64 bits (BigTIFF).
     pub is_big_tiff: bool,
-    /// The stored sample that means "no value" (before scale and offset).
+    /// The stored sample that means "no value", before scale and offset.
     pub nodata: Option<f64>,
-    /// Values are stored sample x scale + offset.
+    /// Scale: values are stored sample x scale + offset.
     pub scale: f64,
-    /// See `scale`.
+    /// Offset, see `scale`.
     pub offset: f64,
-    /// Whether the file calls its coordinates those of cell centers; `transform` is that of corners
-    /// all the same.
+    /// True if the coordinates in the file are those of cell centers (PixelIsPoint); `transform`
+    /// refers to corners all the same.
     pub is_point: bool,
-    /// From cell corners to coordinates, as in [`Frame`]; `None` without usable georeferencing.
+    /// The transform from cell corners to coordinates, as in [`Frame`]; `None` without usable
+    /// georeferencing.
     pub transform: Option<[f64; 6]>,
     /// Coordinate system, if the file states one.
     pub crs: Option<Crs>,
-    /// Further images in the file with fewer cells, as columns and rows.
+    /// Columns and rows of the overviews: further images in the file with fewer cells.
     pub overviews: Vec<[u64; 2]>,
-    /// What a user should be told.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl GeoTiffInfo {
-    /// "GeoTIFF, float32, 1 band, DEFLATE, predictor 3, tiles of 256 x 256"
+    /// Returns a description such as "GeoTIFF, float32, 1 band, DEFLATE, predictor 3, tiles of 256
+    /// x 256".
     pub fn description(&self) -> String {
         let mut text = String::from(if self.is_big_tiff { "BigTIFF" } else { "GeoTIFF" });
         if self.byte_order == ByteOrder::Big {
@@ -72,18 +74,18 @@ impl GeoTiffInfo {
     }
 }
 
-/// Smallest and largest value of a raster, and how many values there are.
+/// The smallest and largest value of a raster, and the number of values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extremes {
-    /// Cells with a value.
+    /// Number of cells with a value.
     pub valid: u64,
-    /// Smallest and largest value; `None` if there is none.
+    /// The smallest and largest value; `None` if there is none.
     pub range: Option<[f64; 2]>,
-    /// The same as they are stored, before scale and offset.
+    /// The smallest and largest sample as stored, before scale and offset.
     pub stored_range: Option<[f64; 2]>,
 }
 
-/// A GeoTIFF whose header was read; values are decoded when they are asked for, on all cores.
+/// A GeoTIFF whose header was read. Values are decoded on request, on all cores.
 #[derive(Debug)]
 pub struct GeoTiffReader {
     path: PathBuf,
@@ -96,14 +98,14 @@ pub struct GeoTiffReader {
 /// Opens a GeoTIFF and reads its header.
 ///
 /// # Errors
-/// If the file is no TIFF, its header is damaged, or it uses something that is not supported; the
-/// message names it.
+/// If the file is not a TIFF, its header is damaged, or it uses an unsupported feature, which the
+/// message names.
 pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
     let path = path.as_ref();
     read_header(path).map_err(|e| with_file(e, path))
 }
 
-/// Names the file, and the cure where it is damaged.
+/// Adds the file to an error and, if the file is damaged, the cure.
 #[cold]
 fn with_file(error: Error, path: &Path) -> Error {
     let error = error.in_file(path);
@@ -118,7 +120,7 @@ fn read_header(path: &Path) -> Result<GeoTiffReader> {
     let directory = Directory::first(&bytes)?;
     let layout = Layout::read(&bytes, &directory)?;
     let mut warnings = Vec::new();
-    // Tags that only describe: a damaged one is told and left out.
+    // Tags that only describe: a damaged one leads to a warning and is left out.
     let mut optional = |error: Error| warnings.push(error.to_string());
 
     let nodata_text = directory.text(&bytes, tags::GDAL_NODATA).unwrap_or_else(|e| {
@@ -212,13 +214,13 @@ fn geo_keys(bytes: &Bytes, directory: &Directory) -> Result<(GeoKeys, Option<Crs
     Ok((keys, crs))
 }
 
-/// PixelIsArea (1) or PixelIsPoint (2), if the keys say which.
+/// Returns PixelIsArea (1) or PixelIsPoint (2), if the keys state it.
 fn raster_type(keys: &GeoKeys) -> Option<u16> {
     let entries = keys.directory.get(4..)?.chunks_exact(4);
     entries.filter(|key| key[0] == tags::RASTER_TYPE_KEY && key[1] == 0).map(|key| key[3]).next()
 }
 
-/// Images after the first: overviews by size; a mask is told, for it is not applied.
+/// Returns the sizes of the overviews. A mask leads to a warning, since it is not applied.
 fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) -> Vec<[u64; 2]> {
     const MOST: usize = 100;
     let mut overviews = Vec::new();
@@ -248,31 +250,31 @@ fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) 
 }
 
 impl GeoTiffReader {
-    /// What the header says.
+    /// Returns what the header states.
     pub fn info(&self) -> &GeoTiffInfo {
         &self.info
     }
 
-    /// Values of band 1 in a window, row by row; NaN where there is none.
+    /// Reads the values of band 1 in a window, row by row; NaN is nodata.
     ///
     /// # Errors
-    /// If the window leaves the raster or passes [`MAX_CELLS`], or a block in it is damaged or not
-    /// in the file; the message names the block.
+    /// If the window exceeds the raster or [`MAX_CELLS`], or a block in it is damaged or not in the
+    /// file; the message names the block.
     pub fn read_window(&self, window: Window) -> Result<Vec<f64>> {
         let mut values = self.read_stored(window)?;
         self.scale(&mut values);
         Ok(values)
     }
 
-    /// Like [`read_window`](Self::read_window), before scale and offset.
+    /// Like [`read_window`](Self::read_window), but before scale and offset.
     ///
     /// # Errors
-    /// As there.
+    /// As [`read_window`](Self::read_window).
     pub fn read_stored(&self, window: Window) -> Result<Vec<f64>> {
         self.stored(window).map_err(|e| with_file(e, &self.path))
     }
 
-    /// The whole raster.
+    /// Reads the whole raster.
     ///
     /// # Errors
     /// As [`read_window`](Self::read_window).
@@ -282,12 +284,12 @@ impl GeoTiffReader {
         Ok(Grid { frame, crs: self.info.crs.clone(), values: self.read_window(all)? })
     }
 
-    /// Reads all values once, in bounded memory, and tells their number and range.
+    /// Reads all values once, in bounded memory, and returns their number and range.
     ///
     /// # Errors
     /// If a block is damaged or not in the file.
     pub fn extremes(&self) -> Result<Extremes> {
-        /// Cells looked at together, and most cells of a block that is looked at whole.
+        /// Cells read at a time; also the largest block that is read whole.
         const CELLS: usize = 1 << 24;
         const BLOCK_CELLS: usize = 1 << 26;
         let Frame { width, height, .. } = self.frame();
@@ -343,7 +345,7 @@ impl GeoTiffReader {
         if cells == 0 {
             return Ok(Vec::new());
         }
-        // Every block's place is checked before there is memory for what they would give.
+        // The position of every block is checked before memory for its values is allocated.
         let spans = self.spans(window)?;
         let mut out = Vec::new();
         out.try_reserve_exact(cells).map_err(|_| Error::limit(format!("no memory for {width} x {height} cells")))?;
@@ -357,12 +359,12 @@ impl GeoTiffReader {
         let values = |span: &Span, take: &mut dyn FnMut(Window, Vec<f64>)| {
             block::values(&self.layout, &self.nodata, &self.bytes, span, overlap(span, window), take)
         };
-        /// Bytes of values that may wait to be copied.
+        /// Limit for the bytes of values that wait to be copied.
         const WAITING: u64 = 1 << 27;
         let span_bytes = self.layout.span_bytes().max(8 * self.layout.span_cells()).max(1);
         let batch = (WAITING / span_bytes).min(4 * rayon::current_num_threads() as u64);
         if batch < 2 {
-            // Of huge blocks, no more than one is decoded, and none of it waits.
+            // Only one of such huge blocks is decoded at a time, and its values are copied at once.
             spans.iter().try_for_each(|span| values(span, &mut copy))?;
             return Ok(out);
         }
@@ -377,7 +379,7 @@ impl GeoTiffReader {
         Ok(out)
     }
 
-    /// The stored pieces that a window touches.
+    /// Returns the stored spans that a window touches.
     fn spans(&self, window: Window) -> Result<Vec<Span>> {
         let block_width = self.layout.block[0];
         let columns = window.column / block_width..(window.column + window.width).div_ceil(block_width);
@@ -399,7 +401,7 @@ impl GeoTiffReader {
     }
 }
 
-/// The part of a piece that lies in a window that touches it.
+/// Returns the part of a span within a window, which must touch it.
 fn overlap(span: &Span, window: Window) -> Window {
     let column = span.first_column.max(window.column);
     let row = span.first_row.max(window.row);
@@ -409,7 +411,7 @@ fn overlap(span: &Span, window: Window) -> Window {
 }
 
 impl BlockSource for GeoTiffReader {
-    /// Without georeferencing, cell corners are their own coordinates.
+    /// Returns the frame; without georeferencing, the coordinates are those of cell corners.
     fn frame(&self) -> Frame {
         let transform = self.info.transform.unwrap_or([0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
         Frame { width: self.info.width, height: self.info.height, transform }

@@ -39,7 +39,7 @@ pub(super) const COMPRESSION_OLD_DEFLATE: u16 = 32946;
 pub(super) const COMPRESSION_PACKBITS: u16 = 32773;
 pub(super) const COMPRESSION_ZSTD: u16 = 50000;
 
-/// A tag by name and number, as messages show it.
+/// Returns the name and number of a tag, for messages.
 pub(super) fn tag_name(tag: u16) -> String {
     let name = match tag {
         IMAGE_WIDTH => "ImageWidth",
@@ -71,7 +71,7 @@ pub(super) fn tag_name(tag: u16) -> String {
     format!("tag {name} ({tag})")
 }
 
-/// What a compression is called; the number alone if nobody is known to use it.
+/// Returns the name of a compression; "of an unknown kind" for unknown codes.
 pub(super) fn compression_name(code: u16) -> &'static str {
     match code {
         COMPRESSION_NONE => "none",

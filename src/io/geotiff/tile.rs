@@ -1,4 +1,4 @@
-//! One tile on its way out: samples, predictor, DEFLATE.
+//! Encodes one tile: samples, predictor, DEFLATE.
 
 use std::io::Write;
 
@@ -16,17 +16,17 @@ pub(super) const SIDE: usize = 256;
 /// miniz_oxide): level 1 packs 101 MB/s to 34 %, level 2 62 MB/s to 31 %, level 6 24 MB/s to 28 %.
 const EFFORT: u32 = 1;
 
-/// A tile as it goes into the file.
+/// An encoded tile.
 #[derive(Debug)]
 pub(super) struct Tile {
-    /// Compressed; empty if no cell has a value.
+    /// Compressed bytes; empty if no cell has a value.
     pub(super) bytes: Vec<u8>,
     pub(super) valid: u64,
     pub(super) min: f32,
     pub(super) max: f32,
 }
 
-/// Buffers that a thread uses from tile to tile.
+/// Buffers that a thread reuses from tile to tile.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     cells: Vec<f32>,
@@ -35,7 +35,7 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Asks the source for a tile's cells (those in the raster) and packs them.
+    /// Requests the cells of a tile that are in the raster from the source, and encodes them.
     pub(super) fn pack(&mut self, source: &dyn BlockSource, window: Window, format: CellFormat) -> Result<Tile> {
         self.cells.clear();
         self.cells.resize(window.width * window.height, f32::NAN);
@@ -58,8 +58,8 @@ impl Scratch {
         Ok(tile)
     }
 
-    /// Fills `packed` with the bytes before compression. The cells of a full tile that are not in
-    /// the raster repeat the last ones that are, which packs best.
+    /// Fills `packed` with the bytes before compression. Cells of a full tile outside of the raster
+    /// repeat the last ones inside, which compresses best.
     fn predict(&mut self, window: Window, format: CellFormat) {
         let size = format.bits() as usize / 8;
         self.packed.clear();

@@ -27,24 +27,25 @@ impl std::fmt::Debug for WriteOptions<'_> {
     }
 }
 
-/// What was written.
+/// What a raster file contains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RasterSummary {
     /// Smallest value; NaN if there is none.
     pub min: f64,
     /// Largest value; NaN if there is none.
     pub max: f64,
-    /// Cells with a value.
+    /// Number of cells with a value.
     pub valid: u64,
 }
 
 /// Writes a GeoTIFF: one band, DEFLATE, tiles of 256 x 256, PixelIsArea, with the coordinate system
 /// of the source.
 ///
-/// Tiles are computed and packed by all cores, a few at a time, and written in order: memory stays
+/// All cores compute and compress tiles, a few at a time, which are written in order. Memory stays
 /// at some megabytes whatever the size of the raster, and the bytes do not depend on the number of
-/// threads. Tiles without any value are left out (a sparse file, as GDAL's SPARSE_OK). The file is
-/// a BigTIFF if it might otherwise pass 4 GiB. It appears under its name when it is whole.
+/// threads. Tiles without any value are left out (a sparse file, as with GDAL's SPARSE_OK). The
+/// file is a BigTIFF if it might otherwise exceed 4 GiB. It appears at its target once it is
+/// complete.
 ///
 /// # Errors
 /// If the raster has no cells or too many, the source fails, or the file cannot be written.
@@ -61,7 +62,7 @@ pub fn write<'a>(
     write().map_err(|e| e.in_file(target.path()))
 }
 
-/// How a raster is cut into tiles.
+/// The division of a raster into tiles.
 #[derive(Debug)]
 struct Tiling {
     frame: Frame,
@@ -92,8 +93,8 @@ impl Tiling {
         Window { column, row, width, height }
     }
 
-    /// Whether 32-bit offsets are sure to do. DEFLATE adds at most 5 bytes to 16 kB that it cannot
-    /// pack; with the header, 1 % is ample.
+    /// Returns 32-bit offsets if they are certain to suffice. DEFLATE adds at most 5 bytes to 16 kB
+    /// of incompressible data; including the header, 1 % is ample.
     fn offsets(&self, cells: CellFormat) -> Offsets {
         let raw = (self.count * SIDE * SIDE) as u64 * u64::from(cells.bits() / 8);
         if raw + raw / 100 + (1 << 20) < 1 << 32 { Offsets::Bits32 } else { Offsets::Bits64 }
@@ -123,7 +124,8 @@ fn write_tiles(
         let pack = |scratch: &mut Scratch, tile| scratch.pack(source, tiles.window(tile), options.cells);
         range.into_par_iter().map_init(Scratch::default, pack).collect()
     };
-    // While one batch is written the next is computed; 16 tiles for each core keep all busy.
+    // One batch is computed while the previous one is written; 16 tiles per core keep all cores
+    // busy.
     let batch = 16 * rayon::current_num_threads();
     let all_cells = tiles.frame.width as u64 * tiles.frame.height as u64;
     let mut done = 0;
@@ -146,7 +148,7 @@ fn write_tiles(
     if summary.valid == 0 {
         (summary.min, summary.max) = (f64::NAN, f64::NAN);
     }
-    // Overviews and statistics of another raster would be taken for those of this one.
+    // Overviews and statistics of a previous raster would be attributed to this one.
     let beside = ["ovr", "aux.xml"].map(|extension| {
         let mut name = target.path().as_os_str().to_owned();
         name.push(".");
@@ -157,7 +159,7 @@ fn write_tiles(
     Ok(summary)
 }
 
-/// The file so far.
+/// The file written so far.
 struct Writer {
     out: Output,
     at: u64,

@@ -1,17 +1,17 @@
 use crate::error::{Error, Result};
 
-/// What becomes of a file that has fewer points than its header states.
+/// What to do with a file that has fewer points than its header states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cut {
-    /// It is an error.
+    /// Return an error.
     #[default]
     Refuse,
-    /// The points that are there are read, with a warning.
+    /// Read the points that are there, with a warning.
     Accept,
 }
 
 impl Cut {
-    /// Tells that points are missing from this byte on.
+    /// Reports that points are missing from `byte` on: as an error or a warning.
     pub(super) fn refuse_or_warn(self, text: String, byte: u64, warnings: &mut Vec<String>) -> Result<()> {
         match self {
             Cut::Accept => warnings.push(text),

@@ -1,4 +1,4 @@
-//! The head of a file as bytes, to be written to another one.
+//! The header and the records of a file as bytes, to be written to another file.
 
 use super::header::Header;
 use super::input::Input;
@@ -6,11 +6,11 @@ use super::raw::{EVLR_HEADER, RawRecordHeader, VLR_HEADER};
 use crate::data::LasHead;
 use crate::error::{Error, Result};
 
-/// Bytes of all records together.
+/// Limit for the bytes of all records together.
 const LARGEST: u64 = 1 << 26;
 
-/// Reads the header and the records of a file, but for those that tell how its points are compressed or where they are
-/// found: [`is_kept`].
+/// Reads the header and the records of a file, except for records that describe how its points are
+/// compressed or where they are found, see [`is_kept`].
 ///
 /// # Errors
 /// If records are damaged, or too large together.
@@ -66,7 +66,8 @@ pub(super) fn read(input: &mut Input, header: &Header) -> Result<LasHead> {
     })
 }
 
-/// Returns false for what holds for the bytes of one file only: the table of LASzip, the indices of COPC and LAStools.
+/// Returns false for records that are valid for the bytes of one file only: the table of LASzip,
+/// the indices of COPC and LAStools.
 fn is_kept(record: &RawRecordHeader) -> bool {
     !matches!((record.user_id.as_str(), record.record_id), ("laszip encoded", 22204) | ("copc", _) | ("LAStools", 30))
 }

@@ -1,22 +1,22 @@
-//! The header with its values checked.
+//! The header of a LAS file, with checked values.
 
 use super::raw::{LONGEST_HEADER, RawHeader, SHORTEST_HEADER};
 use crate::data::Bounds;
 use crate::error::{Error, Result};
 
-/// Bytes of a record of point formats 0 to 10 without extra bytes.
+/// Bytes of a record of point formats 0 to 10, without extra bytes.
 pub(super) const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 
-/// Bits of the point format byte that LASzip takes for itself.
+/// The bits of the point format byte that LASzip uses.
 const COMPRESSED: u8 = 0x80;
 const COMPRESSED_OLD: u8 = 0x40;
 
 const DAMAGED: &str = "the header was never finished, or it is damaged: get the file again from its producer";
 
-/// Bit of the global encoding that says that the coordinate system is written in WKT.
+/// The bit of the global encoding for a coordinate system in WKT.
 const WKT_BIT: u16 = 1 << 4;
 
-/// What a LAS file says of itself.
+/// The header of a LAS file.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Header {
@@ -24,49 +24,49 @@ pub struct Header {
     pub version: (u8, u8),
     /// Point format, 0 to 10.
     pub point_format: u8,
-    /// Whether the points are compressed by LASzip.
+    /// True if the points are compressed by LASzip.
     pub is_compressed: bool,
     /// Bytes of an uncompressed point record.
     pub record_length: u16,
-    /// Stated number of points.
+    /// Number of points, as stated.
     pub count: u64,
-    /// Stated number of points by return number, from the first return on.
+    /// Number of points by return number, as stated, from the first return on.
     pub returns: Vec<u64>,
-    /// Steps of the lattice per axis.
+    /// Step of the coordinate lattice, per axis.
     pub scale: [f64; 3],
-    /// Origin of the lattice.
+    /// Origin of the coordinate lattice.
     pub offset: [f64; 3],
-    /// Stated extent; `None` if it is no box.
+    /// Extent, as stated; `None` if it is not a box.
     pub bounds: Option<Bounds>,
-    /// System identifier: the instrument, or the operation that made the file.
+    /// System identifier: the instrument, or the operation that created the file.
     pub system: String,
     /// Generating software.
     pub software: String,
-    /// Year and day of the year, if stated.
+    /// Year and day of the year when the file was created, if stated.
     pub created: Option<(u16, u16)>,
-    /// Whether the header says that the coordinate system is written in WKT.
+    /// True if the header says that the coordinate system is in WKT.
     pub says_wkt: bool,
-    /// Records between header and points, and after the points.
+    /// Records between the header and the points, then those after the points.
     pub records: Vec<RecordInfo>,
 
     pub(super) layout: Layout,
 }
 
-/// One variable length record, without its payload.
+/// A variable length record, without its payload.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RecordInfo {
-    /// Who defines it: "LASF_Projection", "copc".
+    /// The organization that defines the record: "LASF_Projection", "copc".
     pub user_id: String,
-    /// What it is, by that user's numbers.
+    /// The number of the record, as assigned by that organization.
     pub record_id: u16,
-    /// Bytes of the payload.
+    /// Length of the payload in bytes.
     pub length: u64,
-    /// As written in the file.
+    /// Description, as written in the file.
     pub description: String,
 }
 
-/// Where things are in the file.
+/// Positions within the file, in bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
     pub(super) vlr_start: u64,
@@ -79,8 +79,8 @@ pub(super) struct Layout {
 }
 
 impl Header {
-    /// Checks the first bytes of a file of `file_length` bytes. What is odd but can be read goes to
-    /// `warnings`.
+    /// Checks the first bytes of a file of `file_length` bytes and returns the header. Oddities
+    /// that do not prevent reading are added to `warnings`.
     pub(super) fn check(bytes: &[u8], file_length: u64, warnings: &mut Vec<String>) -> Result<Self> {
         check_signature(bytes)?;
         if bytes.len() < SHORTEST_HEADER {
@@ -125,12 +125,12 @@ impl Header {
         })
     }
 
-    /// Whether the file is a cloud optimized point cloud.
+    /// Returns true if the file is a cloud optimized point cloud.
     pub fn is_copc(&self) -> bool {
         self.records.iter().any(|record| record.user_id == "copc" && record.record_id == 1)
     }
 
-    /// "LAS 1.4, point format 6, LAZ"
+    /// Returns a description such as "LAS 1.4, point format 6, LAZ".
     pub(super) fn format(&self) -> String {
         let packing = match (self.is_compressed, self.is_copc()) {
             (false, _) => "",
@@ -258,7 +258,8 @@ fn lay_out(raw: &RawHeader, file_length: u64) -> Result<Layout> {
     Ok(Layout { vlr_start, vlr_count: raw.vlr_count.into(), points_start, points_end, evlr_start, evlr_count })
 }
 
-/// LAS 1.4 has two counts: one of 64 bits, and one of 32 for old readers that may be zero.
+/// Returns the number of points. LAS 1.4 has two counts: one of 64 bits, and one of 32 bits for old
+/// readers, which may be zero.
 fn count_points(raw: &RawHeader, warnings: &mut Vec<String>) -> u64 {
     let legacy = u64::from(raw.legacy_count);
     if raw.version.1 < 4 || (raw.count == 0 && legacy > 0) {

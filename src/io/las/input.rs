@@ -1,4 +1,4 @@
-//! The file behind a reader.
+//! The file that a reader reads.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -6,18 +6,18 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
-/// A file that can be read from any place.
+/// A file with random access.
 #[derive(Debug)]
 pub(super) struct Input {
     pub(super) file: File,
-    /// Bytes in it: the only size that is trusted.
+    /// Length of the file in bytes: the only size that is trusted.
     pub(super) length: u64,
-    /// What it is called in messages.
+    /// The name of the file in messages.
     pub(super) name: PathBuf,
 }
 
 impl Input {
-    /// Opens a file. What cannot be read from any place (a pipe; `-`, which is the standard input) is
+    /// Opens a file. Input without random access (a pipe; `-`, which is the standard input) is
     /// first copied to a temporary file.
     pub(super) fn open(path: &Path) -> Result<Self> {
         if path.as_os_str() == "-" {
@@ -32,7 +32,7 @@ impl Input {
         Self::spool(file, path)
     }
 
-    /// Copies to a temporary file, which the system deletes with the reader.
+    /// Copies a stream to a temporary file, which the system deletes with the reader.
     pub(super) fn spool(mut source: impl Read, name: &Path) -> Result<Self> {
         let named = |error: io::Error| Error::from(error).in_file(name);
         let mut file = tempfile::tempfile().map_err(named)?;
@@ -40,7 +40,7 @@ impl Input {
         Ok(Input { file, length, name: name.to_path_buf() })
     }
 
-    /// At most `count` bytes from `start` on; fewer at the end of the file.
+    /// Reads up to `count` bytes from `start` on; fewer at the end of the file.
     pub(super) fn bytes(&mut self, start: u64, count: usize) -> io::Result<Vec<u8>> {
         let count = self.length.saturating_sub(start).min(count as u64);
         self.file.seek(SeekFrom::Start(start))?;

@@ -1,47 +1,50 @@
-//! Points of several files in one: which header, which records, which lattice.
+//! Merges the headers, records and lattices of several files into those of one file.
 
 use super::header::RECORD_LENGTHS;
 use super::raw::{u16_at, until_zero};
 use crate::data::{Embedding, LasHead, Lattice, PointInfo};
 use crate::error::{Error, Result};
 
-/// Generating software.
+/// The generating software, as the header states it.
 const SOFTWARE: &str = concat!("breakline ", env!("CARGO_PKG_VERSION"));
 
-/// Bytes of a record of a point format without extra bytes.
+/// Returns the bytes of a record of a point format, without extra bytes.
 pub(super) fn usual_length(point_format: u8) -> u16 {
     RECORD_LENGTHS.get(usize::from(point_format)).copied().unwrap_or(0)
 }
 
-/// What becomes of coordinates that the lattice of the output does not have.
+/// What to do with coordinates that are not on the lattice of the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rounding {
-    /// They are an error.
+    /// Return an error.
     #[default]
     Refuse,
-    /// They move to the nearest point of the lattice of the first source: by half a step at most.
+    /// Move them to the nearest lattice point, using the lattice of the first source: by half a
+    /// step at most.
     Nearest,
 }
 
-/// A field of characters, padded with zeros.
+/// Returns a field of characters, padded with zeros.
 pub(super) fn padded<const N: usize>(text: &str) -> [u8; N] {
     let mut field = [0; N];
     field.iter_mut().zip(text.bytes()).for_each(|(slot, byte)| *slot = byte);
     field
 }
 
-/// From the steps of one lattice to those of another.
+/// A conversion of steps of one lattice to those of another.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Step {
     Same,
     Exact(Embedding),
-    /// By the coordinates in the first lattice.
+    /// Through the coordinates in the first lattice, rounded.
     Rounded(Lattice),
 }
 
 impl Step {
+    /// Returns the conversion from one lattice into another.
+    ///
     /// # Errors
-    /// If there is no lattice, or it is not part of the other and may not be rounded to it.
+    /// If there is no lattice, or it is not part of the other one and rounding is refused.
     pub(super) fn between(from: Option<Lattice>, into: &Lattice, rounding: Rounding) -> Result<Self> {
         let from = from.ok_or_else(not_las)?;
         if from == *into {
@@ -54,10 +57,10 @@ impl Step {
         }
     }
 
-    /// The steps in the other lattice.
+    /// Returns the steps in the other lattice.
     ///
     /// # Errors
-    /// If they are more than 32 bits hold.
+    /// If they do not fit into 32 bits.
     pub(super) fn apply(&self, steps: [i32; 3], into: &Lattice) -> Result<[i32; 3]> {
         let far = |point: [f64; 3]| {
             let [x, y, z] = point;
@@ -83,10 +86,10 @@ impl Step {
     }
 }
 
-/// The head and the lattice of a file for the points of all sources.
+/// Returns the head and the lattice of a file for the points of all sources.
 ///
 /// # Errors
-/// If a source has no head, has waveforms, or does not go with the first.
+/// If a source has no head, has waveforms, or is incompatible with the first.
 pub(super) fn heads(sources: &[&PointInfo], rounding: Rounding) -> Result<(LasHead, Lattice)> {
     let all = sources.iter().map(|info| info.head.as_ref().zip(info.lattice).ok_or_else(not_las));
     let all: Vec<(&LasHead, Lattice)> = all.collect::<Result<_>>()?;
@@ -102,7 +105,7 @@ pub(super) fn heads(sources: &[&PointInfo], rounding: Rounding) -> Result<(LasHe
     let mut head = (*first).clone();
     let header = &mut head.header;
     header[58..90].copy_from_slice(&padded::<32>(SOFTWARE));
-    // Waveforms are elsewhere, or nowhere.
+    // Waveforms are in another file, or missing.
     header[6] &= !0b110;
     let heads = || others.iter().map(|(head, _)| *head);
     let date = |head: &LasHead| (u16_at(&head.header, 92), u16_at(&head.header, 90));
@@ -118,7 +121,7 @@ pub(super) fn heads(sources: &[&PointInfo], rounding: Rounding) -> Result<(LasHe
         header[26..58].copy_from_slice(&padded::<32>("MERGE"));
     }
     if !others.is_empty() {
-        // The newest version: it has all that the others have.
+        // The newest version, which has all fields of the older ones.
         if let Some(newest) = heads().find(|other| other.header[25] > first.header[25]) {
             return Err(versions(first, newest));
         }
@@ -130,7 +133,7 @@ pub(super) fn heads(sources: &[&PointInfo], rounding: Rounding) -> Result<(LasHe
     Ok((head, lattice))
 }
 
-/// Adds the records of which there is none of the same user and number.
+/// Adds the records whose user and number do not occur yet.
 fn add_missing(records: &mut Vec<Vec<u8>>, others: &[Vec<u8>]) {
     let id = |record: &Vec<u8>| record.get(2..20).map(<[u8]>::to_vec);
     for other in others {
@@ -151,7 +154,7 @@ fn check(head: &LasHead) -> Result<()> {
     Ok(())
 }
 
-/// Returns an error if points of the two files do not go into one.
+/// Returns an error if the points of two files cannot share a file.
 fn agree(first: &LasHead, other: &LasHead) -> Result<()> {
     let differ = |what: &str, one: String, two: String| {
         Err(Error::usage(format!("the points of the inputs have different {what}: {one} and {two}"))
@@ -180,7 +183,8 @@ fn agree(first: &LasHead, other: &LasHead) -> Result<()> {
     Ok(())
 }
 
-/// The first lattice that has the points of all; where none has, and rounding is asked for, the first.
+/// Returns the first lattice that contains the points of all sources. If there is none and rounding
+/// is allowed, returns the lattice of the first source.
 fn lattice(all: &[(&LasHead, Lattice)], rounding: Rounding) -> Result<Lattice> {
     let has_all = |into: &Lattice| all.iter().all(|(_, from)| from == into || from.embed(into).is_some());
     let first = all[0].1;

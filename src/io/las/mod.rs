@@ -1,30 +1,31 @@
 //! LAS and LAZ: lidar points.
 //!
-//! Reads LAS 1.0 to 1.4, and files that say 1.5; point formats 0 to 10, plain or compressed by
-//! LASzip; COPC as the LAZ file that it is, with all of its points.
+//! Reads LAS 1.0 to 1.4, and files that claim to be 1.5; point formats 0 to 10, uncompressed or
+//! compressed by LASzip; COPC as the LAZ file that it is, with all of its points.
 //!
-//! Headers, records and coordinate systems are read here, from bytes (`raw`, without judgement) to
-//! checked values (`header`); the `laz` crate decompresses. A coordinate is `X * scale + offset` in
-//! f64. Nothing in the file is trusted for an allocation, and a panic of the decoder is contained.
+//! Headers, records and coordinate systems are read by this module, in two steps: from bytes to
+//! fields (`raw`, without checks), and from fields to checked values (`header`). The `laz` crate
+//! decompresses. A coordinate is `X * scale + offset` in f64. No allocation relies on numbers in
+//! the file, and a panic of the decoder becomes an error.
 //!
 //! # Damaged files
 //!
-//! | what | comes out as |
+//! | damage | result |
 //! |---|---|
 //! | not LAS, header cut, unknown version or point format | error |
 //! | record length too small for the point format | error |
 //! | scale zero, infinite or NaN; offset infinite or NaN | error |
 //! | points said to begin within the header or beyond the end of the file | error |
-//! | number of variable length records too large, record longer than its place | warning |
+//! | number of variable length records too large, record longer than the space for it | warning |
 //! | coordinate system empty or not understood | warning, and no coordinate system |
-//! | extent that is no box | warning, and no extent |
+//! | extent that is not a box | warning, and no extent |
 //! | count larger than the file holds, file cut within a record | error; with [`Cut::Accept`] whole records, and a warning |
-//! | count 0 in front of points | no point, and a warning |
+//! | count 0 in front of points | no points, and a warning |
 //! | LAZ: chunk table missing or damaged, chunks of one size | all points, by one thread, and a warning |
 //! | LAZ: the same, formats 6 to 10 | all points of whole chunks, and a warning |
 //! | LAZ: the same, formats 0 to 5, chunks of many sizes | error |
 //! | LAZ: file cut | error; with [`Cut::Accept`] points up to the cut (formats 6 to 10: whole chunks), and a warning |
-//! | LAZ: more points than so few bytes hold | error |
+//! | LAZ: more points than so few bytes can hold | error |
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
 
 mod cut;

@@ -3,9 +3,9 @@ use super::cut::Cut;
 /// How a LAS or LAZ file is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ReadOptions {
-    /// What becomes of a file that was cut.
+    /// What to do with a file that was cut short.
     pub cut: Cut,
-    /// What is read of each point.
+    /// How much is read of each point.
     pub detail: Detail,
 }
 
@@ -15,13 +15,14 @@ impl From<Cut> for ReadOptions {
     }
 }
 
-/// What is read of each point.
+/// How much is read of each point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detail {
-    /// Coordinates, class, flags and return number. Compressed points of formats 6 to 10 are then decoded in part.
+    /// Coordinates, class, flags and return number. Compressed points of formats 6 to 10 are then
+    /// only partly decoded.
     #[default]
     Columns,
-    /// These, and the whole [record](crate::data::PointBatch::records) of each point, with the
-    /// [head](crate::data::PointInfo::head) of the file.
+    /// The columns, and also the whole [record](crate::data::PointBatch::records) of each point,
+    /// with the [head](crate::data::PointInfo::head) of the file.
     Records,
 }

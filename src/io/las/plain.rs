@@ -1,4 +1,4 @@
-//! Points that are not compressed.
+//! Reads uncompressed points.
 
 use std::io::{Read, Seek, SeekFrom};
 
@@ -10,11 +10,11 @@ use super::record::RecordLayout;
 use crate::data::PointBatch;
 use crate::error::Result;
 
-/// Most points in a batch, and most bytes of their records.
+/// Limit for the points in a batch, and for the bytes of their records.
 const BATCH_POINTS: usize = 1 << 17;
 const BATCH_BYTES: usize = 1 << 22;
 
-/// Reads records one after the other, as many as the file has.
+/// Reads records in order, as many as the file contains.
 #[derive(Debug)]
 pub(super) struct Plain {
     input: Input,
@@ -25,7 +25,7 @@ pub(super) struct Plain {
 }
 
 impl Plain {
-    /// Finds out how many records there are, whatever the header says.
+    /// Determines how many records there are, whatever the header states.
     pub(super) fn new(
         mut input: Input,
         header: &Header,

@@ -1,11 +1,11 @@
 //! The fixed blocks of a LAS file, field by field as in the specification (ASPRS, LAS 1.0 to 1.5).
 //!
-//! Nothing is judged here: a field beyond the end of the bytes reads as zero. What the values may
-//! be is the business of [`header`](super::header).
+//! Nothing is checked here: a field beyond the end of the bytes reads as zero.
+//! [`header`](super::header) checks the values.
 
-/// Bytes of the header that every version has.
+/// Bytes of the header in every version.
 pub(super) const SHORTEST_HEADER: usize = 227;
-/// Bytes of a LAS 1.4 header; what 1.5 adds to it (time offsets) is of no use here.
+/// Bytes of a LAS 1.4 header; the time offsets that 1.5 adds are not used.
 pub(super) const LONGEST_HEADER: usize = 375;
 /// Bytes before the payload of a variable length record.
 pub(super) const VLR_HEADER: usize = 54;
@@ -24,7 +24,7 @@ pub(super) struct RawHeader {
     pub(super) header_size: u16,
     pub(super) points_start: u32,
     pub(super) vlr_count: u32,
-    /// With the compression bits of LASzip.
+    /// Point format, including the compression bits of LASzip.
     pub(super) format: u8,
     pub(super) record_length: u16,
     pub(super) legacy_count: u32,
@@ -33,9 +33,9 @@ pub(super) struct RawHeader {
     pub(super) offset: [f64; 3],
     pub(super) max: [f64; 3],
     pub(super) min: [f64; 3],
-    /// LAS 1.3.
+    /// Since LAS 1.3.
     pub(super) waveform_start: u64,
-    /// LAS 1.4, as all below.
+    /// Since LAS 1.4, as all fields below.
     pub(super) evlr_start: u64,
     pub(super) evlr_count: u32,
     pub(super) count: u64,
@@ -61,7 +61,7 @@ impl RawHeader {
             legacy_returns: std::array::from_fn(|i| u32_at(bytes, 111 + 4 * i)),
             scale: triple(131, 8),
             offset: triple(155, 8),
-            // Max and min alternate, axis by axis.
+            // Maximum and minimum alternate, axis by axis.
             max: triple(179, 16),
             min: triple(187, 16),
             waveform_start: u64_at(bytes, 227),
@@ -73,7 +73,7 @@ impl RawHeader {
     }
 }
 
-/// What stands before the payload of a record, variable length or extended.
+/// The header of a variable length record, ordinary or extended.
 #[derive(Debug, Clone)]
 pub(super) struct RawRecordHeader {
     pub(super) user_id: String,
@@ -126,13 +126,13 @@ pub(super) fn f64_at(bytes: &[u8], start: usize) -> f64 {
     f64::from_le_bytes(at(bytes, start))
 }
 
-/// A field of characters, padded with zeros.
+/// Returns a field of characters without its padding of zeros.
 fn text_at(bytes: &[u8], start: usize, length: usize) -> String {
     let field = bytes.get(start..start + length).unwrap_or_default();
     until_zero(field).trim().to_owned()
 }
 
-/// The characters before the first zero byte.
+/// Returns the characters before the first zero byte.
 pub(super) fn until_zero(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
     let end = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
     String::from_utf8_lossy(&bytes[..end])

@@ -11,7 +11,7 @@ use super::{head, records, reference};
 use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
 use crate::error::Result;
 
-/// Reads the points of a LAS or LAZ file; made by [`open`](super::open).
+/// A reader for the points of a LAS or LAZ file, made by [`open`](super::open).
 #[derive(Debug)]
 pub struct LasReader {
     name: PathBuf,
@@ -25,7 +25,7 @@ pub struct LasReader {
 enum Points {
     Plain(Plain),
     Compressed(Box<Laz>),
-    /// After the last point or an error.
+    /// The last point was read, or an error occurred.
     Done,
 }
 
@@ -67,7 +67,7 @@ impl LasReader {
         Ok(LasReader { name, header, info, points, warnings: Vec::new() })
     }
 
-    /// What the file's header says.
+    /// Returns the header of the file.
     pub fn header(&self) -> &Header {
         &self.header
     }
@@ -96,18 +96,19 @@ impl PointSource for LasReader {
     }
 }
 
-/// Opens a LAS or LAZ file, of any size; `-` is the standard input.
+/// Opens a LAS or LAZ file of any size; `-` is the standard input.
 ///
-/// Compressed points are decoded by as many threads as the current `rayon` pool has. What cannot be
-/// read from any place (a pipe, the standard input) is first copied to a temporary file.
+/// Compressed points are decoded by all threads of the current `rayon` pool. Input without random
+/// access (a pipe, the standard input) is first copied to a temporary file.
 ///
 /// # Errors
-/// If the file cannot be read, was cut, or its header is damaged beyond what the [module](super) lists.
+/// If the file cannot be read, was cut short, or its header is damaged in a way that the
+/// [module](super) lists as an error.
 pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
     open_with(path, ReadOptions::default())
 }
 
-/// Like [`open`], but reads as the options say; a [`Cut`](super::Cut) alone is enough.
+/// Like [`open`], but with options; a [`Cut`](super::Cut) can be passed in their stead.
 ///
 /// # Errors
 /// As [`open`].
@@ -115,7 +116,7 @@ pub fn open_with(path: impl AsRef<Path>, options: impl Into<ReadOptions>) -> Res
     LasReader::new(Input::open(path.as_ref())?, options.into())
 }
 
-/// Reads a stream, by way of a temporary file; `name` is for messages.
+/// Reads a stream by copying it to a temporary file; messages call it `name`.
 ///
 /// # Errors
 /// As [`open`].
@@ -123,7 +124,7 @@ pub fn from_stream(stream: impl Read, name: impl AsRef<Path>) -> Result<LasReade
     from_stream_with(stream, name, ReadOptions::default())
 }
 
-/// Like [`from_stream`], but reads as the options say; a [`Cut`](super::Cut) alone is enough.
+/// Like [`from_stream`], but with options; a [`Cut`](super::Cut) can be passed in their stead.
 ///
 /// # Errors
 /// As [`open`].

@@ -1,23 +1,23 @@
-//! From packed point records to columns.
+//! Converts packed point records to columns.
 
 use super::header::Header;
 use super::options::Detail;
 use super::raw::{u16_at, u32_at};
 use crate::data::{PointBatch, PointFlags};
 
-/// How point records lie in memory, and how their integers become coordinates.
+/// How point records are laid out in memory, and how their integers become coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RecordLayout {
-    /// Bytes from one record to the next.
+    /// Distance from one record to the next, in bytes.
     pub(super) stride: usize,
-    /// What is taken of each.
+    /// How much is read of each record.
     pub(super) detail: Detail,
     kind: RecordKind,
     scale: [f64; 3],
     offset: [f64; 3],
 }
 
-/// The two families of point formats; within one, all that is used here has the same place.
+/// The two families of point formats. Within a family, all fields used here have the same offsets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RecordKind {
     /// Formats 0 to 5: three bits for the return, five for the class, three for flags.
@@ -37,7 +37,7 @@ impl RecordLayout {
         }
     }
 
-    /// The same for records of another length.
+    /// Returns this layout for records of another length.
     pub(super) fn with_stride(self, stride: usize) -> Self {
         RecordLayout { stride, ..self }
     }
@@ -72,7 +72,7 @@ impl RecordLayout {
     }
 }
 
-/// Little endian 16-bit words.
+/// Splits bytes into little-endian 16-bit words.
 pub(super) fn words(bytes: &[u8]) -> Vec<u16> {
     bytes.chunks_exact(2).map(|word| u16_at(word, 0)).collect()
 }

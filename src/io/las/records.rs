@@ -1,4 +1,4 @@
-//! Variable length records: what stands between header and points, and after the points.
+//! Variable length records, between the header and the points, and after the points.
 
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
@@ -7,11 +7,11 @@ use super::input::Input;
 use super::raw::{EVLR_HEADER, RawRecordHeader, VLR_HEADER};
 use crate::error::Result;
 
-/// Records after this many are ignored: no file has a use for them.
+/// Limit for the number of records; more are ignored, since no file has a use for them.
 const MOST_RECORDS: u64 = 10_000;
 
-/// Bytes of the largest payload that is loaded. The coordinate systems that are loaded are text of
-/// some kilobytes; the limit is for a length that lies.
+/// Limit for the payloads that are loaded, in bytes. Coordinate systems are texts of a few
+/// kilobytes; the limit guards against false lengths.
 const LARGEST_PAYLOAD: u64 = 1 << 20;
 
 /// The payloads that a reader of points needs.
@@ -28,7 +28,7 @@ pub(super) struct Payloads {
 }
 
 impl Payloads {
-    /// Where a payload goes; the first record of a kind counts.
+    /// Returns where to store a payload, if it is needed; the first record of a kind counts.
     fn slot(&mut self, record: &RawRecordHeader) -> Option<&mut Option<Vec<u8>>> {
         let slot = match (record.user_id.as_str(), record.record_id) {
             ("laszip encoded", 22204) => &mut self.laszip,
@@ -42,7 +42,7 @@ impl Payloads {
     }
 }
 
-/// Reads both kinds of records, as far as there are any: the counts in the header are not trusted.
+/// Reads both kinds of records, as far as they exist: the counts in the header are not trusted.
 pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<String>) -> Result<Payloads> {
     let Layout { vlr_start, vlr_count, points_start, evlr_start, evlr_count, .. } = header.layout;
     let mut payloads = Payloads::default();
@@ -63,7 +63,7 @@ pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<String
     Ok(payloads)
 }
 
-/// A run of records of one kind.
+/// A sequence of records of one kind.
 struct Region {
     name: &'static str,
     start: u64,

@@ -1,15 +1,15 @@
-//! The coordinate system of a LAS file, from WKT or GeoTIFF keys.
+//! Reads the coordinate system of a LAS file, from WKT or GeoTIFF keys.
 
 use super::raw::{f64_at, until_zero};
 use super::record::words;
 use super::records::Payloads;
 use crate::crs::{Crs, GeoKeys};
 
-/// Takes the coordinate system that the file states.
+/// Returns the coordinate system that the file states.
 ///
-/// A file may have both kinds of records. The WKT bit of the header then decides (LAS 1.4, global
-/// encoding), with a warning if they disagree. What cannot be understood is skipped with a warning:
-/// heights are still heights.
+/// If a file has both kinds of records, the WKT bit of the header decides (LAS 1.4, global
+/// encoding); if they disagree, there is a warning. A coordinate system that cannot be understood
+/// is skipped with a warning, because the points can be used without it.
 pub(super) fn choose(payloads: &Payloads, says_wkt: bool, warnings: &mut Vec<String>) -> Option<Crs> {
     let wkt = payloads.wkt.as_deref().and_then(|bytes| from_wkt(bytes, warnings));
     let keys = payloads.geo_directory.as_deref().and_then(|directory| from_keys(directory, payloads, warnings));
@@ -51,7 +51,7 @@ fn from_keys(directory: &[u8], payloads: &Payloads, warnings: &mut Vec<String>) 
     let keys = GeoKeys {
         directory: words(directory),
         doubles: doubles.chunks_exact(8).map(|bytes| f64_at(bytes, 0)).collect(),
-        // Keys count bytes, so every byte becomes one.
+        // Keys refer to positions in bytes, so every byte becomes one character.
         ascii: ascii.iter().map(|&byte| if byte.is_ascii() { char::from(byte) } else { '?' }).collect(),
     };
     match keys.crs() {

@@ -1,4 +1,4 @@
-//! Files written by the `las` crate, read here.
+//! Tests that read files written by the `las` crate.
 
 use std::io::Cursor;
 
@@ -13,7 +13,7 @@ use crate::error::{Kind, Result};
 const SCALE: [f64; 3] = [0.01, 0.001, 0.1];
 const OFFSET: [f64; 3] = [500_000.0, -5_300_000.0, 12.5];
 
-/// Every point format with the versions that have it.
+/// Every point format with each version that supports it.
 fn kinds() -> impl Iterator<Item = ((u8, u8), u8)> {
     let formats_of = |minor| match minor {
         0 | 1 => 0..=1,
@@ -24,17 +24,17 @@ fn kinds() -> impl Iterator<Item = ((u8, u8), u8)> {
     (0..=4).flat_map(move |minor| formats_of(minor).map(move |format| ((1, minor), format)))
 }
 
-/// The integers of point `i`: small and large, and of both signs.
+/// The integers of point `i`: small, large, and of both signs.
 fn lattice(i: usize) -> [i32; 3] {
     let wave = |step: usize| ((i * step) % 20_011) as i32 - 10_000;
     [wave(7) * 1000, wave(131), i32::MIN + i as i32 * 3]
 }
 
-/// Classes, flags and returns that go through all values of the point format.
+/// Classes, flags and returns that take all values of the point format.
 fn attributes(i: usize, is_extended: bool) -> (u8, u8, u8) {
     let (classes, flags, returns) = if is_extended { (256, 16, 15) } else { (32, 8, 5) };
     let class = match i % classes {
-        // The crate does not write the class that means overlap.
+        // The crate does not write the class for overlap.
         12 => 13,
         class => class as u8,
     };
@@ -109,7 +109,7 @@ fn read(bytes: &[u8]) -> Result<(LasReader, PointBatch)> {
     read_with(bytes, Cut::Refuse)
 }
 
-/// Fails unless a file that was cut is refused; reads what there is.
+/// Checks that a file that was cut is refused, then reads what is there.
 fn read_cut(bytes: &[u8]) -> (LasReader, PointBatch) {
     let error = read(bytes).unwrap_err();
     assert!(error.to_string().starts_with(&format!("test: byte {}: the ", bytes.len())), "{error}");
@@ -134,7 +134,7 @@ fn read_with(bytes: &[u8], cut: Cut) -> Result<(LasReader, PointBatch)> {
     }
 }
 
-/// All points of [`Spec::write`], bit by bit.
+/// Checks all points of [`Spec::write`], bit by bit.
 fn check_points(all: &PointBatch, points: usize, is_extended: bool) {
     assert_eq!(all.len(), points);
     for i in 0..points {
@@ -173,7 +173,7 @@ fn version_5_is_read_as_4() {
     check_points(&all, 1000, true);
 }
 
-/// Several chunks, the last one not full, in more than one group.
+/// Several chunks, the last one incomplete, in more than one group.
 #[test]
 fn many_chunks_come_in_order() {
     for format in [1, 6] {
@@ -193,7 +193,7 @@ fn one_thread_gives_what_many_give() {
     }
 }
 
-/// Where the place of the chunk table stands, and what it says.
+/// The offset of the chunk table's position, and that position.
 fn table_of(bytes: &[u8]) -> (usize, usize) {
     let points = super::raw::u32_at(bytes, 96) as usize;
     (points, super::raw::u64_at(bytes, points) as usize)
@@ -290,7 +290,7 @@ fn records_after_the_points_are_not_points() {
     let (reader, _) = read(&bytes).unwrap();
     let record = reader.header().records.last().unwrap();
     assert_eq!((record.user_id.as_str(), record.record_id, record.length), ("tests", 7, 999));
-    // A count that would reach into them.
+    // A count of records that would reach into the points.
     bytes[247..255].copy_from_slice(&1010_u64.to_le_bytes());
     bytes[107..111].fill(0);
     let error = read(&bytes).unwrap_err();
@@ -352,7 +352,7 @@ fn of_two_coordinate_systems_the_header_takes_one() {
         });
         assert_eq!(warned, wkt != keys, "{:?}", reader.info().warnings);
     }
-    // One kind alone counts whatever the bit says; WKT after the points too.
+    // Records of one kind count whatever the bit says; WKT after the points does too.
     for (records, late_records) in [
         (two_systems(25832, 25832).split_off(3), Vec::new()),
         (Vec::new(), two_systems(25832, 25832).split_off(3)),

@@ -1,7 +1,7 @@
-//! Writes points to LAS and LAZ with all that their own files say of them.
+//! Writes points to LAS and LAZ with all attributes that their own files contain.
 //!
-//! Point records go from file to file as bytes; the `laz` crate compresses them. The header is that of the first source,
-//! with what has to be another: see [`create`].
+//! Point records are copied from file to file as bytes; the `laz` crate compresses them. The header
+//! is that of the first source, except for the fields that have to change, see [`create`].
 
 use std::io::{Seek, SeekFrom, Write};
 
@@ -14,28 +14,28 @@ use crate::error::{Error, Kind, Result};
 use crate::io::contain;
 use crate::io::output::{Destination, Output};
 
-/// Bytes of records that are compressed together, for each thread: two chunks of usual points.
+/// Bytes of records that are compressed together, per thread: about two chunks of typical points.
 const BATCH_BYTES: usize = 1 << 22;
 
-/// Whether points are compressed.
+/// Whether points are written compressed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Packing {
-    /// LAS.
+    /// Uncompressed (LAS).
     Plain,
-    /// LAZ, in chunks of 50 000 points.
+    /// Compressed (LAZ), in chunks of 50 000 points.
     Compressed,
 }
 
-/// Writes the points of LAS files; made by [`create`].
+/// A writer for the points of LAS files, made by [`create`].
 pub struct LasWriter<'a> {
     target: Destination<'a>,
     body: Body,
     head: LasHead,
     lattice: Lattice,
     rounding: Rounding,
-    /// From the lattice of the current source to that of the file.
+    /// Converts from the lattice of the current source to that of the file.
     step: Step,
-    /// Records that wait to be written together.
+    /// Records that are to be written together.
     waiting: Vec<u8>,
     batch: usize,
     points_start: u32,
@@ -49,7 +49,7 @@ pub struct LasWriter<'a> {
 enum Body {
     Plain(Output),
     Compressed(Box<ParLasZipCompressor<Output>>),
-    /// After the last point.
+    /// All points were written.
     Done,
 }
 
@@ -59,20 +59,29 @@ impl std::fmt::Debug for LasWriter<'_> {
     }
 }
 
-/// Starts a file for points of these sources, which have been opened with [`Detail::Records`](super::Detail::Records).
+/// Starts a file for the points of these sources, which must have been opened with
+/// [`Detail::Records`](super::Detail::Records).
 ///
-/// Point records keep every byte, but for coordinates where sources have different lattices: the output has the first
-/// of their lattices that has the points of all, and whole numbers of steps change. All sources must have one point
-/// format, record length, description of extra bytes and kind of GPS time.
+/// Point records keep every byte, except for coordinates if the sources have different lattices.
+/// The output then has the first of their lattices that contains all points, and only the integers
+/// of the coordinates change. All sources must agree in point format, record length, description of
+/// extra bytes and kind of GPS time.
 ///
-/// The header and the variable length records are those of the first source, with records that only others have behind
-/// them. Different are: generating software; counts and bounds, which are those of the points written; project id, file
-/// source id and system, which are cleared (the system says `MERGE`) where sources differ; the date, which is the
-/// latest of the sources, so that the same sources give the same bytes; waveform bits and offset. Left out are what
-/// holds for the bytes of one file: the indices of COPC and of LAStools.
+/// The header and the variable length records are those of the first source, followed by records
+/// that only other sources have. These fields change:
+/// - the generating software;
+/// - counts and bounds, which are those of the points written;
+/// - project id, file source id and system, which are cleared (the system is `MERGE`) if the
+///   sources differ;
+/// - the date, which is the latest of the sources, so that the same sources give the same bytes;
+/// - waveform bits and offset.
+///
+/// Records that are valid for the bytes of one file only, which are the indices of COPC and of
+/// LAStools, are left out.
 ///
 /// # Errors
-/// If a source is no LAS or LAZ file, has waveforms, or does not go with the others; if the target cannot be written.
+/// If a source is not a LAS or LAZ file, has waveforms, or is incompatible with the others; if the
+/// target cannot be written.
 pub fn create<'a>(
     target: impl Into<Destination<'a>>,
     sources: &[&PointInfo],
@@ -138,7 +147,7 @@ fn failed(error: laz::LasZipError) -> Error {
     }
 }
 
-/// What stands before the payload of a variable length record.
+/// Returns the header of a variable length record.
 fn record_header(user: &str, id: u16, length: u16, description: &str) -> Vec<u8> {
     let mut bytes = vec![0; 2];
     bytes.extend(padded::<16>(user));
@@ -149,7 +158,7 @@ fn record_header(user: &str, id: u16, length: u16, description: &str) -> Vec<u8>
 }
 
 impl LasWriter<'_> {
-    /// Writes the records that wait.
+    /// Writes the waiting records.
     fn flush(&mut self) -> Result<()> {
         let written = match &mut self.body {
             Body::Plain(output) => Some(output.write_all(&self.waiting)),
@@ -161,7 +170,8 @@ impl LasWriter<'_> {
         written.map_err(|e| Error::from(e).in_file(self.target.path()))
     }
 
-    /// Takes a record that was added to those that wait: counts it, and moves it to the lattice of the file.
+    /// Accepts a record that was added to the waiting ones: counts it, and converts it to the
+    /// lattice of the file.
     fn take(&mut self, at: usize) -> Result<()> {
         let record = &mut self.waiting[at..];
         let found = [0, 4, 8].map(|at| u32_at(record, at).cast_signed());
@@ -190,14 +200,15 @@ impl LasWriter<'_> {
         bounds
     }
 
-    /// The header, now that the points are known.
+    /// Returns the header, once all points are known.
     fn header(&self, late_start: u64) -> Result<Vec<u8>> {
         let mut header = self.head.header.clone();
         let mut put = |at: usize, bytes: &[u8]| header[at..at + bytes.len()].copy_from_slice(bytes);
         let minor = self.head.header[25];
         put(96, &self.points_start.to_le_bytes());
         put(100, &self.record_count.to_le_bytes());
-        // The fields of 32 bits are for old readers from 1.4 on, and zero for formats that these do not know.
+        // From 1.4 on, the 32-bit fields serve old readers; they are zero for formats that these do
+        // not know.
         let old = u32::try_from(self.count).ok().filter(|_| minor < 4 || self.head.point_format < 6);
         if minor < 4 && old.is_none() {
             return Err(Error::limit(format!("{} points; LAS 1.{minor} counts to {}", self.count, u32::MAX))

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all, alone or as a set.
+//! Output files that appear complete or not at all, alone or as a set.
 
 mod set;
 mod target;
@@ -16,11 +16,12 @@ use temporary::Temporary;
 pub use set::{Destination, OutputSet};
 pub use temporary::{Abandoned, abandon_outputs};
 
-/// A file that appears whole or not at all: it is written beside its target and renamed by
-/// [`commit`](Output::commit). Dropped before that, it leaves nothing behind.
+/// A file that appears complete or not at all: it is written under a temporary name next to its
+/// target and renamed by [`commit`](Output::commit). If dropped before that, it leaves nothing
+/// behind.
 ///
-/// What stands at the target is replaced; its mode stays, and a symbolic link is followed. A pipe or a device is no
-/// file to rename to: it is written as the bytes come.
+/// A file that exists at the target is replaced; its mode is kept, and a symbolic link is followed.
+/// A pipe or a device cannot be renamed to, so bytes are written to it directly.
 #[derive(Debug)]
 #[must_use = "nothing is at the target before `commit`"]
 pub struct Output {
@@ -29,36 +30,37 @@ pub struct Output {
     sink: Sink,
 }
 
-/// Where the bytes of an [`Output`] go in the end.
+/// Where the bytes of an [`Output`] end up.
 #[derive(Debug)]
 enum Sink {
-    /// Renamed to this path.
+    /// A temporary file, to be renamed to this path.
     Renamed(Temporary, PathBuf),
-    /// They are there already.
+    /// The stream that they are written to directly.
     Stream,
-    /// Copied to a stream, which could not be written out of order.
+    /// A temporary file, to be copied to this stream, which cannot be written out of order.
     Copied(File),
 }
 
-/// An output whose bytes are on the disk, or in their stream.
+/// An output whose bytes are on the disk or in their stream.
 struct Flushed {
     renamed: Option<(Temporary, PathBuf)>,
     target: PathBuf,
 }
 
 impl Output {
-    /// Opens a hidden file in the folder of `target`; a pipe or a device itself, which waits for a reader.
+    /// Opens a hidden file in the folder of `target`. A pipe or a device is opened itself, which
+    /// waits for a reader.
     ///
     /// # Errors
-    /// If the folder does not exist or cannot be written to, a folder is in the way, or the file that is there is
-    /// read-only.
+    /// If the folder does not exist or is not writable, if `target` is a folder, or if a file
+    /// exists there that is read-only.
     pub fn create(target: impl AsRef<Path>) -> Result<Self> {
         let target = target.as_ref();
         Self::open(target, false).map_err(|e| e.in_file(target))
     }
 
-    /// Like [`create`](Output::create), for formats whose first bytes are known last. What goes to a pipe or a
-    /// device is collected in a temporary file, and copied by `commit`.
+    /// Like [`create`](Output::create), but for formats whose first bytes are known last. Output to
+    /// a pipe or a device is collected in a temporary file, which `commit` copies.
     ///
     /// # Errors
     /// As [`create`](Output::create).
@@ -79,7 +81,7 @@ impl Output {
         Ok(Output { file: BufWriter::with_capacity(1 << 18, file), target: target.to_path_buf(), sink })
     }
 
-    /// Flushes and renames to the target, replacing what was there.
+    /// Flushes the file and renames it to the target, replacing any file there.
     ///
     /// # Errors
     /// If the last bytes cannot be written or the rename fails.
@@ -89,12 +91,12 @@ impl Output {
         set.commit().map(drop)
     }
 
-    /// The file's final name.
+    /// Returns the file's final name.
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// Puts all bytes on the disk: a full one is noticed now, before anything is replaced.
+    /// Writes all bytes to the disk, so that a full disk is noticed before anything is replaced.
     fn flush_to_disk(self) -> Result<Flushed> {
         let Output { file, target, sink } = self;
         let flush = || -> Result<Option<(Temporary, PathBuf)>> {
@@ -119,7 +121,8 @@ impl Output {
     }
 }
 
-/// Makes sure that an output could be written, without leaving a trace. A pipe or a device is not opened.
+/// Checks that an output could be written, without leaving a trace. A pipe or a device is not
+/// opened.
 ///
 /// # Errors
 /// As [`Output::create`].
@@ -150,7 +153,8 @@ impl Write for Output {
         self.file.write(bytes)
     }
 
-    /// `PERF:` meshes are written in rows of some bytes: with the loop that comes with the trait each takes three times as long.
+    /// `PERF:` meshes are written in rows of a few bytes: with the trait's default loop, each takes
+    /// three times as long.
     #[inline]
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.write_all(bytes)

@@ -39,28 +39,28 @@ struct Staged {
 }
 
 impl OutputSet {
-    /// A path of this set, for a writer.
+    /// Returns a destination at `path` within this set, for a writer.
     pub fn at<'a>(&'a self, path: &'a Path) -> Destination<'a> {
         Destination { path, extension: None, set: Some(self) }
     }
 
-    /// Adds an output that is complete.
+    /// Adds a complete output.
     pub fn add(&self, output: Output) {
         self.staged.borrow_mut().outputs.push(output);
     }
 
-    /// Flushes all outputs to the disk, then renames them to their targets: those that others need first. Returns the
-    /// targets, these last.
+    /// Flushes all outputs to the disk, then renames them to their targets and returns the targets.
+    /// Files that others need are renamed first, and come last in the result.
     ///
     /// # Errors
-    /// If the last bytes cannot be written or a rename fails. What was at the targets is then there again. Bytes that
-    /// went to a pipe or a device are gone.
+    /// If the last bytes cannot be written or a rename fails. All previous files are then restored;
+    /// bytes that went to a pipe or a device are gone.
     pub fn commit(self) -> Result<Vec<PathBuf>> {
         let Staged { companions, outputs, stale } = self.staged.into_inner();
         let companion_count = companions.len();
         let all = companions.into_iter().chain(outputs);
         let flushed: Vec<Flushed> = all.map(Output::flush_to_disk).collect::<Result<_>>()?;
-        // Ends before `flushed`, whose remains are removed with the same lock.
+        // Dropped before `flushed`, whose remains are removed under the same lock.
         let mut renames = Renames::begin();
         let mut moves = Vec::new();
         match replace_all(&flushed, &stale, &mut moves, &mut renames) {
@@ -79,8 +79,8 @@ impl OutputSet {
     }
 }
 
-/// Where a writer puts its files: at a path, at once when they are complete; or, by [`OutputSet::at`], with the others
-/// of a set.
+/// Where a writer puts its files: at a path, as soon as they are complete; or, through
+/// [`OutputSet::at`], together with the other files of a set.
 #[derive(Debug, Clone, Copy)]
 pub struct Destination<'a> {
     path: &'a Path,
@@ -95,18 +95,19 @@ impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Destination<'a> {
 }
 
 impl<'a> Destination<'a> {
-    /// The path of the main file.
+    /// Returns the path of the main file.
     pub fn path(self) -> &'a Path {
         self.path
     }
 
-    /// The same in the format of an extension, for paths whose own names none.
+    /// Returns this destination with the format of an extension, for paths whose own names no
+    /// format.
     #[must_use]
     pub fn in_format(self, extension: &'a str) -> Self {
         Destination { extension: Some(extension), ..self }
     }
 
-    /// A path whose extension names the format.
+    /// Returns a path whose extension names the format.
     pub(crate) fn format_path(self) -> PathBuf {
         match self.extension {
             Some(extension) => self.path.with_extension(extension),
@@ -114,8 +115,8 @@ impl<'a> Destination<'a> {
         }
     }
 
-    /// Runs a writer and takes what it has written, unless it fails: also where a writer is stopped by its source, and
-    /// does not know it.
+    /// Runs a writer and takes the files that it has written, unless it fails. This covers writers
+    /// that are stopped by their source without noticing.
     ///
     /// # Errors
     /// Those of the writer and of [`OutputSet::commit`].
@@ -126,7 +127,7 @@ impl<'a> Destination<'a> {
         Ok(written)
     }
 
-    /// Takes an output that is complete.
+    /// Takes a complete output.
     ///
     /// # Errors
     /// As [`OutputSet::commit`].
@@ -134,7 +135,8 @@ impl<'a> Destination<'a> {
         self.put_all([], output, [])
     }
 
-    /// Takes an output with files that it needs, and removes files that would be wrong beside it.
+    /// Takes an output with the files that it needs, and removes files that would be wrong next to
+    /// it.
     ///
     /// # Errors
     /// As [`OutputSet::commit`].
@@ -154,10 +156,10 @@ impl<'a> Destination<'a> {
     }
 }
 
-/// What a step of a commit did to a path.
+/// A step of a commit: what it did to a path.
 struct Move<'a> {
     target: &'a Path,
-    /// Where the file is that was there.
+    /// Where the previous file is now.
     before: Option<PathBuf>,
 }
 
@@ -168,8 +170,10 @@ impl Move<'_> {
         }
     }
 
+    /// Restores the previous file.
+    ///
     /// # Errors
-    /// If that is impossible; says where the old file is.
+    /// If that is impossible; the message says where the previous file is.
     fn undo(&self) -> std::result::Result<(), String> {
         let Some(before) = &self.before else {
             let _ = std::fs::remove_file(self.target);
@@ -177,7 +181,7 @@ impl Move<'_> {
         };
         std::fs::rename(before, self.target)
             .map_err(|_| format!("{} was not restored: it is kept as {}", self.target.display(), before.display()))?;
-        // Nothing is done by a rename between two names of one file.
+        // A rename between two names of one file does nothing.
         self.forget();
         Ok(())
     }
@@ -190,7 +194,7 @@ fn replace_all<'a>(
     renames: &mut Renames,
 ) -> Result<()> {
     let files = || flushed.iter().filter_map(|file| Some((file, file.renamed.as_ref()?)));
-    // One hidden name for each, from those of the set's own files.
+    // One hidden name per file, derived from those of the set's own files.
     if let Some((_, (first, _))) = files().next() {
         for (i, path) in stale.iter().enumerate() {
             if path.is_dir() {
@@ -215,7 +219,8 @@ fn replace_all<'a>(
     Ok(())
 }
 
-/// Gives the file at a path a second name, if there is one; where that cannot be, another name.
+/// Gives the file at a path, if there is one, a second name; where links are not supported, renames
+/// it.
 fn set_aside(temporary: &Temporary, path: &Path) -> Result<Option<PathBuf>> {
     match std::fs::symlink_metadata(path) {
         Ok(data) if data.is_dir() => return Err(target::folder_error()),
@@ -228,7 +233,7 @@ fn set_aside(temporary: &Temporary, path: &Path) -> Result<Option<PathBuf>> {
     Ok(Some(before))
 }
 
-/// A name in the folder of `path`.
+/// Returns the path of `name` in the folder of `path`.
 fn beside(path: &Path, name: &Path) -> PathBuf {
     path.with_file_name(name.file_name().unwrap_or_default())
 }
@@ -280,7 +285,7 @@ mod tests {
         staged(&set, &b, "new");
         let output = Output::create(&c).unwrap();
         set.at(&c).put_all([], output, [stale]).unwrap();
-        // Comes after the check.
+        // Appears after the check.
         std::fs::create_dir(&c).unwrap();
         let error = set.commit().unwrap_err();
         assert!(error.to_string().ends_with("c: there is a folder with this name"), "{error}");

@@ -1,4 +1,4 @@
-//! What stands at the path of an output.
+//! What exists at the path of an output.
 
 use std::fs::{File, Metadata};
 use std::io::ErrorKind;
@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
-/// What a path leads to.
+/// The kind of target that a path leads to.
 pub(super) enum TargetKind {
-    /// A file at this path, there or to be; symbolic links are followed.
+    /// A file at this path, which may not exist yet; symbolic links are followed.
     File(PathBuf),
     /// A pipe or a device.
     Stream,
 }
 
-/// As many links in a row as Linux follows.
+/// Longest chain of links that is followed, as in Linux.
 const MAX_LINKS: usize = 40;
 
 impl TargetKind {
@@ -37,7 +37,8 @@ impl TargetKind {
     }
 }
 
-/// The number in `/proc/self/fd/1` and its like: what `/dev/stdout` links to, whatever that is in turn.
+/// Returns the number in `/proc/self/fd/1` and the like. `/dev/stdout` links to such a path,
+/// whatever that links to.
 fn open_file(path: &Path) -> Option<u32> {
     let is_listed = path.parent().is_some_and(|folder| {
         folder == Path::new("/dev/fd") || folder.starts_with("/proc") && folder.file_name().is_some_and(|n| n == "fd")
@@ -45,13 +46,14 @@ fn open_file(path: &Path) -> Option<u32> {
     path.file_name().filter(|_| is_listed)?.to_str()?.parse().ok()
 }
 
-/// Opens a pipe or a device for writing; where that is the standard output, the one that the program has.
+/// Opens a pipe or a device for writing. For the standard output, the program's own descriptor is
+/// used.
 pub(super) fn open_stream(path: &Path) -> Result<File> {
     #[cfg(unix)]
     {
         use std::os::fd::AsFd;
         let linked = std::fs::read_link(path).ok();
-        // Opened anew, a file would be written from its start, and a socket not at all.
+        // If opened anew, a file would be written from its start, and a socket could not be opened.
         if linked.as_deref().or(Some(path)).and_then(open_file) == Some(1) {
             return Ok(std::io::stdout().as_fd().try_clone_to_owned()?.into());
         }
@@ -59,10 +61,10 @@ pub(super) fn open_stream(path: &Path) -> Result<File> {
     Ok(File::options().write(true).open(path)?)
 }
 
-/// The file that a rename would replace, if any.
+/// Returns the metadata of the file that a rename would replace, if there is one.
 ///
 /// # Errors
-/// If it may not be replaced: a rename asks for the folder's permission only.
+/// If the file must not be replaced: a rename itself only needs permission on the folder.
 pub(super) fn replaceable(path: &Path) -> Result<Option<Metadata>> {
     let old = match std::fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -75,17 +77,17 @@ pub(super) fn replaceable(path: &Path) -> Result<Option<Metadata>> {
         let error = std::io::Error::new(ErrorKind::PermissionDenied, "the file is read-only, and is not replaced");
         return Err(Error::from(error).cure("give it another name, or allow writing with chmod u+w"));
     }
-    // The system knows of more than modes.
+    // Asks the system, because permissions depend on more than the mode.
     File::options().write(true).open(path)?;
     Ok(Some(old))
 }
 
-/// Gives a new file the mode of the one that it replaces, and its owner if that is possible.
+/// Gives a new file the mode of the file that it replaces and, if possible, its owner.
 pub(super) fn take_over(new: &File, old: &Metadata) -> Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::{MetadataExt, fchown};
-        // First: a change of owner takes away bits of the mode.
+        // The owner first: changing it clears bits of the mode.
         let _ = fchown(new, Some(old.uid()), Some(old.gid()));
     }
     Ok(new.set_permissions(old.permissions())?)

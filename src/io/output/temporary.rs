@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// All temporary files of the process. Locked while one is made and while a set is renamed.
+/// All temporary files of the process. Locked while one is created and while a set is renamed.
 static ALL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn all() -> MutexGuard<'static, Vec<PathBuf>> {
@@ -16,7 +16,7 @@ fn all() -> MutexGuard<'static, Vec<PathBuf>> {
 pub(super) struct Renames(MutexGuard<'static, Vec<PathBuf>>);
 
 impl Renames {
-    /// Waits for other sets.
+    /// Waits until no other set is being renamed.
     pub(super) fn begin() -> Self {
         Renames(all())
     }
@@ -35,7 +35,7 @@ pub(super) struct Temporary {
 }
 
 impl Temporary {
-    /// Makes one in the folder of `target`.
+    /// Creates a hidden file in the folder of `target`.
     pub(super) fn create(target: &Path) -> io::Result<(File, Self)> {
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -46,7 +46,7 @@ impl Temporary {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            // What an ordinary new file would get; the umask still applies.
+            // The mode that an ordinary new file would get; the umask still applies.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let mut all = all();
@@ -56,7 +56,7 @@ impl Temporary {
         Ok((file, Temporary { path }))
     }
 
-    /// A name beside it that is as unlikely to be taken.
+    /// Returns a name next to this file that is equally unlikely to be taken.
     pub(super) fn backup(&self) -> PathBuf {
         self.path.with_extension("old")
     }
@@ -72,15 +72,17 @@ impl Drop for Temporary {
     }
 }
 
-/// Outputs cannot be made or renamed while this exists.
+/// A guard: while it exists, no output can be created or renamed.
 #[derive(Debug)]
 #[must_use = "outputs that are still written may appear once it is dropped"]
 pub struct Abandoned {
     _all: MutexGuard<'static, Vec<PathBuf>>,
 }
 
-/// Removes the temporary files of all outputs, for a program that is about to end early: keep what is returned until it
-/// has ended. A set that is being renamed is completed first.
+/// Removes the temporary files of all outputs, for a program that is about to end early.
+///
+/// Keep the returned guard until the program has ended. A set that is being renamed is completed
+/// first.
 pub fn abandon_outputs() -> Abandoned {
     let mut all = all();
     for path in all.drain(..) {

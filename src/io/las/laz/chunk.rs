@@ -1,4 +1,4 @@
-//! Decodes one chunk from memory.
+//! Decodes one chunk in memory.
 
 use std::io::{Cursor, ErrorKind};
 
@@ -13,17 +13,18 @@ use crate::io::las::options::Detail;
 use crate::io::las::raw::u32_at;
 use crate::io::las::record::RecordLayout;
 
-/// Points that are decoded before they are taken apart: their records stay in the nearest cache.
+/// Points decoded before they are split into columns: so few that their records stay in the nearest
+/// cache.
 pub(super) const BLOCK: usize = 256;
 
-/// Layers that hold what a [`PointBatch`] has: x, y and returns; z; class; flags.
+/// The number of layers that a [`PointBatch`] needs: x, y and returns; z; class; flags.
 const LAYERS_USED: usize = 4;
 
 /// Decodes a whole chunk and appends its points.
 ///
 /// # Errors
-/// With what is wrong in the chunk. As in LASzip, a chunk that does not end where it should is
-/// damaged: nothing else tells, since an arithmetic decoder makes points of any bytes.
+/// If the chunk is damaged. As in LASzip, a chunk that does not end where it should is damaged:
+/// this is the only sign, since an arithmetic decoder turns any bytes into points.
 pub(super) fn decode(
     bytes: &[u8],
     points: u64,
@@ -54,8 +55,8 @@ fn decode_pointwise(
     }
 }
 
-/// For columns only the layers that are used are decoded, and of other fields than those of format 6 nothing:
-/// the chunk is handed to the decoder as if it had no more.
+/// Decodes a layered chunk. For columns, only the layers that they need are decoded, and none of
+/// the fields beyond those of format 6: the decoder receives the chunk as if it had no more.
 fn decode_layered(
     bytes: &[u8],
     points: u64,

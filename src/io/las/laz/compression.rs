@@ -7,16 +7,16 @@ use crate::error::{Error, Result};
 use crate::io::las::header::Header;
 use crate::io::las::raw::{u16_at, u32_at};
 
-/// Bytes of a point of format 6, which every layered chunk begins with.
+/// Bytes of a point of format 6, with which every layered chunk begins.
 pub(super) const POINT14: usize = 30;
 
-/// Layers of format 6; the layers of further fields follow them.
+/// Layers of format 6; those of further fields follow.
 pub(super) const POINT14_LAYERS: usize = 9;
 
-/// What the decoder has to know.
+/// What the decoder needs to know.
 #[derive(Debug, Clone)]
 pub(super) struct Compression {
-    /// The fields of a point, in order, each with the version of its compressor.
+    /// The fields of a point in order, each with the version of its compressor.
     pub(super) items: Vec<LazItem>,
     /// Bytes of an uncompressed point.
     pub(super) stride: usize,
@@ -24,7 +24,7 @@ pub(super) struct Compression {
     pub(super) chunks: ChunkSize,
 }
 
-/// In which order a chunk holds what its points consist of.
+/// The order of the data within a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Order {
     /// Point after point, in one stream (formats 0 to 5).
@@ -33,14 +33,14 @@ pub(super) enum Order {
     Layered(usize),
 }
 
-/// How many points a chunk has.
+/// The number of points in a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ChunkSize {
-    /// There are no chunks, and no chunk table (LASzip 1).
+    /// There are no chunks and no chunk table (LASzip 1).
     Whole,
-    /// All but the last.
+    /// All chunks but the last have this many points.
     Fixed(u64),
-    /// As its chunk table says (COPC).
+    /// The chunk table states the number (COPC).
     Variable,
 }
 

@@ -1,8 +1,9 @@
-//! Compressed points: the `laz` crate decodes, this decides what it is given.
+//! Compressed points: the `laz` crate decodes, this module decides what it receives.
 //!
-//! The crate's own readers trust the chunk table, decode all fields and end with an error or a panic
-//! where bytes are missing. Here the table is checked against the file first, chunks are decoded
-//! by all threads from memory, and layered chunks (formats 6 to 10) only as far as columns are made of them.
+//! The crate's own readers trust the chunk table, decode all fields, and end with an error or a
+//! panic if bytes are missing. Here the table is checked against the file first, chunks are decoded
+//! in memory by all threads, and only those layers of layered chunks (formats 6 to 10) are decoded
+//! that the columns need.
 
 mod chunk;
 mod compression;
@@ -23,27 +24,30 @@ use super::record::RecordLayout;
 use crate::data::PointBatch;
 use crate::error::{Error, Result};
 
-/// Chunks that are decoded before any is handed out, for each thread.
+/// Chunks decoded ahead, per thread.
 const CHUNKS_PER_THREAD: usize = 2;
 
-/// Points that may be decoded before any is handed out, for each thread; one chunk always is.
+/// Points decoded ahead, per thread; at least one chunk is always decoded.
 const POINTS_PER_THREAD: u64 = 1 << 18;
 
-/// Points in a chunk that is decoded at once. LASzip writes 50 000; COPC some 100 000.
+/// Limit for the points of a chunk that is decoded at once. LASzip writes 50 000; COPC some 100
+/// 000.
 const LARGEST_CHUNK: u64 = 1 << 23;
 
-/// Most points in a byte. Real ones take a byte or more each, those of a flat and regular grid some tenths of it.
+/// Limit for the points per byte. Real points take a byte or more each, those of a flat and regular
+/// grid some tenths of a byte.
 const POINTS_PER_BYTE: u64 = 16;
 
-/// So many points are read however few bytes they take: all at one place, say.
+/// This many points are accepted however few bytes they take, for example if all are at one
+/// position.
 const ALWAYS_TAKEN: u64 = 1 << 24;
 
 /// Reads the points of a LAZ file.
 #[derive(Debug)]
 pub(super) enum Laz {
-    /// By chunks, with several threads.
+    /// Chunk by chunk, with several threads.
     Chunks(Chunks),
-    /// By one thread, where chunks cannot be found or are too large.
+    /// As a stream, with one thread; used if chunks cannot be found or are too large.
     Stream(Stream),
 }
 
@@ -121,7 +125,8 @@ impl Laz {
     }
 }
 
-/// Refuses points that cost next to nothing: of zeros, say, a decoder makes a thousand points a byte.
+/// Returns an error if there are too many points for so few bytes: from zeros, for example, a
+/// decoder makes a thousand points per byte.
 fn check_count(header: &Header) -> Result<()> {
     let bytes = header.layout.points_end - header.layout.points_start;
     if header.count <= ALWAYS_TAKEN.max(bytes.saturating_mul(POINTS_PER_BYTE)) {
@@ -135,7 +140,7 @@ fn check_count(header: &Header) -> Result<()> {
     .cure("the header is damaged, or the file was made to keep programs busy: get it again from its producer"))
 }
 
-/// Decodes some chunks ahead, and hands out one after the other.
+/// Decodes several chunks ahead, and returns them one by one.
 #[derive(Debug)]
 pub(super) struct Chunks {
     input: Input,
@@ -143,9 +148,9 @@ pub(super) struct Chunks {
     layout: RecordLayout,
     waiting: VecDeque<Chunk>,
     decoded: VecDeque<Result<PointBatch>>,
-    /// Batches whose memory is used again.
+    /// Batches whose memory is reused.
     spare: Vec<PointBatch>,
-    /// Number of the first chunk that waits.
+    /// Index of the first chunk that is not decoded yet.
     next: usize,
 }
 
@@ -185,7 +190,7 @@ impl Chunks {
         Ok(())
     }
 
-    /// The chunks to decode next; they lie one after the other in the file.
+    /// Takes the chunks to decode next, which are contiguous in the file.
     fn take_group(&mut self) -> Vec<Chunk> {
         let threads = rayon::current_num_threads();
         let mut group = Vec::new();
@@ -210,7 +215,7 @@ fn damaged(chunk: &Chunk, number: usize, reason: &str) -> Error {
         .cure("copy or download the file again")
 }
 
-/// Where the chunks of a file begin.
+/// Returns the offsets of the chunks of a file.
 #[cfg(test)]
 pub(super) fn chunks_of(bytes: &[u8]) -> Vec<u64> {
     let mut input = Input::spool(bytes, std::path::Path::new("test")).unwrap();

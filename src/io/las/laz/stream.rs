@@ -1,4 +1,4 @@
-//! Decodes points one after the other, without knowing where chunks begin.
+//! Decodes points in order, without knowing where chunks begin.
 
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Seek, SeekFrom};
@@ -17,11 +17,11 @@ use crate::io::las::input::Input;
 use crate::io::las::options::ReadOptions;
 use crate::io::las::record::RecordLayout;
 
-/// Blocks in a batch.
+/// Number of blocks in a batch.
 const BATCH: usize = 256;
 
-/// A decoder for files in point order whose chunks all have the same size, or that have none: the
-/// next chunk begins where the last one ended.
+/// A decoder for files in point order without chunks or with chunks of one size: each chunk begins
+/// where the previous one ended.
 pub(in crate::io::las) struct Stream {
     decoder: SequentialPointRecordDecompressor<'static, BufReader<File>>,
     compression: Compression,
@@ -111,7 +111,7 @@ impl Stream {
         Ok(())
     }
 
-    /// Decodes `count` records to the block; `whole` counts those that are complete.
+    /// Decodes `count` records into the block; `whole` counts the complete ones.
     fn decode_block(&mut self, count: usize, whole: &mut usize) -> std::result::Result<(), Stop> {
         for record in self.block.chunks_exact_mut(self.layout.stride).take(count) {
             if self.in_chunk == self.chunk_size {

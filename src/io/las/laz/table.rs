@@ -1,4 +1,4 @@
-//! Where the chunks of a LAZ file are.
+//! Locates the chunks of a LAZ file.
 
 use std::io::Cursor;
 
@@ -10,15 +10,15 @@ use crate::io::las::header::Header;
 use crate::io::las::input::Input;
 use crate::io::las::raw::{u32_at, u64_at};
 
-/// Bytes before the first chunk: the place of the chunk table.
+/// Bytes before the first chunk: the position of the chunk table.
 pub(super) const POINTER: u64 = 8;
 
-/// A run of points that is compressed by itself.
+/// A sequence of points that is compressed on its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Chunk {
     pub(super) start: u64,
     pub(super) bytes: u64,
-    /// Number of its first point in the file.
+    /// Index of its first point in the file.
     pub(super) first: u64,
     pub(super) points: u64,
 }
@@ -26,7 +26,7 @@ pub(super) struct Chunk {
 /// Reads the chunk table and checks every entry against the file.
 ///
 /// # Errors
-/// With the reason why there is no table to rely on.
+/// If there is no reliable table; the message says why.
 pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header) -> Result<Vec<Chunk>, String> {
     let points_start = header.layout.points_start;
     let table = find(input, points_start).ok_or("the position of the chunk table was never written")?;
@@ -42,7 +42,7 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
     if u64::from(count) > room / compression.stride as u64 + 1 {
         return Err(damaged(format!("lists {count} chunks, more than {room} bytes can hold")));
     }
-    // An entry is two numbers of 32 bits, which the coder makes a little larger at worst.
+    // An entry consists of two numbers of 32 bits, which the coder makes slightly larger at worst.
     let bytes = read(64 + 16 * count as usize)?;
     let variable = compression.chunks == ChunkSize::Variable;
     let entries = contain(|| ChunkTable::read(&mut Cursor::new(&bytes), variable))
@@ -52,7 +52,7 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
     let mut chunks = Vec::with_capacity(entries.len());
     let mut first = 0;
     for entry in &entries {
-        // The crate widens numbers of 32 bits with their sign.
+        // The crate sign-extends numbers of 32 bits.
         let (bytes, stated) = (entry.byte_count & 0xffff_ffff, entry.point_count & 0xffff_ffff);
         let points = match compression.chunks {
             ChunkSize::Fixed(size) => size.min(header.count - first),
@@ -78,8 +78,8 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
     Ok(chunks)
 }
 
-/// The place of the table is written before the first chunk, or, by writers that cannot go back, in
-/// the last bytes of the file.
+/// Returns the position of the table. It is written before the first chunk or, by writers that
+/// cannot go back, in the last bytes of the file.
 fn find(input: &mut Input, points_start: u64) -> Option<u64> {
     let last = input.length.checked_sub(8);
     let mut offset_at = |start| {
@@ -90,9 +90,8 @@ fn find(input: &mut Input, points_start: u64) -> Option<u64> {
     offset_at(points_start).or_else(|| offset_at(last?))
 }
 
-/// Finds layered chunks without a table: each states its points and the bytes of its layers.
-///
-/// Returns the chunks that are whole.
+/// Finds layered chunks without a table: each states the number of its points and the sizes of its
+/// layers. Returns the complete chunks.
 pub(super) fn walk(input: &mut Input, compression: &Compression, header: &Header) -> std::io::Result<Vec<Chunk>> {
     let Order::Layered(layers) = compression.order else { return Ok(Vec::new()) };
     let mut chunks = Vec::new();
@@ -118,7 +117,7 @@ pub(super) fn walk(input: &mut Input, compression: &Compression, header: &Header
     Ok(chunks)
 }
 
-/// Sizes of layers, 32 bits each.
+/// Returns the sizes of layers, 32 bits each.
 pub(super) fn layer_sizes(bytes: &[u8]) -> impl Iterator<Item = u64> + '_ {
     bytes.chunks_exact(4).map(|size| u64::from(u32_at(size, 0)))
 }
