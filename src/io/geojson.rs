@@ -14,29 +14,30 @@ use crate::crs::{Crs, CrsKind};
 use crate::data::{ContourLine, Layer, Shape};
 use crate::error::{Error, Result};
 
-/// Longitude and latitude on WGS 84, which GeoJSON means where it does not say.
+/// Longitude and latitude on WGS 84, the default of GeoJSON.
 const WGS_84: u32 = 4326;
 
 type Object = Map<String, Value>;
 
-/// Reads a GeoJSON file: geometries, features and collections of them; the members of a
-/// GeometryCollection become shapes of their own.
+/// Reads a GeoJSON file: geometries, features and collections of them. The members of a
+/// GeometryCollection become separate shapes.
 ///
 /// With `z_field`, the name of a property in any case, the height of a feature's vertices is the
-/// number in it (or the number in its text), NaN where there is none.
+/// number in that property (or in its text), NaN if there is none.
 ///
-/// Polygons get the orientation of [`Shape::Polygon`]: outer rings clockwise, holes the other way,
-/// as which is which would be lost otherwise.
+/// Polygons are oriented as in [`Shape::Polygon`]: outer rings clockwise, holes counter-clockwise.
+/// Otherwise they could no longer be distinguished.
 ///
-/// The coordinate system is that of the `crs` member; without one it is EPSG:4326, unless a
-/// coordinate cannot be one of longitude and latitude: then it is unknown, with a warning.
+/// The coordinate system is that of the `crs` member; without one it is EPSG:4326. If a coordinate
+/// cannot be a longitude or latitude, it is unknown, with a warning.
 ///
 /// # Errors
-/// If the file is no GeoJSON (the message names the feature, or line and column), or no feature
+/// If the file is not GeoJSON (the message names the feature, or line and column), or no feature
 /// has such a property.
 ///
 /// # Complexity
-/// Linear. The file and all its values are in memory while it is read, many times what the shapes take.
+/// Linear. The file and all its values are in memory while it is read, which is many times the size
+/// of the shapes.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
     let bytes = std::fs::read(path).map_err(|e| Error::from(e).in_file(path))?;
     parse(&bytes, z_field).map_err(|e| e.in_file(path))
@@ -67,7 +68,7 @@ fn parse(bytes: &[u8], z_field: Option<&str>) -> Result<Layer> {
 struct Reader {
     layer: Layer,
     fields: BTreeSet<String>,
-    /// Features with the property for the height, and those where it is no number.
+    /// Features with the property for the height, and those of them in which it is not a number.
     found: usize,
     not_numbers: usize,
     first_text: Option<String>,
@@ -122,7 +123,7 @@ impl Reader {
         f64::NAN
     }
 
-    /// Adds a geometry; `height` replaces its heights.
+    /// Adds a geometry; if `height` is given, it replaces the heights.
     fn geometry(&mut self, geometry: &Object, height: Option<f64>) -> Result<()> {
         let kind = kind(geometry)?;
         if kind == "GeometryCollection" {
@@ -200,7 +201,8 @@ impl Reader {
     }
 }
 
-/// `{"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}`
+/// Parses a system such as
+/// `{"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}`.
 fn named_crs(member: &Value) -> Result<Crs> {
     let name =
         member["properties"]["name"].as_str().ok_or_else(|| Error::unsupported("a crs that is not given by name"))?;
@@ -233,7 +235,7 @@ fn vertex(position: &[Value]) -> Result<[f64; 3]> {
     let number = |value: &Value| value.as_f64().ok_or_else(|| Error::format(format!("coordinate {value}")));
     match position {
         [x, y] => Ok([number(x)?, number(y)?, f64::NAN]),
-        // A null for the height is not allowed, but it is written.
+        // A null height is not allowed, but occurs in files.
         [x, y, Value::Null, ..] => Ok([number(x)?, number(y)?, f64::NAN]),
         [x, y, z, ..] => Ok([number(x)?, number(y)?, number(z)?]),
         _ => Err(Error::format(format!("a position of {} numbers", position.len()))),
@@ -248,7 +250,7 @@ fn lines(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
     parts.iter().map(|part| line(list(part)?)).collect()
 }
 
-/// The rings of one polygon, the first of which is its outer one.
+/// Returns the rings of one polygon, the outer one first.
 fn rings(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
     let mut rings = lines(parts)?;
     for (i, ring) in rings.iter_mut().enumerate() {
@@ -265,23 +267,24 @@ fn rings(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
     Ok(rings)
 }
 
-/// Positive for rings that run counter-clockwise.
+/// Returns twice the signed area of a ring, positive if it runs counter-clockwise.
 fn twice_area(ring: &[[f64; 3]]) -> f64 {
     let Some(o) = ring.first() else { return 0.0 };
-    // From the first vertex, so that large coordinates do not swallow small rings.
+    // Relative to the first vertex, so that small rings keep their precision at large coordinates.
     ring.windows(2).map(|w| (w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1])).sum()
 }
 
 /// Writes contours as a FeatureCollection of LineStrings with the properties `ID` (from 1) and
-/// `ELEV`, every vertex with the height of its line's level, one feature a line. Numbers read back
-/// as the same numbers. Systems other than EPSG:4326 are named by a `crs` member, which RFC 7946
-/// dropped, but which programs go by.
+/// `ELEV`, one feature per line; every vertex has the height of its line's level.
 ///
-/// Lines are written as they come; nothing is kept of them. Lines of fewer than two vertices are
-/// left out.
+/// Numbers read back as the same numbers. A system other than EPSG:4326 is named by a `crs` member,
+/// which RFC 7946 dropped but programs use.
+///
+/// Lines are written as they arrive; none are kept in memory. Lines with fewer than two vertices
+/// are left out.
 ///
 /// # Errors
-/// If the file cannot be written; the old one, if any, is then untouched.
+/// If the file cannot be written. An existing file is then left untouched.
 pub fn write_contours<'a>(
     target: impl Into<Destination<'a>>,
     lines: &mut dyn Iterator<Item = ContourLine>,
@@ -319,7 +322,7 @@ fn write(
         summary.add(&line);
         // Negative zero is zero.
         let level = line.level + 0.0;
-        // `800.0` and not `800`, so that readers take the field for a real number.
+        // `800.0` and not `800`, so that readers infer a field of real numbers.
         write!(out, "{comma}\n{{\"type\":\"Feature\",\"properties\":{{\"ID\":{},\"ELEV\":{level:?}}},", summary.lines)?;
         out.write_all(b"\"geometry\":{\"type\":\"LineString\",\"coordinates\":[")?;
         for (i, [x, y]) in line.points.iter().enumerate() {

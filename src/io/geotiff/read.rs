@@ -289,7 +289,7 @@ impl GeoTiffReader {
     /// # Errors
     /// If a block is damaged or not in the file.
     pub fn extremes(&self) -> Result<Extremes> {
-        /// Cells read at a time; also the largest block that is read whole.
+        /// Cells read at a time, roughly; blocks of up to `BLOCK_CELLS` are read whole.
         const CELLS: usize = 1 << 24;
         const BLOCK_CELLS: usize = 1 << 26;
         let Frame { width, height, .. } = self.frame();

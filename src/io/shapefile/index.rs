@@ -1,4 +1,4 @@
-//! The `.shx` file: where each record begins, in the order of the attribute rows.
+//! The `.shx` file: the offset of each record, in the order of the attribute rows.
 
 use std::path::Path;
 
@@ -6,12 +6,12 @@ use crate::error::{Error, Result};
 
 const HEADER: usize = 100;
 
-/// An index that is whole. Whether it fits its `.shp` is for [`Index::rows`] to say.
+/// A complete index. [`Index::rows`] checks whether it fits its `.shp`.
 #[derive(Debug)]
 pub(super) struct Index {
     /// Offset and content length in bytes, in the order of the file.
     entries: Vec<(u64, u64)>,
-    /// The same by offset.
+    /// The same entries, sorted by offset.
     sorted: Vec<(u64, u64)>,
 }
 
@@ -19,7 +19,7 @@ impl Index {
     /// Reads a `.shx`.
     ///
     /// # Errors
-    /// If it is no index, or cut short: half an index is worse than none.
+    /// If the file is not an index, or is cut short: half an index is worse than none.
     pub(super) fn read(path: &Path) -> Result<Self> {
         Self::parse(&std::fs::read(path)?)
     }
@@ -47,17 +47,19 @@ impl Index {
         Ok(Index { entries, sorted })
     }
 
-    /// The first listed record behind `offset`.
+    /// Returns the first listed record after `offset`.
     pub(super) fn next_after(&self, offset: u64) -> Option<(u64, u64)> {
         self.sorted.get(self.sorted.partition_point(|entry| entry.0 <= offset)).copied()
     }
 
-    /// For every record found (by increasing offset) its place in the index, `None` where it is
-    /// not listed. `end` is where the reading of the `.shp` ended for damage: entries behind it
-    /// are nobody's fault.
+    /// Returns for every record found (by increasing offset) its position in the index; `None` if
+    /// it is not listed.
+    ///
+    /// `end` is where reading of the `.shp` ended because of damage: entries after it may be
+    /// unmatched.
     ///
     /// # Errors
-    /// If an entry points to no record, or two to the same.
+    /// If an entry points to no record, or two entries point to the same.
     pub(super) fn rows(&self, starts: &[u64], end: Option<u64>) -> Result<Vec<Option<usize>>> {
         let mut rows = vec![None; starts.len()];
         for (row, &(offset, _)) in self.entries.iter().enumerate() {
@@ -96,7 +98,7 @@ mod tests {
         assert_eq!(index.rows(&[100, 150, 200], None).unwrap(), [Some(1), None, Some(0)]);
         assert_eq!(index.next_after(100), Some((200, 20)));
         assert_eq!(index.next_after(200), None);
-        // A cut .shp excuses what lies behind the cut, nothing else.
+        // If a .shp is cut, entries after the cut are excused, but no others.
         assert_eq!(index.rows(&[100], Some(180)).unwrap(), [Some(1)]);
         assert!(index.rows(&[100], None).is_err());
         assert!(index.rows(&[101, 200], None).is_err());

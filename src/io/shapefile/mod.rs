@@ -1,23 +1,23 @@
 //! Shapefiles (ESRI Shapefile Technical Description, 1998).
 //!
-//! [`read_layer`] reads what real deliveries hold. The records of the `.shp`, from first to last,
-//! are the truth; every other file may be missing or damaged:
+//! [`read_layer`] reads what real deliveries contain. The records of the `.shp`, in order, are
+//! authoritative; every other file may be missing or damaged:
 //!
-//! | | taken from it | missing | damaged |
+//! | file | supplies | if missing | if damaged |
 //! |---|---|---|---|
-//! | `.shp` | shapes | error | what is whole is read, a warning names each place; an error if nothing is |
-//! | `.shx` | a record's attribute row; where to go on behind damage | order of the `.shp` | not used, a warning |
-//! | `.dbf` | names, heights if asked for, deleted rows | no fields | a warning; an error if heights are asked for |
+//! | `.shp` | shapes | error | complete records are read, a warning names each damaged one; an error if none is complete |
+//! | `.shx` | a record's attribute row; where to continue after damage | order of the `.shp` | not used, a warning |
+//! | `.dbf` | names, heights if requested, deleted rows | no fields | a warning; an error if heights are requested |
 //! | `.prj` | coordinate system | unknown | unknown, a warning |
 //! | `.cpg` | encoding of the names | guessed | guessed |
 //!
 //! Within the `.shp`:
 //!
-//! | found | done |
+//! | found | result |
 //! |---|---|
-//! | counts, part indices or a type without sense, in a record of a sane length | that record is left out, a warning |
-//! | a record header that makes no sense | reading goes on at the next record of the `.shx`, or ends; a warning |
-//! | a record that passes the end of the file | the same |
+//! | counts, part indices or a type that make no sense, in a record of plausible length | the record is left out, a warning |
+//! | a record header that makes no sense | reading continues at the next record of the `.shx`, or ends; a warning |
+//! | a record that extends beyond the end of the file | the same |
 //! | x or y not a finite number | an error: the record is well formed, so the value was wrong before it was written |
 //! | z not finite or "no data" (below -1e38) | no height (NaN), a warning with the count |
 //! | null shapes, also with a body; no parts, no points | read as they are |
@@ -28,8 +28,8 @@
 //! [`write_contours`] and [`write_layer`] write `.shp`, `.shx`, `.dbf`, `.prj` and `.cpg`, all of
 //! them or none.
 //!
-//! The crate `shapefile` is not used here: it takes counts from the file on trust and stops at the
-//! first damage, its writer puts the day's date into the `.dbf` and drops the errors of closing.
+//! The crate `shapefile` is not used: it trusts counts in the file and stops at the first damage,
+//! and its writer stores the current date in the `.dbf` and ignores errors on closing.
 
 mod index;
 mod patch;
@@ -54,30 +54,30 @@ use table::{Rows, Table};
 use walk::{Record, Walk};
 pub use write::{Column, foresee, write_contours, write_layer};
 
-/// First four bytes of a `.shp` and a `.shx`, big-endian.
+/// The first four bytes of a `.shp` and a `.shx`, big-endian.
 const FILE_CODE: u32 = 9994;
 
 /// Bytes before the first record.
 const HEADER: u64 = 100;
 
-/// A `.prj` that is longer is something else.
+/// Limit for the bytes of a `.prj`; a larger file is something else.
 const MAX_PRJ: u64 = 1 << 20;
 
-/// Reads a shapefile; `path` names its `.shp`. The files beside it are found in any case of their
-/// extensions.
+/// Reads a shapefile; `path` names its `.shp`. The files next to it are found whatever the case of
+/// their extensions.
 ///
-/// With `z_field`, the name of an attribute in any case, the height of a shape's vertices is the
-/// number in that field, NaN where there is none; heights of the geometry are not used then. Text
-/// that holds numbers will do, also with a decimal comma.
+/// With `z_field`, the name of an attribute in any case, the heights of a shape's vertices are the
+/// number in that field, NaN if there is none; heights of the geometry are then ignored. Text
+/// fields that contain numbers are accepted, also with a decimal comma.
 ///
-/// What is read of damaged files, and what they are refused for, is in the tables of this module.
+/// The tables of this module list what is read of damaged files, and what leads to an error.
 ///
 /// # Errors
-/// If the file cannot be read, is no shapefile, holds records but none that is whole, or a plan
+/// If the file cannot be read, is not a shapefile, has records but no complete one, or has a plan
 /// coordinate that is not finite; if there is no such field.
 ///
 /// # Complexity
-/// Linear; the memory of the shapes and of one record.
+/// Linear. Memory is needed for the shapes and one record.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
     read(path, z_field).map_err(|e| e.in_file(path))
 }
@@ -109,7 +109,7 @@ fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
     }
     warn_of_types(&mut warnings, header_type.code, &types);
     if z_field.is_some() {
-        // Heights of the geometry do not matter then.
+        // Heights of the geometry are then irrelevant.
         odd.no_height = 0;
     }
     warn_of_oddities(&mut warnings, &odd);
@@ -147,14 +147,14 @@ fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
     }
     let stated = u64::from(u32::from_be_bytes(word(24))) * 2;
     let mut warnings = Vec::new();
-    // A file that is longer than it says shows in its records, if it matters.
+    // If a file is longer than it states, its records show it, if it matters.
     if stated > size {
         warnings.push(format!("its header says {stated} bytes, the file has {size}"));
     }
     Ok(Header { code: i32::from_le_bytes(word(32)), warnings })
 }
 
-/// The file beside `path` with this extension, in lower, upper or any mixed case.
+/// Returns the file next to `path` with this extension, in lower, upper or mixed case.
 fn sibling(path: &Path, extension: &str) -> Option<PathBuf> {
     let lower = path.with_extension(extension);
     if lower.exists() {
@@ -217,7 +217,7 @@ fn read_table(
     if table.stated > room {
         warnings.push(format!(".dbf: its header says {} rows, it has {room}", table.stated));
     }
-    // One row more was asked for than there are records, to see whether there is one.
+    // One row more than there are records was requested, to detect surplus rows.
     match rows.deleted.len() {
         there if there < records => warnings.push(format!(".dbf: {there} rows for {records} records")),
         there if there > records => {
@@ -239,15 +239,15 @@ fn read_table(
     Ok(rows)
 }
 
-/// Gives each record its row: drops what is damaged, stale or deleted, and sets heights.
+/// Assigns a row to each record: drops damaged, stale and deleted ones, and sets heights.
 fn join(
     records: Vec<Record>,
     rows: Option<Vec<Option<usize>>>,
     attributes: &Rows,
     warnings: &mut Vec<String>,
 ) -> Vec<Shape> {
-    // Where the index leaves out a record but lists another of the same number, an editor wrote
-    // the new one behind the last and left the old one where it was.
+    // If the index leaves out a record but lists another with the same number, an editor appended
+    // the new one and left the old one in the file.
     let listed: HashSet<i32> = match &rows {
         Some(rows) => records.iter().zip(rows).filter(|(_, row)| row.is_some()).filter_map(|(r, _)| r.number).collect(),
         None => HashSet::new(),

@@ -1,8 +1,9 @@
-//! Multipatches: strips, fans and rings in space, to triangles.
+//! Converts multipatches, which are strips, fans and rings in space, to triangles.
 
 type Triangle = [[f64; 3]; 3];
 
-/// Rings with more vertices are left out: at worst the method's time grows with the cube, a second or so here.
+/// Rings with more vertices are left out: at worst the time grows with the cube of their number,
+/// here to about a second.
 const MAX_RING: usize = 1_000;
 
 // Part types (ESRI Shapefile Technical Description, 1998, page 20).
@@ -13,8 +14,10 @@ const INNER: i32 = 3;
 const FIRST: i32 = 4;
 const RING: i32 = 5;
 
-/// The triangles of the parts. Rings are cut into triangles in the coordinate plane that shows
-/// them widest; inner rings are holes of the ring before them. Also returns the number of parts that give none.
+/// Returns the triangles of the parts, and the number of parts that have none.
+///
+/// Rings are triangulated in the coordinate plane in which they appear widest; inner rings are
+/// holes of the ring before them.
 pub(super) fn triangles(parts: &[Vec<[f64; 3]>], kinds: &[i32]) -> (Vec<Triangle>, usize) {
     let mut out = Vec::new();
     let mut unfilled = 0;
@@ -23,7 +26,7 @@ pub(super) fn triangles(parts: &[Vec<[f64; 3]>], kinds: &[i32]) -> (Vec<Triangle
         let part = &parts[i];
         let mut next = i + 1;
         match kinds[i] {
-            // Every second triangle of a strip is turned over, so that all keep one orientation.
+            // Every second triangle of a strip is reversed, so that all have the same orientation.
             STRIP => out.extend(part.windows(3).enumerate().map(|(n, w)| match n % 2 {
                 0 => [w[0], w[1], w[2]],
                 _ => [w[1], w[0], w[2]],
@@ -46,9 +49,9 @@ pub(super) fn triangles(parts: &[Vec<[f64; 3]>], kinds: &[i32]) -> (Vec<Triangle
     (out, unfilled)
 }
 
-/// Cuts a ring with holes into triangles by ear clipping (Meisters 1975), holes joined to the ring
-/// by bridges from their rightmost vertex (Eberly 2002). `None` for rings that have no area or
-/// cross themselves so that no ear is left.
+/// Triangulates a ring with holes by ear clipping (Meisters 1975); bridges from their rightmost
+/// vertices join holes to the ring (Eberly 2002). Returns `None` for a ring that has no area, or
+/// crosses itself so that no ear is left.
 fn fill(outer: &[[f64; 3]], holes: &[Vec<[f64; 3]>]) -> Option<Vec<Triangle>> {
     if outer.len() + holes.iter().map(Vec::len).sum::<usize>() > MAX_RING {
         return None;
@@ -58,7 +61,7 @@ fn fill(outer: &[[f64; 3]], holes: &[Vec<[f64; 3]>]) -> Option<Vec<Triangle>> {
     if normal[axis] == 0.0 || !normal[axis].is_finite() {
         return None;
     }
-    // Cyclic order of the two other axes keeps the sign of the area.
+    // The cyclic order of the two other axes preserves the sign of the area.
     let flat = |p: &[f64; 3]| [p[(axis + 1) % 3], p[(axis + 2) % 3]];
     let mut points: Vec<[f64; 3]> = Vec::new();
     let mut ring = |source: &[[f64; 3]], positive: bool| -> Vec<usize> {
@@ -129,8 +132,8 @@ fn fill(outer: &[[f64; 3]], holes: &[Vec<[f64; 3]>]) -> Option<Vec<Triangle>> {
     Some(out)
 }
 
-/// Whether `p` is seen from corner `q` between its edges, the inside at their left (O'Rourke 1998,
-/// InCone).
+/// Returns true if `p` lies within the angle at corner `q`, with the inside to the left of its
+/// edges (O'Rourke 1998, InCone).
 fn opens(q: [f64; 2], before: [f64; 2], after: [f64; 2], p: [f64; 2]) -> bool {
     if area(q, after, before) >= 0.0 {
         area(q, p, before) > 0.0 && area(p, q, after) > 0.0
@@ -139,7 +142,7 @@ fn opens(q: [f64; 2], before: [f64; 2], after: [f64; 2], p: [f64; 2]) -> bool {
     }
 }
 
-/// Whether two segments have more in common than an end of both.
+/// Returns true if two segments share more than a common end.
 fn meet(p: [f64; 2], q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> bool {
     if [a, b].iter().any(|end| *end == p || *end == q) {
         return false;
@@ -148,7 +151,7 @@ fn meet(p: [f64; 2], q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> bool {
     if d1 * d2 > 0.0 || d3 * d4 > 0.0 {
         return false;
     }
-    // On one line: they meet if their boxes do.
+    // If collinear, they meet if their boxes do.
     d1 != 0.0 || d2 != 0.0 || (0..2).all(|i| p[i].min(q[i]) <= a[i].max(b[i]) && a[i].min(b[i]) <= p[i].max(q[i]))
 }
 
@@ -160,10 +163,10 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Twice the area vector of a ring.
+/// Returns twice the area vector of a ring.
 fn newell(ring: &[[f64; 3]]) -> [f64; 3] {
     let mut sum = [0.0; 3];
-    // From the first vertex, so that large coordinates do not swallow small rings.
+    // Relative to the first vertex, so that small rings keep their precision at large coordinates.
     let from_first = |p: &[f64; 3]| [p[0] - ring[0][0], p[1] - ring[0][1], p[2] - ring[0][2]];
     for pair in ring.windows(2) {
         let [a, b] = [from_first(&pair[0]), from_first(&pair[1])];

@@ -1,4 +1,4 @@
-//! One record of a `.shp` file: its content, as bytes, to a shape.
+//! Parses the content of one `.shp` record into a shape.
 
 use super::patch;
 use crate::data::Shape;
@@ -6,7 +6,7 @@ use crate::data::Shape;
 /// Values below this mean "no data" (ESRI Shapefile Technical Description, 1998, page 2).
 pub(super) const NO_DATA: f64 = -1e38;
 
-/// What the format calls a shape type; `None` for codes that it does not know.
+/// Returns the name of a shape type in the format; `None` for unknown codes.
 pub(super) fn type_name(code: i32) -> Option<&'static str> {
     Some(match code {
         0 => "Null",
@@ -31,43 +31,44 @@ fn has_z(code: i32) -> bool {
     (11..=18).contains(&code) || code == 31
 }
 
-/// Why a record gives no shape.
+/// Why a record yields no shape.
 #[derive(Debug)]
 pub(super) enum Flaw {
-    /// Its counts, indices or type make no sense; says which.
+    /// Its counts, indices or type make no sense; the text says which.
     Damaged(String),
-    /// A coordinate in plan that is no number. The record is well formed, so a value went wrong
-    /// before it was written: what else did is anyone's guess.
+    /// A plan coordinate is not finite. The record is well formed, so the value was wrong before it
+    /// was written, and other values may be wrong as well.
     NotFinite { vertex: usize, axis: char, value: f64 },
 }
 
-/// What is odd, but readable; counted over a file.
+/// Oddities that do not prevent reading, counted over a file.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Oddities {
-    /// Rings that did not end where they began; now they do.
+    /// Rings that were not closed and have been closed.
     pub(super) unclosed: usize,
-    /// Parts without vertices, dropped.
+    /// Parts without vertices, which are dropped.
     pub(super) empty_parts: usize,
-    /// Vertices that no part holds, dropped.
+    /// Vertices that belong to no part, which are dropped.
     pub(super) loose: usize,
-    /// Vertices of Z types whose height is not a number, or "no data".
+    /// Vertices of Z types whose height is not a number or is "no data".
     pub(super) no_height: usize,
-    /// Parts of multipatches that give no triangles.
+    /// Parts of multipatches that have no triangles.
     pub(super) unfilled: usize,
 }
 
-/// A record's content.
+/// The content of a record.
 #[derive(Debug)]
 pub(super) struct Parsed {
     pub(super) code: i32,
     pub(super) shape: Shape,
 }
 
-/// Reads a record's content. The memory used is bounded by its length, whatever its counts say.
+/// Parses the content of a record. The memory used is bounded by its length, whatever its counts
+/// state.
 pub(super) fn parse(content: &[u8], odd: &mut Oddities) -> Result<Parsed, Flaw> {
     let mut bytes = Bytes(content);
     let code = bytes.int("shape type")?;
-    // Counted apart, so that a record that fails half way leaves no trace.
+    // Counted separately, so that a record that fails halfway changes no count.
     let mut found = *odd;
     let shape = match code {
         0 => Shape::Null,
@@ -96,14 +97,14 @@ pub(super) fn parse(content: &[u8], odd: &mut Oddities) -> Result<Parsed, Flaw> 
 }
 
 fn read_point(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Vec<[f64; 3]>, Flaw> {
-    // Without box and count, and z directly behind y: the layout of `read_vertices` without its
-    // ranges.
+    // A point has no box and no count, and z directly follows y: as in `read_vertices`, but without
+    // the ranges.
     let xy = bytes.take(16, "the point")?;
     let z = if has_z(code) { Some(bytes.take(8, "the height")?) } else { None };
     gather(xy, z, odd)
 }
 
-/// The parts, and for a multipatch what each of them is.
+/// The parts and, for a multipatch, their types.
 type Parts = (Vec<Vec<[f64; 3]>>, Vec<i32>);
 
 fn read_parts(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Parts, Flaw> {
@@ -138,8 +139,8 @@ fn read_parts(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Pa
     Ok((parts, kept))
 }
 
-/// `count` vertices: all x and y, then (Z types) the range of z and every z. What follows are
-/// measures, which are not kept and may be missing.
+/// Reads `count` vertices: all x and y, then (Z types) the range of z and every z. Measures may
+/// follow; they are not kept.
 fn read_vertices(bytes: &mut Bytes<'_>, count: usize, code: i32, odd: &mut Oddities) -> Result<Vec<[f64; 3]>, Flaw> {
     let xy = bytes.take(16 * count, &format!("{count} points"))?;
     let z = match has_z(code) {
@@ -194,7 +195,7 @@ fn ints(bytes: &[u8]) -> impl Iterator<Item = i32> + '_ {
     bytes.as_chunks::<4>().0.iter().map(|b| i32::from_le_bytes(*b))
 }
 
-/// The bytes not yet read.
+/// The bytes that have not been read yet.
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -213,7 +214,8 @@ impl<'a> Bytes<'a> {
         Ok(ints(bytes).next().unwrap_or_default())
     }
 
-    /// A count: not negative, and small enough that no product with an item's size overflows.
+    /// Reads a count, which must not be negative and must be so small that no product with the size
+    /// of an item overflows.
     fn count(&mut self, what: &str) -> Result<usize, Flaw> {
         let count = self.int(what)?;
         usize::try_from(count)
@@ -254,7 +256,7 @@ mod tests {
         let lines = vec![vec![[0., 0., 1.], [0., 1., 2.]], vec![[1., 1., 3.], [1., 0., 4.]]];
         assert_eq!(shape.unwrap(), Shape::Lines(lines));
         assert_eq!(odd, Oddities::default());
-        // Measures behind them change nothing, and flat types have no heights.
+        // Measures after them change nothing, and flat types have no heights.
         let (shape, _) = read(&content(3, &[0], &SQUARE[..2], &[]));
         assert!(shape.unwrap().vertices().all(|v| v[2].is_nan()));
         let (shape, odd) = read(&content(23, &[0], &SQUARE[..2], &[5., 6., 5., 6.]));

@@ -1,8 +1,8 @@
-//! The `.dbf` file: names of the attributes, and the numbers of one of them.
+//! The `.dbf` file: the names of the attributes, and the numbers in one of them.
 //!
-//! Real tables are sloppy: no terminator behind the field list, row counts that are wrong, a file
-//! that ends early. What can be placed beyond doubt is read; what cannot is an error here, and a
-//! warning to readers that need no attribute.
+//! Real tables are sloppy: the field list has no terminator, row counts are wrong, the file ends
+//! early. Whatever is unambiguous is read; anything else is an error here, and a warning for
+//! readers that need no attribute.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -20,7 +20,7 @@ pub(super) struct Field {
     pub(super) name: String,
     /// The type letter.
     kind: u8,
-    /// Place in the row.
+    /// Offset in the row.
     at: usize,
     width: usize,
 }
@@ -29,24 +29,24 @@ pub(super) struct Field {
 #[derive(Debug)]
 pub(super) struct Table {
     file: BufReader<File>,
-    /// In the order of the file.
+    /// The columns, in the order of the file.
     pub(super) fields: Vec<Field>,
-    /// Bytes of a row, with its deletion flag.
+    /// Length of a row in bytes, including its deletion flag.
     row: usize,
-    /// What the header says.
+    /// Number of rows, as the header states it.
     pub(super) stated: u64,
 }
 
-/// What [`Table::rows`] found.
+/// The result of [`Table::rows`].
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Rows {
-    /// Whether each row is marked as deleted.
+    /// For each row, true if it is marked as deleted.
     pub(super) deleted: Vec<bool>,
-    /// The number in each row, NaN where there is none; empty if no field was asked for.
+    /// The number in each row, NaN if there is none; empty if no field was requested.
     pub(super) values: Vec<f64>,
-    /// Texts that are no numbers.
+    /// How many texts are not numbers.
     pub(super) not_numbers: usize,
-    /// The first of them.
+    /// The first text that is not a number.
     pub(super) first_text: Option<String>,
 }
 
@@ -54,7 +54,7 @@ impl Table {
     /// Reads the header. `code_page` is the text of the `.cpg` file.
     ///
     /// # Errors
-    /// If the rows cannot be told apart.
+    /// If the rows cannot be separated.
     pub(super) fn open(path: &Path, code_page: Option<&str>) -> Result<Self> {
         let mut file = BufReader::new(File::open(path)?);
         let mut head = [0; 32];
@@ -74,10 +74,10 @@ impl Table {
         Ok(Table { file, fields, row, stated: u64::from(stated) })
     }
 
-    /// The field with this name: as written, else in any case.
+    /// Returns the field with this name: as written, else in any case.
     ///
     /// # Errors
-    /// If there is none, or its type has no numbers; says which fields there are.
+    /// If there is none, or its type has no numbers; the message lists the fields.
     pub(super) fn find(&self, name: &str) -> Result<Field> {
         let field = self
             .fields
@@ -95,7 +95,7 @@ impl Table {
         }
     }
 
-    /// Reads the rows that are there, whatever their stated count, but not more than `limit`.
+    /// Reads the existing rows, whatever their stated count, but at most `limit`.
     ///
     /// # Errors
     /// If reading fails.
@@ -104,7 +104,7 @@ impl Table {
         let mut row = vec![0; self.row];
         while rows.deleted.len() < limit {
             let got = fill(&mut self.file, &mut row)?;
-            // A last row that lacks its end still counts, as long as the field is there.
+            // An incomplete last row still counts if it contains the field.
             let needed = field.map_or(1, |field| field.at + field.width);
             let cut = got < row.len() && !matches!(row[0], b' ' | DELETED);
             if got < needed || cut || row[0] == END_OF_FILE {
@@ -124,7 +124,7 @@ impl Table {
         Ok(rows)
     }
 
-    /// How many whole rows the file has room for.
+    /// Returns the number of complete rows that the file has room for.
     pub(super) fn room(&mut self) -> Result<u64> {
         let here = self.file.stream_position()?;
         let end = self.file.seek(SeekFrom::End(0))?;
@@ -133,13 +133,13 @@ impl Table {
     }
 }
 
-/// The fields of the descriptors in `list`, which ends at its terminator or, as in sloppy files,
-/// without one.
+/// Returns the fields of the descriptors in `list`, which ends at its terminator or, in sloppy
+/// files, without one.
 fn fields(list: &[u8], row: usize, code_page: Option<&str>) -> Result<Vec<Field>> {
     let descriptors: Vec<&[u8; 32]> =
         list.as_chunks::<32>().0.iter().take_while(|bytes| bytes[0] != END_OF_FIELDS && bytes[0] != 0).collect();
     let plain = |bytes: &[u8; 32]| usize::from(bytes[16]);
-    // Clipper keeps the high byte of a long text's width where numbers have their decimals.
+    // For long texts, Clipper stores the high byte of the width where numbers have their decimals.
     let long = |bytes: &[u8; 32]| plain(bytes) + if bytes[11] == b'C' { usize::from(bytes[17]) << 8 } else { 0 };
     let sum = |width: &dyn Fn(&[u8; 32]) -> usize| 1 + descriptors.iter().map(|bytes| width(bytes)).sum::<usize>();
     let width: &dyn Fn(&[u8; 32]) -> usize = match row {
@@ -161,7 +161,8 @@ fn fields(list: &[u8], row: usize, code_page: Option<&str>) -> Result<Vec<Field>
         .collect())
 }
 
-/// Text in the encoding of the `.cpg` file; without one, UTF-8 if it is that, else Windows-1252.
+/// Decodes text in the encoding of the `.cpg` file; without one, as UTF-8 if valid, else as
+/// Windows-1252.
 fn decode(bytes: &[u8], code_page: Option<&str>) -> String {
     let utf8 =
         code_page.is_some_and(|page| matches!(page.trim().to_ascii_uppercase().as_str(), "UTF-8" | "UTF8" | "65001"));
@@ -174,7 +175,7 @@ fn decode(bytes: &[u8], code_page: Option<&str>) -> String {
 }
 
 fn windows_1252(byte: u8) -> char {
-    // 0x80 to 0x9F; the five unused codes stay what Latin-1 makes of them.
+    // 0x80 to 0x9F; the five unused codes are decoded as in Latin-1.
     const HIGH: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
     match byte {
         0x80..=0x9F => HIGH.chars().nth(usize::from(byte) - 0x80).unwrap_or(char::from(byte)),
@@ -182,8 +183,8 @@ fn windows_1252(byte: u8) -> char {
     }
 }
 
-/// The number in a cell: NaN if it is empty (also: filled with stars, as where a number did not
-/// fit), the text itself if it is something else.
+/// Parses the number in a cell. It is NaN if the cell is empty or filled with stars (a number did
+/// not fit). If the cell contains something else, the error is its text.
 fn number(kind: u8, cell: &[u8]) -> std::result::Result<f64, String> {
     if let (b'I' | b'+', Ok(bytes)) = (kind, cell.try_into()) {
         return Ok(f64::from(i32::from_le_bytes(bytes)));
@@ -198,8 +199,8 @@ fn number(kind: u8, cell: &[u8]) -> std::result::Result<f64, String> {
     parse_number(text.trim_matches(|c: char| c.is_whitespace() || c == '\0'))
 }
 
-/// A number as people write it into tables: with a point or a comma before its decimals. NaN for
-/// nothing, and for stars.
+/// Parses a number as people write it into tables: with a decimal point or comma. Empty text and
+/// stars give NaN.
 pub(in crate::io) fn parse_number(text: &str) -> std::result::Result<f64, String> {
     if text.chars().all(|c| c == '*') {
         return Ok(f64::NAN);
@@ -211,7 +212,7 @@ pub(in crate::io) fn parse_number(text: &str) -> std::result::Result<f64, String
     }
 }
 
-/// Reads until the buffer is full or the file ends; says how far.
+/// Reads until the buffer is full or the file ends; returns the number of bytes read.
 fn fill(file: &mut impl Read, buffer: &mut [u8]) -> Result<usize> {
     let mut got = 0;
     while got < buffer.len() {
@@ -281,7 +282,7 @@ mod tests {
                 assert_eq!(values(&file, "z").values, [1.0, 2.0], "{terminator:?} {stated}");
             }
         }
-        // The last row is cut, behind the field and in it.
+        // The last row is cut, after the field and within it.
         let file = table(&[("Z", b'N', 2), ("T", b'C', 3)], b"\r", &[" 10abc", " 20a"], 2);
         assert_eq!((values(&file, "Z").values.len(), values(&file, "T").values.len()), (2, 1));
         assert_eq!(Table::open(file.path(), None).unwrap().room().unwrap(), 1);

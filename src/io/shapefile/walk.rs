@@ -1,4 +1,4 @@
-//! From record to record through a `.shp` file.
+//! Walks through the records of a `.shp` file.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -12,29 +12,29 @@ use crate::error::{Error, Result};
 /// A record that was found, readable or not.
 #[derive(Debug)]
 pub(super) struct Record {
-    /// Of its header, in bytes.
+    /// Offset of its header, in bytes.
     pub(super) offset: u64,
-    /// What its header calls it; `None` if the header is damaged.
+    /// The number in its header; `None` if the header is damaged.
     pub(super) number: Option<i32>,
-    /// `None` if it is damaged.
+    /// The shape; `None` if the record is damaged.
     pub(super) shape: Option<Shape>,
 }
 
-/// All that a `.shp` has.
+/// Everything that a `.shp` contains.
 #[derive(Debug, Default)]
 pub(super) struct Walk {
-    /// In the order of the file.
+    /// The records, in the order of the file.
     pub(super) records: Vec<Record>,
-    /// How many shapes there are of each type code, null shapes apart.
+    /// The number of shapes per type code, without null shapes.
     pub(super) types: BTreeMap<i32, usize>,
-    /// Places that could not be read.
+    /// What could not be read.
     pub(super) damage: Damage,
     /// Where reading ended, if that was before the end of the file.
     pub(super) end: Option<u64>,
     pub(super) odd: Oddities,
 }
 
-/// Places that could not be read: a line for each of the first, and how many more there are.
+/// What could not be read: a message for each of the first damages, and how many more there are.
 #[derive(Debug, Default)]
 pub(super) struct Damage {
     pub(super) reported: Vec<String>,
@@ -53,9 +53,10 @@ impl Damage {
     }
 }
 
-/// Reads the records behind the header. A damaged one is left out and told of. Behind a header
-/// that makes no sense the next record that `index` lists and whose length agrees is sought;
-/// without one the walk ends there.
+/// Reads the records after the header.
+///
+/// A damaged record is left out and reported. After a header that makes no sense, reading continues
+/// at the next record that `index` lists and whose length agrees; without an index it ends there.
 ///
 /// # Errors
 /// If reading fails, or a coordinate is not a number.
@@ -82,7 +83,7 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
             }
         };
         content.clear();
-        // Not `vec![0; length]`: what is not there is not allocated.
+        // Not `vec![0; length]`, which would allocate more than the file contains.
         file.by_ref().take(length).read_to_end(&mut content)?;
         let shape = match record::parse(&content, &mut walk.odd) {
             Ok(Parsed { code, shape }) => {
@@ -107,7 +108,7 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
     Ok(walk)
 }
 
-/// A record's number and the length of its content; or why it cannot be a record.
+/// Reads a record's number and the length of its content, or returns why this is not a record.
 fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u64), String>> {
     if left < 8 {
         return Ok(Err(format!("{left} bytes, too few for a record")));
@@ -125,8 +126,8 @@ fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u
     })
 }
 
-/// The next record that the index knows, where the file then stands, and those before it that are
-/// listed, but are not there.
+/// Seeks to the next record that the index lists and that exists. Returns the offsets of the listed
+/// records before it that do not exist, and its own offset.
 fn resync(file: &mut BufReader<File>, size: u64, from: u64, index: Option<&Index>) -> Result<Option<(Vec<u64>, u64)>> {
     let mut skipped = Vec::new();
     let mut at = from;

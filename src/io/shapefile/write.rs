@@ -1,4 +1,4 @@
-//! Writing of shapefiles.
+//! Writes shapefiles.
 
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -10,21 +10,21 @@ use crate::error::{Error, Result};
 use crate::io::contour_summary::ContourSummary;
 use crate::io::{Destination, Output};
 
-/// Many programs read no file of the set beyond this many bytes.
+/// Limit for the bytes of each file: many programs read no more.
 const MAX_BYTES: u64 = i32::MAX as u64;
 
-/// The cure for shapefiles that would be larger.
+/// The cure if a shapefile would be too large.
 const TOO_LARGE: &str = "write GeoJSON, or less: a larger interval, a part of the area";
 
-/// A height that is not there; below [`record::NO_DATA`](super::record::NO_DATA).
+/// The stored value for a missing height; below [`record::NO_DATA`](super::record::NO_DATA).
 const NO_HEIGHT: f64 = -1e40;
 
-/// Of a field for lengths and heights. The text in it is the shortest that reads back as the same
-/// number, and always fits.
+/// Width of a field for lengths and heights. The text in it is the shortest that reads back as the
+/// same number, which always fits.
 const NUMBER_WIDTH: u8 = 24;
 
-/// What the header of the field states, and tables are shown with. Readers take the text as it
-/// is: a number that needs more decimals has them.
+/// The decimals that the header of the field states and programs display. Readers use the text as
+/// it is, so a number that needs more decimals has them.
 const NUMBER_DECIMALS: u8 = 6;
 
 const ID_WIDTH: u8 = 10;
@@ -32,21 +32,21 @@ const ID_WIDTH: u8 = 10;
 /// A numeric attribute.
 #[derive(Debug, Clone, Copy)]
 pub struct Column<'a> {
-    /// At most ten bytes of ASCII.
+    /// The name: at most ten bytes of ASCII.
     pub name: &'a str,
-    /// One number per shape; NaN for none.
+    /// One number per shape; NaN for a missing one.
     pub values: &'a [f64],
 }
 
 /// Writes contours as PolyLineZ with the fields `ID` (from 1) and `ELEV`; every vertex has the
-/// height of its line's level. The bytes depend on the lines alone: the date in the `.dbf` is
-/// always 1970-01-01.
+/// height of its line's level. The bytes depend only on the lines: the date in the `.dbf` is always
+/// 1970-01-01.
 ///
-/// Lines are written as they come; nothing is kept of them. Lines of fewer than two vertices are
-/// left out.
+/// Lines are written as they arrive; none are kept in memory. Lines with fewer than two vertices
+/// are left out.
 ///
 /// # Errors
-/// If a file cannot be written, or would be larger than 2 GiB. The old files, if any, are then
+/// If a file cannot be written, or would be larger than 2 GiB. Existing files are then left
 /// untouched.
 pub fn write_contours<'a>(
     target: impl Into<Destination<'a>>,
@@ -58,7 +58,8 @@ pub fn write_contours<'a>(
     let mut set = FileSet::create(target.path(), 13, &fields)?;
     let mut summary = ContourSummary::default();
     let mut record = Vec::new();
-    // `PERF:` lines of one level come together: to write its number for each would take longer than to draw small ones.
+    // `PERF:` consecutive lines have the same level; formatting its number for each would take
+    // longer than tracing small lines.
     let mut elevation = (f64::NAN, String::new());
     for line in lines {
         if line.points.len() < 2 {
@@ -77,11 +78,11 @@ pub fn write_contours<'a>(
     Ok(summary)
 }
 
-/// Writes shapes of one kind (null shapes may be among them): points, lines or polygons, with
-/// heights if any vertex has one. Without columns the table holds an `ID` from 1.
+/// Writes shapes of one kind (with null shapes among them, if any): points, lines or polygons, with
+/// heights if any vertex has one. Without columns, the table has an `ID` from 1.
 ///
 /// # Errors
-/// If the layer mixes kinds or holds triangles, a column's length or name does not fit, a file
+/// If the layer mixes kinds or contains triangles, a column's length or name does not fit, a file
 /// cannot be written or would be larger than 2 GiB.
 pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, columns: &[Column<'_>]) -> Result<()> {
     let target = target.into();
@@ -114,10 +115,11 @@ pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, column
     set.finish(target, layer.crs.as_ref())
 }
 
-/// Returns an error if lines with heights and so many vertices in all are too large for a shapefile.
+/// Returns an error if lines with heights and `vertices` vertices in total are too large for a
+/// shapefile.
 ///
 /// # Errors
-/// With the size that they would have at least.
+/// If a file would be too large; the message states the minimum size.
 pub fn foresee(vertices: u64) -> Result<()> {
     let bytes = vertices.saturating_mul(24);
     if bytes <= MAX_BYTES {
@@ -143,7 +145,7 @@ fn type_code(shapes: &[Shape]) -> Result<i32> {
     Ok(if heights { flat + 10 } else { flat })
 }
 
-/// The content of one record.
+/// Appends the content of one record.
 fn content(out: &mut Vec<u8>, code: i32, shape: &Shape) {
     match shape {
         Shape::Lines(parts) | Shape::Polygon(parts) => {
@@ -180,7 +182,8 @@ fn poly(out: &mut Vec<u8>, code: i32, lengths: &[usize], points: impl Iterator<I
     vertices(out, code, points);
 }
 
-/// All x and y; for Z types the range of z and every z. Measures are optional and left out.
+/// Appends all x and y and, for Z types, the range of z and every z. Measures are optional and left
+/// out.
 fn vertices(out: &mut Vec<u8>, code: i32, points: impl Iterator<Item = [f64; 3]> + Clone) {
     points.clone().for_each(|[x, y, _]| {
         double(out, x);
@@ -207,7 +210,7 @@ fn put_box(out: &mut Vec<u8>, points: impl Iterator<Item = [f64; 3]>) {
     }
 }
 
-/// An empty range is written as zeros, as every other program does.
+/// Appends a range; an empty one as zeros, as all other programs do.
 fn range(out: &mut Vec<u8>, min: f64, max: f64) {
     let empty = min > max;
     double(out, if empty { 0.0 } else { min });
@@ -226,7 +229,7 @@ fn id(number: usize) -> String {
     format!("{number:>width$}", width = usize::from(ID_WIDTH))
 }
 
-/// The shortest text that reads back as the same number; blank for NaN.
+/// Returns the shortest text that reads back as the same number; blank for NaN.
 fn real(value: f64) -> String {
     let width = usize::from(NUMBER_WIDTH);
     if !value.is_finite() {
@@ -235,13 +238,13 @@ fn real(value: f64) -> String {
     // Negative zero is zero.
     let mut text = (value + 0.0).to_string();
     if text.len() > width {
-        // At most 17 digits, their point, two signs, the e and three digits: 24.
+        // At most 24 characters: 17 digits with their point, two signs, the e and three digits.
         text = format!("{value:e}");
     }
     format!("{text:>width$}")
 }
 
-/// A field descriptor of the `.dbf`.
+/// Returns a field descriptor of the `.dbf`.
 fn field(name: &str, width: u8, decimals: u8) -> Result<[u8; 32]> {
     if name.is_empty() || name.len() > 10 || !name.is_ascii() {
         return Err(Error::usage(format!("field name '{name}': 1 to 10 ASCII characters are possible")));
@@ -254,7 +257,7 @@ fn field(name: &str, width: u8, decimals: u8) -> Result<[u8; 32]> {
     Ok(bytes)
 }
 
-/// `.shp`, `.shx` and `.dbf`, being written.
+/// `.shp`, `.shx` and `.dbf` while they are written.
 struct FileSet {
     shp: Output,
     shx: Output,
@@ -283,7 +286,7 @@ impl FileSet {
             bounds: Bounds::default(),
             scratch: Vec::new(),
         };
-        // Room for the headers, which are known at the end.
+        // Placeholders for the headers, which are known at the end.
         set.shp.write_all(&[0; HEADER as usize]).map_err(|e| failed(e, target))?;
         set.shx.write_all(&[0; HEADER as usize]).map_err(|e| failed(e, set.shx.target()))?;
         let header = set.dbf_header();
@@ -332,7 +335,8 @@ impl FileSet {
         Ok(())
     }
 
-    /// Completes the files and hands them over. What an older set left behind and would now lie is removed with that.
+    /// Completes the files and hands them over. Files of an older set that would now be wrong are
+    /// removed at the same time.
     fn finish(mut self, destination: Destination, crs: Option<&Crs>) -> Result<()> {
         let target = destination.path();
         let prj = crs.map(Crs::to_prj).filter(|text| !text.is_empty());
@@ -347,13 +351,13 @@ impl FileSet {
         let dbf_header = self.dbf_header();
         rewrite(&mut self.dbf, &dbf_header)?;
 
-        // Spatial indexes of the old shapes, and their coordinate system where the new have none.
+        // Spatial indexes of the old shapes, and their coordinate system if the new ones have none.
         let stale = ["qix", "sbn", "sbx"].into_iter().chain(prj.is_none().then_some("prj"));
         let stale = stale.map(|extension| target.with_extension(extension));
         destination.put_all(prj.into_iter().chain([cpg, self.dbf, self.shx]), self.shp, stale)
     }
 
-    /// The header of a `.shp` or `.shx` of this many bytes.
+    /// Returns the header of a `.shp` or `.shx` of this many bytes.
     fn header(&self, bytes: u64) -> Vec<u8> {
         let mut out = Vec::with_capacity(HEADER as usize);
         out.extend(FILE_CODE.to_be_bytes());
@@ -449,13 +453,13 @@ mod tests {
                 }
             }
         }
-        // A height that is missing among others stays missing.
+        // A missing height among others stays missing.
         write_layer(&target, &layer(vec![Shape::Lines(vec![vec![a, [1., 1., f64::NAN]]])]), &[]).unwrap();
         let back = read_layer(&target, None).unwrap();
         let heights: Vec<f64> = back.shapes[0].vertices().map(|v| v[2]).collect();
         assert!(heights[0] == 1.0 && heights[1].is_nan());
         assert_eq!(back.fields, ["ID"]);
-        // Nor is one made up where there is none.
+        // If all heights are missing, none is invented.
         write_layer(&target, &layer(vec![Shape::Lines(vec![vec![[0., 0., f64::NAN], [1., 1., f64::NAN]]])]), &[])
             .unwrap();
         assert_eq!(read_layer(&target, None).unwrap().format, "shapefile PolyLine");

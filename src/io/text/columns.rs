@@ -1,4 +1,4 @@
-//! Which field of a line is what, and the point that it gives.
+//! Assigns the fields of a line to columns, and reads points from them.
 
 use super::quote;
 use super::separator::Separator;
@@ -12,7 +12,7 @@ const CLASS_NAMES: &[&str] = &["class", "classification"];
 
 const CURE: &str = "correct the line, or make it a comment with # at its beginning";
 
-/// How a line is divided, and which of its fields are taken.
+/// How a line is divided into fields, and which of them are used.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
     pub(super) separator: Separator,
@@ -36,11 +36,11 @@ impl Point {
 }
 
 impl Layout {
-    /// What there is without a header.
+    /// The layout without a header.
     pub(super) const FIRST: Self =
         Layout { separator: Separator::Blanks, columns: Columns { x: 1, y: 2, z: 3, class: None } };
 
-    /// Finds the columns by their names.
+    /// Returns the layout of a header line, by the names of the columns.
     pub(super) fn named(header: &[u8], separator: Separator) -> Result<Self> {
         let names: Vec<String> = separator.fields(header).map(bare_name).collect();
         let find =
@@ -104,7 +104,7 @@ impl Layout {
     }
 }
 
-/// A name in lower case, without what stands in brackets.
+/// Returns a name in lower case, without text in brackets.
 fn bare_name(field: &[u8]) -> String {
     let text = String::from_utf8_lossy(field).to_lowercase();
     let end = text.find(['(', '[']).unwrap_or(text.len());

@@ -1,24 +1,29 @@
-//! Points as text: XYZ, CSV and their relatives.
+//! Points as text: XYZ, CSV and similar formats.
 //!
-//! One point in a line. Fields are separated by semicolons, tabs, commas or blanks; which, is told
-//! by the first point. Which columns are taken is what [`Columns`] say, if they are given; else what a header line
-//! says; else the first three are x, y and z. (If the first then counts up by one in each line and three numbers
-//! follow, it is perhaps the number of a point: that is refused. If it holds whole numbers only, and the next two do
-//! not, that is a warning.) Columns are found by name, in any case and order:
+//! Each line contains one point. Fields are separated by semicolons, tabs, commas or blanks; the
+//! first point shows by which. The columns are those of [`Columns`] if given, else those that a
+//! header line names, else the first three are x, y and z.
+//!
+//! Without a header, the first column may be the number of the point. If it counts up by one from
+//! line to line and three numbers follow, reading fails. If it only contains integers, and the next
+//! two columns do not, there is a warning.
+//!
+//! Header names are matched in any case and order:
 //!
 //! | column | names |
 //! |---|---|
 //! | x | `x`, `easting`, `east`, `e`, `lon`, `long`, `longitude` |
 //! | y | `y`, `northing`, `north`, `n`, `lat`, `latitude` |
 //! | z | `z`, `elevation`, `elev`, `height`, `h`, `altitude`, `alt` |
-//! | class, if there is one | `class`, `classification` |
+//! | class, optional | `class`, `classification` |
 //!
-//! A unit in brackets after a name is ignored: `Height (m)`. Comments begin with `#` or `//`; one
-//! before the points may be the header, if it has no more names than a line has fields (words up to
-//! a colon do not count). Fields may stand in double quotes. A decimal comma is understood where
-//! fields are not separated by commas. A first line of one number is the count of points that
-//! `.pts` files begin with. UTF-8 and its relatives, with or without a byte order mark; any line
-//! ends. What is not a point is an error with its line: no line is dropped silently.
+//! A unit in brackets after a name is ignored: `Height (m)`. Comments begin with `#` or `//`. A
+//! comment before the points may be the header if it has no more names than a line has fields
+//! (words up to a colon do not count). Fields may be in double quotes. A decimal comma is accepted
+//! unless commas separate the fields. A first line with a single number is the count of points at
+//! the start of `.pts` files. The text may be UTF-8 or a compatible encoding, with or without a
+//! byte order mark and with any line ends. A line that is not a point leads to an error with its
+//! number: no line is dropped silently.
 
 mod columns;
 mod numbering;
@@ -39,17 +44,18 @@ use crate::error::{Error, Result};
 /// Points in a batch.
 const BATCH: usize = 1 << 16;
 
-/// Bytes in a line; text for people has shorter ones, and a binary file may have none at all.
+/// Limit for the bytes of a line; text for people has shorter lines, and a binary file may have no
+/// line ends.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// Reads points from text; made by [`open`].
+/// A reader of points from text, made by [`open`].
 pub struct TextReader {
     lines: Lines,
     layout: Layout,
     info: PointInfo,
-    /// The first point was read to find out about the columns, and waits here.
+    /// The first point, which was read to determine the columns and has not been returned yet.
     first: Option<Point>,
-    /// As long as the first column may be the number of the point.
+    /// Present while the first column may still be the number of the point.
     numbering: Option<Numbering>,
     read: u64,
     is_done: bool,
@@ -62,8 +68,8 @@ impl std::fmt::Debug for TextReader {
     }
 }
 
-/// Opens a file of points as text; `-` is the standard input. Without `columns`, a header or the first three columns
-/// are taken.
+/// Opens a text file of points; `-` is the standard input. Without `columns`, a header or the first
+/// three columns are used.
 ///
 /// # Errors
 /// If the file cannot be read, or its first lines are neither a header nor a point.
@@ -76,7 +82,7 @@ pub fn open(path: impl AsRef<Path>, columns: Option<Columns>) -> Result<TextRead
     from_stream(file, path, columns)
 }
 
-/// Reads a stream; `name` is for messages.
+/// Reads points from a stream; messages call it `name`.
 ///
 /// # Errors
 /// As [`open`].
@@ -132,7 +138,7 @@ impl PointSource for TextReader {
                 }
             }
         }
-        // One batch is enough to tell numbers from coordinates.
+        // One batch is enough to distinguish numbers from coordinates.
         match self.numbering.take().map(Numbering::guess) {
             Some(Guess::Counted) => {
                 self.is_done = true;
@@ -171,7 +177,7 @@ impl TextReader {
     }
 }
 
-/// What the first lines say.
+/// The result of reading the first lines.
 struct Start {
     layout: Layout,
     has_header: bool,
@@ -181,10 +187,10 @@ struct Start {
 }
 
 fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
-    // What a header names, or was asked for.
+    // The layout that a header or the caller gives.
     let asked = columns.map(|columns| Layout { columns, ..Layout::FIRST });
     let mut named: Option<Layout> = None;
-    // What a comment names, and how many names it has.
+    // The layout that a comment names, and its number of names.
     let mut commented: Option<(Layout, usize)> = None;
     let mut is_header_passed = false;
     let mut count = None;
@@ -205,7 +211,7 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
         }
         let separator = Separator::guess(line).ok_or_else(|| not_a_point(line))?;
         if separator.fields(line).all(|field| separator.number(field).is_none()) {
-            // Its points may be separated by something else than its names.
+            // The points may have another separator than the names.
             named = match asked {
                 None => Some(Layout::named(line, separator)?),
                 Some(_) if is_header_passed => return Err(not_a_point(line)),
@@ -235,7 +241,7 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
     Ok(Start { layout, has_header, count, first: None, numbering: None })
 }
 
-/// Whether the line is one whole number.
+/// Returns true if the line is a single integer.
 fn is_count(line: &[u8]) -> bool {
     let line = line.trim_ascii();
     !line.is_empty() && line.len() <= 18 && line.iter().all(u8::is_ascii_digit)
@@ -249,18 +255,18 @@ fn not_a_point(line: &[u8]) -> Error {
     error.cure("expected x, y and z separated by semicolons, tabs, commas or blanks, or a header line that names them")
 }
 
-/// The lines of the file, one after the other.
+/// The lines of a file, read one by one.
 struct Lines {
     source: BufReader<Box<dyn Read + Send>>,
     name: PathBuf,
-    /// Without its end.
+    /// The current line, without its end.
     line: Vec<u8>,
-    /// From 1 on.
+    /// The number of the current line, from 1.
     number: u64,
 }
 
 impl Lines {
-    /// Whether there was one more line.
+    /// Reads the next line; returns false at the end of the file.
     fn next(&mut self) -> Result<bool> {
         self.line.clear();
         self.number += 1;
@@ -286,7 +292,7 @@ impl Lines {
         Ok(length > 0)
     }
 
-    /// Says in which file and line it was.
+    /// Adds the file and the line to an error.
     fn locate(&self, error: Error) -> Error {
         error.at(format!("line {}", self.number)).in_file(&self.name)
     }
@@ -310,7 +316,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Text for a message: on one line, and not too long.
+/// Returns text for a message: on one line, and shortened.
 fn quote(text: &[u8]) -> String {
     const MOST: usize = 60;
     let text = text.trim_ascii();

@@ -1,27 +1,28 @@
-//! Whether the first column may be the number of the point rather than its x.
+//! Detects a first column that may be the number of the point instead of its x.
 
 use super::separator::Separator;
 use crate::error::Error;
 
-/// What a first column of whole numbers is, with three numbers behind it in each line.
+/// What is known of a first column of integers that is followed by three numbers in each line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Numbering {
     last: f64,
     lines: u64,
-    /// Whether it has counted up by one so far.
+    /// True if it has counted up by one so far.
     is_counted: bool,
-    /// Whether one of the next two columns has held a number that is not whole.
+    /// True if one of the next two columns has had a number that is not an integer.
     has_fraction: bool,
 }
 
-/// What the first column seems to be.
+/// The likely content of the first column.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Guess {
-    /// x, as far as can be seen.
+    /// x, as far as the points show.
     Coordinates,
     /// The number of the point: it counts up by one.
     Counted,
-    /// Maybe the number of the point: it is whole in each line, and the next two are not.
+    /// Perhaps the number of the point: it is an integer in each line, and the next two columns are
+    /// not.
     Whole,
 }
 
@@ -29,14 +30,16 @@ pub(super) const WHOLE: &str = "the first column, taken as x, holds whole number
                                 is the number of the point, say so with --columns PNEZD (or PENZD)";
 
 impl Numbering {
-    /// What is known after the first point; `None` if its first column cannot number points.
+    /// Returns what is known after the first point; `None` if its first column cannot be a number
+    /// of the point.
     pub(super) fn start(separator: Separator, line: &[u8]) -> Option<Self> {
         let [last, x, y] = first_of_four(separator, line)?;
         let has_fraction = x.fract() != 0.0 || y.fract() != 0.0;
         (last.fract() == 0.0).then_some(Numbering { last, lines: 1, is_counted: true, has_fraction })
     }
 
-    /// What is known after one more point; `None` if its first column cannot number points.
+    /// Returns what is known after one more point; `None` if its first column cannot be a number of
+    /// the point.
     pub(super) fn next(self, separator: Separator, line: &[u8]) -> Option<Self> {
         let here = Numbering::start(separator, line)?;
         Some(Numbering {
@@ -47,7 +50,7 @@ impl Numbering {
         })
     }
 
-    /// What is likely after all these points.
+    /// Returns what the first column is likely to be after all these points.
     pub(super) fn guess(self) -> Guess {
         match self {
             _ if self.lines < 2 => Guess::Coordinates,
@@ -58,7 +61,7 @@ impl Numbering {
     }
 }
 
-/// The first three numbers, if all of the first four fields are numbers.
+/// Returns the first three numbers, if the first four fields are all numbers.
 fn first_of_four(separator: Separator, line: &[u8]) -> Option<[f64; 3]> {
     let mut numbers = separator.fields(line).map_while(|field| separator.number(field));
     let first = [numbers.next()?, numbers.next()?, numbers.next()?];

@@ -1,6 +1,6 @@
-//! What stands between the fields of a line.
+//! The separator between the fields of a line.
 
-/// What stands between two fields.
+/// The separator between two fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
     Semicolon,
@@ -10,7 +10,8 @@ pub(super) enum Separator {
 }
 
 impl Separator {
-    /// The first one that makes three numbers of the line, or else three fields.
+    /// Returns the first separator that divides the line into three numbers, or else into three
+    /// fields.
     pub(super) fn guess(line: &[u8]) -> Option<Self> {
         let all = [Self::Semicolon, Self::Tab, Self::Comma, Self::Blanks];
         let has_numbers =
@@ -37,7 +38,7 @@ impl Separator {
         }
     }
 
-    /// The fields of a line, without quotes and the blanks around them.
+    /// Returns the fields of a line, without quotes and surrounding blanks.
     pub(super) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let mut rest = Some(if self == Self::Blanks { line.trim_ascii() } else { line });
         std::iter::from_fn(move || {
@@ -52,7 +53,7 @@ impl Separator {
         })
     }
 
-    /// Bytes before the next separator that is not in quotes.
+    /// Returns the number of bytes before the next separator that is not in quotes.
     fn field_length(self, line: &[u8]) -> usize {
         let mut in_quotes = false;
         line.iter()
@@ -63,7 +64,7 @@ impl Separator {
             .unwrap_or(line.len())
     }
 
-    /// A number, with a decimal comma where the comma has no other use.
+    /// Parses a number; the comma may be a decimal comma if it is not the separator.
     pub(super) fn number(self, field: &[u8]) -> Option<f64> {
         let text = std::str::from_utf8(field).ok()?;
         let value: f64 = match self {

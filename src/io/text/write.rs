@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::io::decimal::Decimal;
 use crate::io::output::{Destination, Output};
 
-/// Writes points as text; made by [`create`].
+/// A writer of points as text, made by [`create`].
 #[derive(Debug)]
 pub struct TextWriter<'a> {
     target: Destination<'a>,
@@ -18,10 +18,10 @@ pub struct TextWriter<'a> {
     summary: PointSummary,
 }
 
-/// Starts a file of text: one point a line, numbers that read back as the same doubles.
+/// Starts a text file with one point per line; the numbers read back as the same doubles.
 ///
-/// With the extension `.csv` there is a header, commas separate, and the class comes fourth if all sources have one;
-/// else it is x, y and z with blanks between them.
+/// With the extension `.csv` the file has a header and commas as separators, and the class as the
+/// fourth column if all sources have it. Otherwise it has x, y and z separated by blanks.
 ///
 /// # Errors
 /// If the target cannot be written.

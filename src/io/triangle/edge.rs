@@ -1,6 +1,6 @@
 //! `.edge`: the edges of triangles.
 //!
-//! | line | holds |
+//! | line | contains |
 //! |---|---|
 //! | first | number of edges, number of boundary markers (0 or 1) |
 //! | each of the others | edge number, two vertices, boundary marker |
@@ -15,7 +15,7 @@ use crate::io::rows::Rows;
 const COUNTS: &str = "EDGES MARKERS";
 const EDGE: &str = "NUMBER VERTEX VERTEX MARKER";
 
-/// The edges whose marker is not 0: pieces of segments, and the boundary.
+/// Returns the edges whose marker is not 0: sub-constraints, and edges of the boundary.
 pub(super) fn read_marked(path: &Path, numbering: Numbering) -> Result<Vec<[u32; 2]>> {
     read_rows(path, |rows| read(rows, numbering))
 }

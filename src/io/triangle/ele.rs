@@ -1,11 +1,11 @@
 //! `.ele`: triangles.
 //!
-//! | line | holds |
+//! | line | contains |
 //! |---|---|
-//! | first | number of triangles, vertices of each (3, or 6 with the middles of the edges), number of attributes |
+//! | first | number of triangles, vertices of each (3, or 6 with the midpoints of the edges), number of attributes |
 //! | each of the others | triangle number, vertices, attributes |
 //!
-//! Middles of edges and attributes are read and not used.
+//! Midpoints of edges and attributes are read, but not used.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -29,7 +29,7 @@ pub(super) fn read_file(path: &Path) -> Result<Triangles> {
         None => None,
     };
     let constrained_edges = match (segments, beside("edge")) {
-        // Segments among points on one line have no triangles beside them.
+        // Segments between collinear points have no adjacent triangles.
         _ if faces.is_empty() => Vec::new(),
         (Some(segments), _) => segments.into_iter().map(|segment| segment.ends).collect(),
         (None, Some(path)) => edge::read_marked(&path, numbering)?,

@@ -1,38 +1,40 @@
-//! The files of Triangle (Shewchuk 1996, "Triangle: Engineering a 2D Quality Mesh Generator and Delaunay
-//! Triangulator"; the formats are those of its version 1.6).
+//! The files of Triangle (Shewchuk 1996, "Triangle: Engineering a 2D Quality Mesh Generator and
+//! Delaunay Triangulator"; the formats are those of version 1.6).
 //!
-//! | file | holds | read | written |
+//! | file | contains | read | written |
 //! |---|---|---|---|
 //! | `.node` | vertices with attributes and boundary markers | yes | yes |
-//! | `.poly` | the same, or none; segments; holes; regions | yes | yes, without vertices |
-//! | `.ele` | triangles, with attributes | yes, with the `.node` beside it | yes |
-//! | `.edge` | edges with boundary markers | beside an `.ele` without a `.poly` | yes |
-//! | `.neigh` | the neighbors of the triangles | beside an `.ele` | yes |
+//! | `.poly` | vertices or none; segments; holes; regions | yes | yes, without vertices |
+//! | `.ele` | triangles, with attributes | yes, with the `.node` next to it | yes |
+//! | `.edge` | edges with boundary markers | next to an `.ele` without a `.poly` | yes |
+//! | `.neigh` | the neighbors of the triangles | next to an `.ele` | yes |
 //!
-//! All are text: one item a line, its number first, words separated by blanks (or commas), `#` starts a
-//! comment. Each list begins with a line that counts it.
+//! All are text: one item per line, its number first, words separated by blanks (or commas); `#`
+//! starts a comment. Each list begins with a line that counts its items.
 //!
 //! # Numbers
-//! Vertices are numbered from 0 or from 1, which the number of the first vertex tells; the others must
-//! follow. All files that belong together use the same. The numbers of segments, holes, regions, triangles
-//! and edges are read and mean nothing; written, they count from the same 0 or 1.
+//! Vertices are numbered consecutively from 0 or from 1; the number of the first vertex decides.
+//! All files that belong together start with the same number. The numbers of segments, holes,
+//! regions, triangles and edges are read, but have no meaning; written, they start with the same
+//! number as the vertices.
 //!
 //! # Names
-//! Files belong together that have the same name but for the last extension: `x.1.ele`, `x.1.node`,
-//! `x.1.poly`. A `.poly` without vertices has those of its `.node`. What is written about vertices by number is
-//! about the `.node` that is written with it, in which those of the input come first and unchanged.
+//! Files with the same name up to the last extension belong together: `x.1.ele`, `x.1.node`,
+//! `x.1.poly`. A `.poly` without vertices uses those of its `.node`. Vertex numbers in written
+//! files refer to the `.node` that is written with them, in which the vertices of the input come
+//! first and unchanged.
 //!
 //! # Boundary markers
-//! As Triangle has them. An edge has the marker of the first segment it is part of that has one other than
-//! 0; else 1 if it has a triangle on one side only; else 0. A vertex keeps its own if that is not 0;
-//! else it has that of the first such segment through it; else 1 on the boundary; else 0. They are always
-//! written.
+//! Boundary markers are those of Triangle, and are always written. An edge has the marker of the
+//! first segment that contains it and whose marker is not 0; else 1 if it has a triangle on one
+//! side only; else 0. A vertex keeps its own marker if that is not 0; else it has the marker of the
+//! first such segment through it; else 1 on the boundary; else 0.
 //!
-//! # What is refused
-//! Nothing is believed that the bytes do not bear out: a list that ends early or goes on too long, a line
-//! with a value missing, a number that is not finite, a vertex number that is out of sequence or names no
-//! vertex are errors that say file, line, value and what was expected. More values in a line than were
-//! announced are a warning.
+//! # Errors
+//! Every number is checked against the rest of the file. A list that ends early or is too long, a
+//! line with a missing value, a number that is not finite, and a vertex number that is out of
+//! sequence or does not exist are errors, which state the file, the line, the value and what was
+//! expected. More values in a line than were announced lead to a warning.
 
 mod edge;
 mod ele;
@@ -48,23 +50,23 @@ use crate::error::{Error, Result};
 use crate::io::rows::{Row, Rows};
 use crate::io::{Destination, Output};
 
-/// Vertices as a `.node` file has them.
+/// Vertices as in a `.node` file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Nodes {
     /// The number of the first vertex: 0 or 1.
     pub first_number: u32,
-    /// Where they are.
+    /// Positions of the vertices.
     pub points: Vec<[f64; 2]>,
-    /// Attributes of each vertex.
+    /// Number of attributes of each vertex.
     pub attribute_count: usize,
     /// The attributes, vertex by vertex.
     pub attributes: Vec<f64>,
-    /// Boundary markers, one for each vertex; 0 where the file has none.
+    /// Boundary markers, one per vertex; 0 if the file has none.
     pub markers: Vec<i32>,
 }
 
 impl Nodes {
-    /// The attributes of one vertex.
+    /// Returns the attributes of one vertex.
     pub fn attributes_of(&self, vertex: usize) -> &[f64] {
         &self.attributes[vertex * self.attribute_count..(vertex + 1) * self.attribute_count]
     }
@@ -73,58 +75,60 @@ impl Nodes {
 /// A segment of a `.poly` file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Segment {
-    /// Positions of its vertices, from 0.
+    /// Indices of its vertices, from 0.
     pub ends: [u32; 2],
-    /// Boundary marker, 0 if there is none.
+    /// Boundary marker; 0 if there is none.
     pub marker: i32,
     /// Its number in the file.
     pub number: i64,
-    /// The line that it stands in.
+    /// The line of the file that states it.
     pub line: usize,
 }
 
-/// A place from which something is flooded: a hole.
+/// A hole: a site from which triangles are removed up to the surrounding segments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
-    /// The place.
+    /// A site in the hole.
     pub at: [f64; 2],
-    /// The line that it stands in.
+    /// The line of the file that states it.
     pub line: usize,
 }
 
-/// What the triangles around a place get.
+/// Values for the triangles in the region around a site.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
-    /// The place.
+    /// A site in the region.
     pub at: [f64; 2],
     /// The attribute of the triangles.
     pub attribute: f64,
-    /// Their largest area; none if the file does not say or the value is not positive.
+    /// The largest area of the triangles; `None` if the file states none or the value is not
+    /// positive.
     pub max_area: Option<f64>,
-    /// The line that it stands in.
+    /// The line of the file that states it.
     pub line: usize,
 }
 
-/// A planar straight line graph: what a `.poly` file holds, or a `.node` file, without segments.
+/// A planar straight-line graph: the content of a `.poly` file, or of a `.node` file, without
+/// segments.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LineGraph {
-    /// Vertices.
+    /// The vertices.
     pub nodes: Nodes,
-    /// The file that the vertices stand in.
+    /// The file that contains the vertices.
     pub node_file: PathBuf,
-    /// The line of each vertex in it.
+    /// The line of each vertex in `node_file`.
     pub node_lines: Vec<usize>,
-    /// Segments.
+    /// The segments.
     pub segments: Vec<Segment>,
-    /// Holes.
+    /// The holes.
     pub holes: Vec<Hole>,
-    /// Regions.
+    /// The regions.
     pub regions: Vec<Region>,
-    /// What is odd.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
-/// An edge of a triangulation, by the positions of its vertices.
+/// An edge of a triangulation, by the indices of its vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edge {
     /// Its vertices.
@@ -133,12 +137,12 @@ pub struct Edge {
     pub marker: i32,
 }
 
-/// A triangulation as Triangle's files hold it.
+/// A triangulation as stored in Triangle's files.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Triangulated {
     /// Vertices: those of the input, then those added.
     pub nodes: Nodes,
-    /// Corners of the triangles, counter-clockwise, as positions of vertices.
+    /// Corners of the triangles, counter-clockwise, as indices of vertices.
     pub triangles: Vec<[u32; 3]>,
     /// The triangle opposite each corner.
     pub neighbors: Vec<[Option<u32>; 3]>,
@@ -146,7 +150,7 @@ pub struct Triangulated {
     pub attributes: Vec<f64>,
     /// All edges of triangles.
     pub edges: Vec<Edge>,
-    /// Pieces of segments, and the boundary.
+    /// Sub-constraints, and the edges of the boundary.
     pub segments: Vec<Edge>,
     /// Holes, as in the input.
     pub holes: Vec<Hole>,
@@ -154,10 +158,10 @@ pub struct Triangulated {
     pub regions: Vec<Region>,
 }
 
-/// Reads a `.node` or a `.poly` file, the latter with its `.node` where it needs one.
+/// Reads a `.node` file, or a `.poly` file with its `.node` if it has no vertices.
 ///
 /// # Errors
-/// If a file is damaged, see [above](self); the error names it and the line.
+/// If a file is damaged, see [above](self); the error names the file and the line.
 pub fn read(path: &Path) -> Result<LineGraph> {
     match extension(path).as_str() {
         "node" => node::read_file(path),
@@ -166,17 +170,19 @@ pub fn read(path: &Path) -> Result<LineGraph> {
     }
 }
 
-/// Reads an `.ele` file and the vertices in the `.node` beside it, with heights of 0. Constraints are the
-/// segments of the `.poly` beside it, if that has no vertices of its own; else the edges of the `.edge`
-/// beside it whose marker is not 0. Neighbors are those of the `.neigh` beside it.
+/// Reads an `.ele` file and the vertices in the `.node` next to it, with heights of 0.
+///
+/// Constraints are the segments of the `.poly` next to it if that has no vertices of its own; else
+/// the edges of the `.edge` next to it whose marker is not 0. Neighbors are those of the `.neigh`
+/// next to it.
 ///
 /// # Errors
-/// If a file is damaged, see [above](self); the error names it and the line.
+/// If a file is damaged, see [above](self); the error names the file and the line.
 pub fn read_triangles(path: &Path) -> Result<Triangles> {
     ele::read_file(path)
 }
 
-/// Writes files of Triangle. What each holds is told by its extension.
+/// Writes files of Triangle; the extension of each target decides its content.
 ///
 /// # Errors
 /// If an extension is not one of Triangle's or a file cannot be written.
@@ -215,13 +221,13 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What `read` makes of the lines of a file. Its errors name the file.
+/// Runs `read` on the lines of a file and returns its result; errors name the file.
 fn read_rows<T>(path: &Path, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> {
     let bytes = bytes_of(path)?;
     read(Rows::new(&bytes)).map_err(|e| e.in_file(path))
 }
 
-/// Counts the items of a list: edges, neighborhoods, triangles, vertices.
+/// Counts the items of a file: edges, neighborhoods, triangles or vertices.
 ///
 /// # Errors
 /// If the file does not begin with a count, or has fewer or more lines.
@@ -236,7 +242,7 @@ pub fn count(path: &Path) -> Result<usize> {
     })
 }
 
-/// The line that begins a list, and the count that it begins with.
+/// Returns the line that begins a list, and its count.
 fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Result<(Row<'a>, usize)> {
     let what = format!("number of {items}");
     let mut header = rows.expect(|| format!("the {what}"), pattern)?;
@@ -244,7 +250,7 @@ fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Resul
     Ok((header, count))
 }
 
-/// The items of a list: what `read` makes of each line and the number that it begins with.
+/// Reads the items of a list: calls `read` with each line and the number at its start.
 fn listed<T>(
     rows: &mut Rows,
     count: usize,
@@ -262,7 +268,8 @@ fn listed<T>(
     Ok(items)
 }
 
-/// Room for what a count announces, as far as the bytes can hold it: an item takes six at least.
+/// Returns the capacity for a stated count, limited by the bytes that are left: an item takes at
+/// least six.
 fn room(count: usize, rows: &Rows) -> usize {
     count.min(rows.bytes_left() / 6 + 1)
 }
@@ -271,12 +278,12 @@ fn site(row: &mut Row) -> Result<[f64; 2]> {
     Ok([row.finite("x coordinate")?, row.finite("y coordinate")?])
 }
 
-/// The boundary marker; 0 where the list has none.
+/// Reads the boundary marker; 0 if the list has none.
 fn marker(row: &mut Row, marker_count: usize) -> Result<i32> {
     if marker_count > 0 { row.within("boundary marker") } else { Ok(0) }
 }
 
-/// How vertices are numbered.
+/// The numbering of vertices.
 #[derive(Clone, Copy)]
 struct Numbering {
     first: u32,
@@ -284,7 +291,7 @@ struct Numbering {
 }
 
 impl Numbering {
-    /// The position of a vertex that a line names; `what` is for messages.
+    /// Reads the number of a vertex and returns its index; messages call it `what`.
     fn vertex(self, row: &mut Row, what: &str) -> Result<u32> {
         let number = row.whole(what)?;
         let position = number.checked_sub(i64::from(self.first)).and_then(|position| u32::try_from(position).ok());
@@ -299,7 +306,7 @@ impl Numbering {
     }
 }
 
-/// Lines with more values than were announced: the first of them, and how many there are.
+/// Lines with more values than announced: the first of them, and their number.
 #[derive(Default)]
 struct Surplus {
     first_line: Option<usize>,

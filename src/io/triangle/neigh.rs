@@ -1,6 +1,6 @@
-//! `.neigh`: who is beside whom among the triangles of an `.ele` file.
+//! `.neigh`: the neighbors of the triangles of an `.ele` file.
 //!
-//! | line | holds |
+//! | line | contains |
 //! |---|---|
 //! | first | number of triangles, neighbors of each (3) |
 //! | each of the others | triangle number, the triangles opposite its corners, -1 for none |

@@ -1,11 +1,11 @@
 //! `.node`: vertices.
 //!
-//! | line | holds |
+//! | line | contains |
 //! |---|---|
 //! | first | number of vertices, dimension (2), number of attributes, number of boundary markers (0 or 1) |
 //! | each of the others | vertex number, x, y, attributes, boundary marker |
 //!
-//! What is missing at the end of the first line is 2, 0 and 0.
+//! Values missing at the end of the first line default to 2, 0 and 0.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -18,7 +18,7 @@ use crate::io::rows::Rows;
 const COUNTS: &str = "VERTICES 2 ATTRIBUTES MARKERS";
 const VERTEX: &str = "NUMBER X Y ATTRIBUTES MARKER, the last two as many as the first line announces";
 
-/// What a file or a part of one holds.
+/// The vertices of a file, or of part of one.
 pub(super) struct Listed {
     pub(super) nodes: Nodes,
     pub(super) lines: Vec<usize>,
@@ -35,7 +35,7 @@ pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
     Ok(LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, warnings, ..Default::default() })
 }
 
-/// Reads the file that has the vertices of another one.
+/// Reads the `.node` file that contains the vertices of another file.
 pub(super) fn read_beside(path: &Path) -> Result<LineGraph> {
     read_file(&path.with_extension("node")).map_err(|e| match e.cure_text() {
         Some(_) => e,
@@ -43,7 +43,7 @@ pub(super) fn read_beside(path: &Path) -> Result<LineGraph> {
     })
 }
 
-/// Reads the vertices that follow, with the line that counts them.
+/// Reads a list of vertices, with the line that counts them.
 pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
     let (mut header, count) = counted(rows, "vertices", COUNTS)?;
     let dimension = header.within_or("dimension", 2)?;

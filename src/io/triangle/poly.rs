@@ -1,13 +1,13 @@
-//! `.poly`: a planar straight line graph.
+//! `.poly`: a planar straight-line graph.
 //!
 //! | list | first line | each of the others |
 //! |---|---|---|
 //! | vertices | as in a `.node` file; with 0 vertices they are in the `.node` of the same name | as there |
 //! | segments | number of segments, number of boundary markers (0 or 1) | number, two vertices, boundary marker |
-//! | holes | number of holes | number, x, y of a place in the hole |
-//! | regions, may be missing | number of regions | number, x, y of a place in the region, attribute, largest area |
+//! | holes | number of holes | number, x, y of a site in the hole |
+//! | regions, optional | number of regions | number, x, y of a site in the region, attribute, largest area |
 //!
-//! A region with one value has it as attribute and as largest area, as Triangle reads it.
+//! If a region has only one value, it is both the attribute and the largest area, as in Triangle.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -44,7 +44,7 @@ pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
     Ok(graph)
 }
 
-/// The segments of a file that has no vertices of its own; `None` if it has some.
+/// Returns the segments of a file that has no vertices of its own; `None` if it has some.
 pub(super) fn read_segments_alone(path: &Path, numbering: Numbering) -> Result<Option<Vec<Segment>>> {
     read_rows(path, |mut rows| {
         if !node::read(&mut rows)?.nodes.points.is_empty() {
@@ -58,7 +58,7 @@ fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -
     let (mut header, count) = counted(rows, "segments", SEGMENTS)?;
     let marker_count: usize = header.within_or("number of boundary markers", 0)?;
     if marker_count > 1 || header.has_more() {
-        // A vertex that the list above does not count looks like this.
+        // A vertex that the list before does not count leads here.
         return Err(
             header.wrong("this is no line that counts segments: expected two numbers, the second 0 or 1".into())
         );
@@ -71,7 +71,7 @@ fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -
     })
 }
 
-/// The count in a line that holds nothing else.
+/// Returns the count in a line that contains nothing else.
 fn count_alone(mut header: Row, items: &str) -> Result<usize> {
     let count = header.within(&format!("number of {items}"))?;
     if header.has_more() {
@@ -121,7 +121,7 @@ pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Re
     }
     for (number, region) in (first as usize..).zip(&triangulated.regions) {
         let ([x, y], attribute) = (region.at.map(Decimal), Decimal(region.attribute));
-        // Without a limit the area is negative, as Triangle takes it.
+        // A negative area means no limit, as in Triangle.
         writeln!(out, "{number:4}    {x}  {y}  {attribute}  {}", Decimal(region.max_area.unwrap_or(-1.0)))?;
     }
     Ok(())
