@@ -5,7 +5,6 @@
 //! inserted one by one from the sharp end, each is joined to the ends of the last edge, and nothing
 //! is destroyed:
 //!
-//!
 //! ```text
 //!            . e
 //!         d'   |          the ghost of a d becomes the triangle a d e,

@@ -3,7 +3,6 @@
 //! All of them are about points seen from one of them, `a`. With `u = b - a`, `v = c - a`,
 //! `w = q - a` and the squares of their lengths `U`, `V`, `W`:
 //!
-//!
 //! ```text
 //!                | ux uy U |
 //!   in-circle  - | vx vy V |  =  wx (U vy - uy V) + wy (ux V - U vx) - W (ux vy - uy vx), positive inside
@@ -20,7 +19,6 @@
 //! `((1 + e)^11 - 1) M`, where `M` is the sum of the terms' magnitudes (Higham 2002, lemma 3.1). By
 //! Cauchy and Schwarz `|wx vy| + |wy vx| <= |w| |v|`. A product of three lengths is at most the
 //! cube of their quadratic mean, and their sum at most three times that mean. With `S = U + V + W`:
-//!
 //!
 //! ```text
 //!   M <= U |v| |w| + V |u| |w| + W |u| |v| = |u| |v| |w| (|u| + |v| + |w|) <= (S / 3)^(3/2) (3 S)^(1/2) = S^2 / 3

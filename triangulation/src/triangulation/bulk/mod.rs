@@ -22,7 +22,6 @@
 //!    hull edges whose triangle it would destroy are flipped away first. The ghost of the chosen
 //!    candidate *becomes* the new triangle.
 //!
-//!
 //!    ```text
 //!        \ |      | /          \ |      | /
 //!      ---c|      |d---      ---c|______|d---

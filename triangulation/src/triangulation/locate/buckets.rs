@@ -4,21 +4,23 @@ use crate::tds::VertexId;
 use super::super::Triangulation;
 use super::{Locate, Location};
 
-/// A grid of squares over the plane, each of which knows one vertex in it: the last one inserted.
+/// A grid of squares over the plane, each of which remembers one vertex in it: the last one
+/// inserted.
 ///
-/// From there a few steps, if about as many points are in each square; 4 bytes a square.
+/// A walk from that vertex takes a few steps if the squares contain about equally many points. 4
+/// bytes a square.
 #[derive(Debug, Clone)]
 pub struct Buckets {
     low: [f64; 2],
-    /// Squares to a unit of length.
+    /// Squares per unit of length.
     scale: f64,
     columns: usize,
     vertices: Vec<Option<VertexId>>,
 }
 
 impl Buckets {
-    /// About `count` squares over a box, which need not hold all points: what lies outside belongs to the squares on
-    /// its border.
+    /// Creates a grid of about `count` squares over a box, which need not contain all points:
+    /// points outside belong to the squares on its border.
     pub fn over([low, high]: [[f64; 2]; 2], count: usize) -> Self {
         let count = count.clamp(1, 1 << 28) as f64;
         let [width, height] = [0, 1].map(|k| (high[k] - low[k]).max(0.0));
@@ -29,7 +31,7 @@ impl Buckets {
         Buckets { low, scale, columns, vertices: vec![None; columns * rows] }
     }
 
-    /// For the vertices of a triangulation, two to a square.
+    /// Creates a grid for the vertices of a triangulation, two vertices to a square on average.
     pub fn of<G: Coordinates<3>, V, C: Copy + Default>(triangulation: &Triangulation<G, 3, V, C>) -> Self {
         let site = |v: VertexId| site(triangulation.geometry(), triangulation.point(v));
         let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];

@@ -6,7 +6,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::{Delaunay, Inserted, Triangulation};
 use super::{Dice, Locate, Location};
 
-/// One vertex in that many is in the sample above.
+/// One vertex in this many is in the next smaller sample.
 const RATIO: usize = 30;
 
 /// The Delaunay hierarchy (Devillers 2002): samples of samples of the vertices, each triangulated.
@@ -17,14 +17,16 @@ const RATIO: usize = 30;
 ///   all         o o o o o oo o o oo o
 /// ```
 ///
-/// A point is located from the top down; each time the walk begins at the vertex that was found nearest above. So it
-/// takes expected `O(log n)` steps on any Delaunay triangulation whose points came in random order, however they are
-/// spread (O(n) when a line goes through all triangles from there), and memory grows by a thirtieth.
+/// A point is located from the top down; on each level the walk starts at the vertex that was found
+/// nearest on the level above. So it takes expected `O(log n)` steps on any Delaunay triangulation
+/// whose points came in random order, however they are spread (O(n) if a line from there goes
+/// through all triangles). Memory grows by a thirtieth.
 ///
-/// The geometry of the samples is one over the same kind of points, in which a point is the same site. It is
-/// that of the triangulation itself but for weighted points: there it is one that leaves weights aside.
+/// The geometry of the samples is one for the same type of points, in which a point is the same
+/// site. It is the geometry of the triangulation itself, except for weighted points: their samples
+/// use a geometry that ignores weights.
 ///
-/// Which vertices are in the samples looks random and is the same in every run.
+/// The samples are pseudo-random, and the same in every run.
 ///
 /// ```
 /// use breakline_triangulation::geometry::Plane;
@@ -41,21 +43,21 @@ const RATIO: usize = 30;
 #[derive(Debug, Clone)]
 pub struct Hierarchy<L: Geometry<3>> {
     geometry: L,
-    /// From the largest sample up.
+    /// The largest sample first.
     levels: Vec<Level<L>>,
     dice: Dice,
 }
 
 #[derive(Debug, Clone)]
 struct Level<L: Geometry<3>> {
-    /// Each vertex knows the same one in the level below.
+    /// The payload of each vertex is the same vertex in the level below.
     sample: Delaunay<L, 3, VertexId>,
-    /// And back.
+    /// Maps a vertex of the level below to its vertex in this sample.
     of_below: FxHashMap<VertexId, VertexId>,
 }
 
 impl<L: Geometry<3>> Level<L> {
-    /// A cell at a point and a vertex near it, given one to start from.
+    /// Returns a cell at a point and a vertex near it, given a vertex to start from.
     fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
         let tds = self.sample.tds();
         let cell = self.sample.approach(q, start.and_then(|vertex| tds.cell_of(vertex)));
@@ -76,12 +78,12 @@ impl<L: Geometry<3>> Level<L> {
 }
 
 impl<L: Geometry<3> + Clone> Hierarchy<L> {
-    /// For a triangulation that is still empty.
+    /// Creates a hierarchy for a triangulation that is still empty.
     pub fn new(geometry: L) -> Self {
         Hierarchy { geometry, levels: Vec::new(), dice: Dice::default() }
     }
 
-    /// For the vertices of a triangulation. O(n).
+    /// Creates a hierarchy for the vertices of a triangulation. O(n).
     pub fn of<G, V, C>(geometry: L, triangulation: &Triangulation<G, 3, V, C>) -> Self
     where
         G: Geometry<3, Point = L::Point>,
@@ -94,7 +96,7 @@ impl<L: Geometry<3> + Clone> Hierarchy<L> {
         hierarchy
     }
 
-    /// Draws up to which level a vertex is in the samples, and puts it there.
+    /// Draws the highest level for a vertex, and inserts it into the samples up to that level.
     fn sample(&mut self, vertex: VertexId, point: &L::Point) {
         let mut height = 0;
         while height <= self.levels.len() && self.dice.below(RATIO) == 0 {
@@ -112,7 +114,7 @@ impl<L: Geometry<3> + Clone> Hierarchy<L> {
         let mut below = vertex;
         for (level, near) in self.levels[..height].iter_mut().zip(near.into_iter().rev()) {
             let Ok(Inserted { vertex, .. }) = level.sample.insert_near(*point, below, near) else { return };
-            // Where the site is taken, it is by a vertex whose removal was not reported.
+            // If the site is taken, then by a vertex whose removal was not reported.
             *level.sample.inner.tds.vertex_data_mut(vertex) = below;
             level.of_below.insert(below, vertex);
             below = vertex;
@@ -121,13 +123,13 @@ impl<L: Geometry<3> + Clone> Hierarchy<L> {
 }
 
 impl<L: Geometry<3>> Hierarchy<L> {
-    /// How many vertices are in the samples, from the largest up.
+    /// Returns the number of vertices in each sample, the largest first.
     pub fn sample_sizes(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.levels.iter().map(|level| level.sample.vertex_count())
     }
 
-    /// A vertex of the triangulation near a point. Shows, from the top down, a cell near it on each
-    /// level.
+    /// Returns a vertex of the triangulation near a point. Calls `show` with a cell near the point
+    /// on each level, from the top down.
     fn descend(&self, q: &L::Point, mut show: impl FnMut(Option<CellId>)) -> Option<VertexId> {
         self.levels.iter().rev().fold(None, |start, level| {
             let (cell, nearest) = level.nearest(q, start);

@@ -3,19 +3,22 @@
 //! | strategy | steps of a walk, for `n` evenly spread points |
 //! |---|---|
 //! | [`Near`] a cell, or the last insertion | as many as cells lie between |
-//! | [`JumpAndWalk`] from the nearest of `n^(1/3)` vertices (Mücke, Saias and Zhu 1996) | `n^(1/3)`, and as many looks |
-//! | [`Buckets`] from a vertex in the same square of a grid | a few; none the better where all points are in one square |
+//! | [`JumpAndWalk`] from the nearest of `n^(1/3)` vertices (Mücke, Saias and Zhu 1996) | `n^(1/3)`, and as many distances |
+//! | [`Buckets`] from a vertex in the same square of a grid | a few; no better than without if all points are in one square |
 //! | [`Hierarchy`] of samples (Devillers 2002) | `log n`, however the points are spread |
 //!
-//! These walk from one triangle to the next across an edge that separates it from the point. First by rounded numbers,
-//! across the edge that the point is furthest beyond, for as long as that leads on (structural filtering: Funke, Mehlhorn
-//! and Näher 1999); then by certain ones, across any such edge, chosen pseudo-randomly (the stochastic, or zigzag, walk).
-//! [`StraightLine`] goes through the triangles that a line to the point meets (both: Devillers, Pion and Teillaud 2002).
+//! These walk from one triangle to the next across an edge that separates it from the point. At
+//! first they decide by rounded numbers and cross the edge that the point is furthest beyond, for
+//! as long as that makes progress (structural filtering: Funke, Mehlhorn and Näher 1999). Then they
+//! decide by exact predicates and cross any separating edge, chosen pseudo-randomly (the stochastic
+//! walk). [`StraightLine`] goes through the triangles that a line to the point meets (both:
+//! Devillers, Pion and Teillaud 2002).
 //!
-//! A strategy is a value of the caller's. Some of them learn from insertions and removals: pass these to
-//! [`Locate::inserted`] and [`Locate::removed`], or insert and remove with the strategy:
-//! [`Delaunay::insert_by`](crate::Delaunay::insert_by), [`Delaunay::remove_by`](crate::Delaunay::remove_by). A strategy that
-//! misses updates is slower but still correct.
+//! A strategy is a value that the caller owns. Some strategies learn from insertions and removals:
+//! pass these to [`Locate::inserted`] and [`Locate::removed`], or insert and remove with the
+//! strategy: [`Delaunay::insert_by`](crate::Delaunay::insert_by),
+//! [`Delaunay::remove_by`](crate::Delaunay::remove_by). A strategy that misses updates is slower
+//! but still correct.
 
 mod buckets;
 mod hierarchy;
@@ -36,35 +39,35 @@ pub(super) use walk::Dice;
 pub use walk::locate;
 use walk::{LOOKS, PATIENCE, Seems};
 
-/// Where a point lies in a triangulation.
+/// The position of a point relative to a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Location {
     /// On a vertex.
     Vertex(VertexId),
-    /// In a finite cell, or on its border. Bit `i` of `touching` is set if the point lies on the facet
-    /// opposite vertex `i`: in the plane, no bit says inside of the triangle and one bit on that edge.
+    /// In a finite cell, or on its border. Bit `i` of `touching` is set if the point lies on the
+    /// facet opposite vertex `i`. In the plane: no bit inside of the triangle, one bit on an edge.
     Cell {
         /// The cell.
         cell: CellId,
         /// The facets that the point lies on.
         touching: u8,
     },
-    /// Outside of the convex hull, in sight of the finite facet of this infinite cell.
+    /// Outside of the convex hull, on the outer side of the finite facet of this infinite cell.
     OutsideHull {
         /// An infinite cell.
         cell: CellId,
     },
-    /// Outside of the line or plane that all points lie in; also for an empty triangulation, and for
-    /// a second site beside a single point.
+    /// Outside of the line or plane that contains all points; also for an empty triangulation, and
+    /// for any other site if there is a single point.
     OutsideAffineHull,
-    /// Nowhere: the geometry does not [admit](Geometry::admits) the point. A coordinate is NaN or infinite, or beyond
-    /// the [range](crate::kernel::Kernel::RANGE) of the kernel; [`Wide`](crate::kernel::Wide) has every finite number in its
-    /// range.
+    /// Nowhere: the geometry does not [admit](Geometry::admits) the point. A coordinate is NaN or
+    /// infinite, or beyond the [range](crate::kernel::Kernel::RANGE) of the kernel; the range of
+    /// [`Wide`](crate::kernel::Wide) is all finite numbers.
     Nowhere,
 }
 
 impl Location {
-    /// Returns a cell at the point: where to start looking for what is near.
+    /// Returns a cell at the point, from which to search its neighborhood.
     pub fn cell<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
         self,
         triangulation: &Triangulation<G, N, V, C>,
@@ -81,9 +84,9 @@ impl Location {
         }
     }
 
-    /// Returns the facets of the [cell](Self::cell) that the point lies on, each with the cell and the index of the
-    /// vertex opposite: none inside of the cell, one in the inside of a facet, two on an edge of a tetrahedron. None
-    /// either on a vertex and outside of the hull.
+    /// Returns the facets of the [cell](Self::cell) that the point lies on, each as the cell and
+    /// the index of the opposite vertex: none inside of the cell, one in the interior of a facet,
+    /// two on an edge of a tetrahedron. Also none on a vertex and outside of the hull.
     ///
     /// ```
     /// use breakline_triangulation::Delaunay;
@@ -121,11 +124,14 @@ impl Location {
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    /// Finds where `q` lies, by a walk from a cell nearby, or from the last insertion: by rounded numbers for as long as
-    /// they lead on (Funke, Mehlhorn and Näher 1999), then by certain ones and stochastic (Devillers, Pion and Teillaud
-    /// 2002). Ends on any triangulation, with probability one. If it takes long, it goes on from the nearest of `n^(1/3)`
-    /// of the `n` vertices (Mücke, Saias and Zhu 1996): then about as many steps are left where points are spread evenly.
-    /// If it is many more, as along curves, it goes on from the nearest of `3 n^(1/2)`.
+    /// Returns where `q` lies, by a walk from a cell nearby, or from the last insertion.
+    ///
+    /// The walk first decides by rounded numbers, for as long as these make progress (Funke,
+    /// Mehlhorn and Näher 1999), then by exact predicates, as a stochastic walk (Devillers, Pion
+    /// and Teillaud 2002). It ends on any triangulation, with probability one. If it takes long, it
+    /// continues from the nearest of `n^(1/3)` of the `n` vertices (Mücke, Saias and Zhu 1996),
+    /// from where about as many steps are left if points are spread evenly. If it takes many more,
+    /// as along curves, it continues from the nearest of `3 n^(1/2)`.
     ///
     /// A point that the geometry does not [admit](Geometry::admits) is [`Location::Nowhere`].
     pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
@@ -133,14 +139,15 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         location
     }
 
-    /// Where a walk starts: at a cell nearby if it exists, or where the last insertion ended.
+    /// Returns where a walk starts: at a cell nearby if it exists, or where the last insertion
+    /// ended.
     #[inline]
     pub(super) fn start(&self, near: Option<CellId>) -> Option<CellId> {
         near.filter(|&c| self.tds.is_used(c)).or(self.last)
     }
 
-    /// A cell that `q` is in, or not far from, found from one nearby: where to start looking, with less certainty than
-    /// [`locate`](Self::locate) and in less time.
+    /// Returns a cell that contains `q` or is not far from it, given one nearby. Less certain than
+    /// [`locate`](Self::locate), and faster.
     fn approach(&self, q: &G::Point, near: Option<CellId>) -> Option<CellId> {
         let mut near = near.filter(|&c| self.tds.is_used(c));
         if self.tds.width() == N

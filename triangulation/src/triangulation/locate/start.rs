@@ -4,20 +4,23 @@ use crate::tds::{CellId, VertexId};
 use super::super::Triangulation;
 use super::Location;
 
-/// A strategy to find where a point lies: a value of the caller's, which may be updated by insertions and removals.
+/// A strategy to find where a point lies: a value that the caller owns and that may learn from
+/// insertions and removals.
 ///
-/// Optional: [`Triangulation::locate`] walks from the last insertion. Passed to `insert_by` and `remove_by`, and a locator
-/// by itself.
+/// Optional: [`Triangulation::locate`] walks from the last insertion. Pass a strategy to
+/// `insert_by` and `remove_by`, or call its [`locate`](Self::locate).
 ///
 /// # Laws
-/// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same point relative to the complex; of
-///   the cells that share an edge, or that see a point outside of the hull, any.
-/// - A strategy that misses calls of [`inserted`](Self::inserted) and [`removed`](Self::removed) is slower but still correct.
+/// - The answer is that of [`Triangulation::locate`]: the same vertex, or the same position
+///   relative to the complex. If several cells share an edge that the point lies on, or see a point
+///   outside of the hull, the answer may be any of them.
+/// - A strategy that misses calls of [`inserted`](Self::inserted) and [`removed`](Self::removed) is
+///   slower but still correct.
 ///
 /// # Models
 /// [`Near`], [`JumpAndWalk`], [`StraightLine`](super::StraightLine), [`Buckets`](super::Buckets),
-/// [`Hierarchy`](super::Hierarchy). All take any kind of triangulation. One of one's own says where a walk starts;
-/// here, where the last question ended:
+/// [`Hierarchy`](super::Hierarchy). All work with any kind of triangulation. A strategy of your own
+/// chooses where a walk starts; here, where the last query ended:
 ///
 /// ```
 /// use std::cell::Cell;
@@ -30,7 +33,7 @@ use super::Location;
 ///
 /// impl<G: Geometry<N>, const N: usize> Locate<G, N> for LastAnswer {
 ///     fn locate<V, C: Copy + Default>(&self, t: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
-///         let location = t.locate(q, self.0.get()); // a cell that is there no more does no harm
+///         let location = t.locate(q, self.0.get()); // a cell that no longer exists does no harm
 ///         if let Location::Cell { cell, .. } = location {
 ///             self.0.set(Some(cell));
 ///         }
@@ -46,7 +49,8 @@ use super::Location;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Locate<G: Geometry<N>, const N: usize> {
-    /// Returns where a point lies; [`Location::Nowhere`] for one that the geometry does not [admit](Geometry::admits).
+    /// Returns where a point lies; [`Location::Nowhere`] if the geometry does not
+    /// [admit](Geometry::admits) it.
     fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location;
 
     /// Updates the strategy for a new vertex of a triangulation with this geometry.
@@ -56,7 +60,8 @@ pub trait Locate<G: Geometry<N>, const N: usize> {
     fn removed(&mut self, _vertex: VertexId) {}
 }
 
-/// From a cell nearby; or, without one, from where the last insertion was. What [`Triangulation::locate`] does.
+/// Starts at a cell nearby; without one, at the last insertion. The strategy of
+/// [`Triangulation::locate`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Near(pub Option<CellId>);
 
@@ -66,10 +71,12 @@ impl<G: Geometry<N>, const N: usize> Locate<G, N> for Near {
     }
 }
 
-/// From the nearest of `n^(1/3)` of the `n` vertices, chosen pseudo-randomly; the same ones for the same number of
-/// vertices. Needs a geometry that knows [distances](Geometry::rough_distance).
+/// Starts at the nearest of `n^(1/3)` of the `n` vertices, chosen pseudo-randomly; the same ones
+/// for the same number of vertices. Needs a geometry that knows
+/// [distances](Geometry::rough_distance).
 ///
-/// Of uniformly distributed points the walk takes `O(n^(1/3))` steps then (Mücke, Saias and Zhu 1996).
+/// For uniformly distributed points the walk then takes `O(n^(1/3))` steps (Mücke, Saias and Zhu
+/// 1996).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct JumpAndWalk;
 

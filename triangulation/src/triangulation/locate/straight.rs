@@ -5,11 +5,11 @@ use crate::tds::{CellId, VertexId, ccw, cw};
 use super::super::Triangulation;
 use super::{Locate, Location};
 
-/// Along the straight line from a vertex, through the triangles that it meets; without a vertex, from one near the last
-/// insertion. In the plane.
+/// Walks along the straight line from a vertex, through the triangles that it meets; without a
+/// vertex, from one near the last insertion. In the plane.
 ///
-/// Visits `O(sqrt n)` triangles on uniformly distributed points (Devroye, Lemaire and Moreau 2004); one orientation
-/// each, and one for the edge that is left by.
+/// Visits `O(sqrt n)` triangles on uniformly distributed points (Devroye, Lemaire and Moreau 2004),
+/// with one orientation each and one for the edge through which the line leaves.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StraightLine(pub Option<VertexId>);
 
@@ -28,12 +28,14 @@ impl<G: Geometry<3>> Locate<G, 3> for StraightLine {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// The last triangle on the line from a vertex to a point: the one that holds it, or the last one in the hull.
-    /// `None` if there is none, or the line does not start in a triangle.
+    /// Returns the last triangle on the line from a vertex to a point: the one that contains the
+    /// point, or the last one in the hull. `None` if there is none, or the line does not start in a
+    /// triangle.
     ///
-    /// *Touching.* The line enters each triangle over an edge whose one end, `r`, is strictly on the right, while the
-    /// other, `l`, is on the left or on the line. So a vertex on the line is passed on its right side, and the edge
-    /// over which the line goes on is decided by where the vertex opposite lies.
+    /// *Touching.* The line enters each triangle through an edge whose one end, `r`, is strictly on
+    /// the right, while the other, `l`, is on the left or on the line. So a vertex on the line is
+    /// passed on its right side, and the position of the opposite vertex decides through which edge
+    /// the line leaves.
     fn walk_straight(&self, from: VertexId, q: &G::Point) -> Option<CellId> {
         let p = self.point(from);
         let side = |v: VertexId| self.geometry.orientation([p, q, self.point(v)]);
@@ -54,7 +56,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 return Some(cell);
             }
             let j = self.tds.index_of_neighbor(beyond, cell);
-            // Seen from beyond, the edge goes from `l` to `r`: the one that keeps `l` lies opposite `r`, and so on.
+            // Seen from beyond, the edge runs from `l` to `r`: the edge that keeps `l` lies
+            // opposite `r`, and vice versa.
             i = if side(self.tds.vertex(beyond, j)) == Sign::Negative { cw(j) } else { ccw(j) };
             cell = beyond;
         }

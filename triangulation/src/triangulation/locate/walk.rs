@@ -9,8 +9,8 @@ use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::engine::sides::{points_with, side_of_facet, simplex};
 use super::Location;
 
-/// Marsaglia's xorshift: the walk turns corners in an order that no input can foresee, the same in
-/// every run.
+/// Marsaglia's xorshift. The walk tests facets in an order that no input can anticipate, and that
+/// is the same in every run.
 #[derive(Debug, Clone)]
 pub(in super::super) struct Dice(u32);
 
@@ -30,39 +30,46 @@ impl Dice {
     }
 }
 
-/// Steps after which a walk looks for a better cell to go on from. In spatial order nearly all are over long before.
+/// The number of steps after which a walk looks for a better cell to continue from. In spatial
+/// order nearly all walks end long before.
 pub(super) const PATIENCE: usize = 64;
 
-/// After that many steps more for each vertex that was looked at, a walk looks again. Where points are spread evenly, one
-/// step for each is left in the mean.
+/// A walk looks again after this many more steps for each vertex that was examined. Where points
+/// are spread evenly, one step for each is left on average.
 const PATIENCE_EACH: usize = 2;
 
-/// Every so many steps a walk looks whether it could leave the hull there. It would sooner or later, but along a curve it
-/// may come by a facet of the hull at each step until then.
+/// Every this many steps a walk tests if it can leave the hull there. It would leave sooner or
+/// later, but along a curve it may pass a facet of the hull at each step until then.
 const LOOKOUT: usize = 8;
 
-/// How many of `n` vertices a walk looks at, the first time and the second. Along a curve it comes by all vertices in
-/// between: from the nearest of so many times `n^(1/2)`, looking and walking take equally long.
+/// How many of `n` vertices a walk examines, the first time and the second. Along a curve it passes
+/// all vertices in between; from the nearest of a multiple of `n^(1/2)`, examining and walking take
+/// equally long.
 ///
-/// `PERF:` 100 000 points on a parabola, one by one in random order (`bench_triangulation --one-by-one`): 12 instead of 53 us
-/// each with the second look; uniform points 4 to 5.
+/// `PERF:` 100 000 points on a parabola, one by one in random order
+/// (`bench_triangulation --one-by-one`): 12 instead of 53 us each with the second examination;
+/// uniform points 4 to 5.
 pub(super) const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 
-/// A walk of that many times more steps than there are cells is given up: on a Delaunay triangulation none of certain steps
-/// comes to a cell twice, and on others the chance is halved, at the least, with each round.
+/// A walk of more than this many times as many steps as there are cells is given up. On a Delaunay
+/// triangulation no walk of exact steps visits a cell twice, and on others the chance is at least
+/// halved with each round.
 const WANDERING: usize = 8;
 
-/// Returns where `q` lies: exactly, by a walk from a cell nearby, or without one from a cell at infinity. A point that the
-/// geometry does not admit lies [`Nowhere`](Location::Nowhere): no predicate is asked about it.
+/// Returns where `q` lies, exactly, by a walk from a cell nearby, or without one from an infinite
+/// cell. A point that the geometry does not admit lies [`Nowhere`](Location::Nowhere): no predicate
+/// is evaluated for it.
 ///
-/// The complex fills its convex hull without overlap; it need not be Delaunay.
+/// The complex must fill its convex hull without overlap; it need not be Delaunay.
 ///
 /// # Errors
-/// If a link does not hold, or if there are many times more steps than cells, as damaged links may cause.
+/// If a link does not hold, or if there are many times more steps than cells, as damaged links may
+/// cause.
 ///
 /// # Complexity
-/// Time proportional to the number of cells between; if that is many, from about `n^(1/3)` of the `n` vertices on to as many
-/// cells, where points are spread evenly. See [`Triangulation::locate`](crate::Triangulation::locate).
+/// Time proportional to the number of cells between. If that is large, the walk continues from one
+/// of about `n^(1/3)` of the `n` vertices, with as many cells left if points are spread evenly. See
+/// [`Triangulation::locate`](crate::Triangulation::locate).
 pub fn locate<const N: usize, T: Embedded<N>>(
     t: &T,
     q: &PointOf<T, N>,
@@ -92,7 +99,7 @@ pub fn locate<const N: usize, T: Embedded<N>>(
         return Ok(Location::OutsideAffineHull);
     }
     let mut dice = Dice::default();
-    // Where a certain step came from: the point is on this side of the facet.
+    // The cell that an exact step came from: the point is on this side of the facet.
     let mut from = None;
     let mut steps = 0;
     let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
@@ -110,8 +117,8 @@ pub fn locate<const N: usize, T: Embedded<N>>(
         {
             return Ok(Location::OutsideHull { cell: complex.neighbor(cell, i)? });
         }
-        // `PERF:` an order that is known beforehand makes half the code. Not for ever: a walk in such an order may turn in
-        // circles.
+        // `PERF:` an order that is known at compile time makes half the code. But only for a while:
+        // a walk in such an order may go around in circles.
         let sides = if seems == Seems::There && steps < patience {
             ask_sides(t, cell, q, 0, from)?
         } else {
@@ -120,7 +127,7 @@ pub fn locate<const N: usize, T: Embedded<N>>(
         let beyond = match sides {
             Sides::Outside(i) => complex.neighbor(cell, i)?,
             Sides::Touching(touching) => {
-                // On all facets lies nothing but what is flat.
+                // A point on all facets means a flat cell.
                 complex.ensure(cell, || (touching.count_ones() as usize) < width)?;
                 if touching.count_ones() as usize == width - 1 {
                     // On all facets but one: on the vertex opposite that one.
@@ -146,7 +153,7 @@ pub fn locate<const N: usize, T: Embedded<N>>(
     }
 }
 
-/// Where a walk by rounded numbers ended.
+/// The end of a walk by rounded numbers.
 pub(super) struct Reached {
     pub(super) cell: CellId,
     steps: usize,
@@ -160,17 +167,18 @@ pub(super) enum Seems {
     There,
     /// Outside of the hull, beyond the facet opposite this vertex.
     Outside(usize),
-    /// There is no telling, or it is further away.
+    /// Undecided, or further away.
     Elsewhere,
 }
 
-/// Goes from a full finite cell towards `q` without asking for certainty, for so many steps at most: across the facet
-/// that `q` lies furthest beyond. Goes nowhere if the geometry has no numbers for that.
+/// Walks from a full finite cell toward `q` by rounded numbers, at most `at_most` steps, each
+/// across the facet that `q` lies furthest beyond. Stays where it is if the geometry has no numbers
+/// for that.
 ///
-/// `PERF:` the neighbors are fetched while it is computed which one is next; and that is a branch, which is foretold
-/// rightly half of the time, not a number, which would have to be waited for. 100 000 points by the hierarchy, the least
-/// of many runs in turn: 1.43 us with an orientation for each step, 1.24 without, 1.08 with neighbors fetched; 1.35 where
-/// the next one is computed.
+/// `PERF:` the neighbors are prefetched while the next one is computed. The choice is a branch,
+/// which is predicted correctly half of the time, not a number, which would have to be waited for.
+/// 100 000 points with the hierarchy, the least of many runs in turn: 1.43 us with an orientation
+/// for each step, 1.24 without, 1.08 with neighbors prefetched; 1.35 if the next one is computed.
 #[inline(always)]
 pub(super) fn approach<const N: usize, T: Embedded<N>>(
     t: &T,
@@ -191,7 +199,7 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
             }
         }
         let Some((i, beyond)) = next else {
-            // All zero they are where the cell is too small to be seen from there.
+            // All are zero if the cell is too small to be distinguished from there.
             let is_there = sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0);
             return Ok(Reached { cell, steps, seems: if is_there { Seems::There } else { Seems::Elsewhere } });
         };
@@ -199,12 +207,12 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
             return Ok(Reached { cell, steps, seems: Seems::Outside(i) });
         }
         if steps % LOOKOUT == LOOKOUT - 1
-            && let Some(facet) = way_out(t, cell, q)?
+            && let Some(facet) = hull_exit(t, cell, q)?
         {
             return Ok(Reached { cell, steps, seems: Seems::Outside(facet) });
         }
         if from == Some(beyond) {
-            return Ok(Reached { cell, steps, seems: Seems::Elsewhere }); // rounded numbers lead there and back
+            return Ok(Reached { cell, steps, seems: Seems::Elsewhere }); // rounded numbers go in circles
         }
         from = Some(cell);
         cell = beyond;
@@ -212,11 +220,16 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
     Ok(Reached { cell, steps: at_most, seems: Seems::Elsewhere })
 }
 
-/// The facet of the hull that a cell has and that `q` seems to lie beyond.
+/// Returns the facet of the hull that a cell has and that `q` seems to lie beyond.
 ///
-/// `PERF:` computes the sides anew, so that those of the many steps that do not ask need not be kept in memory.
+/// `PERF:` computes the sides anew, so that they need not be stored in the many steps that do not
+/// ask for this.
 #[cold]
-fn way_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<Option<usize>, T::Error> {
+fn hull_exit<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    q: &PointOf<T, N>,
+) -> Result<Option<usize>, T::Error> {
     let sides = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q);
     for i in (0..N).filter(|&i| sides[i] < 0.0) {
         if t.complex().is_infinite(t.complex().neighbor(cell, i)?)? {
@@ -226,16 +239,17 @@ fn way_out<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N
     Ok(None)
 }
 
-/// Where a point is of a finite cell.
+/// The position of a point relative to a finite cell.
 enum Sides {
     /// Outside of the facet opposite this vertex.
     Outside(usize),
-    /// Outside of none, and on those whose bit is set.
+    /// Outside of no facet, and on those whose bit is set.
     Touching(u8),
 }
 
-/// On which sides of a finite cell `q` lies, by the predicates: of one facet after the other from the `first` on, but for
-/// that of a neighbor from which the point is known to be on this side.
+/// Returns on which sides of a finite cell `q` lies, exactly. Tests one facet after the other from
+/// the `first` on, except the one shared with the neighbor `from`, since the point is known to lie
+/// on this side of it.
 #[inline(always)]
 fn ask_sides<const N: usize, T: Embedded<N>>(
     t: &T,
@@ -260,7 +274,7 @@ fn ask_sides<const N: usize, T: Embedded<N>>(
     Ok(Sides::Touching(touching))
 }
 
-/// A finite cell that is nearer to `q` than this one, as far as some vertices tell.
+/// Returns a finite cell that is nearer to `q` than this one, if one of some vertices is.
 #[cold]
 fn jump<const N: usize, T: Embedded<N>>(
     t: &T,
@@ -276,7 +290,7 @@ fn jump<const N: usize, T: Embedded<N>>(
     t.complex().cell_of(nearer)?.map(|cell| t.complex().inner(cell)).transpose()
 }
 
-/// Of some vertices the one nearest to `q`, if it is nearer than that.
+/// Returns the vertex nearest to `q` among some vertices, if its distance is less than `than`.
 pub(super) fn nearest_of_some<const N: usize, T: Embedded<N>>(
     t: &T,
     q: &PointOf<T, N>,
@@ -299,7 +313,7 @@ pub(super) fn nearest_of_some<const N: usize, T: Embedded<N>>(
     Ok(nearest)
 }
 
-/// Whether `q` lies outside of the line or plane of all points, which a finite cell spans.
+/// Returns true if `q` lies outside of the line or plane of all points, which a finite cell spans.
 fn leaves_flat<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<bool, T::Error> {
     let points = points_with(t, cell, usize::MAX, q)?;
     let mut simplex: Vec<&PointOf<T, N>> = points.iter().collect();

@@ -1,4 +1,4 @@
-//! What a segment meets.
+//! The faces, edges and vertices that a segment meets.
 
 use std::borrow::Borrow;
 use std::cmp::Ordering;
@@ -11,31 +11,35 @@ use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::super::{Location, Triangulation};
 
-/// A face, edge or vertex whose inside a segment meets: the faces are open, and so are the edges.
+/// A face, edge or vertex whose interior a segment meets: faces are open, and so are edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Passage {
-    /// Through a face.
+    /// The segment goes through a face.
     Face(CellId),
-    /// Over an edge from one side to the other, or ending on it: the edge opposite this vertex of the cell that it is
-    /// left by. That is an infinite cell where a segment comes in over the hull.
+    /// The segment goes across an edge, or ends on it: the edge opposite this vertex of the cell
+    /// that the segment leaves. That cell is infinite where the segment enters the hull.
     Edge(CellId, usize),
-    /// Along an edge from the first vertex towards the second. The faces beside it are those of [`Tds::edge`] for both
-    /// directions.
+    /// The segment goes along an edge, from the first vertex toward the second. The faces on both
+    /// sides are those of [`Tds::edge`] for both directions.
     ///
     /// [`Tds::edge`]: crate::tds::Tds::edge
     Along([VertexId; 2]),
-    /// Through a vertex.
+    /// The segment goes through a vertex.
     Vertex(VertexId),
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// All that a segment meets, in order from `a` to `b`, which may be equal; nothing if the geometry does not
-    /// [admit](Geometry::admits) one of them. Where it meets two parts only at their common border, the border is returned: a segment through a
-    /// vertex meets the vertex and perhaps two faces, none of the edges there. Outside of the hull nothing is met, nor below dimension 2. Exact.
+    /// Returns all that a segment meets, in order from `a` to `b`, which may be equal.
+    ///
+    /// If the segment meets two faces or edges only at their common border, the border is returned:
+    /// a segment through a vertex meets the vertex and perhaps two faces, but none of the edges
+    /// there. Nothing is met outside of the hull, below dimension 2, or if the geometry does not
+    /// [admit](Geometry::admits) `a` or `b`. Exact.
     ///
     /// # Complexity
-    /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for a face or an edge, and the degree of
-    /// each vertex. If `a` lies outside of the hull, its vertices are all looked at.
+    /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for a face or an edge,
+    /// and the degree of each vertex. If `a` lies outside of the hull, proportional to the size of
+    /// the hull.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay, Passage};
@@ -59,14 +63,15 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
-/// Returns all that a segment meets, in order from its first point to the second: see [`Triangulation::along`]. The first
-/// point is looked for from a cell nearby. Ends at the first error.
+/// Returns all that a segment meets, in order from its first point to the second; see
+/// [`Triangulation::along`]. The walk to the first point starts at a cell nearby. Ends at the first
+/// error.
 ///
 /// # Errors
 /// If a link does not hold.
 ///
 /// # Complexity
-/// See [`Triangulation::along`].
+/// That of [`Triangulation::along`].
 pub fn along<'t, T: Embedded<3>>(
     t: &'t T,
     [a, b]: [&PointOf<T, 3>; 2],
@@ -76,18 +81,18 @@ pub fn along<'t, T: Embedded<3>>(
     Ok(Along::new(t, [a, b], location))
 }
 
-/// What a segment meets, from its start on.
+/// Iterates over what a segment meets, from its start on.
 struct Along<'t, T: Embedded<3>> {
     segment: Segment<'t, T>,
     next: Result<Option<Passage>, T::Error>,
-    /// Each face is met once: if there are more, links lead astray.
+    /// The number of faces met. Each is met once: if there are more, links are wrong.
     faces: usize,
-    /// The last one met: the next one is further along.
+    /// The vertex that was met last: the next one is further along.
     vertex: Option<VertexId>,
 }
 
 impl<'t, T: Embedded<3>> Along<'t, T> {
-    /// Given where the segment starts.
+    /// Starts at the location of the segment's first point.
     fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
         let segment = Segment { t, a: *a, b: *b };
         let next = if t.geometry().admits(b) { segment.first(location) } else { Ok(None) };
@@ -132,39 +137,39 @@ struct Segment<'t, T: Embedded<3>> {
 }
 
 impl<T: Embedded<3>> Segment<'_, T> {
-    /// On which side of the line a vertex lies: positive on the left.
+    /// Returns the side of the line that a vertex lies on: positive on the left.
     fn side(&self, vertex: VertexId) -> Result<Sign, T::Error> {
         Ok(self.t.geometry().orientation([&self.a, &self.b, self.t.point(vertex)?.borrow()]))
     }
 
-    /// On which side of an edge a point lies.
+    /// Returns the side of an edge that a point lies on.
     fn beside(&self, [from, to]: [VertexId; 2], p: &PointOf<T, 3>) -> Result<Sign, T::Error> {
         Ok(self.t.geometry().orientation([self.t.point(from)?.borrow(), self.t.point(to)?.borrow(), p]))
     }
 
-    /// On which side of an edge the segment ends.
+    /// Returns the side of an edge that the segment ends on.
     fn end_side(&self, edge: [VertexId; 2]) -> Result<Sign, T::Error> {
         self.beside(edge, &self.b)
     }
 
-    /// Of points on the line: `Greater` if `q` comes after `p` along the segment.
+    /// Compares points on the line: `Greater` if `q` comes after `p` along the segment.
     fn order(&self, p: &PointOf<T, 3>, q: &PointOf<T, 3>) -> Ordering {
         let g = self.t.geometry();
         let order = g.compare(q, p);
         if g.compare(&self.b, &self.a).is_lt() { order.reverse() } else { order }
     }
 
-    /// The same of vertices.
+    /// Like [`order`](Self::order), for vertices.
     fn order_of(&self, p: VertexId, q: VertexId) -> Result<Ordering, T::Error> {
         Ok(self.order(self.t.point(p)?.borrow(), self.t.point(q)?.borrow()))
     }
 
-    /// The same of a vertex and the end.
+    /// Like [`order`](Self::order), for a vertex and the end of the segment.
     fn order_to_end(&self, vertex: VertexId) -> Result<Ordering, T::Error> {
         Ok(self.order(self.t.point(vertex)?.borrow(), &self.b))
     }
 
-    /// A vertex on the line, as what comes next, if the segment goes that far.
+    /// Returns a vertex on the line as what is met next, if the segment goes that far.
     fn up_to(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
         Ok(self.order_to_end(vertex)?.is_ge().then_some(Passage::Vertex(vertex)))
     }
@@ -191,14 +196,14 @@ impl<T: Embedded<3>> Segment<'_, T> {
         })
     }
 
-    /// Where a segment from outside comes upon the hull: over an edge that runs from its left to its right, or, if the
-    /// line has none such, at the first vertex that it goes through.
+    /// Returns what a segment from outside of the hull meets first: an edge that runs from its left
+    /// to its right, or, if there is none, the first vertex that the segment goes through.
     fn entry(&self) -> Result<Option<Passage>, T::Error> {
         let complex = self.t.complex();
         let mut touched: Option<VertexId> = None;
         for cell in Star::new(complex, VertexId::INFINITE, 2)? {
             let (cell, i) = cell?;
-            // Of the infinite face: the hull runs from `to` to `from`.
+            // The infinite face lies outside: the hull runs from `to` to `from`.
             let ends @ [to, from] = plane::edge_ends(complex, cell, i)?;
             let sides = [self.side(from)?, self.side(to)?];
             if sides == [Sign::Positive, Sign::Negative] {
@@ -234,7 +239,7 @@ impl<T: Embedded<3>> Segment<'_, T> {
         }
     }
 
-    /// A line leaves a triangle where, counter-clockwise, its border comes over from the right.
+    /// A line leaves a triangle where the border, counter-clockwise, comes over from the right.
     fn after_face(&self, cell: CellId) -> Result<Option<Passage>, T::Error> {
         let complex = self.t.complex();
         let corners @ [u, v, w] = complex.corners(cell)?;

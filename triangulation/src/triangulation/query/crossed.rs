@@ -7,12 +7,14 @@ use crate::tds::{CellId, VertexId, ccw, cw};
 use super::super::{Location, Triangulation};
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// The finite edges that the open segment from `a` to `b` crosses between their ends, each once, from no
-    /// end in particular. The two need not be vertices, nor lie in the hull. Edges that the segment runs
-    /// along or touches with an end are not crossed. None if the geometry does not [admit](Geometry::admits) both.
+    /// Returns the finite edges that the open segment from `a` to `b` crosses in their interior,
+    /// each once and in no particular order. `a` and `b` need not be vertices, nor lie in the hull.
+    /// Edges that the segment runs along or touches with an end are not crossed. Empty if the
+    /// geometry does not [admit](Geometry::admits) both points.
     ///
     /// # Complexity
-    /// Linear in the number of triangles met, after location; in the size of the hull where `a` is outside.
+    /// Linear in the number of triangles met, after location; in the size of the hull if `a` is
+    /// outside.
     pub fn edges_crossed(&self, a: &G::Point, b: &G::Point) -> Vec<[VertexId; 2]> {
         let mut crossed = Vec::new();
         let is_segment = [a, b].into_iter().all(|p| self.geometry.admits(p)) && self.geometry.compare(a, b).is_ne();
@@ -31,11 +33,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                     if seen.insert(beyond) {
                         open.push(beyond);
                     }
-                    // Of the two cells of an edge, the one that has it in this direction reports it.
+                    // Of the two cells of an edge, the one that has it in this direction reports
+                    // it.
                     crossed.extend((ends[0] < ends[1]).then_some(ends));
                 }
             }
-            // Through a vertex the segment goes on in any of its cells.
+            // Through a vertex the segment may continue in any of its cells.
             for &vertex in corners.iter().filter(|&&v| v != VertexId::INFINITE && self.is_between(a, b, v)) {
                 open.extend(self.tds.around(vertex).filter(|&cell| seen.insert(cell)));
             }
@@ -45,7 +48,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         crossed
     }
 
-    /// The cells that have a point in them or on their border; all infinite ones for a point outside.
+    /// Returns the cells that contain a point, inside or on their border; all infinite cells for a
+    /// point outside.
     fn cells_at(&self, a: &G::Point) -> Vec<CellId> {
         match self.locate(a, None) {
             Location::Vertex(vertex) => self.tds.around(vertex).collect(),

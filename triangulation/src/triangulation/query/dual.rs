@@ -1,9 +1,10 @@
-//! Voronoi diagrams: what is nearest to which vertex, as the dual of a Delaunay triangulation; and what they have in
-//! common with [power diagrams](super::power).
+//! Voronoi diagrams, as the dual of Delaunay triangulations, and what they share with [power
+//! diagrams](super::power).
 //!
-//! Coordinates of the [geometry](crate::geometry::Coordinates) must be those that its circles are circles of, as in
-//! [`Plane`](crate::geometry::Plane), [`Terrain`](crate::geometry::Terrain) and [`Steps`](crate::geometry::Steps). What
-//! is computed is rounded; lengths are in the unit of the coordinates.
+//! The circles of the [geometry](crate::geometry::Coordinates) must be circles in its coordinates,
+//! as they are for [`Plane`](crate::geometry::Plane), [`Terrain`](crate::geometry::Terrain) and
+//! [`Steps`](crate::geometry::Steps). Results are rounded; lengths are in the unit of the
+//! coordinates.
 
 use crate::geometry::Coordinates;
 use crate::kernel;
@@ -11,34 +12,34 @@ use crate::tds::{CellId, VertexId};
 
 use super::super::{Delaunay, Triangulation};
 
-/// The points that two vertices are both nearest to: the dual of an edge. Of a Voronoi diagram, or of a power diagram.
+/// The dual of an edge, in a Voronoi or power diagram: the points that both ends are nearest to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VoronoiEdge {
-    /// Between the centers of the faces beside an edge; of no length if these are one, as where their corners lie on
-    /// one circle.
+    /// Between the centers of the two faces at an edge; of length zero if these are equal, as when
+    /// all four corners lie on one circle.
     Segment([[f64; 2]; 2]),
-    /// From the center of the only face beside an edge of the hull, outwards.
+    /// From the center of the only face at an edge of the hull, outward.
     Ray {
-        /// The end.
+        /// The start of the ray.
         from: [f64; 2],
-        /// As long as the edge.
+        /// The direction; as long as the edge.
         direction: [f64; 2],
     },
-    /// Between two of collinear vertices.
+    /// Between two neighbors among collinear vertices.
     Line {
-        /// On the line through both; in the middle between them if they weigh the same.
+        /// A point on the line through both; halfway between them if their weights are equal.
         through: [f64; 2],
-        /// As long as the edge.
+        /// The direction; as long as the edge.
         direction: [f64; 2],
     },
 }
 
-/// The points in a convex polygon that no vertex is nearer to than this one.
+/// The part of a convex polygon that is nearest to one vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VoronoiCell {
-    /// Counter-clockwise; none if the cell lies outside of the polygon.
+    /// The corners, counter-clockwise; none if the cell lies outside of the polygon.
     pub corners: Vec<[f64; 2]>,
-    /// In square units of the coordinates.
+    /// The area, in square units of the coordinates.
     pub area: f64,
 }
 
@@ -49,17 +50,19 @@ pub(super) struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// What is nearer to the origin than to `p`.
+    /// Returns the points nearer to the origin than to `p`.
     fn nearer_than(p: [f64; 2]) -> Self {
         Self::of_less_power(p, 0.0)
     }
 
-    /// The same by power, the origin weighing more than `p` by this.
+    /// Returns the points of less power to the origin than to `p`, where the weight of the origin
+    /// is larger `by` this much.
     pub(super) fn of_less_power(p: [f64; 2], by: f64) -> Self {
         HalfPlane { normal: p, offset: (dot(p, p) + by) / 2.0 }
     }
 
-    /// The part of a convex polygon in it (Sutherland and Hodgman 1974, for one line).
+    /// Returns the part of a convex polygon in the half plane (Sutherland and Hodgman 1974, for one
+    /// line).
     fn clip(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let beyond = |p: [f64; 2]| dot(self.normal, p) - self.offset;
         let mut clipped = Vec::with_capacity(polygon.len() + 1);
@@ -90,13 +93,14 @@ pub(super) fn plus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [p[0] + q[0], p[1] + q[1]]
 }
 
-/// Twice the area of a polygon, positive if it is counter-clockwise.
+/// Returns twice the area of a polygon, positive if it is counter-clockwise.
 pub(super) fn twice_area(polygon: &[[f64; 2]]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
 }
 
-/// The cell of a site: the part of a convex polygon in half planes that are given relative to the site.
+/// Returns the cell of a site: the part of a convex polygon in half planes that are given relative
+/// to the site.
 pub(super) fn cell_of(
     site: [f64; 2],
     half_planes: impl Iterator<Item = HalfPlane>,
@@ -112,21 +116,22 @@ pub(super) fn cell_of(
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// The center of the circle around a finite face, weights aside; `None` for what is not one, as below dimension 2.
-    /// Right to a few units in the last place of the larger of its coordinates and its
-    /// [distance](kernel::power_center) from the corners. O(1).
+    /// Returns the center of the circle around a finite face, ignoring weights; `None` if the cell
+    /// is not a finite face. Accurate to a few units in the last place of the larger of its
+    /// coordinates and its [distance](kernel::power_center) from the corners. O(1).
     pub fn circumcenter(&self, cell: CellId) -> Option<[f64; 2]> {
         let corners = self.finite_face(cell)?.map(|v| self.site(v));
         Some(plus(corners[0], kernel::circumcenter(corners)))
     }
 
-    /// The corners of a finite face; `None` if the cell is not one.
+    /// Returns the corners of a finite face; `None` if the cell is not one.
     pub(super) fn finite_face(&self, cell: CellId) -> Option<[VertexId; 3]> {
         let is_face = self.is_full() && self.tds().is_used(cell) && !self.tds().is_infinite(cell);
         is_face.then(|| *self.tds().corners(cell))
     }
 
-    /// The ends of a finite edge, given as in [`Tds::edges`](crate::tds::Tds::edges); `None` if it is not one.
+    /// Returns the ends of a finite edge, given as in [`Tds::edges`](crate::tds::Tds::edges);
+    /// `None` if it is not one.
     pub(super) fn finite_edge(&self, cell: CellId, i: usize) -> Option<[VertexId; 2]> {
         let is_edge = match self.dimension() {
             2 => i < 3,
@@ -137,8 +142,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         (!ends.contains(&VertexId::INFINITE)).then_some(ends)
     }
 
-    /// The dual of a finite edge, `None` of what is not one; given the centers of finite faces, and which point between two
-    /// collinear vertices belongs to both.
+    /// Returns the dual of a finite edge; `None` if it is not one. `center` returns the center of a
+    /// finite face, `between` the point between two collinear vertices that belongs to both cells.
     pub(super) fn dual_edge(
         &self,
         cell: CellId,
@@ -162,9 +167,12 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// The points that the ends of an edge are both nearest to, given as in [`Tds::edges`](crate::tds::Tds::edges). A
-    /// segment leads from the center of `cell` to that of the other face. `None` for edges with the infinite vertex, and
-    /// for what is not an edge: on a line an edge has index 2, below that there is none. O(1).
+    /// Returns the Voronoi edge between the ends of an edge, which is given as in
+    /// [`Tds::edges`](crate::tds::Tds::edges).
+    ///
+    /// A segment runs from the center of `cell` to that of the other face. `None` for edges with
+    /// the infinite vertex, and if there is no such edge: in dimension 1 an edge has index 2, below
+    /// that there are none. O(1).
     pub fn voronoi_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
         let middle = |ends: [VertexId; 2]| {
             let [a, b] = ends.map(|v| self.site(v));
@@ -173,12 +181,15 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         self.dual_edge(cell, i, |cell| self.circumcenter(cell), middle)
     }
 
-    /// What of a convex polygon, counter-clockwise, is nearest to a finite vertex. The cells of all vertices tile it,
-    /// in every dimension, as long as squares of distances are numbers: between `1e-150` and `1e150`, say. No corners for
-    /// what is not a vertex, nor where a corner of the polygon is not finite.
+    /// Returns the Voronoi cell of a finite vertex, clipped to a convex polygon, which is given
+    /// counter-clockwise.
+    ///
+    /// The cells of all vertices tile the polygon, in every dimension, as long as squares of
+    /// distances neither overflow nor underflow (distances between about `1e-150` and `1e150`). The
+    /// cell has no corners if the vertex does not exist or a corner of the polygon is not finite.
     ///
     /// # Complexity
-    /// The degree of the vertex times the corners of the polygon and the cell.
+    /// The degree of the vertex times the number of corners of the polygon and the cell.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay};

@@ -1,15 +1,17 @@
-//! All faces in constant memory: no face is marked as visited.
+//! Iterates over all faces in constant memory: no face is marked as visited.
 //!
-//! Seen from a vertex `p`, each face that does not have it has an *entry*: the edge with the face's point nearest to
-//! `p`, which is one of the edges that have `p` on their outer side. Where that point is a corner of two such edges,
-//! either one will do, but always the same. Going back over the entries leads to one of the faces around `p`:
+//! Seen from a vertex `p`, each face that does not contain it has an *entry*: the edge that
+//! contains the face's point nearest to `p`, which is one of the edges that have `p` on their outer
+//! side. If that point is a corner of two such edges, either will do, but it must always be the
+//! same. Following the entries backward leads to one of the faces around `p`:
 //! - beyond the entry the nearest point is nearer, unless it is the same corner `v`;
-//! - in this case the path turns around `v` in one direction, from behind `v` as `p` sees it towards `p`, where faces
-//!   are nearer.
+//! - in this case the path turns around `v` in one direction, from behind `v` as seen from `p`
+//!   toward `p`, where faces are nearer.
 //!
-//! Nor does it leave the hull, which is convex and has `p` within. So the faces are a forest over those around `p`,
-//! and its order and the path back up are found from the geometry (de Berg, van Oostrum and Overmars 1996). It takes
-//! any triangulation, not those of a law only; all comparisons are exact.
+//! The path does not leave the hull, which is convex and contains `p`. So the faces are a forest
+//! whose roots are the faces around `p`. Its order, and the path back to the root, follow from the
+//! geometry (de Berg, van Oostrum and Overmars 1996). This holds for any triangulation, lawful or
+//! not; all comparisons are exact.
 
 use crate::geometry::Coordinates;
 use crate::kernel::{DotProduct, Kernel, Orientation2, Wide};
@@ -21,9 +23,9 @@ use super::super::engine::embedded::Embedded;
 use super::site;
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// All finite faces, each once: of each face around a vertex, counter-clockwise, first itself and then what lies
-    /// behind it as the vertex sees it. No visited set is kept. Empty below dimension
-    /// 2, or if there is no such vertex.
+    /// Returns all finite faces, each once. Each face around a vertex, counter-clockwise, is
+    /// followed by the faces behind it, as seen from the vertex. No visited set is kept. Empty
+    /// below dimension 2, or if the vertex does not exist.
     ///
     /// # Complexity
     /// Constant memory; constant time for a face, on average.
@@ -42,8 +44,9 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
-/// Returns all finite faces, each once, from those around a vertex on, and keeps no visited set: see
-/// [`Triangulation::faces_from`]. Empty below dimension 2, or if there is no such vertex. Ends at the first error.
+/// Returns all finite faces, each once, starting with those around a vertex; no visited set is
+/// kept. See [`Triangulation::faces_from`]. Empty below dimension 2, or if the vertex does not
+/// exist. Ends at the first error.
 ///
 /// # Errors
 /// If a link does not hold.
@@ -59,27 +62,29 @@ pub fn faces_from<'t, T: Embedded<3, Geometry: Coordinates<3>>>(
     Ok(faces.into_iter().flatten())
 }
 
-/// The finite faces of a triangulation.
+/// Iterates over the finite faces of a triangulation.
 struct Faces<'t, T: Embedded<3>> {
     t: &'t T,
     start: VertexId,
     site: [f64; 2],
-    /// Those around the start that have not been returned; `None` after an error.
+    /// The faces around the start that have not been returned; `None` after an error.
     roots: Option<Star<'t, T::Complex>>,
     /// The face that was returned last.
     at: Option<CellId>,
-    /// Each face is come to and left again once: if there are more steps, links lead astray.
+    /// The number of steps. Each face is entered and left once: if there are more steps, links are
+    /// wrong.
     steps: usize,
 }
 
 impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
-    /// From those around a vertex on.
+    /// Starts with the faces around a vertex.
     fn new(t: &'t T, start: VertexId) -> Result<Self, T::Error> {
         let roots = Some(Star::new(t.complex(), start, 2)?);
         Ok(Faces { t, start, site: site(t, start)?, roots, at: None, steps: 0 })
     }
 
-    /// The index of the edge by which a face is entered; `None` for those around the start.
+    /// Returns the index of the edge through which a face is entered; `None` for the faces around
+    /// the start.
     fn entry(&self, cell: CellId) -> Result<Option<usize>, T::Error> {
         let complex = self.t.complex();
         let corners @ [a, b, c] = complex.corners(cell)?;
@@ -91,7 +96,7 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
             |&i: &usize| Wide::sign(&Orientation2([corners[ccw(i)], corners[cw(i)], self.site])) == Sign::Negative;
         let mut seen = (0..3).filter(is_seen);
         let (first, second) = (seen.next(), seen.next());
-        // A face that is flat, or turned around, or that lies over the start.
+        // Otherwise the face is flat or clockwise, or contains the start.
         complex.ensure(cell, || first.is_some() && seen.next().is_none())?;
         let (Some(i), Some(j)) = (first, second) else {
             return Ok(first);
@@ -108,7 +113,7 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
         }))
     }
 
-    /// The faces that may be entered from this one, by their edges in order.
+    /// Returns the edges through which other faces may be entered from this one, in order.
     fn exits(&self, cell: CellId, entry: Option<usize>) -> Result<[usize; 2], T::Error> {
         Ok(match entry {
             Some(entry) => [ccw(entry), cw(entry)],
@@ -116,7 +121,7 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
         })
     }
 
-    /// The face that is entered over this edge, if there is one.
+    /// Returns the face that is entered through this edge, if there is one.
     fn child(&self, cell: CellId, i: usize) -> Result<Option<CellId>, T::Error> {
         let complex = self.t.complex();
         let beyond = complex.neighbor(cell, i)?;
@@ -127,7 +132,7 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
         Ok(is_entered.then_some(beyond))
     }
 
-    /// The next face in the tree with this one: a child of it, or else of those above.
+    /// Returns the next face in the tree: a child of this one, or of one above it.
     fn after(&mut self, mut cell: CellId) -> Result<Option<CellId>, T::Error> {
         let complex = self.t.complex();
         let mut returned_over = None;

@@ -1,18 +1,19 @@
-//! Location and other questions as functions over any [`Embedded`](crate::Embedded) structure: the methods of the kinds, and
-//! those of [`Compact`](crate::Compact), call these.
+//! Location and other queries, as functions over any [`Embedded`](crate::Embedded) structure; the
+//! methods of the kinds and those of [`Compact`](crate::Compact) call them.
 //!
-//! | function | returns | asks of the structure |
+//! | function | returns | requires |
 //! |---|---|---|
 //! | [`locate`] | the vertex or cell that a point lies on or in | a triangulation, of the plane or of space |
 //! | [`along`] | what a segment meets | a triangulation of the plane |
-//! | [`faces_from`] | all faces, without a visited set | the same |
-//! | [`within_rectangle`] | the vertices in a rectangle | the same |
+//! | [`faces_from`] | all faces, without a visited set | a triangulation of the plane |
+//! | [`within_rectangle`] | the vertices in a rectangle | a triangulation of the plane |
 //! | [`nearest`], [`nearest_first`], [`within`] | vertices by distance | a Delaunay triangulation |
-//! | [`conflict_zone`] | what a new point would destroy | one, perhaps with constraints |
+//! | [`conflict_zone`] | what a new point would destroy | a Delaunay triangulation, perhaps with constraints |
 //!
-//! All walk from a cell nearby, which may be `None`. What a structure of your own needs is two traits:
-//! [`Complex`](crate::tds::Complex), the cells and their neighbors, and [`Embedded`](crate::Embedded), the points. The example
-//! `examples/own_structure.rs` has an array of triangles with indices of vertices.
+//! All of them walk from a cell nearby, which may be `None`. A structure of your own implements two
+//! traits: [`Complex`](crate::tds::Complex), for the cells and their neighbors, and
+//! [`Embedded`](crate::Embedded), for the points. The example `examples/own_structure.rs` uses an
+//! array of triangles with indices of vertices.
 //!
 //! ```
 //! use breakline_triangulation::geometry::Plane;
@@ -64,19 +65,19 @@ use crate::tds::VertexId;
 use super::Triangulation;
 use super::engine::embedded::Embedded;
 
-/// Where a point lies in the plane.
+/// Returns the coordinates of a point in the plane.
 fn site_of<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {
     let coordinates = geometry.coordinates(p);
     [coordinates.as_ref()[0], coordinates.as_ref()[1]]
 }
 
-/// Where a finite vertex lies.
+/// Returns the coordinates of a finite vertex in the plane.
 fn site<T: Embedded<3, Geometry: Coordinates<3>>>(t: &T, vertex: VertexId) -> Result<[f64; 2], T::Error> {
     Ok(site_of(t.geometry(), t.point(vertex)?.borrow()))
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// Where a finite vertex lies.
+    /// Returns the coordinates of a finite vertex in the plane.
     fn site(&self, vertex: VertexId) -> [f64; 2] {
         let Ok(site) = site(self, vertex);
         site

@@ -1,17 +1,18 @@
 //! Natural neighbor coordinates.
 //!
-//! If a point was a vertex, its Voronoi cell would take something from the cells of some vertices: its *natural
-//! neighbors*, those around its [conflict zone](ConflictZone). Nothing is inserted to see that: the new corners of
-//! cells are circumcenters over the border of the zone, the old ones those of the faces within.
+//! If a point were a vertex, its Voronoi cell would take some area from the cells of its *natural
+//! neighbors*: the vertices around its [conflict zone](ConflictZone). Nothing is inserted to
+//! compute that: the new corners of cells are circumcenters over the border of the zone, the old
+//! ones those of the faces within.
 //!
 //! | weight of a neighbor | is proportional to |
 //! |---|---|
 //! | [Sibson](Delaunay::sibson)'s | the area that its cell loses |
 //! | [Laplace](Delaunay::laplace)'s | the length of the border with the new cell, over its distance |
 //!
-//! Both are positive, sum up to 1, and give back the point as the weighted mean of its neighbors; so they interpolate,
-//! and linear functions exactly. They are continuous, Sibson's smooth but at the vertices, Laplace's less so and
-//! cheaper.
+//! Both are positive, sum up to 1, and reproduce the point as the weighted mean of its neighbors.
+//! So they interpolate, and linear functions exactly. They are continuous. Sibson's are smooth
+//! except at the vertices; Laplace's are less smooth and cheaper.
 
 use rustc_hash::FxHashMap;
 
@@ -27,21 +28,23 @@ use super::zone::ConflictZone;
 type Weights = Vec<(VertexId, f64)>;
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// Sibson's coordinates of a point: vertices with weights that are not negative, sum up to 1, and whose mean is the
-    /// point; counter-clockwise. Rounded: in all tests the mean misses the point by less than `1e-11`, of points that
-    /// are some 10 apart.
+    /// Returns Sibson's coordinates of a point: vertices, counter-clockwise, with weights that are
+    /// not negative, sum up to 1, and whose mean is the point. Rounded: in all tests the mean is
+    /// within `1e-11` of the point, for points that are some 10 apart.
     ///
-    /// On a vertex, that vertex with exactly 1. On an edge of the hull, and between two of collinear points, both ends
-    /// in linear proportion, which is the limit from within. `None` outside of the hull, at a point that the geometry does
-    /// not [admit](crate::geometry::Geometry::admits), and where squares of distances are no numbers (beyond `1e150`, below
-    /// `1e-150`). The coordinates must be those that circles are circles of.
+    /// On a vertex, returns that vertex with a weight of exactly 1. On an edge of the hull, and
+    /// between two of collinear points, returns both ends in linear proportion, which is the limit
+    /// from within. `None` outside of the hull, for a point that the geometry does not
+    /// [admit](crate::geometry::Geometry::admits), and where squares of distances overflow or
+    /// underflow (distances beyond `1e150` or below `1e-150`). The circles of the geometry must be
+    /// circles in its coordinates.
     ///
-    /// After Sibson 1981, *A brief description of natural neighbour interpolation*; without insertion as Watson 1992,
-    /// *Contouring*.
+    /// After Sibson 1981, *A brief description of natural neighbour interpolation*; without
+    /// insertion as Watson 1992, *Contouring*.
     ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of
-    /// the conflict zone: some six neighbors.
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time
+    /// proportional to the size of the conflict zone: some six neighbors.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
@@ -64,7 +67,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
             let old: FxHashMap<CellId, [f64; 2]> = zone.cells.iter().map(center).collect();
             let mut lost = Vec::new();
             let weight = |k: usize, vertex: VertexId| {
-                // What a cell loses: from the first face around the vertex to the last one, then to the new corners.
+                // The area that a cell loses: from the first face around the vertex to the last
+                // one, then to the new corners.
                 let next = (k + 1) % new.len();
                 let (mut cell, last) = (zone.border[next].0, zone.border[k].0);
                 lost.clear();
@@ -82,10 +86,11 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         })
     }
 
-    /// Laplace's coordinates of a point, also called non-Sibsonian: answers and cost are as those of
-    /// [`sibson`](Self::sibson), which see, but no face within the zone is looked at.
+    /// Returns Laplace's coordinates of a point, also called non-Sibsonian. Results and cost are
+    /// those of [`sibson`](Self::sibson), except that no face inside of the zone is read.
     ///
-    /// After Belikov, Ivanov, Kontorovich, Korytnik and Semenov 1997, *The non-Sibsonian interpolation*.
+    /// After Belikov, Ivanov, Kontorovich, Korytnik and Semenov 1997, *The non-Sibsonian
+    /// interpolation*.
     pub fn laplace(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
         self.coordinates(q, near, |zone, at, new| {
             let weight = |k: usize, vertex: VertexId| {
@@ -96,14 +101,16 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         })
     }
 
-    /// The weights on the border of a zone, each from its position there and the vertex that the edge ends at.
+    /// Returns the weights on the border of a zone; `weight` gets the position there and the vertex
+    /// that the edge ends at.
     fn around(&self, zone: &ConflictZone, mut weight: impl FnMut(usize, VertexId) -> f64) -> Weights {
         let ends = zone.border.iter().map(|&(cell, i)| self.tds().edge_ends(cell, i)[1]);
         ends.enumerate().map(|(k, vertex)| (vertex, weight(k, vertex).max(0.0))).collect()
     }
 
-    /// Weights that sum up to 1, from those that `inside` gives for a point within the hull: from the zone, the point,
-    /// and the corners of its Voronoi cell relative to it, one for each edge of the border.
+    /// Returns weights that sum up to 1, from those that `inside` returns for a point within the
+    /// hull. It gets the zone, the point, and the corners of the point's Voronoi cell relative to
+    /// it, one for each edge of the border.
     fn coordinates(
         &self,
         q: &G::Point,
@@ -134,7 +141,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
             }
         };
         let sum: f64 = weights.iter().map(|&(_, weight)| weight).sum();
-        // Of lengths whose squares are no numbers.
+        // Lengths whose squares overflow or underflow.
         if !(sum > 0.0 && sum.is_finite()) {
             return None;
         }
@@ -142,7 +149,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         Some(weights)
     }
 
-    /// Linear interpolation.
+    /// Interpolates linearly between two vertices.
     fn between(&self, ends: [VertexId; 2], at: [f64; 2]) -> Weights {
         let [a, b] = ends.map(|v| minus(self.site(v), at)).map(|[x, y]| x.hypot(y));
         vec![(ends[0], b), (ends[1], a)]

@@ -1,10 +1,11 @@
 //! The vertices of a Delaunay or regular triangulation by their distance from a point.
 //!
-//! All follows from one fact: a vertex that is not nearest to a point has a neighbor that is nearer, because its
-//! Voronoi cell, bounded by bisectors with neighbors, does not hold the point. So a walk to nearer neighbors ends at a
-//! nearest vertex; and each vertex is a neighbor of one that comes before it in the order of distance, so that none is
-//! missed if the nearest of all neighbors of what has been found comes next. The same holds of a regular triangulation,
-//! power for distance, and of the cells of its power diagram.
+//! All of it follows from one fact: a vertex that is not nearest to a point has a neighbor that is
+//! nearer, because its Voronoi cell, bounded by bisectors with neighbors, does not contain the
+//! point. So a walk to nearer neighbors ends at a nearest vertex. And each vertex is a neighbor of
+//! one that precedes it in the order of distance, so that none is missed if the next is always the
+//! nearest of all neighbors of those found. The same holds for a regular triangulation, with power
+//! for distance and the cells of its power diagram.
 
 use std::borrow::Borrow;
 use std::cmp::Ordering;
@@ -19,7 +20,7 @@ use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::super::{Delaunay, Location};
 
-/// A vertex that was found and not yet returned: the nearest is the greatest.
+/// A vertex that was found but not yet returned: the nearest is the greatest.
 struct Candidate<'t, T: Embedded<3>> {
     t: &'t T,
     q: PointOf<T, 3>,
@@ -28,7 +29,7 @@ struct Candidate<'t, T: Embedded<3>> {
 }
 
 impl<T: Embedded<3, Geometry: Metric>> Candidate<'_, T> {
-    /// Whether it is no further from the point than `rim` is.
+    /// Returns true if the vertex is no further from the point than `rim` is.
     fn is_within(&self, rim: &PointOf<T, 3>) -> bool {
         self.t.geometry().compare_distance(&self.q, self.point.borrow(), rim).is_le()
     }
@@ -55,7 +56,7 @@ impl<T: Embedded<3, Geometry: Metric>> PartialEq for Candidate<'_, T> {
 
 impl<T: Embedded<3, Geometry: Metric>> Eq for Candidate<'_, T> {}
 
-/// The vertices of a Delaunay triangulation by their distance from a point.
+/// Iterates over the vertices of a Delaunay triangulation by their distance from a point.
 struct NearestFirst<'t, T: Embedded<3, Geometry: Metric>> {
     t: &'t T,
     q: PointOf<T, 3>,
@@ -64,7 +65,7 @@ struct NearestFirst<'t, T: Embedded<3, Geometry: Metric>> {
 }
 
 impl<'t, T: Embedded<3, Geometry: Metric>> NearestFirst<'t, T> {
-    /// From where the point is.
+    /// Starts at the location of the point.
     fn new(t: &'t T, q: &PointOf<T, 3>, location: Location) -> Result<Self, T::Error> {
         let mut nearest = NearestFirst { t, q: *q, found: FxHashSet::default(), next: BinaryHeap::new() };
         all_nearest(t, q, location)?.into_iter().try_for_each(|vertex| nearest.find(vertex))?;
@@ -104,11 +105,12 @@ fn finite_neighbors<T: Embedded<3>>(
     Ok(around.filter(|v| !v.as_ref().is_ok_and(|&v| v == VertexId::INFINITE)))
 }
 
-/// Returns the vertex nearest to a point; of several, the first in the [order](Geometry::compare) of the geometry. `None` if
-/// there are no vertices, or if the geometry does not [admit](Geometry::admits) the point.
+/// Returns the vertex nearest to a point; of several, the first in the [order](Geometry::compare)
+/// of the geometry. `None` if there are no vertices, or if the geometry does not
+/// [admit](Geometry::admits) the point.
 ///
-/// Exact, in a Delaunay triangulation or a regular one (by power); the walk to it starts at a cell nearby. In others the
-/// vertex that is returned may not be the nearest.
+/// Exact in a Delaunay triangulation, and in a regular one (by power); the walk to the point starts
+/// at a cell nearby. In other triangulations the result may not be the nearest.
 ///
 /// # Errors
 /// If a link does not hold.
@@ -131,8 +133,8 @@ pub fn nearest<T: Embedded<3, Geometry: Metric>>(
     Ok(first.map(|(vertex, _)| vertex))
 }
 
-/// Returns all vertices of a Delaunay triangulation from the nearest to the furthest; those that are equally far come in
-/// the order of the geometry. None where [`nearest`] is `None`. Ends at the first error.
+/// Returns all vertices of a Delaunay triangulation, nearest first; vertices at equal distances are
+/// in the order of the geometry. Empty where [`nearest`] returns `None`. Ends at the first error.
 ///
 /// # Errors
 /// If a link does not hold.
@@ -148,14 +150,15 @@ pub fn nearest_first<'t, T: Embedded<3, Geometry: Metric>>(
     Ok(nearest.map(|candidate| Ok(candidate?.vertex)))
 }
 
-/// Returns the vertices of a Delaunay triangulation no further from a center than `rim` is, nearest first. None if the
-/// geometry does not [admit](Geometry::admits) the center or the rim. Ends at the first error.
+/// Returns the vertices of a Delaunay triangulation that are no further from a center than `rim`
+/// is, nearest first. Empty if the geometry does not [admit](Geometry::admits) the center or the
+/// rim. Ends at the first error.
 ///
 /// # Errors
 /// If a link does not hold.
 ///
 /// # Complexity
-/// As [`nearest_first`].
+/// That of [`nearest_first`].
 pub fn within<'t, T: Embedded<3, Geometry: Metric>>(
     t: &'t T,
     center: &PointOf<T, 3>,
@@ -171,8 +174,8 @@ pub fn within<'t, T: Embedded<3, Geometry: Metric>>(
     Ok(nearest.take_while(is_within).map(|candidate| Ok(candidate?.vertex)))
 }
 
-/// All vertices that no other is nearer than. They lie on an empty circle around the point, on whose chords edges
-/// join them all.
+/// Returns all vertices at the smallest distance. They lie on an empty circle around the point, and
+/// edges along its chords connect them all.
 fn all_nearest<T: Embedded<3, Geometry: Metric>>(
     t: &T,
     q: &PointOf<T, 3>,
@@ -188,7 +191,7 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
         Location::Nowhere => None,
     };
     let mut nearest: Vec<VertexId> = start.into_iter().collect();
-    // Of these, all but the first.
+    // All of these except the first.
     let mut found = FxHashSet::default();
     let mut next = 0;
     while next < nearest.len() {
@@ -213,14 +216,15 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
 }
 
 impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// The vertex nearest to a point; of several, the first in the [order](crate::geometry::Geometry::compare) of the
-    /// geometry. `None` if there are no vertices, or if the geometry does not
-    /// [admit](crate::geometry::Geometry::admits) the point: with the kernel [`Wide`](crate::kernel::Wide) it admits every
-    /// finite one. Exact.
+    /// Returns the vertex nearest to a point; of several, the first in the
+    /// [order](crate::geometry::Geometry::compare) of the geometry. `None` if there are no
+    /// vertices, or if the geometry does not [admit](crate::geometry::Geometry::admits) the point;
+    /// with the kernel [`Wide`](crate::kernel::Wide) it admits every finite one. Exact.
     ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and the degrees of a few vertices.
-    /// From beyond the hull, and on a line, the walk may lead along all vertices there.
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and the degrees of
+    /// a few vertices. From outside of the hull, and on a line, the walk may visit all vertices
+    /// there.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
@@ -237,11 +241,12 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         nearest
     }
 
-    /// All vertices from the nearest to the furthest: [`take`](Iterator::take) as many as are wanted. Those that are
-    /// equally far come in the order of the geometry. None where [`nearest`](Self::nearest) is `None`. Exact.
+    /// Returns all vertices, nearest first: [`take`](Iterator::take) as many as you need. Vertices
+    /// at equal distances are in the order of the geometry. Empty where [`nearest`](Self::nearest)
+    /// returns `None`. Exact.
     ///
     /// # Complexity
-    /// As [`nearest`](Self::nearest), and O(d log k) for the `k`-th, of degree `d`.
+    /// That of [`nearest`](Self::nearest), and O(d log k) for the `k`-th vertex, of degree `d`.
     pub fn nearest_first<'a>(
         &'a self,
         q: &G::Point,
@@ -251,12 +256,12 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         nearest.map(|Ok(vertex)| vertex)
     }
 
-    /// The vertices no further from a point than `rim` is, nearest first. Exact: the circle is given by a point on it,
-    /// as the length of a radius is rounded. None if the geometry does not [admit](crate::geometry::Geometry::admits) the
-    /// center or the rim.
+    /// Returns the vertices that are no further from a center than `rim` is, nearest first. Exact:
+    /// a point on the circle gives the radius, because a length would be rounded. Empty if the
+    /// geometry does not [admit](crate::geometry::Geometry::admits) the center or the rim.
     ///
     /// # Complexity
-    /// As [`nearest_first`](Self::nearest_first).
+    /// That of [`nearest_first`](Self::nearest_first).
     pub fn within<'a>(
         &'a self,
         center: &G::Point,

@@ -9,13 +9,17 @@ use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus
 use super::nearest::nearest;
 
 impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
-    /// The vertex of the least power at a point, its squared distance less its weight; of several, the first in the
-    /// [order](crate::geometry::Geometry::compare) of the geometry. Never a hidden one, nowhere; of these there may be
-    /// one of the same power. `None` if there are no points, or if the geometry does not
-    /// [admit](crate::geometry::Geometry::admits) the point, whose weight does not count otherwise. Exact.
+    /// Returns the vertex of the least power at a point, which is its squared distance less its
+    /// weight; of several, the first in the [order](crate::geometry::Geometry::compare) of the
+    /// geometry.
+    ///
+    /// Never returns a hidden point: such a point has nowhere less power than all vertices, although
+    /// it may have the same. `None` if there are no points, or if the geometry does not
+    /// [admit](crate::geometry::Geometry::admits) the point; otherwise the weight of the point does
+    /// not matter. Exact.
     ///
     /// # Complexity
-    /// As [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
+    /// That of [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
     pub fn nearest(&self, q: &G::Point) -> Option<VertexId> {
         let Ok(nearest) = nearest(&**self, q, self.start(None));
         nearest
@@ -23,10 +27,11 @@ impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
 }
 
 impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
-    /// The point that has the same power with the corners of a finite face, and less with no other point: the corner of
-    /// the power diagram, and the center of the circle that is orthogonal to those of the three. `None` for what is not a
-    /// finite face, as below dimension 2. As right as a [circumcenter](crate::triangulation::Triangulation::circumcenter),
-    /// which it is where all weights are equal. O(1).
+    /// Returns the point that has the same power with the corners of a finite face, and less with
+    /// no other point: the corner of the power diagram, and the center of the circle that is
+    /// orthogonal to those of the three corners. `None` if the cell is not a finite face. As
+    /// accurate as a [circumcenter](crate::triangulation::Triangulation::circumcenter), which it is
+    /// if all weights are equal. O(1).
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Weighted, Regular, VoronoiEdge};
@@ -48,10 +53,13 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
         Some(plus([x, y], kernel::power_center(corners)))
     }
 
-    /// The points that have the same power with the ends of an edge, and less with no other point: the edge between
-    /// their cells of the power diagram, given as in [`Tds::edges`](crate::tds::Tds::edges). A segment leads from the
-    /// center of `cell` to that of the other face. `None` for edges with the infinite vertex, and for what is not an edge:
-    /// on a line an edge has index 2, below that there is none. O(1).
+    /// Returns the edge of the power diagram between the cells of the ends of an edge: the points
+    /// that have the same power with both ends, and less with no other point.
+    ///
+    /// The edge is given as in [`Tds::edges`](crate::tds::Tds::edges). A segment runs from the
+    /// center of `cell` to that of the other face. `None` for edges with the infinite vertex, and
+    /// if there is no such edge: in dimension 1 an edge has index 2, below that there are none.
+    /// O(1).
     pub fn power_edge(&self, cell: CellId, i: usize) -> Option<VoronoiEdge> {
         let between = |ends: [VertexId; 2]| {
             let [[x, y, weight], [u, w, other]] = ends.map(|v| *self.point(v));
@@ -62,12 +70,14 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
         self.dual_edge(cell, i, |cell| self.power_center(cell), between)
     }
 
-    /// What of a convex polygon, counter-clockwise, has no less power with any other point than with this one. The
-    /// cells of all points tile it; that of a hidden point has no corners. None either where a corner of the polygon is not
-    /// finite. What is computed is rounded.
+    /// Returns the cell of a vertex in the power diagram, clipped to a convex polygon, which is
+    /// given counter-clockwise: the points that have no less power with any other vertex.
+    ///
+    /// The cells of all points tile the polygon; that of a hidden point has no corners, and none
+    /// has if a corner of the polygon is not finite. Results are rounded.
     ///
     /// # Complexity
-    /// The degree of the vertex times the corners of the polygon and the cell.
+    /// The degree of the vertex times the number of corners of the polygon and the cell.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Weighted, Regular};

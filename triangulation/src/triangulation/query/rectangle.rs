@@ -10,7 +10,8 @@ use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::{site, site_of};
 
-/// A rectangle along the axes, its border included; it may be unbounded, and is empty if a coordinate is NaN.
+/// An axis-aligned rectangle with its border; it may be unbounded, and is empty if a coordinate is
+/// NaN.
 #[derive(Clone, Copy)]
 struct Rectangle {
     low: [f64; 2],
@@ -37,7 +38,8 @@ impl Rectangle {
         [low, [high[0], low[1]], high, [low[0], high[1]]]
     }
 
-    /// Whether it meets the box around a triangle: it does if it meets the triangle.
+    /// Returns true if the rectangle meets the bounding box of a triangle, as it does if it meets
+    /// the triangle.
     fn meets_box(self, [a, b, c]: [[f64; 2]; 3]) -> bool {
         (0..2).all(|k| a[k].min(b[k]).min(c[k]) <= self.high[k] && self.low[k] <= a[k].max(b[k]).max(c[k]))
     }
@@ -48,14 +50,15 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// The vertices whose coordinates lie in the rectangle along the axes of which two opposite corners are given, its
-    /// border included; in order of their numbers. Exact. Any corners will do, infinite ones too; a rectangle with a NaN
-    /// has nothing in it.
+    /// Returns the vertices whose coordinates lie in an axis-aligned rectangle or on its border, in
+    /// order of their numbers. The rectangle is given by any two opposite corners, which may be
+    /// infinite; with a NaN it is empty. Exact.
     ///
     /// # Complexity
-    /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes meet the rectangle
-    /// and, where it reaches beyond the hull, of edges on the hull there. Below dimension 2 all vertices are looked at; so
-    /// they are if a corner is infinite, or the geometry does not [admit](crate::geometry::Geometry::admits) the first.
+    /// A [walk](Self::locate), and time proportional to the number of faces whose bounding boxes
+    /// meet the rectangle and, where it reaches beyond the hull, of edges on the hull there.
+    /// Proportional to the number of vertices below dimension 2, if a corner is infinite, or if the
+    /// geometry does not [admit](crate::geometry::Geometry::admits) the first corner.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
@@ -73,15 +76,15 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
-/// Returns the vertices whose coordinates lie in the rectangle along the axes of which two opposite corners are given, its
-/// border included; in order of their numbers. Exact. The search starts at the first corner, which is looked for from a
-/// cell nearby.
+/// Returns the vertices whose coordinates lie in an axis-aligned rectangle or on its border, in
+/// order of their numbers. The rectangle is given by two opposite corners. The walk to the first
+/// corner starts at a cell nearby. Exact.
 ///
 /// # Errors
 /// If a link does not hold.
 ///
 /// # Complexity
-/// See [`Triangulation::within_rectangle`].
+/// That of [`Triangulation::within_rectangle`].
 pub fn within_rectangle<T: Embedded<3, Geometry: Coordinates<3>>>(
     t: &T,
     corners: [&PointOf<T, 3>; 2],
@@ -122,8 +125,8 @@ pub fn within_rectangle<T: Embedded<3, Geometry: Coordinates<3>>>(
     Ok(vertices)
 }
 
-/// Whether a cell meets the rectangle, or may. Such cells hang together by edges, the infinite ones with what lies
-/// beyond the hull.
+/// Returns true if a cell meets the rectangle, or may. Such cells are connected across edges, the
+/// infinite ones by what lies beyond the hull.
 fn meets<T: Embedded<3, Geometry: Coordinates<3>>>(
     t: &T,
     rectangle: Rectangle,

@@ -5,37 +5,39 @@ use crate::tds::CellId;
 
 use super::super::Triangulation;
 
-/// What a [picture](Triangulation::svg) is to show beside the edges and vertices.
+/// Something that a [picture](Triangulation::svg) shows in addition to edges and vertices.
 #[derive(Debug, Clone, Copy)]
 pub enum Mark<'a> {
-    /// Finite cells, filled: those of a conflict zone, say. Infinite ones, and what is not a cell, are left out.
+    /// Finite cells, filled, such as those of a conflict zone. Infinite and nonexistent cells are
+    /// left out.
     Cells(&'a [CellId]),
-    /// Edges, bold, as in [`Tds::edges`](crate::tds::Tds::edges). Those with the infinite vertex, and what is not an edge,
-    /// are left out: the border of a conflict zone on a line has no edges.
+    /// Edges, bold, given as in [`Tds::edges`](crate::tds::Tds::edges). Edges with the infinite
+    /// vertex and nonexistent edges are left out: the border of a conflict zone on a line has no
+    /// edges.
     Edges(&'a [(CellId, usize)]),
-    /// A polygon, filled: a Voronoi cell, say.
+    /// A polygon, filled, such as a Voronoi cell.
     Polygon(&'a [[f64; 2]]),
-    /// A line through points: the path of a walk, say. Of one point, a dot.
+    /// A line through points, such as the path of a walk. A single point is drawn as a dot.
     Line(&'a [[f64; 2]]),
 }
 
-/// In the unit of the picture.
+/// The side of the drawing, in the unit of the picture.
 const SIZE: f64 = 1000.0;
 const MARGIN: f64 = 30.0;
 
-/// Vertices are numbered where there is room.
+/// Vertices are numbered if there are at most this many.
 const MOST_NUMBERED: usize = 400;
 
-/// In a picture of this class only, as it may stand in a page with styles of its own.
+/// The styles apply to pictures of this class only, because a page may have styles of its own.
 const STYLE: &str = "\
     .tri{background:#fff}.tri line{stroke:#777;stroke-width:1}.tri .edge{stroke:#c33;stroke-width:4}\
     .tri .cell{fill:#fc6;fill-opacity:.6}.tri .polygon{fill:#6cf;fill-opacity:.5;stroke:#36c}\
     .tri .line{fill:none;stroke:#36c;stroke-width:3}.tri .dot{fill:#36c}.tri text{font:14px sans-serif}";
 
-/// From coordinates to the picture: y runs upwards, and a unit is as long on one axis as on the other.
+/// Maps coordinates to the picture: y runs upward, and both axes have the same unit.
 struct Frame {
     low: [f64; 2],
-    /// Half of the longer side, as a whole may have no room in a number.
+    /// Half of the longer side; all of it might overflow.
     half: f64,
 }
 
@@ -53,21 +55,23 @@ impl Frame {
         [x, SIZE + 2.0 * MARGIN - y]
     }
 
-    /// As SVG lists them.
+    /// Returns points as SVG lists them.
     fn list(&self, sites: impl Iterator<Item = [f64; 2]>) -> String {
         sites.map(|p| self.pixel(p)).map(|[x, y]| format!("{x:.2},{y:.2} ")).collect()
     }
 }
 
-/// The points among these that can be drawn.
+/// Returns those of the points that can be drawn.
 fn finite<'a>(sites: impl IntoIterator<Item = &'a [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
     sites.into_iter().copied().filter(|p| p.iter().all(|x| x.is_finite()))
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// A picture of the finite edges and vertices, with their numbers if there are few, over what is marked, the first
-    /// mark lowest: as the text of an SVG file. For eyes, to two decimals of a thousandth of the longer side. Marked points
-    /// that are not finite are left out.
+    /// Returns a picture of the finite edges and vertices, as the text of an SVG file. Vertices are
+    /// numbered if there are few. Marks are drawn below, the first one lowest; their points that
+    /// are not finite are left out.
+    ///
+    /// For viewing: coordinates have two decimals of a thousandth of the longer side.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay, Mark};

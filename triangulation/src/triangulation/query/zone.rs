@@ -8,22 +8,26 @@ use super::super::engine::sides::in_conflict;
 use super::super::locate::locate;
 use super::super::{ConstrainedDelaunay, Delaunay, Location};
 
-/// The cells that a new point would destroy, and the edges around them, which the cells of its star would stand on.
+/// The cells that a new point would destroy, and the edges around them, from which the star of the
+/// point would be built.
 ///
-/// In the plane there are two edges more than cells; on a line, where an edge of the border is a vertex, two.
+/// In the plane there are two more edges than cells; on a line, where an edge of the border is a
+/// vertex, there are two.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConflictZone {
-    /// The cells, infinite ones among them if the point lies outside of the hull or on it. The point lies in the first,
-    /// or beyond its finite edge.
+    /// The cells, including infinite ones if the point lies outside of the hull or on it. The point
+    /// lies in the first cell, or beyond the finite edge of that cell.
     pub cells: Vec<CellId>,
-    /// The edges around, counter-clockwise: the cell within, and the index of the edge in it. Each ends where the next
-    /// one starts, at the infinite vertex perhaps.
+    /// The edges around the zone, counter-clockwise: the cell inside, and the index of the edge in
+    /// it. Each edge ends where the next one starts, which may be the infinite vertex.
     pub border: Vec<(CellId, usize)>,
 }
 
-/// Returns what the insertion of a point into a Delaunay triangulation would destroy, in the plane or on a line; `passes` says
-/// across which edges the zone may grow, given as a cell and the index of the edge in it: those that are not constraints.
-/// `None` where a point would destroy nothing: on a vertex, and where it raises the dimension.
+/// Returns what the insertion of a point into a Delaunay triangulation would destroy, in the plane
+/// or on a line. `None` if it would destroy nothing: on a vertex, and if it raises the dimension.
+///
+/// `passes` returns true if the zone may grow across an edge, given as a cell and the index of the
+/// edge in it: if the edge is not constrained.
 ///
 /// # Errors
 /// If a link does not hold, and what `passes` returns.
@@ -39,7 +43,7 @@ pub fn conflict_zone<T: Embedded<3>>(
     zone_at(t, q, locate(t, q, near)?, passes)
 }
 
-/// What the insertion of a point would destroy, given where it is; see [`conflict_zone`].
+/// Returns what the insertion of a point would destroy, given its location; see [`conflict_zone`].
 pub(super) fn zone_at<T: Embedded<3>>(
     t: &T,
     q: &PointOf<T, 3>,
@@ -60,8 +64,8 @@ pub(super) fn zone_at<T: Embedded<3>>(
     let width = complex.width();
     let mut taken = FxHashSet::from_iter([start]);
     let mut zone = ConflictZone { cells: vec![start], border: Vec::new() };
-    // Depth first, over the sides of each cell counter-clockwise from where it was entered: the border comes in order, as
-    // in `tds::Zone`, which does it with memory of its own.
+    // Depth first, over the sides of each cell counter-clockwise from where it was entered: the
+    // border comes in order, as in `tds::Zone`, which does this with memory of its own.
     let mut sides: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
     while let Some((cell, i)) = sides.pop() {
         let beyond = complex.neighbor(cell, i)?;
@@ -81,13 +85,14 @@ pub(super) fn zone_at<T: Embedded<3>>(
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// What would be destroyed if a point was inserted: the cells whose circumscribed circle it is in, ties decided
-    /// as the insertion does, in the plane or on a line. `None` if it is on a vertex, if it would raise the
-    /// dimension, or if the geometry does not [admit](Geometry::admits) it.
+    /// Returns what the insertion of a point would destroy, in the plane or on a line: the cells
+    /// whose circumcircle contains the point, with ties broken as insertion breaks them. `None` if
+    /// the point is on a vertex, if it would raise the dimension, or if the geometry does not
+    /// [admit](Geometry::admits) it.
     ///
     /// # Complexity
-    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time proportional to the size of
-    /// the zone.
+    /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time
+    /// proportional to the size of the zone.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay};
@@ -105,9 +110,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
 }
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Like [`Delaunay::conflict_zone`], but constraints bound what the point sees; with one that it lies
-    /// on, the zone has both sides of it. Of a point on a segment that was bent at crossings, insertion replaces
-    /// more: it leads the segment through the point.
+    /// Like [`Delaunay::conflict_zone`], but constraints limit what the point sees. If it lies on a
+    /// constraint, the zone contains both sides. For a point on a segment that is bent at
+    /// crossings, insertion replaces more, because it makes the segment go through the point.
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
         let passes = |cell: CellId, i| Ok(!self.tds().cell_data(cell).has(i));
         let Ok(zone) = conflict_zone(&self.inner, q, self.start(near), passes);
