@@ -1,21 +1,23 @@
 //! Triangulations: geometry times combinatorics.
 //!
-//! A [geometry](crate::geometry::Geometry) says what a point is and answers questions about a few of them, with the arithmetic of a
-//! [kernel](crate::kernel). A [`Tds`](crate::tds::Tds) knows which cells are neighbors, and no coordinates. One engine,
-//! [`Triangulation`], joins them: it locates points, grows the zone that a new point is in conflict with, and replaces
-//! it by the point's star. It knows neither the dimension nor the law. The kinds are thin: each owns an engine, and
-//! derefs to it for reading.
+//! A [geometry](crate::geometry::Geometry) defines what a point is and answers questions about a
+//! few points, with the arithmetic of a [kernel](crate::kernel). A [`Tds`](crate::tds::Tds) stores
+//! which cells are neighbors, and no coordinates. One engine, [`Triangulation`], joins the two: it
+//! locates points, finds the conflict zone of a new point, and replaces the zone by the point's
+//! star. It depends neither on the dimension nor on the law. The kinds are thin: each owns an
+//! engine, and dereferences to it for reading.
 //!
 //! | kind | law | |
 //! |---|---|---|
 //! | [`Basic`] | none: a point splits what it lies on | plane, space |
 //! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere | plane, space |
-//! | [`Regular`] | the same with weights; points of too little weight are hidden | plane |
-//! | [`Constrained`] | some edges are forced, and do not cross | plane |
-//! | [`ConstrainedDelaunay`] | Delaunay among vertices that see each other past lines, which may cross | plane |
+//! | [`Regular`] | Delaunay with weights; points of too little weight are hidden | plane |
+//! | [`Constrained`] | some edges are constrained, and do not cross | plane |
+//! | [`ConstrainedDelaunay`] | Delaunay among vertices that see each other past constraints; lines may cross | plane |
 //!
-//! [`Compact`] is read where it lies, in a file mapped to memory, say: what the kinds write with `write_compact`.
-//! Questions are the same there, and are written once, over [`Embedded`].
+//! [`Compact`] is a read-only triangulation that works directly on bytes, for example those of a
+//! memory-mapped file, as the kinds write them with `write_compact`. It has the same queries, which
+//! are written once, over [`Embedded`].
 //!
 //! ```
 //! use breakline_triangulation::geometry::Plane;
@@ -34,74 +36,80 @@
 //! }
 //! ```
 //!
-//! The geometry says what a point is: [`Plane::new()`](crate::geometry::Plane::new) is that of `[x, y]`,
-//! [`Space::new()`](crate::geometry::Space::new) that of `[x, y, z]`. To name the type, say [`Delaunay2`] or
-//! [`Delaunay3`], and so on: `Delaunay2<u32>` has a number at each vertex.
+//! The geometry defines the points: [`Plane::new()`](crate::geometry::Plane::new) has `[x, y]`,
+//! [`Space::new()`](crate::geometry::Space::new) has `[x, y, z]`. [`Delaunay2`], [`Delaunay3`] and
+//! so on are short names of the types: `Delaunay2<u32>` has a number at each vertex.
 //!
-//! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear, 2 in the plane or
-//! while all are coplanar, and 3 in space. Each is a state of the same structure: it is traversed, asked and checked,
-//! grows by insertion and, in the plane, shrinks by removal.
+//! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear,
+//! 2 in the plane or while all are coplanar, and 3 in space. Each is a state of the same structure:
+//! it can be traversed, queried and checked, grows by insertion and, in the plane, shrinks by
+//! removal.
 //!
-//! **Infinity.** Beyond each facet of the convex hull there is a cell that ends in one vertex,
-//! [`VertexId::INFINITE`](crate::tds::VertexId::INFINITE). So every cell has all its neighbors. What is called *finite* leaves these out.
+//! **Infinity.** Beyond each facet of the convex hull there is a cell that joins the facet to the
+//! one infinite vertex, [`VertexId::INFINITE`](crate::tds::VertexId::INFINITE). So every cell has
+//! all its neighbors. *Finite* vertices and cells are all others.
 //!
-//! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among the triangulations,
-//! so that each is a function of the set of points (and constraints): the order of insertion does not show in the
-//! cells. The core cannot fail on points that it admitted; [`PointError`] and [`InputError`] say which are not.
+//! **One answer.** Where points lie on a common empty sphere, a symbolic perturbation chooses among
+//! the triangulations. So the result is a function of the set of points (and constraints): the
+//! cells do not depend on the order of insertion. The core cannot fail on points that it accepted;
+//! [`PointError`] and [`InputError`] say which are refused.
 //!
 //! | to | use |
 //! |---|---|
 //! | triangulate many points at once | [`Delaunay::from_points`], [`Regular::from_points`], [`ConstrainedDelaunay::from_points`] |
-//! | add points one by one | `insert`; points near each other should come near each other, see [`spatial_order`] |
+//! | insert points one by one | `insert`; insert points near each other one after the other, see [`spatial_order`] |
 //! | remove points again, or move them | `remove`, `move_to`; in the plane |
-//! | keep something at each vertex, at each cell | [`Delaunay::insert_with`], [`Delaunay::with_cell_data`] |
+//! | keep a value at each vertex, at each cell | [`Delaunay::insert_with`], [`Delaunay::with_cell_data`] |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
-//! | add, remove, divide, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
-//! | know what lines enclose | [`ConstrainedDelaunay::nesting`] |
-//! | have no small angles, no large triangles | [`ConstrainedDelaunay::refined`], see [`refine`] |
-//! | find where a place lies | [`Triangulation::locate`]; from elsewhere, by a [strategy](Locate) |
-//! | know what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
-//! | know what a rectangle holds, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
-//! | know what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
+//! | insert, remove, split, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
+//! | find what lines enclose | [`ConstrainedDelaunay::nesting`] |
+//! | avoid small angles and large triangles | [`ConstrainedDelaunay::refined`], see [`refine`] |
+//! | locate a point | [`Triangulation::locate`]; from a starting point of your choice, by a [strategy](Locate) |
+//! | find what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
+//! | find what is in a rectangle, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
+//! | find what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
-//! | weigh points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`] |
+//! | give weights to points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`] |
 //! | draw power diagrams | [`Regular::power_center`], [`Regular::power_edge`], [`Regular::power_cell`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
-//! | see it | [`Triangulation::svg`] |
+//! | draw it | [`Triangulation::svg`] |
 //! | save it | serde, with the feature `serde`: all kinds, in the plane |
-//! | keep it in a file, and ask without loading it | [`Delaunay::write_compact`], [`Compact`] |
-//! | walk over cells, edges, vertices | [`Triangulation::finite_cells`], [`Triangulation::tds`]; outwards: [`Triangulation::faces_from`] |
-//! | ask the same of a structure of your own | [`query`], over [`Embedded`] |
+//! | keep it in a file, and query it without loading it | [`Delaunay::write_compact`], [`Compact`] |
+//! | visit cells, edges, vertices | [`Triangulation::finite_cells`], [`Triangulation::tds`]; outwards from a face: [`Triangulation::faces_from`] |
+//! | run the same queries on a structure of your own | [`query`], over [`Embedded`] |
 //! | build and edit a surface of any genus | [`tds::Tds::from_cells`] |
-//! | prove it right | [`Delaunay::check`], [`ConstrainedDelaunay::check`], to a [`Level`] |
+//! | check it | [`Delaunay::check`], [`ConstrainedDelaunay::check`], up to a [`Level`] |
 //!
-//! All questions take `&self`. In space points cannot be removed, and there are the basic and the Delaunay kind.
+//! All queries take `&self`. In space there are the basic and the Delaunay kind, and points cannot
+//! be removed.
 //!
-//! A walk starts where the last insertion was, if nothing else is said. [`Near`] a cell, [`JumpAndWalk`], [`Buckets`]
-//! and [`Hierarchy`] say from where, [`StraightLine`] which way: a place has one answer with all of them.
+//! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
+//! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of
+//! them return the same location.
 //!
 //! # Features
 //!
 //! | feature | default | effect |
 //! |---|---|---|
-//! | `parallel` | yes | bulk construction and arrangements run on all threads, by rayon; the results are the same without it |
-//! | `serde` | no | triangulations are saved and read with serde |
+//! | `parallel` | yes | bulk construction and arrangements run on all threads, with rayon; the results are the same without it |
+//! | `serde` | no | triangulations can be serialized and deserialized |
 //!
-//! # The rooms
+//! # Modules
 //!
-//! Each module uses only those above it in this list; what stands at the root, all.
+//! Each module uses only those above it in this list; the items at the root use all of them.
 //!
-//! | module | holds |
+//! | module | contains |
 //! |---|---|
-//! | [`num`] | number types with exact signs |
+//! | [`num`] | number types whose sign is exact |
 //! | [`kernel`] | predicates: formula times number |
-//! | [`geometry`] | what a triangulation asks of points |
+//! | [`geometry`] | what a triangulation needs to know about points |
 //! | [`tds`] | combinatorics, without coordinates |
 //! | [`arrangement`] | segments that cross, rounded so that they meet at common ends only |
 //!
-//! The [guides](crate::guide) show the calls of other packages beside ours.
+//! If you know another package, the [guides](crate::guide) map its calls to those of this one.
 //!
-//! Below: what a new point, the dot, is in conflict with; the edges that its star will stand on are red.
+//! The conflict zone of a new point, the dot: the triangles that it destroys. Its star will stand
+//! on the red edges.
 //!
 #![doc = "<div style=\"max-width: 24em\">"]
 #![doc = include_str!("../docs/pictures/conflict-zone.svg")]

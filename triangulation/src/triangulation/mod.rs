@@ -1,4 +1,4 @@
-//! The engine, the kinds, and what is asked of them.
+//! The kinds of triangulations, the engine that they share, and the queries.
 
 mod bulk;
 mod compact;
@@ -36,11 +36,12 @@ use crate::tds::{CellId, Tds, VertexId, Zone};
 
 use error::MAX_VERTICES;
 
-/// Points and cells, for reading: what all kinds share.
+/// Points and cells, for reading: the part that all kinds share.
 ///
-/// Each kind derefs to it. It cannot be made, changed or copied but by its kind, which alone knows the law and what
-/// else has to follow a change. So it has no check of a law either: the kinds have, see
-/// [`Delaunay::check`]. A copy of a kind's view would let a point into cells that hold constraints:
+/// Each kind dereferences to it. Only the kind itself creates, changes or copies it, because only
+/// the kind knows the law and what else must follow a change. For the same reason it has no check
+/// of a law; the kinds have one, see [`Delaunay::check`]. A copy of it would let points into cells
+/// that hold constraints, and does not compile:
 ///
 /// ```compile_fail
 /// use breakline_triangulation::geometry::Plane;
@@ -50,7 +51,7 @@ use error::MAX_VERTICES;
 /// let copy: Triangulation<Plane, 3, (), ConstrainedEdges> = (*constrained).clone();
 /// ```
 ///
-/// Only what is true of all kinds can be checked of the view:
+/// Only what all kinds promise can be checked through this view:
 ///
 /// ```compile_fail
 /// use breakline_triangulation::geometry::Plane;
@@ -75,9 +76,9 @@ pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
     geometry: G,
     tds: Tds<N, V, C>,
     points: Vec<G::Point>,
-    /// Scratch of the insertion.
+    /// Scratch memory of insertions.
     zone: Zone,
-    /// Where the last insertion ended, where the next begins to look.
+    /// The cell where the last insertion ended; the next search starts there.
     last: Option<CellId>,
 }
 
@@ -110,61 +111,64 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         triangulation
     }
 
-    /// The geometry.
+    /// Returns the geometry.
     pub fn geometry(&self) -> &G {
         &self.geometry
     }
 
-    /// The combinatorics.
+    /// Returns the combinatorial structure: cells, vertices and their neighbors.
     pub fn tds(&self) -> &Tds<N, V, C> {
         &self.tds
     }
 
-    /// -1 without a point, 0 with one, 1 if all are collinear, and so on.
+    /// Returns the dimension: -1 without a point, 0 with one, 1 if all points are collinear, and so
+    /// on.
     pub fn dimension(&self) -> i32 {
         self.tds.dimension()
     }
 
-    /// Finite vertices.
+    /// Returns the number of finite vertices.
     pub fn vertex_count(&self) -> usize {
         self.tds.vertex_count()
     }
 
-    /// The point of a finite vertex. Of one that was removed it is still there, see [`points`](Self::points).
+    /// Returns the point of a finite vertex. The point of a removed vertex is still there, see
+    /// [`points`](Self::points).
     ///
     /// # Panics
-    /// If there never was such a vertex, like an index; of the infinite one, too.
+    /// If no vertex ever had this number, and for the infinite vertex.
     #[inline(always)]
     pub fn point(&self, vertex: VertexId) -> &G::Point {
         &self.points[vertex.index()]
     }
 
-    /// All points, in the order of their vertices' numbers. Where a [vertex](Tds::is_vertex) has been removed,
-    /// its point is still there.
+    /// Returns all points, in order of the vertex numbers. The point of a removed
+    /// [vertex](Tds::is_vertex) is still there.
     pub fn points(&self) -> &[G::Point] {
         &self.points
     }
 
-    /// The cells without the infinite vertex, in order of their numbers. Below full dimension these
-    /// have fewer vertices: segments, or triangles in space.
+    /// The cells without the infinite vertex, in order of their numbers. Below full dimension they
+    /// have fewer vertices: they are segments, or triangles in space.
     pub fn finite_cells(&self) -> impl Iterator<Item = CellId> + '_ {
         self.tds.cells().filter(|&cell| !self.tds.is_infinite(cell))
     }
 
-    /// The points of a full cell without the infinite vertex.
+    /// The points of a finite cell of full dimension.
     #[inline(always)]
     fn simplex(&self, cell: CellId) -> [&G::Point; N] {
         self.tds.corners(cell).map(|v| &self.points[v.index()])
     }
 
-    /// Returns the points of a finite cell, in the order of its vertices: three of a triangle, four of a tetrahedron;
-    /// `None` for an infinite cell, for a number without a cell, and while the dimension is not full.
+    /// Returns the points of a finite cell, in the order of its vertices: three of a triangle, four
+    /// of a tetrahedron. Returns `None` for an infinite cell, for a number without a cell, and
+    /// below full dimension.
     #[inline]
     pub fn cell_points(&self, cell: CellId) -> Option<[&G::Point; N]> {
         (self.is_full() && self.tds.is_used(cell) && !self.tds.is_infinite(cell)).then(|| self.simplex(cell))
     }
 
-    /// Whether the complex spans the space.
+    /// Returns true if the complex has full dimension.
     #[inline(always)]
     fn is_full(&self) -> bool {
         self.tds.dimension() as usize == N - 1
@@ -184,8 +188,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// Returns the points of the edge opposite vertex `i` of a cell, which has it on its left from the first to the
-    /// second; `None` for an edge that ends in infinity, for one that does not exist, and below dimension 2.
+    /// Returns the two points of the edge opposite vertex `i` of a cell, which lies to the left of
+    /// the edge. Returns `None` for an edge with an infinite vertex, for one that does not exist,
+    /// and below dimension 2.
     pub fn edge_points(&self, cell: CellId, i: usize) -> Option<[&G::Point; 2]> {
         if self.dimension() < 2 || i > 2 || !self.tds.is_used(cell) {
             return None;

@@ -12,22 +12,23 @@ use super::sides::{in_conflict, side_of_facet, simplex};
 /// How far a check goes. Each level assumes the ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Cells, neighbors and vertices know each other.
+    /// The links between cells, neighbors and vertices agree.
     Links = 1,
     /// The cells form one sphere.
     Manifold = 2,
-    /// Every finite cell is positively oriented and the border is convex, which together prove that
-    /// the cells tile the convex hull without overlap (Devillers, Liotta, Preparata, Tamassia 1998).
+    /// Every finite cell is positively oriented and the hull is convex. Together these prove that
+    /// the cells tile the convex hull without overlap (Devillers, Liotta, Preparata, Tamassia
+    /// 1998).
     Orientation = 3,
     /// The kind's own law, ties included.
     Law = 4,
 }
 
-/// What a check found.
+/// A flaw found by a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Flaw {
-    /// Level 1 or 2.
+    /// Level 1 or 2: a flaw of the structure.
     Structure(tds::TdsError),
     /// Level 3: a cell that is flat or turned around.
     Orientation(CellId),
@@ -35,13 +36,14 @@ pub enum Flaw {
     NotConvex(CellId, usize),
     /// Level 4: the vertex beyond facet `i` lies in the cell's circumscribed sphere.
     NotDelaunay(CellId, usize),
-    /// Level 4: a hidden point is not in the cell that is said to hide it, or ought to be seen.
+    /// Level 4: a hidden point is not in the cell that should hide it, or should be visible.
     Hidden(VertexId),
     /// Level 4: an edge is constrained on one side only.
     OneSided(CellId, usize),
-    /// Level 4: what is known of lines is not what is there.
+    /// Level 4: the tables of lines disagree with the triangulation.
     Lines(LinesFlaw),
-    /// Level 4: a sub-constraint, between these vertices, was left out, since another one blocks it.
+    /// Level 4: the sub-constraint between these vertices is missing, because another one blocks
+    /// it.
     Missing(VertexId, VertexId),
 }
 
@@ -62,13 +64,14 @@ impl fmt::Display for Flaw {
     }
 }
 
-/// Whether a cell, full and finite, is positively oriented.
+/// Returns true if a finite cell of full dimension is positively oriented.
 pub(in super::super) fn is_positive<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<bool, T::Error> {
     let simplex = simplex(t, cell)?;
     Ok(t.geometry().orientation(simplex.each_ref().map(Borrow::borrow)) == Sign::Positive)
 }
 
-/// Whether the hull is convex where a cell, infinite by the vertex at `infinite`, and that beyond its facet `i` meet.
+/// Returns true if the hull is convex between two infinite cells: one whose vertex at `infinite` is
+/// the infinite one, and the one beyond its facet `i`.
 pub(in super::super) fn is_convex<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
@@ -79,7 +82,8 @@ pub(in super::super) fn is_convex<const N: usize, T: Embedded<N>>(
     Ok(far == VertexId::INFINITE || side_of_facet(t, cell, infinite, t.point(far)?.borrow())? != Sign::Positive)
 }
 
-/// Whether the sphere of a finite cell is empty of the vertex beyond its facet `i`, ties decided.
+/// Returns true if the sphere of a finite cell does not contain the vertex beyond its facet `i`,
+/// ties decided.
 pub(in super::super) fn is_empty<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
@@ -95,8 +99,9 @@ fn vertex_beyond<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) 
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    /// Checks up to the level, with exact predicates, and returns all flaws of the first level that has
-    /// any. The law is that of a Delaunay triangulation wherever `passes` lets it act.
+    /// Checks up to the given level, with exact predicates, and returns all flaws of the first
+    /// level that has any. The law is that of a Delaunay triangulation, tested at the facets that
+    /// `passes` accepts.
     pub(in super::super) fn flaws(&self, level: Level, passes: impl Fn(CellId, usize) -> bool) -> Vec<Flaw> {
         let structure = |flaws: Vec<tds::TdsError>| flaws.into_iter().map(Flaw::Structure).collect::<Vec<_>>();
         let checks: [(Level, &dyn Fn() -> Vec<Flaw>); 4] = [
@@ -109,8 +114,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         found.into_iter().find(|flaws| !flaws.is_empty()).unwrap_or_default()
     }
 
-    /// Checks that the cells tile the convex hull, with exact predicates: [`Level::Links`], [`Level::Manifold`] and
-    /// [`Level::Orientation`], which hold for every kind. The law is not checked: that is for `check` of the kind.
+    /// Returns the flaws of the tiling of the convex hull, with exact predicates. Checks
+    /// [`Level::Links`], [`Level::Manifold`] and [`Level::Orientation`], which hold for every kind;
+    /// for the law, use the `check` of the kind.
     #[must_use]
     pub fn check_tiling(&self) -> Vec<Flaw> {
         self.flaws(Level::Orientation, |_, _| false)
@@ -127,7 +133,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
                 flaws.extend((!is_positive).then_some(Flaw::Orientation(cell)));
                 continue;
             };
-            // The far vertex of every hull facet beside this one must not be in sight.
+            // The far vertex of every adjacent hull facet must not see this one.
             for i in (0..N).filter(|&i| i != infinite) {
                 let Ok(is_convex) = is_convex(self, cell, infinite, i);
                 flaws.extend((!is_convex).then_some(Flaw::NotConvex(cell, i)));
@@ -136,7 +142,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         flaws
     }
 
-    /// Below full dimension, too: on a line, a point that ought to be hidden lies in the sphere of an edge beside.
+    /// Works below full dimension, too: on a line, a point that should be hidden lies in the sphere
+    /// of an adjacent edge.
     fn check_empty_spheres(&self, passes: &dyn Fn(CellId, usize) -> bool) -> Vec<Flaw> {
         let mut flaws = Vec::new();
         for cell in self.finite_cells() {
@@ -150,8 +157,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> super::super::Delaunay<G, N, V, C> {
-    /// Checks up to the level, with exact predicates; no flaw means that the triangulation is what it
-    /// claims to be.
+    /// Returns the flaws found by a check up to the given level, with exact predicates. If there
+    /// are none, the triangulation is what it claims to be.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         self.flaws(level, |_, _| true)

@@ -6,22 +6,23 @@ use crate::tds::{Complex, Tds, VertexId};
 
 use super::super::Triangulation;
 
-/// A complex whose vertices have points: what [`Triangulation`], the read-only [`Compact`](crate::Compact) and a structure of
-/// the user's own have in common. Location and the other [queries](crate::query) are written once over this trait.
+/// A complex whose vertices have points. [`Triangulation`], the read-only
+/// [`Compact`](crate::Compact) and structures of the user's own implement it. Location and the
+/// other [queries](crate::query) are written once over this trait.
 ///
-/// *Why it is as it is.* Some structures keep points as they are, others have to decode them: so a point comes as a
-/// [`PointRef`](Self::PointRef), a reference or a copy. The complex is a type of its own, so that a structure may keep its
-/// cells in a [`Tds`]. What is in memory and cannot be damaged has the error [`Infallible`], of which nothing is left in the
-/// machine code.
+/// *Why it is as it is.* Some structures store points, others have to decode them: so a point is
+/// returned as a [`PointRef`](Self::PointRef), a reference or a copy. The complex is a type of its
+/// own, so that a structure may keep its cells in a [`Tds`]. A structure in memory that cannot be
+/// damaged has the error [`Infallible`], which leaves nothing in the machine code.
 ///
 /// # Laws
 /// - Each finite vertex has a point, and the geometry [admits](Geometry::admits) it.
-/// - Finite cells are positively oriented. They fill the convex hull of the points without overlap: what is not convex is
-///   filled up.
+/// - Finite cells are positively oriented. They fill the convex hull of the points without overlap:
+///   what is not convex is filled up.
 /// - Across each facet of the hull there is an infinite cell.
 ///
 /// # Models
-/// [`Triangulation`], [`Compact`](crate::Compact). One of one's own, with points beside a complex:
+/// [`Triangulation`], [`Compact`](crate::Compact). A model of your own, with points and a complex:
 ///
 /// ```
 /// use std::convert::Infallible;
@@ -53,11 +54,11 @@ use super::super::Triangulation;
 /// # Ok::<(), TdsError>(())
 /// ```
 pub trait Embedded<const N: usize> {
-    /// What is asked about points.
+    /// The geometry, which evaluates predicates on points.
     type Geometry: Geometry<N>;
     /// The cells and their neighbors.
     type Complex: Complex<N, Error = Self::Error>;
-    /// The answer where a link does not hold, or a point cannot be; [`Infallible`] if neither happens.
+    /// The error for a broken link or an invalid point; [`Infallible`] if neither can occur.
     type Error;
     /// A reference to a point, or a copy of it.
     type PointRef<'a>: Borrow<PointOf<Self, N>> + Copy
@@ -76,13 +77,13 @@ pub trait Embedded<const N: usize> {
     /// If there is none, or the geometry does not admit it.
     fn point(&self, vertex: VertexId) -> Result<Self::PointRef<'_>, Self::Error>;
 
-    /// Makes a point from outside look like those of vertices.
+    /// Converts a point from outside to the type in which points of vertices are returned.
     fn point_ref<'a>(point: &'a PointOf<Self, N>) -> Self::PointRef<'a>
     where
         Self: 'a;
 }
 
-/// The type of the points of a structure.
+/// The point type of a structure.
 pub type PointOf<T, const N: usize> = <<T as Embedded<N>>::Geometry as Geometry<N>>::Point;
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Embedded<N> for Triangulation<G, N, V, C> {

@@ -4,16 +4,17 @@ use crate::tds::{CellId, Tds, ccw, cw};
 
 use super::super::{ConstrainedEdges, Triangulation};
 
-/// What payloads of triangles tell of their edges, and what is left of them when triangles are exchanged.
+/// The constraints on the edges of triangles, as stored in payloads, and what remains of payloads
+/// when triangles change.
 pub(in super::super) trait Edges<C>: Copy {
-    /// Whether the edge opposite vertex `i` must stay.
+    /// Returns true if the edge opposite vertex `i` must stay.
     fn is_constrained(self, data: &C, i: usize) -> bool;
 
-    /// The same payload with the edge opposite vertex `i` set as told.
+    /// Returns the payload with the edge opposite vertex `i` constrained or not.
     fn with_constraint(self, data: C, i: usize, is_constrained: bool) -> C;
 }
 
-/// Of triangulations without constraints, whatever the payload is.
+/// The policy of triangulations without constraints, with any payload.
 #[derive(Clone, Copy)]
 pub(in super::super) struct NoConstraints;
 
@@ -29,7 +30,7 @@ impl<C> Edges<C> for NoConstraints {
     }
 }
 
-/// Where the payload is what is known of edges.
+/// The policy of triangulations with constraints, which are stored in the payload.
 #[derive(Clone, Copy)]
 pub(in super::super) struct WithConstraints;
 
@@ -46,8 +47,16 @@ impl<C: Copy> Edges<ConstrainedEdges<C>> for WithConstraints {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// Flips edges that are no walls until no vertex sees another in its circle (Lawson 1977), starting from
-    /// these cells; none is left in the list.
+    /// Flips unconstrained edges until no vertex lies in the circle of its neighbor's triangle
+    /// (Lawson 1977). Starts at the given cells, and empties the list.
+    ///
+    /// ```text
+    ///      r                  r
+    ///    / | \              /   \
+    ///   p  |  s    ==>     p-----s      if s lies in the circle of p q r
+    ///    \ | /              \   /
+    ///      q                  q
+    /// ```
     pub(in super::super) fn legalize(&mut self, edges: impl Edges<C>, to_legalize: &mut Vec<CellId>) {
         while let Some(cell) = to_legalize.pop() {
             if self.tds.is_infinite(cell) {
@@ -69,8 +78,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
     }
 
-    /// Returns whether the two triangles at the edge opposite vertex `i` of a cell form a strictly convex
-    /// quadrilateral.
+    /// Returns true if the two triangles at the edge opposite vertex `i` of a cell form a strictly
+    /// convex quadrilateral.
     pub fn is_flippable(&self, cell: CellId, i: usize) -> bool {
         let tds = &self.tds;
         if self.dimension() < 2 || i > 2 || !tds.is_used(cell) {
@@ -85,7 +94,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         [[a, b, d], [a, d, c]].into_iter().all(|turn| self.geometry.orientation(turn) == Sign::Positive)
     }
 
-    /// Exchanges the diagonal of the convex quadrilateral formed with the cell across edge `i`.
+    /// Flips the edge opposite vertex `i` of a cell: exchanges the diagonal of the quadrilateral
+    /// around it, which must be convex.
     pub(in super::super) fn exchange_diagonal(&mut self, edges: impl Edges<C>, cell: CellId, i: usize) {
         let tds = &mut self.tds;
         let beside = tds.neighbor(cell, i);
@@ -108,8 +118,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         self.renew_edges(edges, beside, [(0, sr), (1, rp)]);
     }
 
-    /// Gives a cell the default payload, and makes it the neighbor of others across some of its edges (given with the
-    /// index of the edge there), with what those know of them.
+    /// Resets a cell's payload and links some of its edges to neighbors, each given with the index
+    /// of the edge there. The cell takes over the neighbors' constraints.
     #[inline]
     pub(in super::super) fn renew_edges<const K: usize>(
         &mut self,
@@ -123,7 +133,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
     }
 
-    /// Makes a cell the neighbor of another one, with what that knows of their edge.
+    /// Links a cell to a neighbor, and takes over the constraint of their edge from it.
     #[inline]
     pub(in super::super) fn renew_edge(
         &mut self,

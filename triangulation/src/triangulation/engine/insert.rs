@@ -1,5 +1,5 @@
-//! Insertion, written once: the zone that a point is in conflict with is replaced by the point's star. The kinds say
-//! how far the zone goes.
+//! Insertion, written once: the conflict zone of a point is replaced by the point's star. The kinds
+//! decide how far the zone extends.
 
 use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
@@ -7,17 +7,17 @@ use crate::tds::{CellId, VertexId, Zone};
 
 use super::super::{InputError, Location, MAX_VERTICES, PointError, Triangulation, spatial_order};
 
-/// The vertex of a point that was inserted.
+/// The result of inserting a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inserted<V = ()> {
-    /// The new vertex; or the one that was on the site already, which keeps its payload.
+    /// The new vertex, or the one that was on the site already, which keeps its payload.
     pub vertex: VertexId,
-    /// The payload that was given, if there was a vertex on the site already; `None` if the vertex is new.
+    /// The given payload if there was a vertex on the site already; `None` if the vertex is new.
     pub unused: Option<V>,
 }
 
 impl<V> Inserted<V> {
-    /// Returns whether the vertex is new.
+    /// Returns true if the vertex is new.
     #[inline]
     pub fn is_new(&self) -> bool {
         self.unused.is_none()
@@ -25,7 +25,7 @@ impl<V> Inserted<V> {
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    /// Checks that a point may come in.
+    /// Returns an error if a point must not be inserted.
     pub(in super::super) fn admit(&self, p: &G::Point) -> Result<(), PointError> {
         if !self.geometry.admits(p) {
             return Err(PointError::Coordinate);
@@ -36,24 +36,25 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         Ok(())
     }
 
-    /// A vertex that is in no cell yet.
+    /// Adds a vertex, which is in no cell yet.
     pub(in super::super) fn add_vertex(&mut self, p: G::Point, data: V) -> VertexId {
         let vertex = self.tds.add_vertex(data);
         match self.points.get_mut(vertex.index()) {
-            Some(slot) => *slot = p, // the hole of a removed one; or a bulk construction has put it there
+            Some(slot) => *slot = p, // the slot of a removed vertex, or a bulk construction has stored the point already
             None => self.points.push(p),
         }
         vertex
     }
 
-    /// The vertex that was removed last, with its payload and another point; in no cell yet.
+    /// Restores the vertex that was removed last, with its payload and another point. It is in no
+    /// cell yet.
     pub(in super::super) fn restore_vertex(&mut self, p: G::Point) -> Option<VertexId> {
         let vertex = self.tds.restore_vertex()?;
         self.points[vertex.index()] = p;
         Some(vertex)
     }
 
-    /// Adds a point unless its site is taken, given where it is; see [`connect`](Self::connect).
+    /// Inserts a point at its location, unless its site is taken. See [`connect`](Self::connect).
     pub(in super::super) fn insert_at(
         &mut self,
         p: G::Point,
@@ -70,8 +71,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         Inserted { vertex, unused: None }
     }
 
-    /// Puts the vertex that was removed last at another point, given where that is, and returns it; or the vertex that
-    /// is there already. See [`connect`](Self::connect).
+    /// Inserts the vertex that was removed last again, with another point at its location. Returns
+    /// it, or the vertex that is there already. See [`connect`](Self::connect).
     pub(in super::super) fn insert_again(
         &mut self,
         p: G::Point,
@@ -87,8 +88,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         Some(vertex)
     }
 
-    /// Replaces the point of a vertex by another one on the same site; returns false, and changes nothing, if it is
-    /// elsewhere.
+    /// Replaces the point of a vertex by another one on the same site. Returns false, and changes
+    /// nothing, if the site differs.
     pub(in super::super) fn replace_on_site(&mut self, vertex: VertexId, p: &G::Point) -> bool {
         let is_same = self.geometry.compare(self.point(vertex), p).is_eq();
         if is_same {
@@ -97,20 +98,20 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         is_same
     }
 
-    /// A finite neighbor of a vertex: it is still there when the vertex has been removed.
+    /// Returns a finite neighbor of a vertex, which still exists after the vertex has been removed.
     pub(in super::super) fn beside(&self, vertex: VertexId) -> Option<VertexId> {
         let corners = self.tds.cell_vertices(self.tds.cell_of(vertex)?);
         corners.iter().copied().find(|&v| v != vertex && v != VertexId::INFINITE)
     }
 
-    /// Makes room for that many more vertices, and the cells that come with them.
+    /// Reserves memory for that many more vertices, and for their cells.
     pub(in super::super) fn reserve(&mut self, vertices: usize) {
         self.tds.reserve(vertices);
         self.points.reserve_exact(vertices);
     }
 
-    /// Whether a finite cell has the point inside or on its border, or an infinite one has its facet in the point's
-    /// sight or under it.
+    /// Returns true if the point is in a finite cell or on its border, or if it sees the facet of
+    /// an infinite cell or lies on that facet.
     pub(in super::super) fn is_split_by(&self, cell: CellId, p: &G::Point) -> bool {
         let vertices = self.tds.cell_vertices(cell);
         match vertices.iter().position(|&v| v == VertexId::INFINITE) {
@@ -124,11 +125,12 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         }
     }
 
-    /// Makes an added vertex part of the complex, given where its point is. The zone that its star replaces grows from
-    /// there over the facets that `takes` accepts (asked with the cell within, the index of the facet, and the cell
-    /// beyond); `data` says what the cells of the star inherit, from the cell that had a facet and the facet's index.
+    /// Inserts an added vertex into the complex, given the location of its point. The zone replaced
+    /// by its star grows from there across the facets that `takes` accepts; its arguments are the
+    /// cell within, the index of the facet, and the cell beyond. `data` returns the payload of a
+    /// cell of the star, given that of the old cell with the same facet, and the facet's index.
     ///
-    /// Expected time proportional to the number of cells replaced.
+    /// Expected time linear in the number of cells replaced.
     pub(in super::super) fn connect(
         &mut self,
         vertex: VertexId,
@@ -143,8 +145,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.zone = zone;
     }
 
-    /// The zone of a point, given where it is; `None` if it is outside of the flat that all others span. To be given
-    /// back for the next time.
+    /// Returns the zone of a point, given its location; `None` if the point is outside of the
+    /// affine hull of the others. The caller should store the zone in `self.zone` afterwards, so
+    /// that its memory is used again.
     pub(in super::super) fn collect(
         &mut self,
         location: Location,
@@ -158,13 +161,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         };
         let mut zone = std::mem::take(&mut self.zone);
         zone.grow(&self.tds, cell, |from, i, beyond| {
-            // A point on a facet destroys the cells on both sides, wall or not.
+            // A point on a facet destroys the cells on both sides, even if the facet is
+            // constrained.
             from == cell && touching >> i & 1 == 1 || takes(self, from, i, beyond)
         });
         Some(zone)
     }
 
-    /// Joins an added vertex outside of what the others span.
+    /// Inserts an added vertex outside of the affine hull of the others.
     pub(in super::super) fn raise_dimension(&mut self, vertex: VertexId) {
         self.tds.raise_dimension(vertex);
         let finite = self.finite_cells().next();
@@ -184,7 +188,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 }
 
 impl<G: Coordinates<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    /// The order in which to insert points; or the first of them that cannot come in, by its position.
+    /// Returns the order in which to insert points, or an error that names the position of the
+    /// first one that is refused.
     pub(in super::super) fn order_of_all(&self, points: &[G::Point]) -> Result<Vec<u32>, InputError> {
         if let Some(bad) = points.iter().position(|p| !self.geometry.admits(p)) {
             return Err(InputError::Coordinate(bad));

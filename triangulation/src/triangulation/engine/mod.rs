@@ -1,4 +1,5 @@
-//! The engine that all kinds share: insertion, removal, flips, the sides of facets and spheres, checks.
+//! The engine that all kinds share: insertion, removal, flips, the sides of facets and spheres,
+//! checks.
 
 pub(super) mod check;
 pub(super) mod embedded;

@@ -1,4 +1,4 @@
-//! Payloads of all vertices or cells at once.
+//! New payloads of all vertices or cells.
 
 use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};
@@ -6,7 +6,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::Triangulation;
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    /// The same triangulation with other payloads, of all vertices in order of their numbers.
+    /// Returns the triangulation with new payloads of all vertices, in order of their numbers.
     pub(in super::super) fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Triangulation<G, N, W, C> {
         let data = (0..self.tds.vertex_slots()).map(VertexId::new).map(data).collect();
         self.with_data_of_all(data)
@@ -17,8 +17,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         Triangulation { geometry, tds: tds.with_vertex_data(data), points, zone, last }
     }
 
-    /// The same triangulation with payloads of points, given the vertex of each: `data` is asked for that of each
-    /// vertex once, by the position of the first point that has it, in order. Each vertex must have a point.
+    /// Returns the triangulation with payloads of points, given the vertex of each point. `data` is
+    /// called once for each vertex, with the position of its first point, in increasing order. Each
+    /// vertex must have a point.
     pub(in super::super) fn with_data_of_points<W>(
         self,
         vertices: &[VertexId],
@@ -28,7 +29,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.with_data_of_all(data.into_iter().flatten().collect())
     }
 
-    /// The same triangulation with other payloads, of all cells in order of their numbers.
+    /// Returns the triangulation with new payloads of all cells, in order of their numbers.
     pub(in super::super) fn with_cell_data<D: Copy + Default>(
         self,
         mut data: impl FnMut(CellId) -> D,
@@ -36,7 +37,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.map_cell_data(|cell, _| data(cell))
     }
 
-    /// The same triangulation with payloads of cells that follow from those that were there.
+    /// Returns the triangulation with new payloads of cells, computed from the old ones.
     pub(in super::super) fn map_cell_data<D: Copy + Default>(
         self,
         data: impl FnMut(CellId, &C) -> D,
@@ -46,7 +47,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 }
 
-/// The payload of each vertex that has a point, by number; asked for by the position of the first such point, in order.
+/// Returns the payload of each vertex that has a point, by number. `data` is called with the
+/// position of the vertex's first point, in increasing order.
 fn data_of_points<V>(slots: usize, vertices: &[VertexId], mut data: impl FnMut(usize) -> V) -> Vec<Option<V>> {
     let mut payloads: Vec<Option<V>> = Vec::new();
     payloads.resize_with(slots, || None);

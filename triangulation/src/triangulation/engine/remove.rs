@@ -1,20 +1,22 @@
-//! Taking a vertex out of a triangulation of the plane: any vertex, of any degree, among walls. Most are taken out by a
-//! shorter way, see [`remove_low_degree`](super::remove_low_degree).
+//! Removal of a vertex from a triangulation of the plane: of any degree, and between constraints.
+//! Most vertices are removed faster, see [`remove_low_degree`](super::remove_low_degree).
 //!
-//! 1. The triangles around the vertex, the infinite ones included, leave a hole. Its rim is a ring of vertices
-//!    that the removed one saw; at the hull the infinite vertex is one of them.
-//! 2. Convex corners of the ring are cut off as triangles, as long as what is left can still be seen from
-//!    the place of the removed vertex. In the end a triangle is left; or, at the hull, a chain that is convex
-//!    to the outside, which is the new hull and is joined to infinity.
-//! 3. The new triangles are flipped until the law holds.
+//! 1. The triangles around the vertex, the infinite ones included, leave a hole. Its border is a
+//!    ring of vertices that the removed one saw; on the hull the infinite vertex is one of them.
+//! 2. Convex corners of the ring are cut off as triangles, as long as the rest stays visible from
+//!    the removed point. In the end a triangle is left; or, on the hull, a chain that is convex to
+//!    the outside, which is the new hull and is joined to the infinite vertex.
+//! 3. The new triangles are legalized by flips until the law holds.
 //!
-//! *There is always a corner to cut.* Take any triangulation of the ring (without infinity). In the tree of its
-//! triangles, one leaf at least does not have the removed place inside. The place sees both edges of
-//! the leaf's outer corner, hence lies beyond the third edge, or on it: that is what is asked. On it only
-//! once: then the place is on the rim, and all other edges are seen from it as before.
+//! *There is always a corner to cut.* Take any triangulation of the ring (without the infinite
+//! vertex). In the tree of its triangles, at least one leaf does not have the removed point inside.
+//! The point sees both edges of the leaf's outer corner, hence lies beyond the third edge, or on
+//! it: this is what is tested. It can be on it only once: then the point is on the ring, and all
+//! other edges are visible from it as before.
 //!
-//! *The triangles outside of the hole stay.* Nothing can enter their circles by a removal, and the walls, which
-//! say who sees whom, do not change. So no edge of the rim is ever flipped.
+//! *The triangles outside of the hole stay.* A removal adds no vertices to their circles, and the
+//! constraints, which limit what vertices see, do not change. So no edge of the ring is ever
+//! flipped.
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
@@ -26,21 +28,23 @@ use super::flip::Edges;
 /// The ring around what is not yet triangulated, counter-clockwise as seen from within.
 struct Ring {
     corners: Vec<VertexId>,
-    /// Beyond the edge from each corner to the next: the cell there, and the index of the edge in it.
+    /// For the edge from each corner to the next: the cell beyond it, and the index of the edge
+    /// there.
     beyond: Vec<(CellId, usize)>,
     next: Vec<usize>,
     previous: Vec<usize>,
-    /// How many corners are left.
+    /// The number of corners left.
     length: usize,
 }
 
 impl Ring {
-    /// The corner before, the corner itself, and the one after.
+    /// Returns the corner before, the corner itself, and the one after.
     fn triple(&self, k: usize) -> [usize; 3] {
         [self.previous[k], k, self.next[k]]
     }
 
-    /// Takes a corner off; a cell, with the edge of this index, is now beyond the edge that replaces its two.
+    /// Cuts off a corner. Beyond the edge that replaces its two edges there is now this cell, with
+    /// the edge at index `i`.
     fn cut(&mut self, k: usize, cell: CellId, i: usize) {
         let [p, _, n] = self.triple(k);
         (self.next[p], self.previous[n]) = (n, p);
@@ -55,11 +59,12 @@ impl Ring {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// Takes out a vertex on no wall and restores the law. Cells are replaced only where they had it as a corner; all
-    /// of them where the rest are collinear.
+    /// Removes a vertex that is on no constraint, and restores the law. Only the cells at the
+    /// vertex are replaced; if the other points are collinear, all cells.
     ///
     /// # Complexity
-    /// Linear in the degree, and the flips, of which there are in the worst case as many as pairs of neighbors.
+    /// Linear in the degree, and in the number of flips, which at worst is the number of pairs of
+    /// neighbors.
     pub(in super::super) fn remove_vertex(&mut self, edges: impl Edges<C>, vertex: VertexId) {
         if self.fill_low_degree(edges, vertex) {
             self.tds.remove_vertex(vertex);
@@ -69,7 +74,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
     }
 
-    /// The same without restoring the law; returns the cells that are new.
+    /// Like [`remove_vertex`](Self::remove_vertex), but without restoring the law. Returns the new
+    /// cells.
     pub(in super::super) fn remove_lawless(&mut self, edges: impl Edges<C>, vertex: VertexId) -> Vec<CellId> {
         let mut cells = Vec::new();
         if self.dimension() == 2 {
@@ -87,12 +93,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         cells
     }
 
-    /// Whether without this vertex there are no triangles.
+    /// Returns true if without this vertex there are no triangles.
     pub(in super::super) fn is_flat_without(&self, vertex: VertexId) -> bool {
         self.dimension() < 2 || self.line_without(vertex).is_some()
     }
 
-    /// The vertices that are left, in their order, if they are collinear without this one.
+    /// Returns the other vertices, in their order on the line, if they are collinear.
     pub(in super::super) fn line_without(&self, vertex: VertexId) -> Option<Vec<VertexId>> {
         let mut line = Vec::new();
         let mut is_on_hull = false;
@@ -114,7 +120,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     fn fill_star(&mut self, edges: impl Edges<C>, vertex: VertexId) -> Vec<CellId> {
         let mut cells: Vec<CellId> = self.tds.around(vertex).collect();
         let mut ring = self.ring_around(vertex, &cells);
-        // A ring takes two triangles less than it has corners.
+        // A ring needs two triangles less than it has corners.
         for cell in cells.drain(ring.length - 2..) {
             self.tds.remove_cell(cell);
         }
@@ -130,20 +136,21 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 self.cut(edges, &mut ring, k, &cells);
             }
         }
-        // What is left is a triangle, or a chain of hull edges, each of which gets a triangle with infinity.
+        // The rest is a triangle, or a chain of hull edges, each of which gets a triangle with the
+        // infinite vertex.
         let apex = ring.corners.iter().position(|&v| v == VertexId::INFINITE);
         let apex = apex.or((0..ring.corners.len()).find(|&k| !ring.is_cut(k))).unwrap_or(0);
         while ring.length > 2 {
             let k = ring.next[apex];
             self.cut(edges, &mut ring, k, &cells);
         }
-        // Of the two sides of the last edge, one is the last triangle.
+        // One of the two sides of the last edge is the last triangle.
         let ((last, i), (beside, j)) = (ring.beyond[apex], ring.beyond[ring.next[apex]]);
         self.renew_edge(edges, (last, i), (beside, j));
         cells
     }
 
-    /// The rim of the cells around a vertex, which are given in their order.
+    /// Returns the ring around a vertex, given the cells at the vertex in their order.
     fn ring_around(&self, vertex: VertexId, cells: &[CellId]) -> Ring {
         let length = cells.len();
         let mut ring = Ring {
@@ -162,7 +169,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         ring
     }
 
-    /// Whether the middle one of three corners of the ring around a vertex can be cut off.
+    /// Returns true if the middle one of three corners of the ring around a vertex can be cut off.
     fn can_be_cut(&self, vertex: VertexId, corners: [VertexId; 3]) -> bool {
         if corners.contains(&VertexId::INFINITE) {
             return false;
@@ -172,7 +179,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             && self.geometry.orientation([a, c, self.point(vertex)]) != Sign::Negative
     }
 
-    /// Makes a corner of the ring and its neighbors a triangle, with the next of the cells.
+    /// Makes a corner of the ring and its neighbors a triangle, in the next of the cells.
     fn cut(&mut self, edges: impl Edges<C>, ring: &mut Ring, k: usize, cells: &[CellId]) {
         let cell = cells[ring.corners.len() - ring.length];
         let [p, _, n] = ring.triple(k);

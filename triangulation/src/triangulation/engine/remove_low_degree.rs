@@ -1,18 +1,21 @@
-//! Taking out a vertex that has few neighbors and is not on the hull, which is what nearly all removals are.
+//! Removal of a vertex that has few neighbors and is not on the hull. Nearly all removals are of
+//! this kind.
 //!
-//! Without walls, the triangles that fill the hole are those of the whole Delaunay triangulation of the remaining points
-//! (Devillers 2011, *Vertex removal in two-dimensional Delaunay triangulation: speed-up by low degrees optimization*),
-//! so they need no flips: the third corner over an edge of the hole is the vertex of its ring, left of the edge, whose
-//! circle through the edge holds none of the others. The triangle leaves a hole on either side, with an edge of it. That
-//! is quadratic in the degree, but for few neighbors it is the least number of tests, on points in registers and without
-//! memory of its own. What has more neighbors, or infinity among them, is left to [`remove`](super::remove).
+//! Without constraints, the triangles that fill the hole belong to the Delaunay triangulation of
+//! all remaining points (Devillers 2011, *Vertex removal in two-dimensional Delaunay triangulation:
+//! speed-up by low degrees optimization*), so they need no flips. The third corner of the triangle
+//! at an edge of the hole is the vertex of the ring, left of the edge, whose circle through the
+//! edge contains none of the others. The triangle leaves a hole on either side. This is quadratic
+//! in the degree, but for few neighbors it takes the fewest tests, on points in registers and
+//! without allocations. Vertices with more neighbors, or with the infinite vertex among them, are
+//! left to [`remove`](super::remove).
 //!
-//! Walls around the hole change nothing. All corners of the ring are seen from the removed vertex, so the triangles at
-//! it have none of them in their circles: among the vertex and its ring alone they are the Delaunay triangles, and what
-//! fills the hole is what is Delaunay among the ring.
+//! Constraints around the hole change nothing. The removed vertex sees all corners of the ring, so
+//! no corner is in the circle of one of the triangles at it: these are the Delaunay triangles of
+//! the vertex and its ring alone. So the hole is filled by the Delaunay triangles of the ring.
 //!
-//! `PERF:` every second one of 100 000 uniform points removed (`bench_editing`): 0.6 us each instead of 1.4 by ears that
-//! are cut off and flipped.
+//! `PERF:` every second one of 100 000 uniform points removed (`bench_editing`): 0.6 us each,
+//! instead of 1.4 by cutting off ears and flipping.
 
 use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
@@ -21,13 +24,14 @@ use crate::tds::{CellId, VertexId, ccw, cw};
 use super::super::Triangulation;
 use super::flip::Edges;
 
-/// The most neighbors. Of uniform points, which have 6 in the mean, fewer than one in 10 000 have more.
+/// The largest degree. Uniform points have a mean degree of 6; fewer than one in 10 000 have more
+/// than this.
 const MOST: usize = 12;
 
 /// A face, and the index of an edge in it.
 type Side = (CellId, usize);
 
-/// What a vertex sees, counter-clockwise.
+/// The vertices around a vertex, counter-clockwise.
 struct Ring<P> {
     faces: [CellId; MOST],
     corners: [VertexId; MOST],
@@ -38,8 +42,9 @@ struct Ring<P> {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
-    /// Fills the hole that the triangles around a vertex on no wall leave. Does nothing and says so if it has too many
-    /// neighbors, or infinity is one of them.
+    /// Fills the hole left by the triangles around a vertex on no constraint. Returns false, and
+    /// changes nothing, if the vertex has too many neighbors, or the infinite vertex is one of
+    /// them.
     pub(in super::super) fn fill_low_degree(&mut self, edges: impl Edges<C>, vertex: VertexId) -> bool {
         if self.dimension() < 2 {
             return false;
@@ -50,7 +55,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             self.tds.remove_cell(face);
         }
 
-        // Chains of the ring that are to be filled, each with what is beyond the edge from its last corner to its first.
+        // Chains of the ring to be filled, each with the face beyond the edge from its last corner
+        // to its first.
         let last = ring.degree - 1;
         let mut chains = [(0, last, ring.beyond[last]); MOST];
         let mut open = 1;
@@ -72,7 +78,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         true
     }
 
-    /// The corner within a chain that makes the triangle with the edge from its last corner to its first.
+    /// Returns the corner within a chain whose triangle with the edge from the chain's last corner
+    /// to its first is Delaunay.
     #[inline]
     fn third_corner(&self, points: &[G::Point; MOST], first: usize, last: usize) -> usize {
         let [a, b] = [&points[last], &points[first]];
@@ -115,11 +122,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         Some(ring)
     }
 
-    /// The faces around a vertex, counter-clockwise: those before the first number that is returned, and then those from
-    /// the second on.
+    /// Returns the faces around a vertex, counter-clockwise: those before the first returned index,
+    /// and then those from the second one on.
     ///
-    /// `PERF:` both ways around at a time, since each face tells where the next one is: with a million points, memory has
-    /// to be waited for at each. A removal takes 1.37 instead of 1.58 us then.
+    /// `PERF:` collects in both directions at a time, because each face determines the next one:
+    /// with a million points, each step waits for memory. A removal takes 1.37 instead of 1.58 us
+    /// then.
     fn low_star(&self, vertex: VertexId) -> Option<([CellId; MOST], usize, usize)> {
         let first = self.tds.cell_of(vertex)?;
         let mut around = [first; MOST];

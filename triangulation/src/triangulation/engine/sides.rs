@@ -1,4 +1,4 @@
-//! On which side of a facet, and in which spheres, a point lies.
+//! The side of a facet, and the spheres, in which a point lies.
 
 use std::borrow::Borrow;
 
@@ -8,7 +8,8 @@ use crate::tds::{CellId, Complex, VertexId};
 
 use super::embedded::{Embedded, PointOf};
 
-/// The points of a cell of any dimension, with `q` in place of the vertex at `replaced`, all others finite.
+/// Returns the points of a cell of any dimension, with `q` in place of the vertex at `replaced`.
+/// All others are finite.
 pub(in super::super) fn points_with<const N: usize, T: Embedded<N>>(
     t: &T,
     cell: CellId,
@@ -20,9 +21,9 @@ pub(in super::super) fn points_with<const N: usize, T: Embedded<N>>(
     vertices.map(|(i, &v)| if i == replaced { Ok(*q) } else { Ok(*t.point(v)?.borrow()) }).collect()
 }
 
-/// The orientation of a cell with `q` in place of one vertex, all others finite. Positive if `q` is
-/// on the side of the facet opposite that vertex on which the cell is (or, with the infinite vertex
-/// replaced, beyond the hull there).
+/// Returns the orientation of a cell with `q` in place of one vertex; all others are finite.
+/// Positive if `q` and the cell are on the same side of the facet opposite that vertex (or, with
+/// the infinite vertex replaced, if `q` is beyond the hull there).
 #[inline(always)]
 pub(in super::super) fn side_of_facet<const N: usize, T: Embedded<N>>(
     t: &T,
@@ -54,7 +55,7 @@ fn side_of_facet_in_flat<const N: usize, T: Embedded<N>>(
     Ok(t.geometry().orientation_in_flat(&points.iter().collect::<Vec<_>>()))
 }
 
-/// The points of a full cell without the infinite vertex.
+/// Returns the points of a finite cell of full dimension.
 #[inline(always)]
 pub(in super::super) fn simplex<const N: usize, T: Embedded<N>>(
     t: &T,
@@ -68,9 +69,9 @@ pub(in super::super) fn simplex<const N: usize, T: Embedded<N>>(
     Ok(simplex)
 }
 
-/// Whether a new point `q` destroys the cell under the empty sphere law, ties decided. The sphere of
-/// an infinite cell is the open half space beyond its finite facet, with the inside of the facet's
-/// own sphere.
+/// Returns true if a new point `q` destroys the cell under the empty sphere law, ties decided. The
+/// sphere of an infinite cell is the open half space beyond its finite facet, together with the
+/// inside of the facet's own sphere.
 #[inline(always)]
 pub(in super::super) fn in_conflict<const N: usize, T: Embedded<N>>(
     t: &T,
@@ -122,7 +123,7 @@ fn in_conflict_in_flat<const N: usize, T: Embedded<N>>(
             Ok(in_sphere_of_flat(t.geometry(), &points.iter().collect::<Vec<_>>(), q))
         }
         Some(infinite) if complex.width() == 2 => {
-            // The end of a line: the edge inwards says which direction is out.
+            // The end of a line: the edge inwards shows which direction is out.
             let inner = complex.inner(cell)?;
             let end = complex.vertex(cell, 1 - infinite)?;
             let at = complex.index_of(inner, end)?;

@@ -1,4 +1,4 @@
-//! The basic kind: no law.
+//! The basic kind: a triangulation without a law.
 
 use std::ops::Deref;
 
@@ -10,15 +10,15 @@ use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
 };
 
-/// A triangulation without a law, of the plane or of space.
+/// A triangulation of the plane or of space, without a law.
 ///
-/// A point splits the cell, facet or edge that it lies on, or is joined to the part of the hull that it sees. Nothing
-/// is done for the shape of cells; all others stay as they are. ("Lazy" insertion in Boissonnat, Devillers, Pion,
-/// Teillaud and Yvinec 2002.)
+/// A new point splits the cell, facet or edge that it lies on. Outside of the hull, it is joined to
+/// the facets that it sees. The shape of cells is not improved; all other cells stay as they are.
+/// ("Lazy" insertion in Boissonnat, Devillers, Pion, Teillaud and Yvinec 2002.)
 ///
-/// *Payloads.* Cells around a new vertex inherit the payload of the cell that had the facet opposite the vertex: where
-/// one is split, its parts have what it had. Cells that a removal or a flip makes, or that come with another dimension,
-/// have the default one.
+/// *Payloads.* Each cell around a new vertex inherits the payload of the cell that had the facet
+/// opposite the vertex: the parts of a split cell have the payload of the whole. Cells created by a
+/// removal or a flip, or by a change of dimension, have the default payload.
 ///
 /// ```
 /// use breakline_triangulation::geometry::Plane;
@@ -53,34 +53,35 @@ impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Basic
 }
 
 impl<G: Geometry<N>, const N: usize, V> Basic<G, N, V> {
-    /// Returns a triangulation without points, and without payloads of cells: these come with
-    /// [`with_cell_data`](Self::with_cell_data).
+    /// Returns an empty triangulation. Its cells have no payload;
+    /// [`with_cell_data`](Self::with_cell_data) adds one.
     pub fn new(geometry: G) -> Self {
         Self::over(Triangulation::new(geometry))
     }
 
-    /// Like [`new`](Self::new), with room for that many vertices.
+    /// Like [`new`](Self::new), but with room for that many vertices.
     pub fn with_capacity(geometry: G, vertices: usize) -> Self {
         Self::over(Triangulation::with_capacity(geometry, vertices))
     }
 }
 
 impl<G: Coordinates<N>, const N: usize> Basic<G, N> {
-    /// Triangulates many points, put in in [spatial order](crate::spatial_order). Returns the vertex of each point beside.
+    /// Triangulates many points, inserted in [spatial order](crate::spatial_order); also returns
+    /// the vertex of each.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position.
+    /// If a point is refused; the error names the position of the first one.
     ///
     /// # Complexity
-    /// For points that are spread evenly, time proportional to their number.
+    /// Linear in the number of points if they are spread evenly.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let mut triangulation = Self::with_capacity(geometry, points.len());
         let vertices = triangulation.insert_all(points)?;
         Ok((triangulation, vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), with payloads: `data` is asked for that of each vertex once, by the
-    /// position of the first point that has it, in order.
+    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
+    /// vertex, with the position of the first point at that vertex, in increasing order.
     ///
     /// # Errors
     /// See [`from_points`](Self::from_points).
@@ -99,33 +100,34 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
         Basic { inner }
     }
 
-    /// Returns the same triangulation with other payloads of vertices; `data` is asked for them in order of the
-    /// vertices' numbers, those of removed ones included. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
+    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
     pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Basic<G, N, W, C> {
         Basic::over(self.inner.with_vertex_data(data))
     }
 
-    /// Returns the same triangulation with other payloads of cells, the infinite ones included; `data` is asked for
-    /// them in order of the cells' numbers. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
+    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Basic<G, N, V, D> {
         Basic::over(self.inner.with_cell_data(data))
     }
 
-    /// Adds a point with a payload. Returns its vertex; or, if the site is taken, the one that is there already, which
-    /// keeps its payload, and the payload that was given.
+    /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
+    /// vertex that is there already, which keeps its payload, together with the unused payload.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion; constant time in the hull, outside of it time
-    /// proportional to the number of its facets that are seen.
+    /// A [walk](Triangulation::locate) from the last insertion. Then constant time inside of the
+    /// hull, and outside of it linear in the number of hull facets that the point sees.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
         self.insert_by(&mut Near(None), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but looks for the point from a cell on. Of a vertex nearby, that is
-    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that does not exist, stands for the last insertion.
+    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell. The
+    /// cell of a nearby vertex is [`cell_of`](crate::tds::Tds::cell_of). With `None`, or a cell
+    /// that does not exist, the search starts where the last insertion ended.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -133,8 +135,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
         self.insert_by(&mut Near(near), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate), which learns of the new
-    /// vertex.
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
+    /// which is notified of the new vertex.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -158,17 +160,18 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
         self.inner.insert_at(p, location, data, takes, |data, _| *data)
     }
 
-    /// The payload of a cell, to change. O(1).
+    /// Returns the payload of a cell, mutable. O(1).
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         self.inner.tds.cell_data_mut(cell)
     }
 
-    /// The payload of a finite vertex, to change.
+    /// Returns the payload of a finite vertex, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
     }
 
-    /// Checks up to the level, with exact predicates. There is no law to [check](Level::Law).
+    /// Returns the flaws found by a check up to the given level, with exact predicates. There is no
+    /// law to [check](Level::Law).
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         self.flaws(level.min(Level::Orientation), |_, _| false)
@@ -176,7 +179,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
 }
 
 impl<G: Geometry<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
-    /// Adds a point. Returns its vertex; the one that is there already, if the site is taken.
+    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
+    /// already.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -186,13 +190,15 @@ impl<G: Geometry<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
 }
 
 impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
-    /// Adds many points, in [spatial order](crate::spatial_order). Returns the vertex of each.
+    /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
+    /// each.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position; nothing has changed then.
+    /// If a point is refused; the error names the position of the first one. Nothing has changed
+    /// then.
     ///
     /// # Complexity
-    /// For points that are spread evenly, time proportional to their number.
+    /// Linear in the number of points if they are spread evenly.
     pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         for position in self.inner.order_of_all(points)? {
@@ -204,8 +210,8 @@ impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
-    /// Removes a vertex and returns its point. The others keep their numbers; the next point that is added gets the
-    /// number that is now free. Cells without the vertex stay.
+    /// Removes a vertex and returns its point. The hole is triangulated again; other cells stay.
+    /// The other vertices keep their numbers; the next point inserted takes the freed one.
     ///
     /// # Errors
     /// If there is no such vertex.
@@ -220,7 +226,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
         Ok(*self.point(vertex))
     }
 
-    /// Like [`remove`](Self::remove), and tells a [strategy](Locate) of location.
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
     ///
     /// # Errors
     /// See [`remove`](Self::remove).
@@ -230,14 +236,15 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
         Ok(point)
     }
 
-    /// Moves a vertex, which keeps its number and payload, and returns it. If another one is on the site already, that
-    /// one is returned, and the one that was moved is gone.
+    /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
+    /// is taken, the vertex is removed, and the one that is there already is returned.
     ///
     /// # Errors
-    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has changed then.
+    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has
+    /// changed then.
     ///
     /// # Complexity
-    /// That of a removal, and of an insertion that looks for its point from there.
+    /// That of a removal and an insertion; the search starts at the old site.
     pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
         self.inner.admit(&p)?;
         if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
@@ -251,8 +258,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
         Ok(moved.unwrap_or(vertex))
     }
 
-    /// Exchanges the edge opposite vertex `i` of a cell for the other diagonal of the quadrilateral around it; returns
-    /// false, and changes nothing, unless it is [flippable](Triangulation::is_flippable).
+    /// Exchanges the edge opposite vertex `i` of a cell for the other diagonal of the quadrilateral
+    /// around it. Returns false, and changes nothing, unless the edge is
+    /// [flippable](Triangulation::is_flippable).
     pub fn flip(&mut self, cell: CellId, i: usize) -> bool {
         let is_flippable = self.is_flippable(cell, i);
         if is_flippable {

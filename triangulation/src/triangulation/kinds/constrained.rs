@@ -12,13 +12,14 @@ use super::super::{
     Triangulation,
 };
 
-/// A constrained triangulation of the plane: some edges are forced, and there is no law beside. Points go in as in the
-/// [`Basic`](crate::Basic) kind; where one lies on a constraint, it splits it.
+/// A triangulation of the plane with constrained edges and no other law. Points are inserted as in
+/// the [`Basic`](crate::Basic) kind; a point on a constraint splits it.
 ///
-/// Payloads are inherited as those of [`ConstrainedDelaunay`](crate::ConstrainedDelaunay) are.
+/// Payloads are inherited as in [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
 ///
-/// Constraints are edges here, between vertices. For lines that cross, are told apart, and are taken out again, and for
-/// triangles of good shape there is [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
+/// Here a constraint joins two vertices, and constraints must not cross. For lines that may cross,
+/// have ids and can be removed again, and for well-shaped triangles, use
+/// [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
 ///
 /// ```
 /// use breakline_triangulation::geometry::Plane;
@@ -38,15 +39,15 @@ pub struct Constrained<G: Geometry<3>, V = (), C = ()> {
     pub(in super::super) scratch: Scratch,
 }
 
-/// Why an edge cannot be constrained. Nothing has changed then.
+/// Why a constraint was refused. Nothing has changed then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ConstraintError {
-    /// It crosses the constraint between these vertices, the smaller first.
+    /// The constraint between these vertices, the smaller first, would be crossed.
     Crosses([VertexId; 2]),
     /// There is no such vertex.
     NoVertex(VertexId),
-    /// All points are collinear: there are no triangles to hold it.
+    /// All points are collinear, so no triangles can hold the constraint.
     NoTriangles,
 }
 
@@ -79,34 +80,35 @@ impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Constrained<G, V, C> 
 }
 
 impl<G: Geometry<3>, V> Constrained<G, V> {
-    /// Returns a triangulation without points, and without payloads of cells: these come with
-    /// [`with_cell_data`](Self::with_cell_data).
+    /// Returns an empty triangulation. Its cells have no payload;
+    /// [`with_cell_data`](Self::with_cell_data) adds one.
     pub fn new(geometry: G) -> Self {
         Self::over(Triangulation::new(geometry))
     }
 
-    /// Like [`new`](Self::new), with room for that many vertices.
+    /// Like [`new`](Self::new), but with room for that many vertices.
     pub fn with_capacity(geometry: G, vertices: usize) -> Self {
         Self::over(Triangulation::with_capacity(geometry, vertices))
     }
 }
 
 impl<G: Coordinates<3>> Constrained<G> {
-    /// Triangulates many points, put in in [spatial order](crate::spatial_order). Returns the vertex of each point beside.
+    /// Triangulates many points, inserted in [spatial order](crate::spatial_order); also returns
+    /// the vertex of each.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position.
+    /// If a point is refused; the error names the position of the first one.
     ///
     /// # Complexity
-    /// For points that are spread evenly, time proportional to their number.
+    /// Linear in the number of points if they are spread evenly.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let mut triangulation = Self::with_capacity(geometry, points.len());
         let vertices = triangulation.insert_all(points)?;
         Ok((triangulation, vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), with payloads: `data` is asked for that of each vertex once, by the
-    /// position of the first point that has it, in order.
+    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
+    /// vertex, with the position of the first point at that vertex, in increasing order.
     ///
     /// # Errors
     /// See [`from_points`](Self::from_points).
@@ -125,34 +127,35 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         Constrained { inner, scratch: Scratch::default() }
     }
 
-    /// Returns the same triangulation with other payloads of vertices; `data` is asked for them in order of the
-    /// vertices' numbers, those of removed ones included. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
+    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
     pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Constrained<G, W, C> {
         Constrained::over(self.inner.with_vertex_data(data))
     }
 
-    /// Returns the same triangulation with other payloads of cells, the infinite ones included; `data` is asked for
-    /// them in order of the cells' numbers. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
+    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Constrained<G, V, D> {
         Constrained::over(self.inner.with_data_of_cells(data))
     }
 
-    /// Adds a point with a payload. Returns its vertex; or, if the site is taken, the one that is there already, which
-    /// keeps its payload, and the payload that was given. On a constraint, it splits the
-    /// constraint.
+    /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
+    /// vertex that is there already, which keeps its payload, together with the unused payload. A
+    /// point on a constraint splits it.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion; constant time in the hull, outside of it time
-    /// proportional to the number of its edges that are seen.
+    /// A [walk](Triangulation::locate) from the last insertion. Then constant time inside of the
+    /// hull, and outside of it linear in the number of hull edges that the point sees.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
         self.insert_by(&mut Near(None), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but looks for the point from a cell on. Of a vertex nearby, that is
-    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that does not exist, stands for the last insertion.
+    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell. The
+    /// cell of a nearby vertex is [`cell_of`](crate::tds::Tds::cell_of). With `None`, or a cell
+    /// that does not exist, the search starts where the last insertion ended.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -160,8 +163,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         self.insert_by(&mut Near(near), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate), which learns of the new
-    /// vertex.
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
+    /// which is notified of the new vertex.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -187,30 +190,33 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         inserted
     }
 
-    /// Constrains the edges from a new vertex to the ends of the constraint that it has split, if it has.
+    /// Constrains the edges from a new vertex to the ends of the constraint that it split, if any.
     fn constrain_both_halves(&mut self, split: Option<[VertexId; 2]>, vertex: VertexId) {
         for end in split.into_iter().flatten() {
             self.inner.constrain_edge(vertex, end);
         }
     }
 
-    /// The payload of a finite vertex, to change.
+    /// Returns the payload of a finite vertex, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
     }
 
-    /// The payload of a triangle, to change. O(1).
+    /// Returns the payload of a triangle, mutable. O(1).
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         self.inner.tds.cell_data_mut(cell).data_mut()
     }
 
-    /// Forces the straight way between two vertices to consist of edges. Triangles that it crosses are replaced.
+    /// Inserts a constraint between two vertices. Triangles that it crosses are replaced; vertices
+    /// that it passes through split it.
     ///
     /// # Errors
-    /// If it crosses a constraint, a vertex does not exist, or there are no triangles; nothing has changed then.
+    /// If it crosses a constraint, a vertex does not exist, or all points are collinear; nothing
+    /// has changed then.
     ///
     /// # Complexity
-    /// Quadratic in the number of triangles between two vertices on the way at worst, in practice linear.
+    /// At worst quadratic in the number of triangles crossed between two vertices on the
+    /// constraint, in practice linear.
     pub fn constrain(&mut self, a: VertexId, b: VertexId) -> Result<(), ConstraintError> {
         if let Some(absent) = [a, b].into_iter().find(|&v| !self.tds().is_vertex(v)) {
             return Err(ConstraintError::NoVertex(absent));
@@ -218,7 +224,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         if self.dimension() < 2 {
             return Err(ConstraintError::NoTriangles);
         }
-        // First without touching anything.
+        // The first pass only reads, so that nothing has changed if the constraint is refused.
         let mut from = a;
         while from != b {
             match self.inner.trace(from, b, &mut self.scratch) {
@@ -242,17 +248,18 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         Ok(())
     }
 
-    /// Takes the constraint off the edge between two vertices, which stays an edge; says whether there was one.
+    /// Releases the constrained edge between two vertices, which stays an edge. Returns false if
+    /// there is no such constraint.
     pub fn release(&mut self, a: VertexId, b: VertexId) -> bool {
         self.inner.release_edge(a, b).is_some()
     }
 
-    /// Removes a vertex and returns its point. The others keep their numbers; the next point that is added gets the
-    /// number that is now free. Triangles without the vertex stay.
+    /// Removes a vertex and returns its point. The hole is triangulated again; other triangles
+    /// stay. The other vertices keep their numbers; the next point inserted takes the freed one.
     ///
     /// # Errors
-    /// If there is no such vertex; if a constraint ends in it or runs through it; or if without it there would be no
-    /// triangles to hold the constraints.
+    /// If there is no such vertex; if a constraint ends at it or runs through it; or if no
+    /// triangles would be left to hold the constraints.
     ///
     /// # Complexity
     /// Linear in the degree of the vertex; on the hull, in the number of triangles.
@@ -268,7 +275,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         Ok(*self.point(vertex))
     }
 
-    /// Like [`remove`](Self::remove), and tells a [strategy](Locate) of location.
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
     ///
     /// # Errors
     /// See [`remove`](Self::remove).
@@ -278,14 +285,15 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         Ok(point)
     }
 
-    /// Moves a vertex, which keeps its number and payload, and returns it. If another one is on the site already, that
-    /// one is returned, and the one that was moved is gone.
+    /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
+    /// is taken, the vertex is removed, and the one that is there already is returned.
     ///
     /// # Errors
-    /// If it cannot be [removed](Self::remove), or a coordinate is not finite or out of range; nothing has changed then.
+    /// If the vertex cannot be [removed](Self::remove), or a coordinate is not finite or out of
+    /// range; nothing has changed then.
     ///
     /// # Complexity
-    /// That of a removal, and of an insertion that looks for its point from there.
+    /// That of a removal and an insertion; the search starts at the old site.
     pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
         self.inner.admit(&p)?;
         if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
@@ -301,7 +309,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         Ok(moved)
     }
 
-    /// Checks up to the level: that of the law is that each edge is constrained on both sides or on none.
+    /// Returns the flaws found by a check up to the given level. The law checked is that each edge
+    /// is constrained in both of its triangles or in none.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let mut flaws = self.flaws(level.min(Level::Orientation), |_, _| false);
@@ -313,7 +322,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
 }
 
 impl<G: Geometry<3>, C: Copy + Default> Constrained<G, (), C> {
-    /// Adds a point. Returns its vertex; the one that is there already, if the site is taken.
+    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
+    /// already.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -323,13 +333,15 @@ impl<G: Geometry<3>, C: Copy + Default> Constrained<G, (), C> {
 }
 
 impl<G: Coordinates<3>, C: Copy + Default> Constrained<G, (), C> {
-    /// Adds many points, in [spatial order](crate::spatial_order). Returns the vertex of each.
+    /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
+    /// each.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position; nothing has changed then.
+    /// If a point is refused; the error names the position of the first one. Nothing has changed
+    /// then.
     ///
     /// # Complexity
-    /// For points that are spread evenly, time proportional to their number.
+    /// Linear in the number of points if they are spread evenly.
     pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         for position in self.inner.order_of_all(points)? {
@@ -340,7 +352,8 @@ impl<G: Coordinates<3>, C: Copy + Default> Constrained<G, (), C> {
     }
 }
 
-/// Which cells beyond a facet a new point splits: those that it lies in or sees, up to the constraints.
+/// Returns the test for the cells that a new point splits: it grows across facets that are not
+/// constrained, to cells that contain the point or see it.
 fn takes<G: Geometry<3>, V, C: Copy + Default>(
     p: &G::Point,
 ) -> impl Fn(&Triangulation<G, 3, V, ConstrainedEdges<C>>, CellId, usize, CellId) -> bool {
@@ -349,26 +362,26 @@ fn takes<G: Geometry<3>, V, C: Copy + Default>(
 
 /// What triangulations with constraints have in common.
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
-    /// The payload of a triangle. O(1).
+    /// Returns the payload of a triangle. O(1).
     pub fn cell_data(&self, cell: CellId) -> &C {
         self.tds.cell_data(cell).data()
     }
 
-    /// The same triangulation and constraints, with these payloads.
+    /// Returns the triangulation with the same constraints and new payloads.
     pub(in super::super) fn with_data_of_cells<D: Copy + Default>(
         self,
         mut data: impl FnMut(CellId) -> D,
     ) -> Triangulation<G, 3, V, ConstrainedEdges<D>> {
-        self.map_cell_data(|cell, walls| walls.with_data(data(cell)))
+        self.map_cell_data(|cell, edges| edges.with_data(data(cell)))
     }
 
-    /// Whether the edge of a cell opposite its vertex `i` is a constraint.
+    /// Returns true if the edge opposite vertex `i` of a cell is constrained.
     #[inline]
     pub fn is_constrained(&self, cell: CellId, i: usize) -> bool {
         self.tds.cell_data(cell).has(i)
     }
 
-    /// Each constrained edge once, as the pair of its vertices, the smaller first.
+    /// The constrained edges, each once, as pairs of vertices with the smaller first.
     pub fn constrained_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
         self.tds.cells().filter(|_| self.dimension() == 2).flat_map(move |cell| {
             (0..3).filter(move |&i| self.is_constrained(cell, i)).filter_map(move |i| {
@@ -378,31 +391,32 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         })
     }
 
-    /// The other ends of the constrained edges at a vertex, counter-clockwise; none below dimension 2. Time proportional to
-    /// its degree.
+    /// The other ends of the constrained edges at a vertex, counter-clockwise; none below dimension
+    /// 2. Linear in its degree.
     pub fn constrained_around(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         let constrained = self.tds.edges_around(vertex).filter(|&(cell, i)| self.is_constrained(cell, i));
         constrained.map(|(cell, i)| self.tds.vertex(cell, cw(i)))
     }
 
-    /// Whether there is a constraint on the edge between two vertices.
+    /// Returns true if the edge between two vertices exists and is constrained.
     pub(in super::super) fn has_constraint(&self, a: VertexId, b: VertexId) -> bool {
         self.tds.edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
     }
 
-    /// Makes an edge a constraint; says whether it is there.
+    /// Constrains the edge between two vertices; returns false if there is no such edge.
     pub(in super::super) fn constrain_edge(&mut self, a: VertexId, b: VertexId) -> bool {
         let edge = self.tds.edge(a, b);
         edge.map(|edge| self.set_constrained(edge, true)).is_some()
     }
 
-    /// Makes a constraint a mere edge, and returns the cells on both sides; `None` if there is none between the two.
+    /// Releases the constrained edge between two vertices and returns the cells on both sides;
+    /// `None` if there is no such constraint.
     pub(in super::super) fn release_edge(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {
         let constraint = self.tds.edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i))?;
         Some(self.set_constrained(constraint, false))
     }
 
-    /// Tells the cells on both sides of an edge whether it is a constraint; returns them.
+    /// Marks an edge as constrained or not, in the cells on both sides; returns these cells.
     pub(in super::super) fn set_constrained(
         &mut self,
         (cell, i): (CellId, usize),
@@ -417,7 +431,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         [cell, beside]
     }
 
-    /// The ends of the constraint that a place lies on in its inside.
+    /// Returns the ends of the constraint that a location lies on, between the ends.
     pub(in super::super) fn constraint_at(&self, location: Location) -> Option<[VertexId; 2]> {
         match location {
             Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
@@ -428,19 +442,19 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         }
     }
 
-    /// Whether a constraint ends in a vertex or runs through it.
+    /// Returns true if a constraint ends at a vertex or runs through it.
     pub(in super::super) fn is_on_constraint(&self, vertex: VertexId) -> bool {
         self.constrained_around(vertex).next().is_some()
     }
 
-    /// Whether a point is in a counter-clockwise triangle or on its border.
+    /// Returns true if a point is in a counter-clockwise triangle or on its border.
     fn is_within(&self, [a, b, c]: [VertexId; 3], p: VertexId) -> bool {
         let [a, b, c, p] = [a, b, c, p].map(|v| self.point(v));
         let sides = [[a, b, p], [b, c, p], [c, a, p]];
         sides.into_iter().all(|side| self.geometry.orientation(side) != Sign::Negative)
     }
 
-    /// Edges that are constrained on one side only.
+    /// Returns a flaw for each edge that is constrained on one side only.
     pub(in super::super) fn one_sided_constraints(&self) -> Vec<Flaw> {
         let edges = self.tds.cells().filter(|_| self.dimension() == 2).flat_map(|cell| (0..3).map(move |i| (cell, i)));
         let is_one_sided = |&(cell, i): &(CellId, usize)| {

@@ -7,14 +7,15 @@ use super::super::bulk::{self, Sites};
 use super::super::lines::Lines;
 use super::super::{Flaw, InputError, Level, Triangulation};
 
-/// Which edges of a triangle are constraints, and its payload: bit `i` is set for the edge opposite vertex `i`.
+/// Which edges of a triangle are constrained, and the triangle's payload. Bit `i` is set for the
+/// edge opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "Walls"))] // as in saved files
 pub struct ConstrainedEdges<C = ()>(u8, C);
 
 impl<C> ConstrainedEdges<C> {
-    /// Whether the edge opposite vertex `i` is one.
+    /// Returns true if the edge opposite vertex `i` is constrained.
     #[inline(always)]
     pub fn has(&self, i: usize) -> bool {
         self.0 >> i & 1 == 1
@@ -25,58 +26,61 @@ impl<C> ConstrainedEdges<C> {
         &self.1
     }
 
-    /// The payload, to change.
+    /// The payload, mutable.
     pub(in super::super) fn data_mut(&mut self) -> &mut C {
         &mut self.1
     }
 
-    /// The same with the edge opposite vertex `i` set as told.
+    /// Returns a copy in which the edge opposite vertex `i` is constrained or not.
     #[inline]
     pub(in super::super) fn with(self, i: usize, is_constrained: bool) -> Self {
         ConstrainedEdges(self.0 & !(1 << i) | u8::from(is_constrained) << i, self.1)
     }
 
-    /// The same with only the edge opposite vertex `i` a constraint, if it was one.
+    /// Returns a copy in which all edges are free, except the one opposite vertex `i`, which stays
+    /// as it was.
     #[inline(always)]
     pub(in super::super) fn only(self, i: usize) -> Self {
         ConstrainedEdges(self.0 & 1 << i, self.1)
     }
 
-    /// The same with another payload.
+    /// Returns a copy with another payload.
     pub(in super::super) fn with_data<D>(&self, data: D) -> ConstrainedEdges<D> {
         ConstrainedEdges(self.0, data)
     }
 
-    /// Whether it marks a triangle that is being replaced.
+    /// Returns true for the mark of a triangle that is being replaced.
     pub(in super::super) fn is_taken_out(&self) -> bool {
         self.0 == u8::MAX
     }
 }
 
 impl<C: Default> ConstrainedEdges<C> {
-    /// Marks a triangle that is being replaced.
+    /// Returns the mark of a triangle that is being replaced.
     pub(in super::super) fn taken_out() -> Self {
         ConstrainedEdges(u8::MAX, C::default())
     }
 }
 
-/// A constrained Delaunay triangulation of the plane: given edges are there, and no vertex lies inside
-/// of a triangle's circumscribed circle unless a constraint stands between them (Lee and Lin 1986;
-/// Chew 1989).
+/// A constrained Delaunay triangulation of the plane. Each given segment is a chain of its
+/// edges, and no vertex lies inside of a triangle's circumscribed circle unless a constraint
+/// separates them (Lee and Lin 1986; Chew 1989).
 ///
-/// What is constrained are *lines*: points in a row, which may touch, overlap, repeat, cross and close. Each keeps an
-/// [id](crate::LineId), from which its [chain](Self::chain) of vertices follows. A line that runs through a vertex is
-/// split there; where two cross, a vertex is added at the place, rounded, with what [`Crossing`] makes of it, and lines
-/// bend no further than the [rounding](Rounding) forces: the [arrangement](crate::arrangement) says how, and what is
+/// Constraints come as *lines*: rows of points, which may touch, overlap, repeat, cross and close.
+/// Each line keeps an [id](crate::LineId), which gives its [chain](Self::chain) of vertices. A line
+/// that passes through a vertex is split there. Where two lines cross, a vertex is added at the
+/// crossing, rounded; [`Crossing`] makes its point. Lines bend no further than the
+/// [rounding](Rounding) requires: the [arrangement](crate::arrangement) describes how, and what is
 /// proven.
 ///
-/// Vertices have payloads `V`, and triangles, the infinite ones included, payloads `C`, read with
-/// [`cell_data`](Triangulation::cell_data). Triangles around a new vertex inherit the payload of the destroyed one that
-/// had the edge opposite the vertex; those that a removal or a constraint makes, or that come with another dimension,
-/// have the default one.
+/// Vertices have payloads `V`. Triangles, the infinite ones included, have payloads `C`, read with
+/// [`cell_data`](Triangulation::cell_data). Each triangle around a new vertex inherits the payload
+/// of the destroyed triangle that had the edge opposite the vertex. Triangles created by a removal
+/// or a constraint, or by a change of dimension, have the default payload.
 ///
-/// The triangulation is a function of the set of points and the set of lines' segments, whether they came at once
-/// ([`from_lines`](Self::from_lines)), one by one or with others that have been removed since.
+/// The triangulation is a function of the set of points and the set of segments: it does not matter
+/// whether these were given at once ([`from_lines`](Self::from_lines)) or one by one, or what has
+/// been removed since.
 ///
 /// ```
 /// use breakline_triangulation::geometry::Plane;
@@ -119,25 +123,27 @@ impl<G: Crossing + Clone, V: Clone, C: Clone> Clone for ConstrainedDelaunay<G, V
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Without points, and without payloads of triangles: these come with [`with_cell_data`](Self::with_cell_data).
+    /// Returns an empty triangulation. Its triangles have no payload;
+    /// [`with_cell_data`](Self::with_cell_data) adds one.
     pub fn new(geometry: G) -> Self {
         ConstrainedDelaunay { inner: Triangulation::new(geometry), lines: Lines::default() }
     }
 }
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// The same triangulation with these payloads of triangles, the infinite ones included; asked for in order of their
-    /// numbers. Linear in the number of triangles; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its triangles. `data` is called in order of
+    /// the triangle numbers, infinite triangles included. Linear time; nothing but payloads is
+    /// copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> ConstrainedDelaunay<G, V, D> {
         ConstrainedDelaunay { inner: self.inner.with_data_of_cells(data), lines: self.lines }
     }
 
-    /// The payload of a triangle, to change. O(1).
+    /// Returns the payload of a triangle, mutable. O(1).
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         self.inner.tds.cell_data_mut(cell).data_mut()
     }
 
-    /// The payload of a finite vertex, to change.
+    /// Returns the payload of a finite vertex, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
     }
@@ -147,15 +153,15 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         self.lines.added()
     }
 
-    /// Replaces the point of a finite vertex by another one at the same place, at another height, say; returns the old
-    /// one. `None` if it is elsewhere: nothing has changed then.
+    /// Replaces the point of a finite vertex by another one on the same site, for example to change
+    /// its height; returns the old one. Returns `None`, and changes nothing, if the site differs.
     pub fn replace_point(&mut self, vertex: VertexId, p: G::Point) -> Option<G::Point> {
         let old = self.inner.points.get_mut(vertex.index())?;
         self.inner.geometry.compare(&p, old).is_eq().then(|| std::mem::replace(old, p))
     }
 
-    /// Checks up to the level, with exact predicates. No flaw means that the triangulation is what it
-    /// claims to be.
+    /// Returns the flaws found by a check up to the given level, with exact predicates. If there
+    /// are none, the triangulation is what it claims to be.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let flaws = self.flaws(level, |cell, i| !self.is_constrained(cell, i));
@@ -168,7 +174,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 }
 
 impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
-    /// Triangulates sites: the vertices are numbered as their points are, and no copy of them is made.
+    /// Triangulates sites. Vertices are numbered as the sites are, whose points are not copied.
     pub(crate) fn from_sites(geometry: G, sites: Sites<G::Point>) -> Self {
         let mut triangulation = Self::new(geometry);
         let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, bulk::Grain::default());
@@ -186,11 +192,11 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         triangulation
     }
 
-    /// Triangulates many points. Returns the vertex of each point beside: they are numbered along a space
-    /// filling curve, and points on one site share theirs (the first of them stands).
+    /// Triangulates many points; also returns the vertex of each. Vertices are numbered along a
+    /// space filling curve. Points on one site share a vertex, which keeps the first of them.
     ///
     /// # Errors
-    /// The first point that is refused, by its position.
+    /// If a point is refused; the error names the position of the first one.
     ///
     /// # Complexity
     /// O(n log n), on all threads.

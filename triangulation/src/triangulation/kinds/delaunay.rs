@@ -8,15 +8,15 @@ use super::super::{
     InputError, Inserted, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
 };
 
-/// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space: `N` follows from the
-/// geometry.
+/// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space. `N`, the number
+/// of vertices of a cell, follows from the geometry.
 ///
-/// Ties between cospherical points are broken by a rule on the points alone, so that equal sets of
-/// points have equal triangulations.
+/// Ties between cospherical points are broken by a rule that depends only on the points, so that
+/// equal sets of points have equal triangulations.
 ///
-/// Vertices have payloads `V`, and cells, the infinite ones included, payloads `C`. Cells around a new vertex inherit
-/// the payload of the destroyed cell that had the facet opposite the vertex; those that a removal makes, or that come
-/// with another dimension, have the default one.
+/// Vertices have payloads `V`. Cells, the infinite ones included, have payloads `C`. Each cell
+/// around a new vertex inherits the payload of the destroyed cell that had the facet opposite the
+/// vertex. Cells created by a removal, or by a change of dimension, have the default payload.
 ///
 /// ```
 /// use breakline_triangulation::{geometry::Plane, Delaunay, Location};
@@ -54,29 +54,30 @@ impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Delau
 }
 
 impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
-    /// Returns a triangulation without points, and without payloads of cells: these come with
-    /// [`with_cell_data`](Self::with_cell_data).
+    /// Returns an empty triangulation. Its cells have no payload;
+    /// [`with_cell_data`](Self::with_cell_data) adds one.
     pub fn new(geometry: G) -> Self {
         Self::over(Triangulation::new(geometry))
     }
 
-    /// Like [`new`](Self::new), with room for that many vertices.
+    /// Like [`new`](Self::new), but with room for that many vertices.
     pub fn with_capacity(geometry: G, vertices: usize) -> Self {
         Self::over(Triangulation::with_capacity(geometry, vertices))
     }
 }
 
 impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
-    /// Triangulates many points. Returns the vertex of each point beside: they are numbered in [spatial
-    /// order](super::super::spatial_order), and points on one site share theirs (the first of them stands).
+    /// Triangulates many points; also returns the vertex of each. Vertices are numbered in [spatial
+    /// order](super::super::spatial_order). Points on one site share a vertex, which keeps the
+    /// first of them.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position.
+    /// If a point is refused; the error names the position of the first one.
     ///
     /// # Complexity
-    /// In the plane by divide and conquer (Guibas and Stolfi 1985, Dwyer 1987), on all threads: O(n log n) at
-    /// worst, linear for points that are spread evenly. Peak memory is 60 bytes a point beside two copies of the
-    /// points. In space by insertion, linear in practice.
+    /// In the plane by divide and conquer (Guibas and Stolfi 1985, Dwyer 1987), on all threads: O(n
+    /// log n) at worst, linear for points that are spread evenly. Peak memory is 60 bytes for each
+    /// point, besides two copies of the points. In space by insertion, linear in practice.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let grain = bulk::Grain::default();
         let (sites, vertices) = bulk::Sites::of(&geometry, points, grain)?;
@@ -96,8 +97,8 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
         Ok((triangulation, vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), with payloads: `data` is asked for that of each vertex once, by the
-    /// position of the first point that has it, in order.
+    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
+    /// vertex, with the position of the first point at that vertex, in increasing order.
     ///
     /// # Errors
     /// See [`from_points`](Self::from_points).
@@ -116,33 +117,34 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         Delaunay { inner }
     }
 
-    /// Returns the same triangulation with other payloads of vertices; `data` is asked for them in order of the
-    /// vertices' numbers, those of removed ones included. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
+    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
     pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Delaunay<G, N, W, C> {
         Delaunay::over(self.inner.with_vertex_data(data))
     }
 
-    /// Returns the same triangulation with other payloads of cells, the infinite ones included; `data` is asked for
-    /// them in order of the cells' numbers. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
+    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Delaunay<G, N, V, D> {
         Delaunay::over(self.inner.with_cell_data(data))
     }
 
-    /// Adds a point with a payload. Returns its vertex; or, if the site is taken, the one that is there already, which
-    /// keeps its payload, and the payload that was given.
+    /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
+    /// vertex that is there already, which keeps its payload, together with the unused payload.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced:
-    /// constant on average for points in spatial order.
+    /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of cells
+    /// replaced: constant on average for points in spatial order.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
         self.insert_by(&mut Near(None), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but looks for the point from a cell on. Of a vertex nearby, that is
-    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that does not exist, stands for the last insertion.
+    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell. The
+    /// cell of a nearby vertex is [`cell_of`](crate::tds::Tds::cell_of). With `None`, or a cell
+    /// that does not exist, the search starts where the last insertion ended.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -150,8 +152,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         self.insert_by(&mut Near(near), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate), which learns of the new
-    /// vertex.
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
+    /// which is notified of the new vertex.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -174,19 +176,20 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         self.inner.insert_at(p, location, data, |t, _, _, beyond| t.in_conflict(beyond, &p), |data, _| *data)
     }
 
-    /// The payload of a finite vertex, to change.
+    /// Returns the payload of a finite vertex, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
     }
 
-    /// The payload of a cell, to change. O(1).
+    /// Returns the payload of a cell, mutable. O(1).
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         self.inner.tds.cell_data_mut(cell)
     }
 }
 
 impl<G: Geometry<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
-    /// Adds a point. Returns its vertex; the one that is there already, if the site is taken.
+    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
+    /// already.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -196,14 +199,16 @@ impl<G: Geometry<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
 }
 
 impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
-    /// Adds many points, in [spatial order](crate::spatial_order). Returns the vertex of each.
+    /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
+    /// each.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position; nothing has changed then.
+    /// If a point is refused; the error names the position of the first one. Nothing has changed
+    /// then.
     ///
     /// # Complexity
-    /// For points that are spread evenly, time proportional to their number. For an empty triangulation of the plane
-    /// [`from_points`](Delaunay::from_points) is faster.
+    /// Linear in the number of points if they are spread evenly. For an empty triangulation of the
+    /// plane [`from_points`](Delaunay::from_points) is faster.
     pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         for position in self.inner.order_of_all(points)? {
@@ -215,8 +220,8 @@ impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C>
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
-    /// Removes a vertex and returns its point. The result is the triangulation of the other points, which keep their
-    /// numbers; the next point that is added gets the number that is now free.
+    /// Removes a vertex and returns its point. The result is the triangulation of the other points,
+    /// whose vertices keep their numbers; the next point inserted takes the freed one.
     ///
     /// # Errors
     /// If there is no such vertex.
@@ -231,7 +236,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         Ok(*self.point(vertex))
     }
 
-    /// Like [`remove`](Self::remove), and tells a [strategy](Locate) of location.
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
     ///
     /// # Errors
     /// See [`remove`](Self::remove).
@@ -241,14 +246,15 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         Ok(point)
     }
 
-    /// Moves a vertex, which keeps its number and payload, and returns it. If another one is on the site already, that
-    /// one is returned, and the one that was moved is gone.
+    /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
+    /// is taken, the vertex is removed, and the one that is there already is returned.
     ///
     /// # Errors
-    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has changed then.
+    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has
+    /// changed then.
     ///
     /// # Complexity
-    /// That of a removal, and of an insertion that looks for its point from there.
+    /// That of a removal and an insertion; the search starts at the old site.
     pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
         self.inner.admit(&p)?;
         if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {

@@ -1,4 +1,5 @@
-//! The kinds of triangulations: each owns an engine and adds its law.
+//! The kinds of triangulations: each owns a [`Triangulation`](super::Triangulation) and adds its
+//! law.
 
 pub(super) mod basic;
 pub(super) mod constrained;
@@ -24,7 +25,7 @@ pub type Delaunay2<V = (), C = ()> = Delaunay<Plane, 3, V, C>;
 pub type Delaunay3<V = (), C = ()> = Delaunay<Space, 4, V, C>;
 /// A regular triangulation of points `[x, y, weight]`.
 pub type Regular2<V = (), C = ()> = Regular<Weighted, V, C>;
-/// A constrained triangulation of points `[x, y]`, without a law beside.
+/// A constrained triangulation of points `[x, y]`, without another law.
 pub type Constrained2<V = (), C = ()> = Constrained<Plane, V, C>;
 /// A constrained Delaunay triangulation of points `[x, y]`.
 pub type ConstrainedDelaunay2<V = (), C = ()> = ConstrainedDelaunay<Plane, V, C>;

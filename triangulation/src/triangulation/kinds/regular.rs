@@ -11,19 +11,22 @@ use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
 };
 
-/// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of points lifted to `x^2 + y^2
-/// - w`, seen from below (Aurenhammer 1987; Edelsbrunner and Shah 1996). The dual of the power diagram.
+/// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of the
+/// points lifted to `x^2 + y^2 - w`, seen from below (Aurenhammer 1987; Edelsbrunner and Shah
+/// 1996). It is the dual of the power diagram.
 ///
-/// It takes a geometry whose [`side_of_sphere`](Geometry::side_of_sphere) is the power test, like
-/// [`Weighted`](crate::geometry::Weighted). Of any other it is the Delaunay triangulation.
+/// Its geometry's [`side_of_sphere`](Geometry::side_of_sphere) must be the power test, as in
+/// [`Weighted`](crate::geometry::Weighted). With any other geometry it is the Delaunay
+/// triangulation.
 ///
-/// Points above the lower hull are *hidden*: they have a number and a payload, and no cell. They are kept with the cell
-/// that hides them, and come to light when enough is removed.
+/// Points above the lower hull are *hidden*: they have a number and a payload, but no cell. They
+/// are kept with the cell that hides them, and become visible again when enough other points are
+/// removed.
 ///
-/// Ties are broken as in [`Delaunay`](crate::Delaunay): so the cells, and which points are hidden, are a function of
-/// the set. A point *on* the lower hull is always seen, inside of a face of it, too: it lies below where the
-/// perturbation raises the larger corners around it. Of points on one site the heaviest counts; of those with equal
-/// weights, the first.
+/// Ties are broken as in [`Delaunay`](crate::Delaunay), so the cells and the hidden points are a
+/// function of the set of points. A point *on* the lower hull is always visible, even inside of one
+/// of its faces: the perturbation raises the larger corners around it, so that it lies below. Of
+/// points on one site the heaviest counts; of those with equal weights, the first.
 ///
 /// ```
 /// use breakline_triangulation::geometry::Weighted;
@@ -54,7 +57,7 @@ pub struct Regular<G: Geometry<3>, V = (), C = ()> {
 /// The points that are in no cell.
 #[derive(Debug, Clone, Default)]
 struct Hidden {
-    /// The cell that hides each.
+    /// The cell that hides each point.
     host: FxHashMap<VertexId, CellId>,
     /// The points that each cell hides.
     under: FxHashMap<CellId, Vec<VertexId>>,
@@ -66,7 +69,7 @@ impl Hidden {
         self.under.entry(cell).or_default().push(vertex);
     }
 
-    /// Takes out one point.
+    /// Takes one point out; returns false if it was not there.
     fn take(&mut self, vertex: VertexId) -> bool {
         let Some(cell) = self.host.remove(&vertex) else { return false };
         if let Some(under) = self.under.get_mut(&cell) {
@@ -75,7 +78,7 @@ impl Hidden {
         true
     }
 
-    /// Takes out all points under some cells.
+    /// Takes out all points that some cells hide, and returns them.
     fn take_under(&mut self, cells: impl IntoIterator<Item = CellId>) -> Vec<VertexId> {
         if self.host.is_empty() {
             return Vec::new();
@@ -87,7 +90,7 @@ impl Hidden {
         taken
     }
 
-    /// Takes out all.
+    /// Takes out all points, and returns them in order.
     fn take_all(&mut self) -> Vec<VertexId> {
         self.under.clear();
         let mut taken: Vec<VertexId> = self.host.drain().map(|(vertex, _)| vertex).collect();
@@ -111,34 +114,35 @@ impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Regular<G, V, C> {
 }
 
 impl<G: Geometry<3>, V> Regular<G, V> {
-    /// Returns a triangulation without points, and without payloads of cells: these come with
-    /// [`with_cell_data`](Self::with_cell_data).
+    /// Returns an empty triangulation. Its cells have no payload;
+    /// [`with_cell_data`](Self::with_cell_data) adds one.
     pub fn new(geometry: G) -> Self {
         Self::over(Triangulation::new(geometry))
     }
 
-    /// Like [`new`](Self::new), with room for that many vertices.
+    /// Like [`new`](Self::new), but with room for that many vertices.
     pub fn with_capacity(geometry: G, vertices: usize) -> Self {
         Self::over(Triangulation::with_capacity(geometry, vertices))
     }
 }
 
 impl<G: Coordinates<3>> Regular<G> {
-    /// Triangulates many points, put in in [spatial order](crate::spatial_order); points on one site with one weight share their vertex. Returns the vertex of each point beside.
+    /// Triangulates many points, inserted in [spatial order](crate::spatial_order); also returns
+    /// the vertex of each. Points on one site with one weight share a vertex.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position.
+    /// If a point is refused; the error names the position of the first one.
     ///
     /// # Complexity
-    /// For points that are spread evenly, time proportional to their number.
+    /// Linear in the number of points if they are spread evenly.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let mut triangulation = Self::with_capacity(geometry, points.len());
         let vertices = triangulation.insert_all(points)?;
         Ok((triangulation, vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), with payloads: `data` is asked for that of each vertex once, by the
-    /// position of the first point that has it, in order.
+    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
+    /// vertex, with the position of the first point at that vertex, in increasing order.
     ///
     /// # Errors
     /// See [`from_points`](Self::from_points).
@@ -157,7 +161,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         Regular { inner, hidden: Hidden::default() }
     }
 
-    /// Finds what hides the vertices that are in no cell. Those that nothing hides are put in.
+    /// Builds the table of hidden points: those vertices that are in no cell. Vertices that nothing
+    /// hides are inserted.
     #[cfg(feature = "serde")]
     pub(in super::super) fn with_hidden(inner: Triangulation<G, 3, V, C>) -> Self {
         let hidden = inner.tds.detached_vertices();
@@ -166,33 +171,35 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         regular
     }
 
-    /// Returns the same triangulation with other payloads of vertices; `data` is asked for them in order of the
-    /// vertices' numbers, those of removed ones included. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
+    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
     pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Regular<G, W, C> {
         Regular { inner: self.inner.with_vertex_data(data), hidden: self.hidden }
     }
 
-    /// Returns the same triangulation with other payloads of cells, the infinite ones included; `data` is asked for
-    /// them in order of the cells' numbers. Linear in their number; nothing but payloads is copied.
+    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
+    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
     pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, V, D> {
         Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
     }
 
-    /// Adds a point with a payload, seen or [hidden](Self::is_hidden). Returns its vertex; or, if there is one on the
-    /// same site and with the same weight, that one, which keeps its payload, and the payload that was given.
+    /// Inserts a point with a payload and returns its vertex, which may be
+    /// [hidden](Self::is_hidden). If a point with the same weight is on the site, returns its
+    /// vertex, which keeps its payload, together with the unused payload.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion, and time proportional to the number of cells replaced
-    /// and of points hidden under these.
+    /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of cells
+    /// replaced and of points hidden by these.
     pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
         self.insert_by(&mut Near(None), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but looks for the point from a cell on. Of a vertex nearby, that is
-    /// [`cell_of`](crate::tds::Tds::cell_of); `None`, or a cell that does not exist, stands for the last insertion.
+    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell. The
+    /// cell of a nearby vertex is [`cell_of`](crate::tds::Tds::cell_of). With `None`, or a cell
+    /// that does not exist, the search starts where the last insertion ended.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -200,8 +207,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         self.insert_by(&mut Near(near), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate), which learns of the new
-    /// vertex if it is seen.
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
+    /// which is notified of the new vertex unless it is hidden.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -229,12 +236,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         Inserted { vertex, unused: None }
     }
 
-    /// A point, seen or hidden, on the same site and with the same weight.
+    /// Returns the point with the same site and weight, visible or hidden.
     fn same(&self, p: &G::Point, location: Location) -> Option<VertexId> {
         let is_same =
             |v: &VertexId| self.inner.geometry.compare(self.point(*v), p).is_eq() && self.side_of(*v, p) == Sign::Zero;
         let tds = self.tds();
-        // Of what the place touches, any cell may hide it.
+        // Any of the cells that the location touches may hide it.
         let cells: Vec<CellId> = match location {
             Location::Vertex(vertex) if is_same(&vertex) => return Some(vertex),
             _ if self.hidden.host.is_empty() => return None,
@@ -249,12 +256,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         cells.iter().filter_map(|cell| self.hidden.under.get(cell)).flatten().copied().find(is_same)
     }
 
-    /// Whether the point of a vertex would hide (negative) one on the same site, or be hidden by it.
+    /// Compares a point on a vertex's site with the vertex: negative if the vertex would hide it,
+    /// positive if it would hide the vertex.
     fn side_of(&self, vertex: VertexId, p: &G::Point) -> Sign {
         self.inner.geometry.side_of_sphere_in_flat(&[self.point(vertex)], p)
     }
 
-    /// Gives a vertex its cells, or hides it, given where its point is.
+    /// Inserts a vertex into the cells, or hides it, given the location of its point.
     fn connect(&mut self, vertex: VertexId, location: Location) {
         let p = *self.inner.point(vertex);
         let host = match location {
@@ -263,7 +271,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
             _ => None,
         };
         if let Some(cell) = host {
-            // Of a cell at infinity and its neighbor, the finite one.
+            // Of an infinite cell and its neighbor, the finite one.
             let infinite = self.tds().index_of(cell, VertexId::INFINITE);
             let cell = infinite.map_or(cell, |i| self.tds().neighbor(cell, i));
             self.inner.tds.detach(vertex);
@@ -285,7 +293,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         self.connect_again(hidden);
     }
 
-    /// Looks again whether points are hidden, and by which cell.
+    /// Inserts or hides vertices again after the cells that hid them are gone.
     fn connect_again(&mut self, hidden: Vec<VertexId>) {
         for vertex in hidden {
             self.inner.tds.attach();
@@ -294,14 +302,15 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         }
     }
 
-    /// Removes a point, seen or hidden, and returns it. The result is the triangulation of the others, which keep their
-    /// numbers; the next point that is added gets the number that is now free.
+    /// Removes a point, visible or hidden, and returns it. The result is the triangulation of the
+    /// others, which keep their numbers; the next point inserted takes the freed one.
     ///
     /// # Errors
-    /// If there is no point with this number.
+    /// If no point has this number.
     ///
     /// # Complexity
-    /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point under the cells around it.
+    /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point that the
+    /// cells around it hide.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if self.hidden.take(vertex) {
             self.inner.tds.attach();
@@ -320,8 +329,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         Ok(*self.point(vertex))
     }
 
-    /// Like [`remove`](Self::remove), and tells a [strategy](Locate) of location. It is not notified of points that are
-    /// seen from now on.
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate). It is not
+    /// notified of points that become visible.
     ///
     /// # Errors
     /// See [`remove`](Self::remove).
@@ -331,15 +340,16 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         Ok(point)
     }
 
-    /// Moves a point, seen or hidden, which keeps its number and payload, and returns it. If there is one on the site
-    /// already, with the same weight, that one is returned, and the one that was moved is gone.
+    /// Moves a point, visible or hidden, and returns its vertex, which keeps its number and
+    /// payload. If a point with the same weight is on the site, the moved one is removed, and the
+    /// vertex that is there already is returned.
     ///
     /// # Errors
-    /// If there is no point with this number, or a coordinate or the weight is not finite or out of range; nothing has
-    /// changed then.
+    /// If no point has this number, or a coordinate or the weight is not finite or out of
+    /// range; nothing has changed then.
     ///
     /// # Complexity
-    /// That of a removal, and of an insertion.
+    /// That of a removal and of an insertion.
     pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
         self.inner.admit(&p)?;
         self.remove(vertex)?;
@@ -353,17 +363,17 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         Ok(vertex)
     }
 
-    /// The payload of a point, seen or hidden, to change.
+    /// Returns the payload of a point, visible or hidden, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)
     }
 
-    /// The payload of a cell, to change. O(1).
+    /// Returns the payload of a cell, mutable. O(1).
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         self.inner.tds.cell_data_mut(cell)
     }
 
-    /// Whether there is a point with this number that is in no cell.
+    /// Returns true if the point with this number is in no cell.
     pub fn is_hidden(&self, vertex: VertexId) -> bool {
         self.hidden.host.contains_key(&vertex)
     }
@@ -375,12 +385,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         hidden.into_iter()
     }
 
-    /// The points that a finite cell hides, in no order.
+    /// The points that a finite cell hides, in no particular order.
     pub fn hidden_under(&self, cell: CellId) -> &[VertexId] {
         self.hidden.under.get(&cell).map_or(&[], Vec::as_slice)
     }
 
-    /// Checks up to the level, with exact predicates; no flaw means that the triangulation is what it claims to be.
+    /// Returns the flaws found by a check up to the given level, with exact predicates. If there
+    /// are none, the triangulation is what it claims to be.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let mut flaws = self.flaws(level, |_, _| true);
@@ -408,7 +419,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
 }
 
 impl<G: Geometry<3>, C: Copy + Default> Regular<G, (), C> {
-    /// Adds a point. Returns its vertex; the one that is there already, if the site is taken.
+    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
+    /// already.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).
@@ -418,13 +430,15 @@ impl<G: Geometry<3>, C: Copy + Default> Regular<G, (), C> {
 }
 
 impl<G: Coordinates<3>, C: Copy + Default> Regular<G, (), C> {
-    /// Adds many points, in [spatial order](crate::spatial_order). Returns the vertex of each.
+    /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
+    /// each.
     ///
     /// # Errors
-    /// The first point that cannot come in, by its position; nothing has changed then.
+    /// If a point is refused; the error names the position of the first one. Nothing has changed
+    /// then.
     ///
     /// # Complexity
-    /// For points that are spread evenly, time proportional to their number.
+    /// Linear in the number of points if they are spread evenly.
     pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         for position in self.inner.order_of_all(points)? {

@@ -1,9 +1,10 @@
-//! Points and lines, triangulated at once.
+//! Bulk construction from points and lines.
 //!
 //! 1. Points on one site become one vertex; vertices are numbered along a space filling curve.
-//! 2. The lines' segments, each once, are [arranged](crate::arrangement): crossings of the originals are rounded, once,
-//!    and segments led through the sites of their pixels.
-//! 3. All sites are triangulated in bulk, and the pieces of the segments forced in. They do not cross, on the grid.
+//! 2. The segments of all lines, each once, are [arranged](crate::arrangement): crossings of the
+//!    original segments are rounded, once, and segments bend to the sites whose pixels they meet.
+//! 3. All sites are triangulated in bulk, and the parts of the segments are inserted as
+//!    sub-constraints. On the grid they do not cross.
 //!
 //! Every step depends on the set of points and segments only.
 
@@ -17,17 +18,18 @@ use super::super::locate::Dice;
 use super::super::{ConstrainedDelaunay, InputError};
 use super::paths::{LineVertices, segments_of, undirected};
 
-/// So many triangles may be met, for each vertex and each piece, by pieces that are joined in order; the rest is joined
-/// in random order: then all of them meet O(n log^2 n) (Shewchuk and Brown 2015; Agarwal, Arge and Yi 2005), where in
-/// order each may meet all of those beside it.
+/// How many triangles sub-constraints inserted in order may meet, for each vertex and each
+/// sub-constraint. After that, the rest is inserted in random order: then all together meet O(n
+/// log^2 n) triangles (Shewchuk and Brown 2015; Agarwal, Arge and Yi 2005). In order, each may meet
+/// the triangles of all those next to it.
 const PATIENCE: usize = 8;
 
-/// What becomes of lines that cross between their vertices.
+/// What to do with lines that cross between their vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum OnCrossing {
-    /// Nothing is triangulated; the first crossing is told.
+    /// Returns an error that names the first crossing; nothing is triangulated.
     Reject,
-    /// They get a common vertex, rounded to the grid.
+    /// Gives them a common vertex, rounded to the grid.
     #[default]
     Split,
 }
@@ -36,26 +38,30 @@ pub enum OnCrossing {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rounding {
-    /// The unit of the grid, on each axis: the last place of the largest coordinate of a line's vertex.
+    /// The unit of the grid on each axis: the last place of the largest coordinate of a line's
+    /// vertex.
     pub unit: [f64; 2],
-    /// Whether all vertices of lines lie on the grid, and all points on lines that cross others. Then no line is
-    /// displaced by more than half a unit on each axis, proven.
+    /// True if all vertices of lines, and all points on lines that cross others, lie on the grid.
+    /// Then each line is displaced by at most half a unit on each axis; this is proven.
     pub on_grid: bool,
 }
 
 impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
-    /// Triangulates many points and lines. A line is a list of points, by their positions; it may touch itself and
-    /// others, overlap, repeat, cross, close, double back. Returns the vertex of each point beside; points on one
-    /// site share theirs (the first of them stands). The lines' ids are their positions.
+    /// Triangulates many points and lines; also returns the vertex of each point. A line is a list
+    /// of points, named by their positions. It may touch itself and others, overlap, repeat, cross,
+    /// close and double back. Points on one site share a vertex, which keeps the first of them. The
+    /// ids of lines are their positions.
     ///
     /// The triangulation is a function of the set of points and the set of segments.
     ///
     /// # Errors
-    /// The first point that is refused, the first line that names no point, or, under
-    /// [`OnCrossing::Reject`], two segments that cross; by their positions.
+    /// If a point is refused, if a line names a point that does not exist, or, under
+    /// [`OnCrossing::Reject`], if two segments cross. The error names the first of these by
+    /// position.
     ///
     /// # Complexity
-    /// O((n + k) log n) for k crossings, on all threads, and expected O(n log^2 n) for the segments, on one.
+    /// O((n + k) log n) for k crossings, on all threads, and expected O(n log^2 n) for the
+    /// segments, on one.
     pub fn from_lines<L: AsRef<[u32]>>(
         geometry: G,
         points: &[G::Point],
@@ -76,17 +82,19 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Ok((triangulation, vertices))
     }
 
-    /// Triangulates points that are all different and in [`spatial_order`](super::super::spatial_order) already, and lines
-    /// through them, each the numbers of its points: for those who have sorted and merged their points themselves.
+    /// Triangulates sorted points and lines through them, for callers that have sorted and merged
+    /// their points themselves. The points must be distinct and in
+    /// [`spatial_order`](super::super::spatial_order). Each line is a list of positions of points.
     ///
-    /// Returns the vertex of each point, if vertices had to be added where lines cross; else `None`: the vertex of each
-    /// point has the point's number.
+    /// Returns the vertex of each point if vertices had to be added where lines cross. Otherwise
+    /// returns `None`, and the vertex of each point has the point's position as its number.
     ///
     /// The triangulation is that of [`from_lines`](Self::from_lines), which sorts and merges first.
     ///
     /// # Errors
-    /// Those of [`from_lines`](Self::from_lines); and the first point that does not come after the one before it. (Of
-    /// points a rounding apart that does not always show: they have to be all different.)
+    /// Those of [`from_lines`](Self::from_lines), and if a point does not come after the one before
+    /// it. (For points that are one rounding apart this is not always detected; they must be
+    /// distinct.)
     ///
     /// # Complexity
     /// That of [`from_lines`](Self::from_lines), without sorting: O((n + k) log n) for k crossings.
@@ -102,8 +110,8 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         Self::from_sites_and_lines(geometry, sites, lines.iter().map(named).collect(), on_crossing)
     }
 
-    /// Triangulates sites and lines through them. Where vertices had to be added, the new number of each site is
-    /// returned.
+    /// Triangulates sites and lines through them. If vertices had to be added, also returns the new
+    /// number of each site.
     fn from_sites_and_lines(
         geometry: G,
         mut sites: Sites<G::Point>,
@@ -151,8 +159,8 @@ fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Inpu
 }
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Puts in the pieces of an arrangement. Returns those that cross others, which are there up to the first crossing
-    /// only.
+    /// Inserts the sub-constraints of an arrangement. Returns those that cross others; they are
+    /// present up to the first crossing only.
     pub(in super::super) fn constrain_all(
         &mut self,
         mut parts: Vec<[VertexId; 2]>,
@@ -162,11 +170,12 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         if self.dimension() < 2 {
             self.lines.waiting = parts;
-            // What lay between their ends, when there were triangles, may go.
+            // The vertices that split them, when there were triangles, may be removed.
             self.lines.paths.splits.clear();
             return Vec::new();
         }
-        // Pieces next to each other are joined one after the other, until that has taken its time.
+        // Sub-constraints next to each other are inserted one after the other, until that has taken
+        // too long.
         let enough = self.lines.scratch.met + PATIENCE * (self.vertex_count() + parts.len());
         let mut crossing = Vec::new();
         let mut dice = Dice::default();
@@ -184,13 +193,13 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         crossing
     }
 
-    /// How the crossings of lines were rounded; `None` if none cross.
+    /// Returns how the crossings of lines were rounded; `None` if none cross.
     pub fn rounding(&self) -> Option<Rounding> {
         self.lines.rounding
     }
 }
 
-/// Refuses crossings, but those at which there is a vertex on both segments already.
+/// Returns an error if two segments cross, except at a vertex that is already on both.
 fn reject<G: Crossing>(
     geometry: &G,
     sites: &[G::Point],
@@ -214,7 +223,7 @@ fn reject<G: Crossing>(
     Ok(())
 }
 
-/// The first line with a segment, and its position in the line.
+/// Returns the first line that contains a segment, and the segment's position in it.
 fn find(lines: &[LineVertices], segment: [u32; 2]) -> (usize, usize) {
     let segment = segment.map(|site| VertexId::new(site as usize));
     let in_line = |line: &[VertexId]| line.windows(2).position(|pair| undirected(pair[0], pair[1]) == segment);
@@ -222,7 +231,8 @@ fn find(lines: &[LineVertices], segment: [u32; 2]) -> (usize, usize) {
     found.next().unwrap_or_default()
 }
 
-/// What the geometry makes of the sites that an arrangement has added, given the points at the others.
+/// Returns the points that the geometry makes of the sites added by an arrangement, given the
+/// points of the others.
 pub(in super::super) fn points_added<G: Crossing>(
     geometry: &G,
     arrangement: &Arrangement,
@@ -245,8 +255,9 @@ pub(in super::super) fn points_added<G: Crossing>(
     arrangement.added().iter().enumerate().map(meet).collect()
 }
 
-/// Puts the added sites among the given ones, which come in spatial order, as points of the geometry. Returns the
-/// number of every site then, if there were any to add; and the numbers of those that are new.
+/// Merges the sites added by an arrangement into the given ones, which are in spatial order, as
+/// points of the geometry. Returns the new number of every site, if any were added, and the
+/// vertices of the added ones.
 fn add_sites<G: Crossing + Coordinates<3>>(
     geometry: &G,
     sites: &mut Sites<G::Point>,
@@ -260,7 +271,7 @@ fn add_sites<G: Crossing + Coordinates<3>>(
     let given = all.len();
     let added = points_added(geometry, arrangement, segments, |site| all[site as usize]);
     all.extend(added);
-    // Where a given point is, an arrangement adds none: all are different.
+    // An arrangement adds no site where a given point is, so all of them are distinct.
     let (merged, renumbered) = Sites::of(geometry, &all, Grain::default())?;
     *sites = merged;
     let mut added = renumbered[given..].to_vec();

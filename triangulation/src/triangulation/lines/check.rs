@@ -1,4 +1,4 @@
-//! What the tables of lines claim, checked against the triangulation.
+//! Checks of the tables of lines against the triangulation.
 
 use std::fmt;
 
@@ -11,17 +11,18 @@ use super::super::{ConstrainedEdges, Flaw, Rounding, Triangulation};
 use super::Lines;
 use super::paths::undirected;
 
-/// What is wrong with the lines of a triangulation.
+/// A flaw in the lines of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LinesFlaw {
-    /// The chain of the segment between these vertices does not run in order on both axes, or meets a vertex twice.
+    /// The chain of the segment between these vertices does not run in order on both axes, or meets
+    /// a vertex twice.
     Order(VertexId, VertexId),
-    /// The chain of the segment between these vertices leads over an edge that is not constrained.
+    /// The chain of the segment between these vertices contains an edge that is not constrained.
     Unconstrained(VertexId, VertexId),
-    /// The tables name sites, or split edges, that are on the chain of no segment.
+    /// The tables name sites, or split edges, that are on no segment's chain.
     Stray,
-    /// A constraint waits for triangles, though there are some.
+    /// The constraint between these vertices waits for triangles, although there are some.
     Waiting(VertexId, VertexId),
     /// The grid of the rounding does not fit the lines.
     Rounding,
@@ -29,7 +30,7 @@ pub enum LinesFlaw {
     Index,
     /// A vertex that was added where lines cross is on no constraint, or was given.
     Added(VertexId),
-    /// A vertex that came with lines is named by none.
+    /// A vertex owned by lines is named by none.
     Owned(VertexId),
 }
 
@@ -60,7 +61,7 @@ impl fmt::Display for LinesFlaw {
 }
 
 impl Lines {
-    /// What is wrong with the tables. Linear in the lengths of all chains.
+    /// Returns the flaws of the tables. Linear in the lengths of all chains.
     pub(in super::super) fn check<G: Crossing, V, C: Copy + Default>(
         &self,
         t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
@@ -87,7 +88,8 @@ impl Lines {
         missing.chain(flaws.into_iter().map(Flaw::Lines)).collect()
     }
 
-    /// Adds the flaws of segments whose chains do not lead over constraints to their ends, and of entries for others.
+    /// Adds the flaws of segments whose chains are not constraints all along to their ends, and of
+    /// entries that belong to no segment.
     fn check_chains<G: Crossing, V, C: Copy + Default>(
         &self,
         t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
@@ -126,7 +128,7 @@ impl Lines {
         }
     }
 
-    /// Whether what is known of the rounding can be true.
+    /// Returns true if the stored rounding fits the lines.
     fn has_fitting_grid<G: Crossing, V, C>(
         &self,
         t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
@@ -149,7 +151,7 @@ impl Lines {
     }
 }
 
-/// Whether a sub-constraint runs in the direction of its segment, on both axes.
+/// Returns true if a sub-constraint runs in the direction of its segment, on both axes.
 fn runs_along<G: Crossing, V, C: Copy + Default>(
     t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
     segment: [VertexId; 2],

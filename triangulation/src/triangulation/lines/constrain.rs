@@ -1,4 +1,4 @@
-//! One vertex or one sub-constraint, put in and taken out, with the tables kept true.
+//! Insertion and removal of one vertex or one sub-constraint. The tables are kept up to date.
 
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
@@ -9,12 +9,12 @@ use super::Lines;
 use super::paths::undirected;
 use super::trace::Met;
 
-/// The triangulation whose constraints lines hold.
+/// The triangulation whose constraints are those of lines.
 pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 
 impl Lines {
-    /// Inserts a point that was admitted, and returns its vertex; the one that is there, if the site is taken. A
-    /// constraint that it lies on is split.
+    /// Inserts a point that was admitted and returns its vertex; if the site is taken, the vertex
+    /// that is there already. A point on a constraint splits it.
     pub(in super::super) fn insert_point<G: Crossing, V: Default, C: Copy + Default>(
         &mut self,
         t: &mut Mesh<G, V, C>,
@@ -34,11 +34,11 @@ impl Lines {
         vertex
     }
 
-    /// Inserts the sub-constraint between two vertices: the one way in which constraints get into the triangulation.
-    /// Where it passes through vertices, it is split. Returns `false` if a constraint blocks it; it is there up to that
-    /// one then.
+    /// Inserts the sub-constraint between two vertices. All constraints enter the triangulation by
+    /// this function. Vertices that the sub-constraint passes through split it. Returns `false` if
+    /// another constraint blocks it; then it is present up to that one.
     ///
-    /// While all points are collinear, it waits.
+    /// While all points are collinear, it is stored and inserted later.
     pub(in super::super) fn constrain<G: Crossing, V, C: Copy + Default>(
         &mut self,
         t: &mut Mesh<G, V, C>,
@@ -49,7 +49,7 @@ impl Lines {
             self.waiting.push([a, b]);
             return true;
         }
-        // Nothing is allocated for what is one edge.
+        // A sub-constraint that is one edge already allocates nothing.
         let (mut first, mut parts) = (Some([a, b]), Vec::new());
         let mut is_whole = true;
         while let Some([a, b]) = first.take().or_else(|| parts.pop()) {
@@ -60,7 +60,7 @@ impl Lines {
                 parts.extend([[between, b], [a, between]]);
                 continue;
             }
-            // At an end where many edges meet, it takes long to find the direction.
+            // Finding the direction takes long at a vertex of high degree.
             let [a, b] = if t.tds.is_busier(a, b) { [b, a] } else { [a, b] };
             match t.trace(a, b, &mut self.scratch) {
                 Met::Vertex(v) => {
@@ -76,7 +76,7 @@ impl Lines {
         is_whole
     }
 
-    /// Inserts what had to wait while all points were collinear.
+    /// Inserts the segments that were stored while all points were collinear.
     pub(super) fn constrain_waiting<G: Crossing, V, C: Copy + Default>(&mut self, t: &mut Mesh<G, V, C>) {
         if t.dimension() == 2 && !self.waiting.is_empty() {
             self.index.take();
@@ -86,10 +86,11 @@ impl Lines {
         }
     }
 
-    /// Removes a vertex that no constraint ends in or runs through, and returns its point; `None` if one does, or if
-    /// there is no such vertex. The result is the triangulation of the other points with the same constraints. Numbers
-    /// and time as in [`Delaunay::remove`](crate::Delaunay::remove). No line may name it any more when its number is
-    /// used again.
+    /// Removes a vertex that is on no constraint, and returns its point. Returns `None` if there is
+    /// no such vertex, or a constraint ends at it or runs through it. The result is the
+    /// triangulation of the other points with the same constraints. Numbers and time are as in
+    /// [`Delaunay::remove`](crate::Delaunay::remove). No line may name the vertex when its number
+    /// is used again.
     pub(in super::super) fn remove_free<G: Crossing, V, C: Copy + Default>(
         &mut self,
         t: &mut Mesh<G, V, C>,
@@ -107,7 +108,8 @@ impl Lines {
         Some(*t.point(vertex))
     }
 
-    /// Whether a constraint ends in a vertex or runs through it, or will when there are triangles.
+    /// Returns true if a constraint ends at a vertex or runs through it, or will as soon as there
+    /// are triangles.
     pub(super) fn is_on_constraint<G: Crossing, V, C: Copy + Default>(
         &self,
         t: &Mesh<G, V, C>,
@@ -116,8 +118,9 @@ impl Lines {
         t.is_on_constraint(vertex) || self.waiting.iter().flatten().any(|&end| end == vertex)
     }
 
-    /// Takes the constraint off the edge between two vertices, which then is there only if the law wants it. Returns
-    /// whether there was one. What the tables say of the edge is left to the caller.
+    /// Releases the constrained edge between two vertices, which then remains only if it is a
+    /// Delaunay edge. Returns false if there is no such constraint. The tables are not updated:
+    /// that is the caller's task.
     ///
     /// # Complexity
     /// Linear in the degree of `a` and in the number of flips.

@@ -1,13 +1,14 @@
-//! One side of a long corridor, triangulated in expected linear time (Shewchuk and Brown 2015).
+//! Triangulates one side of a long corridor in expected linear time (Shewchuk and Brown 2015).
 //!
-//! The *chain* is the border of what a segment crosses on one side, the *base* is the segment. Vertices are taken out of
-//! the chain in pseudo-random order until one is left, and put back in reverse order, each into the constrained Delaunay
-//! triangulation of the others. Nothing is to be located: a vertex comes back between the neighbors that it had when it
-//! went (Chew 1990).
+//! The *chain* is the border, on one side, of the triangles that a segment crosses; the *base* is
+//! the segment. Vertices are taken out of the chain in pseudo-random order until one is left. They
+//! are put back in reverse order, each into the constrained Delaunay triangulation of the others.
+//! No search is needed: a vertex returns between the neighbors that it had when it was taken out
+//! (Chew 1990).
 //!
-//! *The tree.* Vertices are told by their positions in the chain. The triangle `i < j < k` is the node `j` of a binary
-//! search tree: its parent is the triangle beyond `i k`, its children are those beyond `i j` and `j k`. To flip an edge
-//! is to rotate the tree.
+//! *The tree.* Vertices are named by their positions in the chain. The triangle `i < j < k` is the
+//! node `j` of a binary search tree: its parent is the triangle beyond `i k`, its children are
+//! those beyond `i j` and `j k`. To flip an edge is to rotate the tree.
 //!
 //! ```text
 //!         j
@@ -17,11 +18,13 @@
 //! first ======= last
 //! ```
 //!
-//! *Who may go.* Without some of its vertices the chain may cross itself. The polygon then has several layers: it is
-//! glued of the quadrilaterals between two neighbors in the chain and the edges that led from them across the segment.
-//! These do not cross, so that no vertex lies inside of such a quadrilateral, and where two of them meet, their angles
-//! add up. One thing must not be: that a vertex comes back into an angle of a full turn or more. A vertex that has one
-//! is closer to the base than both of its neighbors; so at least half of all may go.
+//! *Which vertices may be taken out.* Without some of its vertices the chain may cross itself. The
+//! polygon then has several layers. It is glued together from quadrilaterals, each between two
+//! neighbors in the chain and their edges across the segment. These edges do not cross, so no
+//! vertex lies inside of such a quadrilateral, and where two of them meet, their angles add up. One
+//! case must be excluded: a vertex that returns into an angle of a full turn or more. Such a vertex
+//! is closer to the base than both of its neighbors; so at least half of all vertices may be taken
+//! out.
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
@@ -34,7 +37,7 @@ use super::trace::Side;
 /// No node.
 const NONE: u32 = u32::MAX;
 
-/// A side being triangulated.
+/// A side that is being triangulated.
 struct Tree<'a, G: Geometry<3>, V, C> {
     triangulation: &'a Triangulation<G, 3, V, ConstrainedEdges<C>>,
     side: &'a Side,
@@ -46,8 +49,8 @@ struct Tree<'a, G: Geometry<3>, V, C> {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
-    /// Triangulates a side: the apexes of its parts, as positions, each part before its first and its second half.
-    /// `None`, and nothing is added, if predicates contradict each other.
+    /// Triangulates a side. Adds the apexes of its parts, as positions, each part before its first
+    /// and its second half. Returns `None`, and adds nothing, if predicates contradict each other.
     ///
     /// Expected time linear in the length of the chain.
     pub(in super::super) fn triangulate_long(&self, side: &Side, apexes: &mut Vec<u32>) -> Option<()> {
@@ -67,12 +70,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         Some(())
     }
 
-    /// Whether a vertex between two others has less than a full turn on the side of the segment, given its edge across.
+    /// Returns true if the angle at a vertex between two others, on the side of the segment, is
+    /// less than a full turn.
     fn may_go(&self, side: &Side, u: u32, p: u32, n: u32) -> bool {
         let [v, first, last] = [u, p, n].map(|k| side.chain[k as usize]);
         let across = side.across[u as usize];
-        // The angle is parted by the edge across. Its parts are less than half a turn if the neighbors lie on their
-        // own sides of that edge.
+        // The edge across splits the angle. Both parts are less than half a turn if the neighbors
+        // lie on their own sides of that edge.
         match (self.turn(v, across, first), self.turn(v, across, last)) {
             (Sign::Zero, Sign::Zero) | (Sign::Positive, Sign::Negative) => false,
             (Sign::Negative | Sign::Zero, Sign::Zero | Sign::Positive) => true,
@@ -81,8 +85,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     }
 }
 
-/// Takes all positions but the ends of a chain out, in pseudo-random order, if `may_go` says of one and its neighbors
-/// that it may; returns the order, and of each position the neighbors that it had.
+/// Takes all positions but the ends out of a chain, in pseudo-random order. `may_go` decides
+/// whether a position may be taken out, given its neighbors. Returns the order, and for each
+/// position the neighbors that it had.
 fn out_in_random_order(count: usize, may_go: impl Fn(u32, [u32; 2]) -> bool) -> Option<(Vec<u32>, Vec<[u32; 2]>)> {
     let mut neighbors: Vec<[u32; 2]> = (0..count as u32).map(|u| [u.wrapping_sub(1), u + 1]).collect();
     let mut left: Vec<u32> = (1..count as u32 - 1).collect();
@@ -114,8 +119,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         u == 0 || u as usize == self.side.chain.len() - 1
     }
 
-    /// The triangle beyond the outer edge of a node's: that of one of the edge's ends, and which of its children the
-    /// node is.
+    /// Returns the triangle beyond the outer edge of a node, which has one of the edge's ends as
+    /// its node, and which of its children the given node is.
     fn parent(&self, u: u32) -> Option<(u32, usize)> {
         let [i, k] = self.bounds[u as usize];
         if !self.is_end(i) && self.bounds[i as usize][1] == k {
@@ -125,7 +130,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         }
     }
 
-    /// Makes a node known to its parent.
+    /// Makes a node the child of its parent.
     fn link(&mut self, u: u32) {
         if let Some((parent, child)) = self.parent(u) {
             self.children[parent as usize][child] = u;
@@ -148,10 +153,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         Some(())
     }
 
-    /// Inserts a vertex on the inner side of the edge between its neighbors: triangles are cut off by its two edges,
-    /// which are those from there up to the one that it lies in.
+    /// Inserts a vertex on the inner side of the edge between its neighbors. Its two edges cut off
+    /// the triangles from there up to the one that contains it.
     fn cut(&mut self, u: u32) -> Option<()> {
-        // Those met, outwards, and what hangs on them.
+        // The triangles met, outwards, and their subtrees.
         let (mut path, mut hanging) = (Vec::new(), Vec::new());
         let mut from = (u, self.parent(u)?);
         let [i, k, last] = loop {
@@ -168,7 +173,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         path.sort_unstable();
         let middle = path.partition_point(|&node| node < u);
         let (before, behind) = path.split_at(middle);
-        // On either side of the vertex, the polygon under its edge; the last triangle has a third part.
+        // The polygons under the vertex's two edges. The last triangle has a third part.
         let (mut left, mut right) = (vec![u], Vec::with_capacity(behind.len() + 2));
         left.extend((last > u).then_some(i));
         left.extend(before);
@@ -189,7 +194,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         Some(())
     }
 
-    /// Triangulates a small polygon that is seen from the edge between its last and first vertex; clockwise.
+    /// Triangulates a small polygon that is visible from the edge between its last and first
+    /// vertex; clockwise.
     fn wrap(&mut self, polygon: &[u32]) -> Option<()> {
         let chain: Vec<VertexId> = polygon.iter().map(|&u| self.vertex(u)).collect();
         let mut parts = vec![(0, polygon.len() - 1)];
@@ -206,7 +212,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         Some(())
     }
 
-    /// Flips edges until no vertex sees another in its circle (Lawson 1977).
+    /// Flips edges until no vertex lies in the circle of its neighbor's triangle (Lawson 1977).
     fn legalize(&mut self) {
         while let Some(u) = self.to_legalize.pop() {
             let Some((parent, child)) = self.parent(u) else { continue };
@@ -231,7 +237,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         }
     }
 
-    /// Adds all nodes, each before its children.
+    /// Appends all nodes, each before its children.
     fn collect_apexes(&self, apexes: &mut Vec<u32>) {
         let mut root = 1;
         while let Some((parent, _)) = self.parent(root) {
@@ -263,7 +269,8 @@ mod tests {
         ConstrainedDelaunay::from_lines(Plane::default(), points, segments, OnCrossing::Split).unwrap().0
     }
 
-    /// Compares both ways to triangulate the sides of the corridors between some vertices; returns how many there were.
+    /// Compares both methods on the sides of the corridors between some vertices; returns the
+    /// number of sides compared.
     fn compare(t: &ConstrainedDelaunay<Plane>, dice: &mut Dice, pairs: usize) -> usize {
         let mut scratch = Scratch::default();
         let vertices: Vec<VertexId> = t.tds().vertices().collect();
@@ -285,7 +292,7 @@ mod tests {
         compared
     }
 
-    /// On grids, where circles are tied, with lines whose ends stand into the corridors.
+    /// On grids, where circles are tied, with lines whose ends reach into the corridors.
     #[test]
     fn the_triangles_are_those_of_gift_wrapping() {
         let mut dice = Dice::default();
@@ -295,7 +302,7 @@ mod tests {
             let mut position = || [dice.below(width) as f64, dice.below(height) as f64];
             let points: Points = (0..10 * (1 + round)).map(|_| position()).collect();
             let count = (round % 4) as u32 * 10;
-            // From near to near: spikes.
+            // Short segments, which make spikes.
             let segments: Segments = (0..count.min(points.len() as u32 / 2)).map(|i| [2 * i, 2 * i + 1]).collect();
             let few: Segments = segments.into_iter().filter(|_| dice.below(3) == 0).collect();
             compared += compare(&build(&points, &few), &mut dice, 60);
@@ -325,8 +332,9 @@ mod tests {
         }
     }
 
-    /// How many triangles are met, and predicates asked, by long segments side by side: 700 times as many for 1000
-    /// segments, if each met all of those beside it.
+    /// Counts the triangles met and the predicates evaluated for long segments side by side. For
+    /// 1000 segments it would be 700 times as many, if each met the triangles of all those beside
+    /// it.
     #[test]
     fn bundles_take_time_near_linear() {
         let counts = [500, 1000].map(|count: u32| {

@@ -1,7 +1,8 @@
-//! Lines and points added, removed and changed in place.
+//! Insertion, removal and change of lines and points.
 //!
-//! What comes out is what building anew would have given, with other numbers. Few changes are carried out where they are
-//! ([`local`](super::local)); many at once, and what changes the grid, by [arranging all lines anew](super::rearrange).
+//! The result is the same, except for numbers, as that of construction from scratch. A few changes
+//! are [local edits](super::local_edit). Many changes at once, and those that change the grid,
+//! [arrange all lines anew](super::rearrange).
 
 use crate::arrangement::is_ordinary;
 use crate::geometry::{Coordinates, Crossing};
@@ -16,15 +17,15 @@ use super::paths::{LineVertices, segments_of, undirected};
 use super::rearrange::order_of_insertion;
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Adds a point; the vertex that is there already, if the site is taken. On a constraint, the
-    /// constraint is split.
+    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
+    /// already. A point on a constraint splits it.
     ///
     /// # Errors
     /// If a coordinate is not finite or out of range; nothing has changed then.
     ///
     /// # Complexity
-    /// A walk and time proportional to the number of triangles replaced. Where it lies exactly on a segment that crosses
-    /// others, as [`insert_lines`](Self::insert_lines).
+    /// A walk, and time linear in the number of triangles replaced. If the point lies exactly on a
+    /// segment that crosses others, as [`insert_lines`](Self::insert_lines).
     pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
         self.inner.admit(&p)?;
         let count = self.vertex_count();
@@ -38,7 +39,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         Ok(vertex)
     }
 
-    /// Has the lines take note of a given vertex, which is new, or may have been added for a crossing.
+    /// Updates the lines for a given vertex, which is new, or may have been added for a crossing
+    /// before.
     fn give(&mut self, vertex: VertexId, p: G::Point, is_new: bool) -> Result<(), NotLocal> {
         let was_added = self.lines.added.remove(vertex);
         if was_added {
@@ -46,7 +48,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             self.replace_point(vertex, p);
         }
         if is_new && !is_ordinary(position(&self.inner, vertex)) {
-            self.lines.index.take(); // the next one knows
+            self.lines.index.take(); // it is computed again, with this vertex
         }
         if self.lines.paths.bent.is_empty() || !(is_new || was_added) {
             return Ok(());
@@ -54,15 +56,15 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         Edit::on(&mut self.inner, &mut self.lines)?.give(vertex, was_added)
     }
 
-    /// Takes a vertex that was given out and returns its point. Constraints that merely run through it go on without
-    /// it. Other vertices keep their numbers; the next one that is added gets the number that is now free.
+    /// Removes a vertex and returns its point. Constraints that only run through it stay, without
+    /// it. The other vertices keep their numbers; the next point inserted takes the freed one.
     ///
     /// # Errors
-    /// Why it stays.
+    /// If there is no such vertex, if it was added where lines cross, or if a line was given by it.
     ///
     /// # Complexity
-    /// As [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as [`remove_line`](Self::remove_line). The
-    /// first edit after construction takes linear time.
+    /// As [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as
+    /// [`remove_line`](Self::remove_line). The first edit after construction takes linear time.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);
@@ -81,32 +83,37 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         Ok(p)
     }
 
-    /// Removes a vertex that was given, with all lines that were given by it. Returns its point and their ids.
+    /// Removes a vertex together with all lines that were given by it. Returns its point and the
+    /// ids of the lines.
     ///
     /// # Errors
-    /// If there is no such vertex, or it is one that lines cross in.
+    /// If there is no such vertex, or it was added where lines cross.
     pub fn remove_with_lines(&mut self, vertex: VertexId) -> Result<(G::Point, Vec<LineId>), RemovalError> {
         let p = self.tds().is_vertex(vertex).then(|| *self.point(vertex)).ok_or(RemovalError::NoVertex)?;
         let lines = self.lines.given_by(&self.inner, vertex);
         if lines.is_empty() {
             return Ok((self.remove(vertex)?, lines));
         }
-        self.lines.owned.insert(vertex); // with its last line, it goes
+        self.lines.owned.insert(vertex); // removed with its last line
         self.change_lines(lines.iter().map(|&line| (line, None)).collect());
         Ok((p, lines))
     }
 
-    /// Adds lines through points; their vertices, where they are new, come and go with them. Returns their ids.
+    /// Inserts lines, given by their points, and returns their ids. The lines own their new
+    /// vertices: each is removed with the last line that needs it.
     ///
     /// # Errors
-    /// The position, in all lines taken together, of the first point that is refused; nothing has changed then.
+    /// If a point is refused; the error names the position of the first one among the points of all
+    /// lines. Nothing has changed then.
     ///
     /// # Complexity
-    /// For a few lines, a walk from the last insertion, and time proportional to the number of triangles that they and
-    /// the segments that they cross meet. The first edit after construction takes linear time.
+    /// For a few lines, a walk from the last insertion, and time linear in the number of triangles
+    /// that the lines, and the segments that they cross, meet. The first edit after construction
+    /// takes linear time.
     ///
-    /// Many lines at once are arranged together with all others, as by [`from_lines`](Self::from_lines); so are few, if
-    /// they change the unit of the grid, or come to cross others off the grid (see [`Rounding`](super::super::Rounding)):
+    /// Many lines at once are arranged together with all others, as by
+    /// [`from_lines`](Self::from_lines). So are few lines that change the unit of the grid, or that
+    /// cross others off the grid (see [`Rounding`](super::super::Rounding));
     /// [`rearrangements`](Self::rearrangements) counts how often.
     pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, InputError> {
         let points: Vec<G::Point> = lines.iter().flat_map(|line| line.as_ref()).copied().collect();
@@ -130,8 +137,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         Ok(ids)
     }
 
-    /// Inserts points whose vertices, where they are new, go with the lines that need them. Returns the vertices, and
-    /// whether the lines that are there have taken note of them.
+    /// Inserts points whose new vertices are owned by lines. Returns the vertices, and whether the
+    /// existing lines could be updated locally.
     fn insert_owned(&mut self, points: &[G::Point]) -> (Vec<VertexId>, Result<(), NotLocal>) {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         let mut near = None;
@@ -154,9 +161,9 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         (vertices, is_known)
     }
 
-    /// Removes a line. Edges that other lines share stay constrained; vertices that were added for it, or came with it,
-    /// go if no other line needs them. The triangulation is then the one without the line. Returns whether there was
-    /// such a line.
+    /// Removes a line; returns false if there is no such line. Edges that other lines share stay
+    /// constrained. Vertices that were added for it or are owned by it are removed if no other line
+    /// needs them. The result is the triangulation without the line.
     ///
     /// # Complexity
     /// As for [`insert_lines`](Self::insert_lines).
@@ -168,8 +175,9 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         is_there
     }
 
-    /// Divides a line at one of the vertices that it was given by, counted from 0: it keeps its first part, the rest
-    /// becomes a line of its own, whose id is returned. `None` where there is no such vertex, or it is an end.
+    /// Splits a line at one of the vertices by which it was given, counted from 0. The line keeps
+    /// the first part; the rest becomes a new line, whose id is returned. Returns `None` if there
+    /// is no such vertex, or it is an end.
     ///
     /// # Complexity
     /// Linear in the line's vertices: no triangle changes.
@@ -185,8 +193,9 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         Some(rest)
     }
 
-    /// Appends a line to another that ends where it begins; the second id is free then. `false`, and nothing is
-    /// changed, if it does not, or they are one line.
+    /// Appends the second line to the first, which must end where the second begins; the second id
+    /// is no longer used. Returns false, and changes nothing, if the lines do not meet like this,
+    /// or are one line.
     ///
     /// # Complexity
     /// Linear in the lines' vertices: no triangle changes.
@@ -201,13 +210,13 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         true
     }
 
-    /// How many times all lines have been arranged anew since construction: by edits of many lines, and by those that
-    /// could not be carried out where they were.
+    /// Returns how many times all lines have been arranged anew since construction: by edits of
+    /// many lines, and by edits that could not be local.
     pub fn rearrangements(&self) -> usize {
         self.lines.rearrangements
     }
 
-    /// Gives lines other vertices, or none.
+    /// Changes the vertices of lines, or removes lines.
     pub(super) fn change_lines(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) {
         let before = self.lines.replace(changes);
         if self.lines.change(&mut self.inner, &before).is_err() {
@@ -216,17 +225,17 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     }
 }
 
-/// Lines, each with the vertices that it had before.
+/// Lines, each with the vertices that it had before a change.
 type Before = Vec<(LineId, Option<LineVertices>)>;
 
 impl Lines {
-    /// Whether so many vertices of lines are few, so that it is faster to change them one by one than to arrange all
-    /// anew.
+    /// Returns true if so few vertices of lines are changed faster one by one than by a new
+    /// arrangement of all lines.
     fn is_few(&self, vertices: usize) -> bool {
         vertices <= 32 + self.paths.given.len() / 32
     }
 
-    /// The lines that were given by a vertex, in order.
+    /// Returns the lines that were given by a vertex, in order.
     fn given_by<G: Crossing, V, C: Copy + Default>(&self, t: &Mesh<G, V, C>, vertex: VertexId) -> Vec<LineId> {
         let names = |line: &LineId| self.paths.vertices(*line).contains(&vertex);
         if t.dimension() < 2 {
@@ -242,14 +251,15 @@ impl Lines {
         lines
     }
 
-    /// Gives lines other vertices, or none, before their segments are changed; returns those that they had.
+    /// Changes the vertices of lines, or removes lines, in the table only; segments follow later.
+    /// Returns the old vertices.
     fn replace(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) -> Before {
-        self.index(); // of what is there
+        self.index(); // computed before the change
         let given = &mut self.paths.given;
         changes.into_iter().map(|(line, new)| (line, std::mem::replace(&mut given[line.index()], new))).collect()
     }
 
-    /// Gives a line other vertices whose segments are there.
+    /// Changes the vertices of a line whose new segments are present already.
     fn rename(&mut self, line: LineId, vertices: Option<LineVertices>) {
         let old = std::mem::replace(&mut self.paths.given[line.index()], vertices);
         if let Some(index) = self.index.get_mut() {
@@ -257,7 +267,7 @@ impl Lines {
         }
     }
 
-    /// Carries out what lines ask for that had other vertices before.
+    /// Carries out a change of lines, given their old vertices.
     fn change<G: Crossing, V: Default, C: Copy + Default>(
         &mut self,
         t: &mut Mesh<G, V, C>,
@@ -313,7 +323,7 @@ impl Lines {
         t: &mut Mesh<G, V, C>,
         vertex: VertexId,
     ) -> Result<(), NotLocal> {
-        self.owned.insert(vertex); // it goes, too, if all is arranged anew
+        self.owned.insert(vertex); // a new arrangement of all lines removes it, too
         Edit::on(t, self)?.withdraw(vertex)
     }
 }

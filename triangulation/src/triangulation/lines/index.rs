@@ -1,4 +1,5 @@
-//! Which segments run along an edge, and which lines have them: made when it is first asked for, and kept from then on.
+//! Which segments run along an edge, and which lines contain them. Computed on first use, and
+//! updated from then on.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -18,7 +19,7 @@ use super::paths::{Paths, undirected};
 /// Two vertices, the smaller first: a segment, a sub-constraint, or an edge.
 pub(super) type Ends = [VertexId; 2];
 
-/// One, nearly always.
+/// A set that has one element nearly always.
 #[derive(Debug, Clone)]
 enum Few<T> {
     One(T),
@@ -67,11 +68,11 @@ impl<T: Copy + PartialEq> Table<T> {
     }
 }
 
-/// The reverse of [`Paths`].
+/// The inverse of [`Paths`].
 ///
-/// The chain of a segment is a list of sub-constraints, each a binary tree of edges that were split. The *nodes* of a
-/// segment are all edges of these trees. A segment that is one edge, as most are, is its only node, and takes no entry
-/// for that.
+/// The chain of a segment is a list of sub-constraints, each of which is a binary tree of edges
+/// that were split. The *nodes* of a segment are all edges of these trees. Most segments are one
+/// edge: such a segment is its only node, and has no entry for it.
 ///
 /// About 40 bytes for each segment, and 40 for each node of segments that are more than one edge.
 #[derive(Debug, Clone)]
@@ -80,17 +81,18 @@ pub(super) struct Index {
     segments_on: Table<Ends>,
     /// Lines without a segment.
     pub(super) dots: Vec<LineId>,
-    /// How many ends of segments have their coordinate on each axis where doubles are so far apart.
+    /// For each axis and each distance between adjacent doubles: the number of segments' ends whose
+    /// coordinate has that distance.
     steps: [BTreeMap<u64, usize>; 2],
-    /// How many ends of segments are no multiples of the unit.
+    /// The number of segments' ends that are no multiples of the unit.
     uneven: usize,
-    /// The grid of the rounding; `None` if edits cannot be local, or none has been made yet.
+    /// The grid of the rounding; `None` if edits cannot be local, or before the first edit.
     pub(super) rounder: Option<Rounder>,
     is_measured: bool,
 }
 
 impl Index {
-    /// Of all lines.
+    /// Returns the index of all lines.
     fn of(paths: &Paths) -> Self {
         let mut index = Index {
             lines_of: Table(FxHashMap::default()),
@@ -114,8 +116,9 @@ impl Index {
         self.lines_of.0.keys().copied().collect()
     }
 
-    /// Finds the grid, if the tables are what an arrangement by it gave: each segment meets the pixels of its sites,
-    /// and edges are split at vertices that lie on them.
+    /// Determines the grid. It is known only if the tables are the result of an arrangement on it:
+    /// each segment meets the pixels of its sites, and edges are split at vertices that lie on
+    /// them.
     fn measure<G: Crossing, V, C: Copy + Default>(&mut self, lines: &Lines, t: &Mesh<G, V, C>) {
         self.is_measured = true;
         let at = |v: VertexId| position(t, v);
@@ -137,13 +140,13 @@ impl Index {
         self.rounder = is_known.then(|| Rounder::new(largest, t.geometry.step(), self.uneven == 0)).flatten();
     }
 
-    /// A number as large, but for less than a factor of two, as the largest coordinate of an end on each axis.
+    /// Returns, for each axis, the largest coordinate of an end, up to a factor of two.
     fn largest(&self) -> Option<[f64; 2]> {
         let largest = |steps: &BTreeMap<u64, usize>| Some(f64::from_bits(*steps.last_key_value()?.0) / f64::EPSILON);
         Some([largest(&self.steps[0])?, largest(&self.steps[1])?])
     }
 
-    /// Counts an end of a segment, or no longer.
+    /// Adds an end of a segment to the counts, or removes it from them.
     fn count(&mut self, at: [f64; 2], is_added: bool) {
         for (steps, x) in self.steps.iter_mut().zip(at) {
             let step = step_at(x).to_bits();
@@ -158,7 +161,7 @@ impl Index {
         }
     }
 
-    /// Counts a segment that comes, or goes.
+    /// Adds the ends of a segment to the counts, or removes them.
     ///
     /// # Errors
     /// If the grid changes.
@@ -169,18 +172,18 @@ impl Index {
         self.rounder.filter(is_same).map(|_| ()).ok_or(NotLocal)
     }
 
-    /// Records that a line has a segment, whose chain is known.
+    /// Records that a line contains a segment, whose chain is known.
     pub(super) fn attach(&mut self, segment: Ends, line: LineId) {
         self.lines_of.insert(segment, line);
     }
 
-    /// Records that a line does not have a segment any more. Returns whether none has it.
+    /// Records that a line no longer contains a segment. Returns true if no line contains it now.
     pub(super) fn detach(&mut self, segment: Ends, line: LineId) -> bool {
         self.lines_of.remove(segment, line);
         !self.has_segment(segment)
     }
 
-    /// Records that a line has other vertices, whose segments' chains are known or will be.
+    /// Records new vertices of a line. The chains of its segments are known, or will be.
     pub(super) fn rename(&mut self, line: LineId, before: &[VertexId], after: &[VertexId]) {
         let mut is_dot = !after.is_empty();
         for segment in segments_of_line(before) {
@@ -194,12 +197,12 @@ impl Index {
         self.dots.extend(is_dot.then_some(line));
     }
 
-    /// Whether a line has this segment.
+    /// Returns true if a line contains this segment.
     pub(super) fn has_segment(&self, segment: Ends) -> bool {
         !self.lines_of.get(segment).is_empty()
     }
 
-    /// The lines that have a segment, in no order.
+    /// The lines that contain a segment, in no particular order.
     pub(super) fn lines_of(&self, segment: Ends) -> &[LineId] {
         self.lines_of.get(segment)
     }
@@ -210,7 +213,7 @@ impl Index {
         self.segments_on.get(edge).iter().copied().chain(is_one.then_some(edge))
     }
 
-    /// Whether all nodes of a segment are known as its own.
+    /// Returns true if the index has all nodes of a segment.
     pub(super) fn knows(&self, paths: &Paths, segment: Ends) -> bool {
         let mut is_known = self.has_segment(segment);
         paths.nodes(segment, |node| is_known &= self.segments_on(paths, node).any(|other| other == segment));
@@ -226,7 +229,8 @@ impl Index {
         });
     }
 
-    /// Takes a segment off its nodes, and returns these. It stays on the one that it is itself.
+    /// Removes a segment from its nodes, and returns these. The node that is the segment itself
+    /// stays.
     pub(super) fn remove_chain(&mut self, paths: &Paths, segment: Ends) -> Vec<Ends> {
         let mut nodes = Vec::new();
         paths.nodes(segment, |node| {
@@ -252,19 +256,19 @@ fn segments_of_line(vertices: &[VertexId]) -> impl Iterator<Item = Ends> + '_ {
     vertices.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| undirected(pair[0], pair[1]))
 }
 
-/// Where a vertex is; zeros have one sign.
+/// Returns the coordinates of a vertex; negative zeros become positive.
 #[inline]
 pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
     t.geometry.plan(t.point(vertex)).map(|x| x + 0.0)
 }
 
 impl Lines {
-    /// The index, made if need be: linear time then.
+    /// Returns the index. The first call takes linear time.
     pub(super) fn index(&self) -> &Index {
         self.index.get_or_init(|| Index::of(&self.paths))
     }
 
-    /// The index with its grid, to change.
+    /// Returns the index, mutable, with its grid.
     ///
     /// # Errors
     /// If edits cannot be local.
@@ -280,7 +284,7 @@ impl Lines {
         self.index.get_mut().filter(|index| index.rounder.is_some()).ok_or(NotLocal)
     }
 
-    /// The index beside the tables.
+    /// Returns the index, if it exists, and the tables.
     pub(super) fn index_and_paths(&mut self) -> (Option<&mut Index>, &mut Paths) {
         (self.index.get_mut(), &mut self.paths)
     }

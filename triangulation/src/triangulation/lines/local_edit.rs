@@ -1,19 +1,23 @@
-//! Edits of one segment or one site, carried out where they are.
+//! Edits of one segment or one site, without touching what is far away.
 //!
-//! What bends which segment is the least set with these rules (see [`arrangement`](crate::arrangement)):
+//! Which sites bend which segments is the smallest solution of these rules (see
+//! [`arrangement`](crate::arrangement)):
 //!
-//! - A site is *hot* if a segment ends in it, if the crossing of two segments was rounded to it, or if it is a given
-//!   point exactly on a bent segment.
-//! - A segment is *bent* if it crosses another one, or meets the pixel of an active site that is no end of it. It is led
-//!   through all hot sites whose pixels it meets.
-//! - A hot site is *active* if a bent segment is led through it that does not pass through it exactly, as a given point.
+//! - A site is *hot* if a segment ends at it, if the crossing of two segments was rounded to it, or
+//!   if it is a given point exactly on a bent segment.
+//! - A segment is *bent* if it crosses another one, or meets the pixel of an active site that is
+//!   not its end. It bends to all hot sites whose pixels it meets.
+//! - A hot site is *active* if a bent segment that meets its pixel does not pass exactly through
+//!   it, as through a given point.
 //!
-//! An edit that adds follows the rules from what is new. One that takes away first takes back what may have hung on it:
-//! from site to site, the segments there that cross no other. What is left hangs on crossings that are left. Then it
-//! adds what the rules ask for.
+//! An insertion applies the rules, starting from what is new. A removal first retracts what may
+//! have depended on the removed: from site to site, the segments there that cross no other. What
+//! remains depends on crossings that remain. Then it applies the rules again.
 //!
-//! *Where to look.* A point of a segment is within half a unit of its chain, on each axis, and the other way around. So
-//! who meets a pixel passes within one unit of its center, and what crosses a segment passes within half a unit of it.
+//! *Where to search.* A point of a segment is within half a unit of its chain on each axis, and a
+//! point of the chain within half a unit of the segment. So a segment that meets a pixel passes
+//! within one unit of its center, and a segment that crosses another one passes within half a unit
+//! of it.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -28,21 +32,21 @@ use super::index::{Ends, position};
 use super::near_segment::{Band, near};
 use super::paths::undirected;
 
-/// So many units around a segment or a site are searched. One would do, but for roundings.
+/// How many units around a segment or a site are searched. One would suffice, except for rounding.
 const REACH: f64 = 2.0;
 
-/// Why an edit cannot be local: the grid changes, or sub-constraints cross off the grid, or there are no triangles. All
-/// lines have to be arranged anew.
+/// The reason why an edit cannot be local: the grid changes, sub-constraints cross off the grid, or
+/// there are no triangles. All lines have to be arranged anew.
 #[derive(Debug)]
 pub(super) struct NotLocal;
 
-/// What is still to be looked at.
+/// A pending step.
 enum Step {
     /// A site has become hot.
     Attract(VertexId),
     /// A site has become active.
     Activate(VertexId),
-    /// A segment is to be bent.
+    /// A segment must be bent.
     Bend(Ends),
 }
 
@@ -51,19 +55,19 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     t: &'a mut Mesh<G, V, C>,
     lines: &'a mut Lines,
     rounder: Rounder,
-    /// The segment that comes; in no table of edges yet.
+    /// The segment to be inserted; not in a table of edges yet.
     added: Option<Ends>,
-    /// The segment that goes.
+    /// The segment to be removed.
     removed: Option<Ends>,
-    /// The given vertex that goes.
+    /// The given vertex to be removed.
     gone: Option<VertexId>,
-    /// The sites of segments that change, in no order; `None` of those that are straight.
+    /// The sites of segments that change, in no particular order; `None` for straight ones.
     chains: FxHashMap<Ends, Option<Vec<VertexId>>>,
     hot: FxHashMap<VertexId, bool>,
     active: FxHashSet<VertexId>,
     /// The segments near a site.
     around: FxHashMap<VertexId, Vec<Ends>>,
-    /// Added vertices through which other segments are led than before.
+    /// Added vertices at which other segments cross than before.
     stale: Vec<VertexId>,
     steps: Vec<Step>,
 }
@@ -87,7 +91,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         })
     }
 
-    /// Inserts a segment that a line has now.
+    /// Inserts a segment that is now part of a line.
     pub(super) fn add_segment(mut self, segment: Ends) -> Result<(), NotLocal> {
         self.added = Some(segment);
         for end in segment {
@@ -112,7 +116,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.carry_out()
     }
 
-    /// Removes a segment that no line has any more.
+    /// Removes a segment that is no longer part of a line.
     pub(super) fn remove_segment(mut self, segment: Ends) -> Result<(), NotLocal> {
         self.removed = Some(segment);
         let sites = self.lines.paths.sites(segment);
@@ -121,7 +125,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.carry_out()
     }
 
-    /// Makes a vertex one that is given: a new one, or one that was added for a crossing.
+    /// Makes a vertex a given one. It is new, or was added for a crossing before.
     pub(super) fn give(mut self, vertex: VertexId, was_added: bool) -> Result<(), NotLocal> {
         if was_added {
             self.retract(vec![vertex]);
@@ -136,7 +140,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.carry_out()
     }
 
-    /// Removes a vertex that no line was given by, or makes it one that was added, if lines cross in it.
+    /// Removes a vertex that no line was given by; if lines cross in it, makes it an added one.
     pub(super) fn withdraw(mut self, vertex: VertexId) -> Result<(), NotLocal> {
         self.gone = Some(vertex);
         self.retract(vec![vertex]);
@@ -152,14 +156,16 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         segment.map(|v| position(self.t, v))
     }
 
-    /// The segments near another one, and the vertices; without those that come or go.
+    /// Returns the segments near another one, and the vertices near it; without the segment that is
+    /// inserted or removed.
     fn near_segment(&self, segment: Ends) -> (Vec<Ends>, Vec<VertexId>) {
         let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| REACH * unit));
         let (edges, vertices) = near(self.t, &band, segment[0]);
         (self.segments_on(edges), vertices)
     }
 
-    /// The segments that may meet the pixel of a vertex: with the one that comes, without the one that goes.
+    /// Returns the segments that may meet the pixel of a vertex, with the one that is inserted and
+    /// without the one that is removed.
     fn around(&mut self, vertex: VertexId) -> Vec<Ends> {
         if !self.around.contains_key(&vertex) {
             let band = Band::around([position(self.t, vertex); 2], self.rounder.unit().map(|unit| REACH * unit));
@@ -169,7 +175,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.around[&vertex].iter().copied().chain(self.added).collect()
     }
 
-    /// The segments that end in a vertex or run through it, without those that come or go.
+    /// Returns the segments that end at a vertex or run through it, without the one that is
+    /// inserted or removed.
     fn lines_at(&self, vertex: VertexId) -> Vec<Ends> {
         self.segments_on(self.t.constrained_around(vertex).map(|other| undirected(vertex, other)))
     }
@@ -188,7 +195,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.chains.get(&segment).map_or_else(|| self.lines.paths.bent.contains_key(&segment), Option::is_some)
     }
 
-    /// Whether a segment is led through a vertex between its ends.
+    /// Returns true if a segment bends to a vertex between its ends.
     fn has_site(&self, segment: Ends, vertex: VertexId) -> bool {
         if let Some(chain) = self.chains.get(&segment) {
             return chain.as_ref().is_some_and(|sites| sites.contains(&vertex));
@@ -200,20 +207,20 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         sites.get(at) == Some(&vertex)
     }
 
-    /// Keys by which the sites of a segment are in order, from its first end to its second.
+    /// Returns keys that sort the sites of a segment from its first end to its second.
     fn order_along(&self, segment: Ends) -> impl Fn(VertexId) -> [f64; 2] + use<'_, 'a, G, V, C> {
         let ends = self.ends(segment);
         let sign = if ends[0] <= ends[1] { 1.0 } else { -1.0 };
         move |vertex| self.rounder.along(ends, position(self.t, vertex)).map(|x| sign * x)
     }
 
-    /// The sites of a segment as they are now.
+    /// Returns the current sites of a segment.
     fn sites(&self, segment: Ends) -> Vec<VertexId> {
         let in_table = || self.lines.paths.bent.get(&segment).map(|sites| sites.to_vec());
         self.chains.get(&segment).cloned().unwrap_or_else(in_table).unwrap_or_default()
     }
 
-    /// The sites of a bent segment, to change.
+    /// Returns the sites of a bent segment, mutable.
     fn sites_mut(&mut self, segment: Ends) -> &mut Vec<VertexId> {
         let table = &self.lines.paths.bent;
         let in_table = || table.get(&segment).map(|sites| sites.to_vec());
@@ -224,7 +231,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         !self.lines.added.contains(vertex) && self.gone != Some(vertex)
     }
 
-    /// Whether a segment whose pixel a site is in passes through it as a given point.
+    /// Returns true if a segment that meets a site's pixel passes exactly through the site, and
+    /// this is a given point.
     fn is_exact(&self, segment: Ends, site: VertexId) -> bool {
         self.is_given(site) && is_aligned(self.ends(segment), position(self.t, site))
     }
@@ -267,7 +275,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         Ok(())
     }
 
-    /// Has a segment bent if it meets the pixel of an active site.
+    /// Schedules a segment to be bent if it meets the pixel of an active site.
     fn bend_if_attracted(&mut self, segment: Ends) {
         let vertices = self.near_segment(segment).1;
         let attracts = |&v: &VertexId| self.meets_pixel(segment, v) && self.is_hot(v) && self.is_active(v);
@@ -276,13 +284,13 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         }
     }
 
-    /// Follows the rules to their end.
+    /// Applies the rules until nothing changes.
     fn follow(&mut self) -> Result<(), NotLocal> {
         while let Some(step) = self.steps.pop() {
             match step {
                 Step::Attract(site) => {
                     if self.is_given(site) && self.rounder.is_even() && !self.rounder.holds(position(self.t, site)) {
-                        return Err(NotLocal); // it takes the grid along
+                        return Err(NotLocal); // the grid becomes another one
                     }
                     for segment in self.around(site) {
                         if self.is_bent(segment) && self.meets_pixel(segment, site) && !self.has_site(segment, site) {
@@ -312,7 +320,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         Ok(())
     }
 
-    /// Leads a segment through all hot sites whose pixels it meets; given points on it become hot.
+    /// Bends a segment to all hot sites whose pixels it meets; given points on it become hot.
     fn bend(&mut self, segment: Ends) {
         self.chains.insert(segment, Some(Vec::new()));
         let ends = self.ends(segment);
@@ -332,8 +340,9 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.chains.insert(segment, Some(sites));
     }
 
-    /// Takes back what may hang on some sites: the segments that are led through them and cross no other, and so on.
-    /// Sites that are not hot any more are taken off their segments; segments that are still attracted are bent again.
+    /// Retracts what may depend on some sites: the segments that bend to them and cross no other,
+    /// and so on. Sites that are no longer hot are removed from their segments; segments that are
+    /// still attracted are bent again.
     fn retract(&mut self, sites: Vec<VertexId>) {
         let mut seen: FxHashSet<VertexId> = sites.iter().copied().collect();
         let mut open = sites;
@@ -365,7 +374,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         }
     }
 
-    /// Whether a segment crosses another one: which is led through one of its sites, or its ends, then.
+    /// Returns true if a segment crosses another one, which then also passes through one of its
+    /// sites or ends.
     fn crosses_any(&self, segment: Ends) -> bool {
         let ends = self.ends(segment);
         let sites = self.sites(segment).into_iter().chain(segment);
@@ -376,7 +386,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.lines_at(site).into_iter().any(|segment| segment.contains(&site))
     }
 
-    /// Whether the crossing of two of some segments is rounded to a site.
+    /// Returns true if the crossing of two of the segments is rounded to a site.
     fn is_crossing(&self, site: VertexId, segments: &[Ends]) -> bool {
         let at = position(self.t, site);
         let crosses_here = |i: usize, j: usize| {
@@ -385,17 +395,17 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         (0..segments.len()).any(|i| (0..i).any(|j| crosses_here(i, j)))
     }
 
-    /// Whether a site is a given point on one of some segments.
+    /// Returns true if a site is a given point on one of the segments.
     fn is_on_one(&self, site: VertexId, segments: &[Ends]) -> bool {
         let at = position(self.t, site);
         self.is_given(site) && segments.iter().any(|&segment| lies_on(self.ends(segment), at))
     }
 
-    /// Changes tables and triangulation.
+    /// Changes the tables and the triangulation.
     fn carry_out(mut self) -> Result<(), NotLocal> {
-        // Phase 1: which vertices go, and which segments get another chain.
-        let is_left = |(&v, &is_hot): (&VertexId, &bool)| (!is_hot && self.lines.added.contains(v)).then_some(v);
-        let mut leaving: Vec<VertexId> = self.hot.iter().filter_map(is_left).collect();
+        // Phase 1: which vertices are removed, and which segments get another chain.
+        let leaves = |(&v, &is_hot): (&VertexId, &bool)| (!is_hot && self.lines.added.contains(v)).then_some(v);
+        let mut leaving: Vec<VertexId> = self.hot.iter().filter_map(leaves).collect();
         if let Some(gone) = self.gone {
             self.lines.owned.remove(gone);
             if self.is_hot(gone) {
@@ -431,13 +441,13 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
         // Phase 2: the tables.
         let old = |segment: &Ends| Some(*segment) != self.added;
-        let taken_off: FxHashSet<Ends> =
+        let rerouted: FxHashSet<Ends> =
             changed.iter().map(|(segment, _)| *segment).filter(old).chain(self.removed).collect();
         let mut edges: FxHashSet<Ends> = FxHashSet::default();
         let (index, paths) = self.lines.index_and_paths();
         let index = index.ok_or(NotLocal)?;
-        taken_off.iter().for_each(|&segment| edges.extend(index.remove_chain(paths, segment)));
-        edges.retain(|&edge| index.segments_on(paths, edge).all(|segment| taken_off.contains(&segment)));
+        rerouted.iter().for_each(|&segment| edges.extend(index.remove_chain(paths, segment)));
+        edges.retain(|&edge| index.segments_on(paths, edge).all(|segment| rerouted.contains(&segment)));
         let mut stale = std::mem::take(&mut self.stale);
         let paths = &mut self.lines.paths;
         edges.retain(|edge| paths.splits.remove(edge).is_none());
@@ -459,7 +469,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         parts.sort_unstable();
         parts.dedup();
 
-        // Phase 3: the triangulation. Edges that were taken off one segment and are asked for by another stay.
+        // Phase 3: the triangulation. Edges removed from one segment stay if another one needs
+        // them.
         parts.retain(|part| !edges.remove(part));
         let mut edges: Vec<Ends> = edges.into_iter().collect();
         edges.sort_unstable();
@@ -483,7 +494,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             index.ok_or(NotLocal)?.add_chain(paths, segment);
         }
 
-        // Phase 4: points at crossings of other segments than before.
+        // Phase 4: the points of vertices at which other segments cross now.
         stale.sort_unstable();
         stale.dedup();
         self.added = None;
@@ -496,7 +507,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         Ok(())
     }
 
-    /// Has the geometry say anew what the point at a crossing is.
+    /// Updates the point at a crossing, which the geometry computes from the segments that pass
+    /// there.
     fn renew_point(&mut self, site: VertexId) {
         let segments = self.lines_at(site).into_iter().filter(|&segment| self.has_site(segment, site));
         let ends: Vec<[G::Point; 2]> = segments.map(|ends| ends.map(|v| *self.t.point(v))).collect();
@@ -508,13 +520,13 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     }
 }
 
-/// The vertices that are in one of two lists only.
+/// Returns the vertices that are in one of two lists only.
 fn difference(before: &[VertexId], after: &[VertexId]) -> Vec<VertexId> {
     let sets = [before, after].map(|sites| sites.iter().copied().collect::<FxHashSet<VertexId>>());
     sets[0].symmetric_difference(&sets[1]).copied().collect()
 }
 
-/// Whether a place lies on a segment, ends included.
+/// Returns true if a site lies on a segment, ends included.
 fn lies_on([a, b]: [[f64; 2]; 2], at: [f64; 2]) -> bool {
     let is_between = |k: usize| a[k].min(b[k]) <= at[k] && at[k] <= a[k].max(b[k]);
     is_between(0) && is_between(1) && is_aligned([a, b], at)

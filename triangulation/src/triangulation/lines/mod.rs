@@ -1,22 +1,24 @@
-//! Lines: constraints that may cross, have ids, and are edited.
+//! Lines: constraints that may cross, have ids, and can be edited.
 //!
-//! [`Lines`] owns all that a constrained Delaunay triangulation knows of them beyond the marks on edges: the vertices by
-//! which each line was given, the chain of each segment, and which vertices are there for lines only. Nothing outside
-//! of this folder changes it but by its methods.
+//! [`Lines`] owns everything that a constrained Delaunay triangulation stores of its lines, except
+//! for the marks on edges: the vertices by which each line was given, the chain of each segment,
+//! and which vertices exist for lines only. Outside of this folder it is changed by its methods
+//! only.
 //!
-//! | file | holds |
+//! | file | contains |
 //! |---|---|
-//! | `paths` | ids of lines, chains of segments |
-//! | `build` | points and lines, triangulated at once |
-//! | `edit` | lines and points added and removed |
-//! | `local`, `near` | what an edit changes, followed from where it is; what lies near a segment |
-//! | `index` | which segments run along an edge, which lines have them |
-//! | `rearrange` | all lines arranged anew |
-//! | `constrain` | one sub-constraint, put in and taken out |
-//! | `trace`, `corridor` | a sub-constraint made an edge: what it crosses, and the triangles on both of its sides |
-//! | `parts` | the tables in a form to be saved |
-//! | `check` | what the tables claim, checked |
+//! | `paths` | line ids, chains of segments |
+//! | `build` | bulk construction from points and lines |
+//! | `edit` | insertion and removal of lines and points |
+//! | `local_edit`, `near_segment` | the consequences of one edit, in its neighborhood; what lies near a segment |
+//! | `index` | which segments run along an edge, which lines contain them |
+//! | `rearrange` | a new arrangement of all lines |
+//! | `constrain` | insertion and removal of one sub-constraint |
+//! | `trace`, `corridor` | a sub-constraint made an edge: what it crosses, and the triangulation of both of its sides |
+//! | `saved_tables` | the tables in a form to be saved |
+//! | `check` | checks of what the tables claim |
 //! | `simplify`, `nesting` | lines with fewer vertices; what lines enclose |
+//! | `vertex_set` | a set of vertices |
 
 pub(super) mod build;
 mod check;
@@ -49,13 +51,13 @@ use paths::Paths;
 use trace::Scratch;
 use vertex_set::VertexSet;
 
-/// The lines of a triangulation: the owner of what holds its constrained edges.
+/// The lines of a triangulation: the owner of its constraints.
 ///
 /// # Invariants
-/// What [`check`](Self::check) asks for:
+/// [`check`](Self::check) tests these:
 /// - the chain of each segment consists of constrained edges, and the tables name nothing else;
 /// - vertices that were added for crossings are on constraints, and no line was given by them;
-/// - vertices that are owned are named by lines;
+/// - owned vertices are named by lines;
 /// - segments wait for triangles only while there are none.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lines {
@@ -64,20 +66,20 @@ pub(super) struct Lines {
     waiting: Vec<[VertexId; 2]>,
     /// Vertices added where segments cross.
     added: VertexSet,
-    /// The same as a list, once that was asked for.
+    /// The vertices in `added` as a list, once it was asked for.
     added_list: OnceLock<Vec<VertexId>>,
-    /// Vertices that came with lines, and go with the last of them.
+    /// Vertices owned by lines, removed with the last of them.
     owned: VertexSet,
-    /// Made when it is first asked for; to be taken out when more changes than it is told.
+    /// Computed on first use; removed by changes that do not update it.
     index: OnceLock<Index>,
     /// How many times all lines were arranged anew.
     rearrangements: usize,
-    /// Sub-constraints that are not there whole, since others block them.
+    /// Sub-constraints that could not be inserted completely, because others block them.
     missing: Vec<[VertexId; 2]>,
     /// How the crossings were rounded, if there are any.
     rounding: Option<Rounding>,
-    /// Whether sub-constraints crossed after they had been arranged, possible off the grid only, and were arranged
-    /// again.
+    /// True if sub-constraints crossed after they had been arranged, which is possible off the grid
+    /// only, and were arranged again.
     recrossed: bool,
     scratch: Scratch,
 }
@@ -91,12 +93,12 @@ impl Lines {
         self.paths.split(a, b, at);
     }
 
-    /// The vertices added where segments cross, in order.
+    /// Returns the vertices added where segments cross, in order.
     pub(super) fn added(&self) -> &[VertexId] {
         self.added_list.get_or_init(|| self.added.iter().collect())
     }
 
-    /// Forgets what was derived of the vertices that were added.
+    /// Discards what was derived from the set of added vertices.
     fn touch(&mut self) {
         self.added_list.take();
     }

@@ -1,4 +1,4 @@
-//! What lies near a segment or a vertex, found by walking.
+//! Finds by walking what lies near a segment or a vertex.
 
 use rustc_hash::FxHashSet;
 
@@ -9,9 +9,9 @@ use super::constrain::Mesh;
 use super::index::{Ends, position};
 use super::paths::undirected;
 
-/// The points within some distance of a segment on each axis: a hexagon; of a point, a rectangle.
+/// The points within some distance of a segment on each axis: a hexagon; for a point, a rectangle.
 ///
-/// All questions are answered by rounded numbers, and may be answered yes too often.
+/// Its tests use rounded numbers and may return true too often, but never false wrongly.
 pub(super) struct Band {
     ends: [[f64; 2]; 2],
     along: [f64; 2],
@@ -32,7 +32,8 @@ impl Band {
         }
     }
 
-    /// Whether it may meet a segment: no line along a side of either keeps them apart.
+    /// Returns true if the band may meet a segment: no line parallel to either of them separates
+    /// the two.
     fn meets(&self, [u, w]: [[f64; 2]; 2]) -> bool {
         let apart = |k: usize| u[k].max(w[k]) < self.low[k] || u[k].min(w[k]) > self.high[k];
         if apart(0) || apart(1) {
@@ -48,26 +49,27 @@ impl Band {
     }
 }
 
-/// Whether two points certainly lie on one side of the line from a point in a direction, further away than the reach.
+/// Returns true if two points certainly lie on one side of a line, given by a point and a
+/// direction, and farther away than the reach.
 fn is_beside(from: [f64; 2], along: [f64; 2], reach: [f64; 2], points: [[f64; 2]; 2]) -> bool {
     let width = reach[1] * along[0].abs() + reach[0] * along[1].abs();
     let sides = points.map(|p| {
         let products = [along[0] * (p[1] - from[1]), along[1] * (p[0] - from[0])];
-        // Each product has an error of two roundings at most, and so has what made its factors.
+        // Each product has an error of at most two roundings, and so have its factors.
         let doubt = 8.0 * f64::EPSILON * (products[0].abs() + products[1].abs());
         (products[0] - products[1], width + doubt)
     });
     sides.iter().all(|(side, limit)| side > limit) || sides.iter().all(|(side, limit)| *side < -limit)
 }
 
-/// The constrained edges that a band may meet, and the finite vertices in it, each once, in order. The walk starts at a
-/// vertex that is in the band.
+/// Returns the constrained edges that a band may meet, and the finite vertices in it, each once, in
+/// order. The walk starts at a vertex in the band.
 ///
-/// The triangles whose insides meet the band are connected by edges that do, since what the band and the hull have in
-/// common is convex.
+/// The intersection of the band and the hull is convex. So the triangles whose interiors meet the
+/// band are connected by edges that meet it.
 ///
 /// # Complexity
-/// Proportional to the number of triangles that the band meets, and the degree of the vertex.
+/// Linear in the number of triangles that the band meets, and in the degree of the vertex.
 pub(super) fn near<G: Crossing, V, C: Copy + Default>(
     t: &Mesh<G, V, C>,
     band: &Band,

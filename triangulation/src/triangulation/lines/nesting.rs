@@ -1,4 +1,4 @@
-//! Domains: what the constraints enclose.
+//! Nesting: what the constraints enclose.
 
 use std::collections::HashMap;
 
@@ -9,9 +9,9 @@ use super::super::{ConstrainedDelaunay, GapError, LineId};
 use super::paths::undirected;
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// How deep each cell is nested: the number of constraints that one has to cross, at least, to come there
-    /// from outside of the hull. In polygons with holes and islands, odd is inside. By cell number; 0 for
-    /// infinite cells and numbers without a cell.
+    /// Returns the nesting depth of each cell: the least number of constraints on a path to it from
+    /// outside of the hull. In polygons with holes and islands, odd depths are inside. Indexed by
+    /// cell number; 0 for infinite cells and for numbers without a cell.
     ///
     /// # Complexity
     /// Linear.
@@ -19,14 +19,15 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         self.nest(|cell, i| self.is_constrained(cell, i))
     }
 
-    /// The same when only some lines count, which together must bound an area: it does not matter how many lines a
-    /// ring is made of, and a piece that an even number of them run along counts for nothing.
+    /// Like [`nesting`](Self::nesting), but only the given lines count, which together must bound
+    /// an area. A ring may consist of any number of lines. Edges along which an even number of the
+    /// lines run do not count.
     ///
     /// # Errors
-    /// If they leave a gap.
+    /// If the lines leave a gap.
     ///
     /// # Complexity
-    /// O(n log n) for n pieces of lines, and linear in the number of cells.
+    /// O(n log n) for n edges of the lines' chains, and linear in the number of cells.
     pub fn nesting_of(&self, lines: impl IntoIterator<Item = LineId>) -> Result<Vec<u32>, GapError> {
         let mut counts: HashMap<[VertexId; 2], bool> = HashMap::new();
         let mut ends: HashMap<VertexId, (bool, LineId)> = HashMap::new();
@@ -58,7 +59,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         }))
     }
 
-    /// Levels grow by one over each wall.
+    /// Assigns depths in order: each constraint crossed adds one.
     fn nest(&self, is_constrained: impl Fn(CellId, usize) -> bool) -> Vec<u32> {
         const UNKNOWN: u32 = u32::MAX;
         let tds = self.tds();
@@ -78,7 +79,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
                     if levels[beside.index()] != UNKNOWN {
                         continue;
                     }
-                    // What several walls lead to may also be reached around them.
+                    // A cell beyond several constraints may also be reached around them.
                     if is_constrained(cell, i) {
                         beyond.push(beside);
                     } else {

@@ -1,4 +1,4 @@
-//! Who is who among the lines of a constrained triangulation.
+//! Line ids, and the path of each line through the triangulation.
 
 use std::ops::{Deref, DerefMut};
 
@@ -11,32 +11,33 @@ use crate::tds::{Id, VertexId};
 
 use super::super::ConstrainedDelaunay;
 
-/// Marks numbers of lines.
+/// The type tag of line numbers.
 #[derive(Debug)]
 pub enum LineTag {}
 
-/// The number of a line: its position among those that were given.
+/// The number of a line: its position among all lines that were given.
 pub type LineId = Id<LineTag>;
 
-/// The input lines, and the way that each takes in the triangulation.
+/// The lines as given, and their paths through the triangulation.
 ///
-/// A line is kept as the vertices that it was given by. What lies between two of them is told by two tables that hold
-/// nothing for a segment that is one edge: through which sites a segment is led, and at which vertex an edge was split.
-/// So a line takes 24 bytes, and 4 for each of its vertices if they are not two; a segment that crosses others about 40
-/// more, and 4 for each site on it.
+/// A line is stored as the vertices by which it was given. Two tables describe the vertices between
+/// two of these: the sites to which a segment bends, and the vertex that splits an edge. Both have
+/// no entry for a segment that is one edge. So a line takes 24 bytes, and 4 for each of its
+/// vertices if there are not just two. A segment that crosses others takes about 40 more, and 4 for
+/// each site on it.
 #[derive(Debug, Clone, Default)]
 pub(in super::super) struct Paths {
-    /// By their ids.
+    /// The vertices of each line, by its id; `None` if it was removed.
     pub(in super::super) given: Vec<Option<LineVertices>>,
-    /// Of segments, from the smaller vertex to the larger: the sites between.
+    /// The sites between the ends of each bent segment, from the smaller vertex to the larger.
     pub(in super::super) bent: FxHashMap<[VertexId; 2], Box<[VertexId]>>,
-    /// Of pieces: the vertex on which they were split.
+    /// The vertex that splits a sub-constraint, or a part of one.
     pub(in super::super) splits: FxHashMap<[VertexId; 2], VertexId>,
 }
 
-/// The vertices that a line was given by.
+/// The vertices by which a line was given.
 ///
-/// `PERF:` those of a segment are kept in place, as programs give millions of these.
+/// `PERF:` the two of a single segment are stored inline, as programs create millions of these.
 #[derive(Debug, Clone)]
 pub(in super::super) enum LineVertices {
     Segment([VertexId; 2]),
@@ -81,14 +82,14 @@ impl DerefMut for LineVertices {
     }
 }
 
-/// The same key for both directions.
+/// Returns the vertices with the smaller first: one key for both directions.
 #[inline]
 pub(in super::super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
     if a < b { [a, b] } else { [b, a] }
 }
 
-/// Each segment of some lines once, from the smaller vertex to the larger, in order; what stands for the vertices keeps
-/// their order.
+/// Returns each segment of some lines once, from the smaller vertex to the larger, in order.
+/// `of_vertex` must preserve the order of vertices.
 pub(in super::super) fn segments_of<'a, T: Ord>(
     lines: impl Iterator<Item = &'a [VertexId]>,
     of_vertex: impl Fn(VertexId) -> T,
@@ -101,13 +102,13 @@ pub(in super::super) fn segments_of<'a, T: Ord>(
 }
 
 impl Paths {
-    /// The vertices of each line that is there.
+    /// The vertices of each line that exists.
     pub(in super::super) fn each(&self) -> impl Iterator<Item = &[VertexId]> {
         self.given.iter().flatten().map(|line| &**line)
     }
 
-    /// Puts down the ways of segments that were arranged, whose sites are vertices now. Returns their pieces, each
-    /// once, in order.
+    /// Records the path of each arranged segment, whose sites are vertices now. Returns the
+    /// sub-constraints, each once, in order.
     pub(in super::super) fn record(
         &mut self,
         arrangement: &Arrangement,
@@ -138,23 +139,24 @@ impl Paths {
         parts
     }
 
-    /// The segments of all lines, each once, from the smaller vertex to the larger, in order.
+    /// Returns the segments of all lines, each once, from the smaller vertex to the larger, in
+    /// order.
     pub(in super::super) fn segments(&self) -> Vec<[VertexId; 2]> {
         segments_of(self.each(), |v| v)
     }
 
-    /// The sites that a segment passes through, its ends with them.
+    /// Returns the sites that a segment passes through, ends included.
     pub(in super::super) fn sites(&self, [a, b]: [VertexId; 2]) -> Vec<VertexId> {
         let between = self.bent.get(&[a, b]).into_iter().flatten().copied();
         [a].into_iter().chain(between).chain([b]).collect()
     }
 
-    /// Puts down that the edge was split.
+    /// Records that an edge was split.
     pub(in super::super) fn split(&mut self, a: VertexId, b: VertexId, at: VertexId) {
         self.splits.insert(undirected(a, b), at);
     }
 
-    /// Adds the way of a segment to `chain`, without its start.
+    /// Appends the vertices of a segment to `chain`, without its start.
     pub(in super::super) fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         let mut at = a;
         let mut steps = |site: VertexId| {
@@ -171,7 +173,8 @@ impl Paths {
         steps(b);
     }
 
-    /// The same for a piece, which is led through nothing but may have been split.
+    /// Like [`walk`](Self::walk), but for a sub-constraint, which does not bend but may have been
+    /// split.
     pub(in super::super) fn walk_part(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         let mut at = a;
         let mut ahead = vec![b];
@@ -189,7 +192,8 @@ impl Paths {
         }
     }
 
-    /// Calls with each node of a segment: its sub-constraints, and what these were split into.
+    /// Calls `visit` with each node of a segment: its sub-constraints, and the parts into which
+    /// these were split.
     pub(super) fn nodes(&self, segment: [VertexId; 2], mut visit: impl FnMut([VertexId; 2])) {
         let mut at = segment[0];
         let mut parts = Vec::new();
@@ -205,18 +209,18 @@ impl Paths {
         }
     }
 
-    /// The vertices that a line was given by; none of one that does not exist.
+    /// Returns the vertices by which a line was given; none if it does not exist.
     pub(super) fn vertices(&self, line: LineId) -> &[VertexId] {
         self.given.get(line.index()).and_then(Option::as_deref).unwrap_or_default()
     }
 
-    /// The lines that are there, each with the vertices that it was given by.
+    /// The lines that exist, each with the vertices by which it was given.
     pub(super) fn numbered(&self) -> impl Iterator<Item = (LineId, &[VertexId])> {
         let given = self.given.iter().enumerate();
         given.filter_map(|(number, line)| Some((LineId::new(number), line.as_deref()?)))
     }
 
-    /// Drops splits of edges that are on the chain of no segment.
+    /// Removes the splits of edges that are on no segment's chain.
     pub(in super::super) fn drop_stray_splits(&mut self) {
         let mut splits = FxHashMap::default();
         for ends in self.segments() {
@@ -226,7 +230,7 @@ impl Paths {
         self.splits = splits;
     }
 
-    /// Adds what this table tells of a piece to another one.
+    /// Copies the splits of a sub-constraint into another table.
     pub(in super::super) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
         let mut parts = vec![undirected(a, b)];
         while let Some([a, b]) = parts.pop() {
@@ -240,12 +244,12 @@ impl Paths {
 
 /// Lines by their ids.
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Adds the way of a segment to `chain`, without its start.
+    /// Appends the vertices of a segment to `chain`, without its start.
     fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
         if self.dimension() == 2 {
             return self.lines.paths.walk(a, b, chain);
         }
-        // No edge could be split where all points are collinear.
+        // While all points are collinear, the table has no splits.
         let first = chain.len();
         let ends = [a, b].map(|v| self.point(v));
         let is_between = |&v: &VertexId| self.geometry().side_of_sphere_in_flat(&ends, self.point(v)) == Sign::Positive;
@@ -263,14 +267,15 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         given.filter(|(_, line)| line.is_some()).map(|(index, _)| LineId::new(index))
     }
 
-    /// The vertices that a line was given by, in order: where several points were given for one site, its vertex.
+    /// Returns the vertices by which a line was given, in order; points on one site share a vertex.
     /// Empty for a line that does not exist.
     pub fn line_vertices(&self, line: LineId) -> &[VertexId] {
         self.lines.paths.vertices(line)
     }
 
-    /// The vertices of a line in the triangulation, in order: those that it was given by, and those that it meets on
-    /// its way. Between each two of them there is a constrained edge. Empty for a line that does not exist.
+    /// Returns the vertices of a line in the triangulation, in order: those by which it was given,
+    /// and those that it passes through between them. Each is joined to the next by a constrained
+    /// edge. Empty for a line that does not exist.
     ///
     /// # Complexity
     /// Linear in the length of the result.
@@ -283,8 +288,8 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         chain
     }
 
-    /// The vertices between two that a line has in a row: the way of that segment in the triangulation. Empty where it
-    /// is one edge, and if one of the two does not exist.
+    /// Returns the vertices that a segment passes through, between two consecutive vertices of a
+    /// line. Empty if the segment is one edge, or if a vertex does not exist.
     ///
     /// # Complexity
     /// Linear in the length of the result.
@@ -300,8 +305,9 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// The ids of all lines that run along the edge between two vertices, in order.
     ///
     /// # Complexity
-    /// Constant time for each line; the first call after construction takes linear time, and about 40 bytes for each
-    /// segment, and for each edge of segments that are more than one.
+    /// Constant time for each line. The first call after construction takes linear time and
+    /// allocates about 40 bytes for each segment, and for each edge of segments that are more than
+    /// one.
     pub fn lines_through(&self, a: VertexId, b: VertexId) -> impl ExactSizeIterator<Item = LineId> + '_ {
         let edge = undirected(a, b);
         let mut lines: Vec<LineId> = Vec::new();
@@ -318,7 +324,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         lines.into_iter()
     }
 
-    /// Whether a vertex was added where lines cross, rather than given.
+    /// Returns true if a vertex was added where lines cross, rather than given.
     pub fn is_added(&self, vertex: VertexId) -> bool {
         self.lines.added.contains(vertex)
     }
@@ -328,7 +334,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 mod tests {
     use super::*;
 
-    /// What the docs of [`Paths`] say.
+    /// Checks the sizes that the documentation of [`Paths`] states.
     #[test]
     fn lines_are_small() {
         assert_eq!(size_of::<Option<LineVertices>>(), 24, "a line");

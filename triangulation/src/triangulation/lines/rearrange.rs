@@ -1,7 +1,8 @@
-//! All lines arranged anew.
+//! A new arrangement of all lines.
 //!
-//! The arrangement of the lines is a function of their set, and so is the triangulation of vertices and sub-constraints.
-//! All lines are arranged, what comes out is compared with what is there, and the difference is carried out.
+//! The arrangement of the lines is a function of their set, and so is the triangulation of vertices
+//! and sub-constraints. All lines are arranged, the result is compared with the current state, and
+//! the difference is carried out.
 
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
@@ -18,21 +19,21 @@ use super::super::locate::Dice;
 use super::build::points_added;
 use super::paths::{segments_of, undirected};
 
-/// What lines ask for: segments over the vertices that were given.
+/// What the lines demand: segments between given vertices.
 struct Demand {
-    /// In order.
+    /// The given vertices, in order.
     given: Vec<VertexId>,
-    /// Of each.
+    /// The coordinates of each given vertex.
     positions: Vec<[f64; 2]>,
-    /// By positions among these.
+    /// The segments; each end is an index into `given`.
     segments: Vec<[u32; 2]>,
 }
 
-/// A piece of a line between two sites.
+/// A constrained edge between two sites: a part of a segment.
 type SubConstraint = [VertexId; 2];
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Carries out the difference between what is there and what the lines ask for.
+    /// Arranges all lines anew, and carries out the difference to the current state.
     pub(super) fn rearrange(&mut self) {
         self.lines.index.take();
         self.lines.rearrangements += 1;
@@ -41,7 +42,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         let demand = self.demand(&leaving);
         if self.dimension() < 2 {
             self.lines.waiting = demand.segments.iter().map(|ends| ends.map(|i| demand.given[i as usize])).collect();
-            // What lay between their ends may be there no more.
+            // The vertices that bend or split them may be removed.
             self.lines.paths.bent.clear();
             self.lines.paths.splits.clear();
             self.lines.rounding = None;
@@ -63,7 +64,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         }
     }
 
-    /// Removes vertices that nothing needs.
+    /// Removes vertices that no line needs.
     fn take_out(&mut self, leaving: HashSet<VertexId>) {
         let mut leaving: Vec<VertexId> = leaving.into_iter().collect();
         leaving.sort_unstable();
@@ -73,7 +74,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         }
     }
 
-    /// What the lines ask for, without vertices that leave.
+    /// Returns what the lines demand, without the vertices that leave.
     fn demand(&self, leaving: &HashSet<VertexId>) -> Demand {
         let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
         let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
@@ -83,22 +84,22 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         Demand { given, positions, segments }
     }
 
-    /// Makes the triangulation that of an arrangement of what was asked for, without vertices that leave. Returns the
-    /// sub-constraints that cross others.
+    /// Makes the triangulation that of an arrangement of what the lines demand, without the
+    /// vertices that leave. Returns the sub-constraints that cross others.
     fn carry_out(
         &mut self,
         arrangement: &Arrangement,
         Demand { given, segments, .. }: &Demand,
         mut leaving: HashSet<VertexId>,
     ) -> Vec<SubConstraint> {
-        // Phase 1: sites that stay keep their vertices, others go.
+        // Phase 1: sites that stay keep their vertices, other added vertices leave.
         let mut vertex_at: HashMap<[u64; 2], VertexId> =
             self.lines.added.iter().map(|v| (key(self.plan_of(v)), v)).collect();
         let mut sites: Vec<Option<VertexId>> = given.iter().copied().map(Some).collect();
         sites.extend(arrangement.added().iter().map(|&position| vertex_at.remove(&key(position))));
         leaving.extend(vertex_at.into_values());
 
-        // Phase 2: which sub-constraints are there.
+        // Phase 2: which sub-constraints exist already.
         let mut splits = FxHashMap::default();
         let mut kept = HashSet::new();
         let mut chain = Vec::new();
@@ -120,7 +121,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             }
         }
 
-        // Phase 3: the rest is taken out.
+        // Phase 3: the others are released, and vertices removed.
         let constrained: Vec<SubConstraint> = self.constrained_edges().collect();
         for [a, b] in constrained.into_iter().filter(|edge| !kept.contains(edge)) {
             self.lines.release(&mut self.inner, a, b);
@@ -129,7 +130,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         leaving.iter().for_each(|&v| _ = self.lines.added.remove(v));
         self.take_out(leaving);
 
-        // Phase 4: new sites and sub-constraints are put in.
+        // Phase 4: new sites and sub-constraints are inserted.
         let added = points_added(&self.inner.geometry, arrangement, segments, |i| *self.point(given[i as usize]));
         let mut near = None;
         for i in order_of_insertion(&self.inner.geometry, &added) {
@@ -149,7 +150,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 }
             }
         }
-        let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all of them
+        let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all are known now
         let parts = self.lines.paths.record(arrangement, segments, |site| sites[site as usize]);
         let crossing = self.constrain_all(parts, arrangement);
         self.lines.paths.drop_stray_splits();
@@ -162,9 +163,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     }
 }
 
-/// Returns the order in which points are inserted one by one: a few as they come; many in random
-/// rounds, each about twice as large as the one before and in spatial order. Then O(n log n) triangles are expected to
-/// come and go, wherever the points lie (Amenta, Choi and Rote 2003).
+/// Returns the order in which to insert points one by one. A few keep their order. Many are
+/// inserted in random rounds, each about twice as large as the one before and in spatial order:
+/// then O(n log n) triangles are expected to be created and destroyed, wherever the points lie
+/// (Amenta, Choi and Rote 2003).
 pub(super) fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::Point]) -> Vec<u32> {
     const FEW: usize = 256;
     if points.len() <= FEW {
@@ -175,7 +177,7 @@ pub(super) fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::P
     };
     let mut dice = Dice::default();
     let mut rounds = vec![0; points.len()];
-    // Of points on one site, which come in a row, the first stays the first.
+    // Points on one site are consecutive; the first of them stays the first.
     for here in order.chunk_by(|&i, &j| geometry.compare(&points[i as usize], &points[j as usize]).is_eq()) {
         let round = (1 << 16 | dice.below(1 << 16)).trailing_zeros();
         here.iter().for_each(|&i| rounds[i as usize] = round);
@@ -184,7 +186,7 @@ pub(super) fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::P
     order
 }
 
-/// Equal places have equal keys: coordinates of vertices have one zero only.
+/// Returns a key that is equal for equal sites: negative zeros become positive.
 fn key(position: [f64; 2]) -> [u64; 2] {
     position.map(|x| (x + 0.0).to_bits())
 }

@@ -1,5 +1,5 @@
-//! Free vertices taken out between constraints, and constraints cleared: against a fresh build. `tests/plane/removal.rs` has the same
-//! without constraints.
+//! Removal of free vertices between constraints, and release of constraints, compared with
+//! triangulations built from scratch. `tests/plane/removal.rs` has the same without constraints.
 
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ fn cells(t: &Constrained) -> BTreeSet<Vec<[u64; 2]>> {
         .collect()
 }
 
-/// Whether two segments cross between their ends.
+/// Returns true if two segments cross between their ends.
 fn cross([a, b]: &[Point; 2], [c, d]: &[Point; 2]) -> bool {
     let g = Plane::<Exact>::default();
     let turn = |p, q, r| g.orientation([p, q, r]);
@@ -48,12 +48,13 @@ fn with_constraints(points: &[Point], constraints: &[[Point; 2]]) -> Constrained
     t
 }
 
-/// Forces the edge between two vertices, with all that it meets on its way.
+/// Constrains the segment between two vertices, with all vertices on it.
 fn insert_segment(t: &mut Constrained, a: VertexId, b: VertexId) {
     assert!(t.lines.constrain(&mut t.inner, a, b));
 }
 
-/// All flaws but that the tables know of constraints that no line asks for, as is so here.
+/// All flaws, except that the tables contain constraints that are on no line, which is the case
+/// here.
 fn flaws(t: &Constrained) -> Vec<Flaw> {
     t.check(Level::Law).into_iter().filter(|flaw| *flaw != Flaw::Lines(LinesFlaw::Stray)).collect()
 }
@@ -74,8 +75,9 @@ fn same_constraints(t: &Constrained, points: &[Point], constraints: &[[Point; 2]
     assert_eq!(edges(t), edges(&expected), "{points:?} {constraints:?}");
 }
 
-/// Free vertices go one after the other; then the constraints are cleared, edge by edge; then the rest goes, and the
-/// points come back.
+/// Removes the free vertices one after the other; then releases the constraints, edge by edge; then
+/// removes the other vertices and inserts the points again. Returns the number of free vertices
+/// removed.
 fn constraints_hold(points: Vec<Point>, constraints: Vec<[Point; 2]>, random: &mut Random) -> usize {
     let mut t = with_constraints(&points, &constraints);
     let mut left = points.clone();
@@ -85,7 +87,7 @@ fn constraints_hold(points: Vec<Point>, constraints: Vec<[Point; 2]>, random: &m
     for &v in &numbers {
         let p = *t.point(v);
         let on_constraint = t.constrained_edges().flatten().any(|end| end == v);
-        // All that counts while the points are collinear and constraints wait.
+        // While the points are collinear and constraints wait, only this counts.
         let is_met = constraints.iter().any(|constraint| lies_on(constraint, &p));
         match t.lines.remove_free(&mut t.inner, v) {
             Some(point) => {
@@ -105,7 +107,7 @@ fn constraints_hold(points: Vec<Point>, constraints: Vec<[Point; 2]>, random: &m
             assert!(!t.lines.release(&mut t.inner, a, b));
             let kept: Vec<[Point; 2]> = edges.iter().map(|edge| edge.map(|v| *t.point(v))).collect();
             same_constraints(&t, &left, &kept);
-            // Ends in other constraints' sight, which nothing holds any more.
+            // Ends in sight of other constraints, which are free now.
             let gone = if random.below(2) == 0 { t.lines.remove_free(&mut t.inner, a) } else { None };
             if let Some(p) = gone {
                 left.retain(|q| *q != p);

@@ -8,11 +8,11 @@ use super::paths::Paths;
 
 /// The content of [`Lines`], in an order that depends on nothing else.
 pub(in super::super) struct SavedTables {
-    /// By their ids: the vertices that each was given by; `None` where a line has been removed.
+    /// The vertices by which each line was given, by line id; `None` for a removed line.
     pub(in super::super) given: Vec<Option<Vec<VertexId>>>,
-    /// Segments that pass through sites, from the smaller end through all of them to the larger.
+    /// The sites of bent segments, from the smaller end to the larger, ends included.
     pub(in super::super) bent: Vec<Vec<VertexId>>,
-    /// Edges of chains that were split: the smaller end, the larger, and the vertex between.
+    /// Edges of chains that were split: the smaller end, the larger end, and the vertex between.
     pub(in super::super) splits: Vec<[VertexId; 3]>,
     pub(in super::super) waiting: Vec<[VertexId; 2]>,
     pub(in super::super) added: Vec<VertexId>,
@@ -23,7 +23,7 @@ pub(in super::super) struct SavedTables {
 }
 
 impl Lines {
-    /// A copy of the content.
+    /// Returns a copy of the content.
     pub(in super::super) fn parts(&self) -> SavedTables {
         let segments = self.paths.segments();
         let mut splits: Vec<[VertexId; 3]> =
@@ -42,10 +42,10 @@ impl Lines {
         }
     }
 
-    /// Lines with this content, which is still to be [checked](Self::check).
+    /// Returns lines with this content, which must still be [checked](Self::check).
     ///
     /// # Errors
-    /// What does not fit into the tables.
+    /// If the content does not fit into the tables; the error says why.
     pub(in super::super) fn from_parts(parts: SavedTables) -> Result<Self, &'static str> {
         if parts.given.len() >= LineId::LIMIT {
             return Err("there are too many lines");

@@ -1,4 +1,4 @@
-//! Fewer vertices on a line, and no other line crossed.
+//! Simplification of a line that crosses no other line.
 
 use std::collections::HashSet;
 
@@ -9,17 +9,18 @@ use crate::tds::{CellId, VertexId, ccw};
 use super::super::{ConstrainedDelaunay, LineId};
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Takes vertices out of a line, in plan, as long as every one of them lies within `tolerance` of the piece that
-    /// stands for it, and no line comes to lie on its other side: the triangle between the line and its shortcut is
-    /// free of other vertices of lines. Ends stay, and vertices that are shared with other lines or used twice.
-    /// Vertices that had come with the line go. Returns how many were taken out of the line.
+    /// Simplifies a line in plan and returns the number of vertices removed from it. Each vertex
+    /// removed lies within `tolerance` of the segment that replaces it. No line changes sides: the
+    /// triangle between the line and its shortcut contains no other vertex of a line. The ends
+    /// stay, and so do vertices that are shared with other lines or used twice. Vertices owned by
+    /// the line are removed.
     ///
-    /// Vertices are tried from the first on, each with all that were taken out beside it (after the vertex removal of
-    /// Dyken, Dæhlen and Sevaldrud 2009).
+    /// Vertices are tried in order, each with all those removed before it on the same shortcut
+    /// (after the vertex removal of Dyken, Dæhlen and Sevaldrud 2009).
     ///
     /// # Complexity
-    /// For each vertex the triangles beside the shortcut, and the vertices that it replaces; then as for
-    /// [`insert_lines`](Self::insert_lines).
+    /// For each vertex, the triangles along the shortcut and the vertices that it replaces; then as
+    /// for [`insert_lines`](Self::insert_lines).
     pub fn simplify_line(&mut self, line: LineId, tolerance: f64) -> usize {
         let vertices = self.line_vertices(line).to_vec();
         if vertices.len() < 3 || self.dimension() < 2 {
@@ -29,7 +30,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         let twice: HashSet<VertexId> = vertices.iter().copied().filter(|&v| !seen.insert(v)).collect();
         let mut gone = HashSet::new();
         let mut kept = vec![vertices[0]];
-        // What was taken out since the last vertex that is kept.
+        // The vertices removed since the last one that is kept.
         let mut skipped: Vec<VertexId> = Vec::new();
         for pair in vertices[1..].windows(2) {
             let (from, at, to) = (kept[kept.len() - 1], pair[0], pair[1]);
@@ -55,7 +56,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         gone.len()
     }
 
-    /// Whether all constrained edges at a vertex belong to this line and to no other.
+    /// Returns true if all constrained edges at a vertex belong to this line and to no other.
     fn is_of_one_line(&self, vertex: VertexId, line: LineId) -> bool {
         let mut edges = self.tds().around(vertex).flat_map(|cell| *self.tds().corners(cell));
         edges.all(|other| {
@@ -66,14 +67,16 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         })
     }
 
-    /// Whether no vertex of a line lies in a triangle or on its border, but its corners and those that are gone.
+    /// Returns true if no vertex of a line lies in a triangle or on its border, except for its
+    /// corners and removed vertices.
     fn is_free(&self, [a, b, c]: [VertexId; 3], gone: &HashSet<VertexId>) -> bool {
         let turn =
             |p: VertexId, q: VertexId, r: VertexId| self.geometry().orientation([p, q, r].map(|v| self.point(v)));
         let corners = match turn(a, b, c) {
             Sign::Positive => [a, b, c],
             Sign::Negative => [a, c, b],
-            // Straight on nothing changes; a spike that comes back is kept.
+            // A vertex on a straight line changes nothing; one at which the line turns back is
+            // kept.
             Sign::Zero => {
                 let [a, b, c] = [a, b, c].map(|v| self.point(v));
                 return self.geometry().side_of_sphere_in_flat(&[a, c], b) == Sign::Positive;

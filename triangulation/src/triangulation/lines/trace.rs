@@ -1,10 +1,22 @@
-//! A segment, traced through a constrained triangulation, and made an edge of it.
+//! Inserts a segment into a constrained triangulation, as an edge.
 //!
-//! 1. *Trace*: walk along the segment from its start and collect the triangles that it crosses, until it meets a vertex
-//!    or a constraint.
-//! 2. At a vertex: the triangles crossed so far are taken out, the new edge is put in, and the polygons on its two
-//!    sides are triangulated again, each triangle with the vertex that makes the empty circle (Anglada 1997); long ones
-//!    in random order (Shewchuk and Brown 2015).
+//! 1. *Trace*: walk along the segment from its start and collect the triangles that it crosses,
+//!    until it meets a vertex or a constraint.
+//! 2. At a vertex: remove the triangles crossed so far, insert the new edge, and triangulate the
+//!    polygons on both of its sides again. Each triangle gets the vertex that makes its circle
+//!    empty (Anglada 1997). Long polygons are triangulated in random order (Shewchuk and Brown
+//!    2015).
+//!
+//! The triangles that the segment from `a` to `b` crosses are the *corridor*. Its borders are the
+//! two *sides*:
+//!
+//! ```text
+//!      c-----d                 c-----d
+//!    / | \   | \             /   ' .  \       the left side is a c d b
+//!   a  |   \ |  b    ==>    a===========b
+//!    \ |     \ /             \   . '   /      the right side is a e f b
+//!      e-----f                 e-----f
+//! ```
 
 use rustc_hash::FxHashMap;
 
@@ -14,44 +26,47 @@ use crate::tds::{CellId, VertexId, ccw, cw};
 
 use super::super::{ConstrainedEdges, Triangulation};
 
-/// Buffers of the segment insertion, kept from one to the next.
+/// Buffers of the insertion of segments, kept for the next one.
 #[derive(Debug, Clone, Default)]
 pub(in super::super) struct Scratch {
-    /// Triangles that the segment crosses, in order.
+    /// The triangles that the segment crosses, in order.
     corridor: Vec<CellId>,
     pub(in super::super) left: Side,
     pub(in super::super) right: Side,
-    /// Parts of a side that are still to be triangulated.
+    /// Parts of a side that must still be triangulated.
     parts: Vec<Part>,
-    /// How a side is triangulated.
+    /// The triangulation of a side, as apexes of its parts.
     apexes: Vec<u32>,
-    /// How many triangles have been met by all traces.
+    /// The number of triangles met by all traces.
     pub(in super::super) met: usize,
     /// Triangles whose edges may have to be flipped.
     pub(in super::super) to_legalize: Vec<CellId>,
 }
 
-/// One side of a segment: the border of what it crosses there, from its one end to the other.
+/// One side of a segment: the border of the triangles that it crosses, from its start to its end.
 #[derive(Debug, Clone, Default)]
 pub(in super::super) struct Side {
     pub(in super::super) chain: Vec<VertexId>,
-    /// Of each of these, but for the ends, a vertex to which an edge led over the segment. None of these edges cross.
+    /// For each vertex of the chain except its ends, a vertex to which an edge led across the
+    /// segment. These edges do not cross each other.
     pub(in super::super) across: Vec<VertexId>,
-    /// Between each two of the chain.
+    /// The edges between consecutive vertices of the chain.
     edges: Vec<Edge>,
 }
 
-/// An edge of the border: the triangle on its outer side, and the edge's number there.
+/// An edge of the border: the triangle on its outer side, and the edge's index there.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     cell: CellId,
     i: usize,
     is_constrained: bool,
-    /// Whether the triangle on the outer side is crossed, too: the corridor touches itself, around the edge's end.
+    /// True if the triangle on the outer side is crossed, too: the corridor touches itself, around
+    /// the edge's end.
     is_spike: bool,
 }
 
-/// Positions of a chain between which a triangle is to be put, and the edge that it has in common with the one before.
+/// The positions in a chain between which a triangle is to be inserted, and the edge that it shares
+/// with the one before.
 type Part = (usize, usize, Option<(CellId, usize)>);
 
 impl Side {
@@ -69,7 +84,7 @@ impl Side {
         self.edges.push(edge);
     }
 
-    /// The vertex that was pushed last.
+    /// Returns the vertex that was pushed last.
     fn last(&self) -> VertexId {
         self.chain[self.chain.len() - 1]
     }
@@ -80,7 +95,7 @@ impl Side {
         self.edges.reverse();
     }
 
-    /// Of the edges that have both sides on the border, which of them are the same.
+    /// Returns the pairs of edges that are the same edge, with both of its sides on the border.
     fn spikes(&self) -> Vec<[usize; 2]> {
         let mut seen: FxHashMap<[VertexId; 2], usize> = FxHashMap::default();
         let mut spikes = Vec::new();
@@ -94,13 +109,14 @@ impl Side {
     }
 }
 
-/// From this length of its chain on, a side is triangulated in random order: it then takes less time.
+/// Sides with chains of at least this length are triangulated in random order, which is faster
+/// then.
 const LONG: usize = 32;
 
-/// The base of a triangle that [`fill`](Triangulation::fill) makes is opposite this corner.
+/// The base of a triangle that [`fill`](Triangulation::fill) creates is opposite this corner.
 const BASE: usize = 2;
 
-/// How a trace ended.
+/// Where a trace ended.
 pub(in super::super) enum Met {
     /// At this vertex, which may be the segment's end.
     Vertex(VertexId),
@@ -109,7 +125,7 @@ pub(in super::super) enum Met {
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
-    /// Whether a vertex is in the circle of a counter-clockwise triangle.
+    /// Returns true if a vertex is in the circle of a counter-clockwise triangle.
     #[inline(always)]
     pub(in super::super) fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
         in_sphere(&self.geometry, triangle.map(|v| self.point(v)), self.point(p))
@@ -120,13 +136,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         self.geometry.orientation([a, b, c].map(|v| self.point(v)))
     }
 
-    /// Whether `p` lies ahead of `a` on the way to `b`, all three being collinear.
+    /// Returns true if `p` lies ahead of `a` in the direction of `b`; all three are collinear.
     fn is_ahead(&self, a: VertexId, b: VertexId, p: VertexId) -> bool {
         let compare = |p: VertexId, q: VertexId| self.geometry.compare(self.point(p), self.point(q));
         compare(a, p) == compare(a, b)
     }
 
-    /// Walks from `a` towards `b` and fills the corridor and its two sides.
+    /// Walks from `a` towards `b`, and fills the corridor and its two sides.
     pub(in super::super) fn trace(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
         scratch.corridor.clear();
         scratch.left.clear(a);
@@ -143,7 +159,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
             let j = tds.index_of_neighbor(outside, cell);
             Edge { cell: outside, i: j, is_constrained: tds.cell_data(cell).has(i), is_spike: false }
         };
-        // The triangle at `a` through which the segment leaves, or a neighbor right on the way.
+        // The triangle at `a` through which the segment leaves, or a neighbor on the segment.
         let mut leaves = None;
         for (cell, i) in tds.corners_around(a) {
             let (u, w) = (tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
@@ -173,7 +189,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
             let beyond = tds.neighbor(cell, i);
             let j = tds.index_of_neighbor(beyond, cell);
             let p = tds.vertex(beyond, j);
-            // `beyond` is (p, left, right) counter-clockwise: the one on p's side is left behind.
+            // `beyond` is (p, left, right) counter-clockwise. Of `left` and `right`, `p` replaces
+            // the one on its own side.
             let turn = self.turn(a, b, p);
             let [on_left, on_right] = [left.last(), right.last()];
             if turn != Sign::Negative {
@@ -194,9 +211,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         }
     }
 
-    /// Makes the segment that was traced to a vertex a constrained edge. `triangulate` says how a side is triangulated:
-    /// it adds the apexes of the side's parts, as positions in its chain, each part before its first and its second
-    /// half.
+    /// Makes a segment that was traced to a vertex a constrained edge. `triangulate` triangulates a
+    /// side: it appends the apexes of the side's parts, as positions in its chain, each part before
+    /// its first and its second half.
     pub(in super::super) fn insert_traced(
         &mut self,
         a: VertexId,
@@ -211,12 +228,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         }
     }
 
-    /// Replaces the corridor by triangles on both sides of the segment, which is a constraint then. What was a
-    /// constrained Delaunay triangulation is one again: triangles that the segment does not cross see no more than
-    /// before.
+    /// Replaces the corridor by triangles on both sides of the segment, which becomes a constraint.
+    /// A constrained Delaunay triangulation remains one: triangles that the segment does not cross
+    /// see no more vertices than before.
     ///
-    /// In any other triangulation, too, the triangles fit the polygon: from each vertex of the border an edge went over
-    /// the segment, so that no edge of the border can hide it from the base.
+    /// The triangles also fit the polygon in any other triangulation: from each vertex of the
+    /// border an edge led across the segment, so no edge of the border can hide the vertex from the
+    /// base.
     fn retriangulate(
         &mut self,
         Scratch { corridor, left, right, parts, apexes, .. }: &mut Scratch,
@@ -228,8 +246,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         for edge in left.edges.iter_mut().chain(&mut right.edges) {
             edge.is_spike = self.tds.cell_data(edge.cell).is_taken_out();
         }
-        // On the left the polygon runs from the start over the chain to the end, so that the base, from start to end,
-        // has it on its left. On the right it is the other way around.
+        // On the left, the polygon runs from the start along the chain to the end, so the base,
+        // from start to end, has it on its left. On the right, it is reversed.
         right.reverse();
         let sides = [left, right].map(|side| {
             apexes.clear();
@@ -246,8 +264,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         debug_assert!(corridor.is_empty(), "the corridor was not filled");
     }
 
-    /// Puts the triangles of a side, given by their apexes, over the base from its chain's first to its last vertex,
-    /// with cells from `free`. Returns the triangle on the base.
+    /// Creates the triangles of a side, given by their apexes, over the base from the chain's first
+    /// to its last vertex. Uses cells from `free`. Returns the triangle on the base.
     fn fill(
         &mut self,
         side: &mut Side,
@@ -293,16 +311,17 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         on_base
     }
 
-    /// Triangulates a side by the law of Delaunay.
+    /// Triangulates a side by the Delaunay law.
     pub(super) fn triangulate(&self, side: &Side, apexes: &mut Vec<u32>) {
         if side.chain.len() < LONG || self.triangulate_long(side, apexes).is_none() {
             self.wrap(side, Self::is_in_circle, apexes);
         }
     }
 
-    /// Triangulates a side, given whether a vertex goes before the third one of a triangle as that of the same base.
+    /// Triangulates a side by gift wrapping. `is_closer` tests whether a vertex is a better apex
+    /// than the third vertex of a triangle, over the same base.
     ///
-    /// Time quadratic in the length of the chain at the worst.
+    /// At worst quadratic in the length of the chain.
     pub(in super::super) fn wrap(
         &self,
         side: &Side,
@@ -325,7 +344,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         }
     }
 
-    /// Which vertex of a chain makes a triangle with its first and last than which none is closer.
+    /// Returns the position of the vertex of a chain that is the best apex over the base from its
+    /// first to its last vertex.
     pub(in super::super) fn apex(
         &self,
         chain: &[VertexId],

@@ -2,12 +2,12 @@
 
 use crate::tds::VertexId;
 
-/// Vertices, in the order of their numbers.
+/// A set of vertices, in the order of their numbers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct VertexSet(Vec<u64>);
 
 impl VertexSet {
-    /// Adds a vertex; returns whether it was missing.
+    /// Adds a vertex; returns false if it was there already.
     pub(super) fn insert(&mut self, vertex: VertexId) -> bool {
         let (word, bit) = position(vertex);
         if word >= self.0.len() {
@@ -18,7 +18,7 @@ impl VertexSet {
         is_new
     }
 
-    /// Takes a vertex out; returns whether it was there.
+    /// Removes a vertex; returns false if it was not there.
     pub(super) fn remove(&mut self, vertex: VertexId) -> bool {
         let (word, bit) = position(vertex);
         let was_there = self.contains(vertex);
@@ -34,7 +34,7 @@ impl VertexSet {
         self.0.get(word).is_some_and(|bits| bits & bit != 0)
     }
 
-    /// The vertices, in order. Time proportional to the largest number.
+    /// The vertices, in order. Time linear in the largest number.
     pub(super) fn iter(&self) -> impl Iterator<Item = VertexId> + '_ {
         self.0.iter().enumerate().flat_map(|(word, &bits)| {
             (0..64).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| VertexId::new(word * 64 + bit))
