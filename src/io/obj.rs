@@ -9,8 +9,8 @@ use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
 
-/// Writes `v x y z` and `f a b c`, numbered from 1. The decimals are the fewest that give the same
-/// double back.
+/// Writes `v x y z` and `f a b c`, numbered from 1. Decimals are the shortest that read back as the
+/// same double.
 pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let mut output = Output::create(target.path())?;
     writeln!(output, "# breakline")?;
@@ -19,18 +19,18 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     }
     write_lines(&mut output, mesh.vertices(), |text, [x, y, z]| writeln!(text, "v {x} {y} {z}"))?;
     write_lines(&mut output, mesh.faces(), |text, face| {
-        // As wide as the largest number and one more.
+        // 64 bits, because the largest number plus one may not fit into 32.
         let [a, b, c] = face.map(|v| u64::from(v) + 1);
         writeln!(text, "f {a} {b} {c}")
     })?;
     target.put(output)
 }
 
-/// Reads `v` and `f` lines (with texture and normal numbers, and numbers from the end), and comments
-/// that begin with `crs`. Everything else is passed over.
+/// Reads `v` and `f` lines (with texture and normal numbers, and numbers counted from the end), and
+/// comments that begin with `crs`. Everything else is skipped.
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut vertices = Vec::new();
-    // Faces may come before their vertices, and are put together at the end.
+    // Faces may precede their vertices, so they are assembled at the end.
     let mut corners = Vec::new();
     let mut polygons = Vec::new();
     let mut crs = String::new();
@@ -61,7 +61,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
 }
 
-/// Lines that end in a backslash are continued by the next. Numbered from 1, by the first line of each.
+/// Returns the lines, numbered from 1. Lines that end in a backslash are joined with the next and
+/// have the number of the first.
 fn logical_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, String)> {
     let mut lines = bytes.split(|&b| b == b'\n').enumerate();
     std::iter::from_fn(move || {
@@ -88,7 +89,8 @@ fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     Ok(p)
 }
 
-/// A corner as `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative numbers count back from the last vertex.
+/// Parses a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative numbers count back from the last
+/// vertex.
 fn corner(word: &str, vertices_so_far: usize) -> Result<u32> {
     let number: Option<i64> = word.split('/').next().and_then(|number| number.parse().ok());
     number

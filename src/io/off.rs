@@ -1,8 +1,8 @@
 //! OFF, the object file format of Geomview: vertices and faces as text.
 //!
-//! `OFF`, then the numbers of vertices, faces and edges, then a line `x y z` for each vertex and a line
-//! `count v1 v2 ...` for each face, counted from 0. Comments begin with `#`. What may stand behind the
-//! numbers of a line (colors, normals) is passed over.
+//! `OFF`, then the numbers of vertices, faces and edges, then a line `x y z` for each vertex and a
+//! line `count v1 v2 ...` for each face, counted from 0. Comments begin with `#`. Further values in
+//! a line (colors, normals) are skipped.
 
 use std::io::Write;
 
@@ -15,7 +15,8 @@ use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows, shown};
 use crate::io::{Destination, Output};
 
-/// Writes vertices, faces and the coordinate system. The number of edges, which no reader uses, is 0.
+/// Writes vertices, faces and the coordinate system. The number of edges, which no reader uses, is
+/// written as 0.
 pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let mut output = Output::create(target.path())?;
     writeln!(output, "OFF")?;
@@ -31,7 +32,7 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     target.put(output)
 }
 
-/// Reads plain OFF and its kinds with colors and normals.
+/// Reads plain OFF and its variants with colors and normals.
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut rows = Rows::new(bytes);
     let [vertex_count, face_count] = read_header(&mut rows)?;
@@ -61,10 +62,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
 }
 
-/// Bytes that a vertex or a face takes at least, so that no more room is made than there can be of them.
+/// The fewest bytes of a vertex or a face, which limit the memory allocated for a stated count.
 const SHORTEST: usize = 6;
 
-/// The numbers of vertices and faces, in the line of the keyword or in the next.
+/// Returns the numbers of vertices and faces, which follow the keyword in its line or in the next.
 fn read_header(rows: &mut Rows) -> Result<[usize; 2]> {
     const COUNTS: &str = "VERTICES FACES EDGES";
     let mut row = rows.expect(|| "the keyword OFF".to_owned(), "OFF")?;

@@ -4,18 +4,18 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// The lines of a text that hold anything but a comment (`#` to the end of the line).
+/// The lines of a text that contain more than a comment (`#` to the end of the line).
 pub(super) struct Rows<'a> {
     rest: &'a [u8],
     line: usize,
 }
 
-/// A line of words, which are separated by blanks or commas. Words are taken from its start.
+/// A line of words, separated by blanks or commas. Words are taken from its start.
 pub(super) struct Row<'a> {
     rest: &'a [u8],
-    /// Counted from 1.
+    /// Line number, from 1.
     pub(super) line: usize,
-    /// How such a line is to read.
+    /// The expected pattern of the line.
     pattern: &'static str,
 }
 
@@ -24,15 +24,15 @@ impl<'a> Rows<'a> {
         Rows { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), line: 0 }
     }
 
-    /// How much of the text is left.
+    /// Returns the number of bytes that are left of the text.
     pub(super) fn bytes_left(&self) -> usize {
         self.rest.len()
     }
 
-    /// The next line, which is to read like `pattern`.
+    /// Returns the next line, which should match `pattern`.
     ///
     /// # Errors
-    /// If the text ends; the message says what of.
+    /// If the text has ended; the message says what is missing.
     pub(super) fn expect(&mut self, what: impl FnOnce() -> String, pattern: &'static str) -> Result<Row<'a>> {
         self.next(pattern).ok_or_else(|| {
             Error::format(format!("the file ends where {} is expected", what()))
@@ -41,7 +41,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// The next line, if there is one, which is to read like `pattern`.
+    /// Returns the next line, which should match `pattern`; `None` at the end.
     pub(super) fn next(&mut self, pattern: &'static str) -> Option<Row<'a>> {
         while !self.rest.is_empty() {
             let end = self.rest.iter().position(|&b| b == b'\n').unwrap_or(self.rest.len());
@@ -59,8 +59,11 @@ impl<'a> Rows<'a> {
         None
     }
 
+    /// Checks that no lines are left.
+    ///
     /// # Errors
-    /// If there are more lines: a count before them lies. `last` is what should have been the last.
+    /// If there are more lines, which means that a count before them is wrong. `last` is what
+    /// should have been the last.
     pub(super) fn end(mut self, last: &str) -> Result<()> {
         match self.next("") {
             None => Ok(()),
@@ -79,7 +82,7 @@ impl<'a> Row<'a> {
         Row { ..*self }
     }
 
-    /// The next word.
+    /// Returns the next word.
     pub(super) fn word(&mut self) -> Option<&'a [u8]> {
         let is_blank = |b: u8| b.is_ascii_whitespace() || b == b',';
         let start = self.rest.iter().position(|&b| !is_blank(b))?;
@@ -89,12 +92,12 @@ impl<'a> Row<'a> {
         Some(word)
     }
 
-    /// Whether there are words left.
+    /// Returns true if there are words left.
     pub(super) fn has_more(&self) -> bool {
         self.clone_of_rest().word().is_some()
     }
 
-    /// The next word as a whole number; `1.0` and `1e0` are such, too.
+    /// Returns the next word as an integer; `1.0` and `1e0` are accepted as well.
     ///
     /// # Errors
     /// If there is none or it is something else.
@@ -108,7 +111,8 @@ impl<'a> Row<'a> {
         Ok(number as i64)
     }
 
-    /// The same, within what a type holds: a count is no negative number.
+    /// Like [`whole`](Self::whole), but within the range of a type; a count, for example, cannot be
+    /// negative.
     ///
     /// # Errors
     /// As [`whole`](Self::whole).
@@ -117,7 +121,7 @@ impl<'a> Row<'a> {
         T::try_from(number).map_err(|_| self.wrong(format!("{number} is out of range for the {what}")))
     }
 
-    /// The same where the line has another word, `default` where it does not.
+    /// Like [`within`](Self::within), but returns `default` at the end of the line.
     ///
     /// # Errors
     /// As [`whole`](Self::whole).
@@ -125,7 +129,7 @@ impl<'a> Row<'a> {
         if self.has_more() { self.within(what) } else { Ok(default) }
     }
 
-    /// The next word as a finite number.
+    /// Returns the next word as a finite number.
     ///
     /// # Errors
     /// If there is none or it is something else.
@@ -143,7 +147,7 @@ impl<'a> Row<'a> {
         self.word().ok_or_else(|| self.wrong(format!("there is no {what}")))
     }
 
-    /// An error in this line, with how it is to read as the cure.
+    /// Returns an error in this line, with the expected pattern as the cure.
     #[cold]
     pub(super) fn wrong(&self, message: String) -> Error {
         let cure = format!("correct the line; it is to read '{}'", self.pattern);
@@ -155,7 +159,7 @@ fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// A word as messages show it.
+/// Returns a word as shown in messages.
 pub(super) fn shown(word: &[u8]) -> String {
     let printable = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
     String::from_utf8_lossy(word).chars().take(40).map(printable).collect()

@@ -8,10 +8,11 @@ use crate::data::Bounds;
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
 
-/// Writes the triangles, and their origin as three numbers in `TARGET.origin.txt`.
+/// Writes the triangles, and their origin as three numbers in `TARGET.origin.txt`. Returns the
+/// origin and the path of that file.
 ///
-/// The origin is the smallest corner of the data in whole units: a float then keeps the millimetre
-/// over 8 km, where map coordinates would lose the metre.
+/// The origin is the minimum corner of the data, rounded to whole units. A float then has a
+/// resolution of a millimeter over 8 km; with map coordinates, it would lose the meter.
 pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], PathBuf)> {
     let count = u32::try_from(mesh.face_count)
         .map_err(|_| Error::limit(format!("{} triangles; an STL file counts to {}", mesh.face_count, u32::MAX)))?;
@@ -21,7 +22,7 @@ pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], Pa
     let [x, y, z] = origin;
 
     let mut header = [b' '; 80];
-    // A file that began with "solid" would be taken for text.
+    // A file that begins with "solid" would be read as text.
     let title = format!("breakline; add the origin {x} {y} {z}");
     let length = title.len().min(header.len());
     header[..length].copy_from_slice(&title.as_bytes()[..length]);
@@ -45,22 +46,23 @@ pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], Pa
     Ok((origin, beside))
 }
 
-/// What a binary STL file holds.
+/// The content of a binary STL file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// The box around them, in the coordinates of the map.
+    /// Extent in map coordinates.
     pub bounds: Bounds,
-    /// What is to be added to the coordinates of the file, as the file beside it says; 0 if there is none.
+    /// The origin to be added to the coordinates of the file, as stated by the file next to it; 0
+    /// if there is none.
     pub origin: [f64; 3],
 }
 
-/// Bytes before the first facet: a title, and the count.
+/// Bytes before the first facet: a title and the count.
 const HEADER: usize = 84;
 const FACET: usize = 50;
 
-/// Reads what a binary STL file holds.
+/// Reads the number of triangles, extent and origin of a binary STL file.
 pub(super) fn describe(path: &Path) -> Result<Solid> {
     let bytes = std::fs::read(path)?;
     let count = bytes.get(80..HEADER).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
@@ -78,7 +80,7 @@ pub(super) fn describe(path: &Path) -> Result<Solid> {
     let origin = read_origin(&origin_file(path))?.unwrap_or_default();
     let mut bounds = Bounds::default();
     for facet in bytes[HEADER..].chunks_exact(FACET) {
-        // Three numbers of the normal, then the corners.
+        // A facet consists of the normal, then the corners, three numbers each.
         let number = |i: usize| facet[4 * i..].first_chunk().map_or(f32::NAN, |bytes| f32::from_le_bytes(*bytes));
         let corner = |k: usize| std::array::from_fn(|axis| f64::from(number(3 + 3 * k + axis)) + origin[axis]);
         (0..3).for_each(|k| bounds.add(corner(k)));
@@ -86,7 +88,7 @@ pub(super) fn describe(path: &Path) -> Result<Solid> {
     Ok(Solid { triangles: count as usize, bounds, origin })
 }
 
-/// The name of the file with the origin: `ground.stl` has `ground.stl.origin.txt`.
+/// Returns the path of the file with the origin: `ground.stl` has `ground.stl.origin.txt`.
 fn origin_file(target: &Path) -> PathBuf {
     let mut name = target.as_os_str().to_owned();
     name.push(".origin.txt");
@@ -107,7 +109,7 @@ fn local(p: [f64; 3], origin: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| p[i] - origin[i])
 }
 
-/// The unit normal; up for faces counter-clockwise in plan.
+/// Returns the unit normal, which points up if the face is counter-clockwise in plan.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let (u, v) = (local(b, a), local(c, a));
     let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];

@@ -1,4 +1,4 @@
-//! World files: the six numbers beside a picture that say where it lies.
+//! World files: six numbers in a file next to a picture that give its position.
 
 use std::path::Path;
 
@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::data::Frame;
 use crate::error::{Error, Result};
 
-/// The text of a world file: the steps of a column and a row, and the center of the first cell.
+/// Returns the text of a world file: the steps from column to column and from row to row, and the
+/// center of the first cell.
 #[cfg(feature = "png")]
 pub(crate) fn text(frame: &Frame) -> String {
     let t = &frame.transform;
@@ -14,7 +15,7 @@ pub(crate) fn text(frame: &Frame) -> String {
     [t[1], t[4], t[2], t[5], x, y].iter().map(|value| format!("{value}\n")).collect()
 }
 
-/// Reads the text of a world file as a transform of cell corners.
+/// Parses the text of a world file to a transform of cell corners.
 fn parse(text: &str) -> Option<[f64; 6]> {
     let mut numbers = text.split_ascii_whitespace().map(|word| word.parse::<f64>().ok().filter(|v| v.is_finite()));
     let mut next = || numbers.next().flatten();
@@ -25,13 +26,14 @@ fn parse(text: &str) -> Option<[f64; 6]> {
     Some([x - (x_column + x_row) / 2.0, x_column, x_row, y - (y_column + y_row) / 2.0, y_column, y_row])
 }
 
-/// The transform in the world file beside a TIFF file or a picture; `None` if there is no world file.
+/// Reads the transform from the world file next to a TIFF file or a picture; `None` if there is no
+/// world file.
 pub(crate) fn read_beside(path: &Path) -> Option<Result<[f64; 6]>> {
     let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     let own: &[&str] = if is_png { &["pgw", "pngw", "PGW"] } else { &["tfw", "tifw", "tiffw", "TFW"] };
     let names = own.iter().chain(&["wld", "WLD"]).map(|extension| path.with_extension(extension));
     let beside = { names }.find(|name| name.is_file())?;
-    // A world file has six lines; what is larger is something else.
+    // A world file has six lines; a larger file is something else.
     let is_small = beside.metadata().is_ok_and(|metadata| metadata.len() < 4096);
     let text = if is_small { std::fs::read_to_string(&beside) } else { Ok(String::new()) };
     Some(match text {

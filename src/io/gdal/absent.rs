@@ -1,4 +1,4 @@
-//! The same functions in a build without GDAL.
+//! Stand-ins for the functions of this module in a build without GDAL.
 
 use std::convert::Infallible;
 use std::path::Path;
@@ -13,18 +13,18 @@ pub struct Raster {
     never: Infallible,
 }
 
-/// Fails: this build has no GDAL.
+/// Returns an error: this build has no GDAL.
 ///
 /// # Errors
-/// Always, with the cure.
+/// Always; the message says how to get GDAL.
 pub fn read_layer(path: &Path, _name: Option<&str>) -> Result<Layer> {
     Err(missing("vector", &super::split(path).0))
 }
 
-/// Fails: this build has no GDAL.
+/// Returns an error: this build has no GDAL.
 ///
 /// # Errors
-/// Always, with the cure.
+/// Always; the message says how to get GDAL.
 pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
     Err(missing("raster", path.as_ref()))
 }
@@ -36,27 +36,27 @@ fn missing(what: &str, path: &Path) -> Error {
 }
 
 impl Raster {
-    /// "AAIGrid, Float32, 1 band"
+    /// Returns a description such as "AAIGrid, Float32, 1 band".
     pub fn description(&self) -> String {
         match self.never {}
     }
 
-    /// Size and place.
+    /// Returns the size and position.
     pub fn frame(&self) -> Frame {
         match self.never {}
     }
 
-    /// Coordinate system, if known.
+    /// Returns the coordinate system, if known.
     pub fn crs(&self) -> Option<&Crs> {
         match self.never {}
     }
 
-    /// What a user should be told.
+    /// Returns warnings for the user.
     pub fn warnings(&self) -> &[String] {
         match self.never {}
     }
 
-    /// The values of a window.
+    /// Reads the values of a window.
     ///
     /// # Errors
     /// Never.
@@ -64,7 +64,7 @@ impl Raster {
         match self.never {}
     }
 
-    /// All values.
+    /// Reads all values.
     ///
     /// # Errors
     /// Never.

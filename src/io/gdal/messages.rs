@@ -1,4 +1,5 @@
-//! GDAL prints to stderr and returns little: its messages are caught here, thread by thread.
+//! Captures the messages of GDAL, per thread, because GDAL prints details to stderr and returns
+//! little.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -12,10 +13,10 @@ thread_local! {
     static CAUGHT: RefCell<Vec<(bool, String)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// More of the same helps nobody.
+/// Limit for the captured messages; more of the same do not help.
 const KEPT: usize = 16;
 
-/// Starts to listen, and forgets what this thread has caught.
+/// Starts to capture, and discards what this thread has captured before.
 pub(super) fn listen() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -35,27 +36,28 @@ pub(super) fn listen() {
     CAUGHT.with_borrow_mut(Vec::clear);
 }
 
-/// The first error caught since [`listen`], as ours.
+/// Returns the first error captured since [`listen`].
 pub(super) fn failure(path: &Path) -> Option<Error> {
     let text = CAUGHT.with_borrow(|caught| caught.iter().find(|message| message.0).map(|message| message.1.clone()))?;
     Some(Error::format(format!("GDAL: {text}")).in_file(path))
 }
 
-/// The warnings caught since [`listen`].
+/// Returns the warnings captured since [`listen`].
 pub(super) fn warnings() -> Vec<String> {
     CAUGHT.with_borrow(|caught| {
         caught.iter().filter(|message| !message.0).map(|message| format!("GDAL: {}", message.1)).collect()
     })
 }
 
-/// An error that GDAL returned; what it said of it before is more telling.
+/// Returns the error for one returned by GDAL, preferring the captured message, which says more.
 pub(super) fn error(path: &Path, error: GdalError) -> Error {
     failure(path).unwrap_or_else(|| Error::caused_by(Kind::Format, error).in_file(path))
 }
 
-/// An error while opening: most often GDAL has no driver for the file, or there is none.
+/// Returns the error for a file that cannot be opened: usually there is no such file or GDAL has no
+/// driver for it.
 pub(super) fn cannot_open(path: &Path, what: &str, returned: GdalError) -> Error {
-    // What is no file may still be a subdataset ("NETCDF:file.nc:z") or a connection.
+    // A path without a file may still be a subdataset ("NETCDF:file.nc:z") or a connection.
     if let Err(reason) = std::fs::metadata(path)
         && !path.to_string_lossy().contains(':')
     {

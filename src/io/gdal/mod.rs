@@ -1,12 +1,14 @@
-//! Whatever [GDAL](https://gdal.org) reads, behind the feature `gdal`: vector layers as [`Layer`](crate::data::Layer),
-//! rasters as [`Grid`](crate::data::Grid) or window by window.
+//! Reads any format that [GDAL](https://gdal.org) reads, behind the feature `gdal`: vector layers
+//! as [`Layer`](crate::data::Layer), rasters as [`Grid`](crate::data::Grid) or window by window.
 //!
-//! The formats that this crate reads itself (LAS, GeoTIFF, shapefile, GeoJSON) do not come this way. Coordinates are
-//! always easting (or longitude) first. What GDAL would print goes into errors and warnings.
+//! The formats that this crate reads itself (LAS, GeoTIFF, shapefile, GeoJSON) are not read through
+//! GDAL. Coordinates are always easting (or longitude) first. Messages that GDAL would print become
+//! errors and warnings.
 //!
-//! Without the feature the functions are there, and fail with the cure. A program that links this library with both
-//! features `proj` and `gdal` must be linked with `-Wl,--exclude-libs,ALL`, as this package's `build.rs` does for its
-//! own: otherwise the system's libgdal finds the SQLite that PROJ was built with, and crashes.
+//! Without the feature the functions exist and return an error that says how to get GDAL. A program
+//! that links this library with both features `proj` and `gdal` must be linked with
+//! `-Wl,--exclude-libs,ALL`, as this package's `build.rs` does for its own program: otherwise the
+//! system's libgdal finds the SQLite that PROJ was built with, and crashes.
 
 use std::path::{Path, PathBuf};
 
@@ -26,10 +28,10 @@ pub use raster::{Raster, open_raster};
 #[cfg(feature = "gdal")]
 pub use vector::read_layer;
 
-/// Whether this build has GDAL.
+/// True if this build has GDAL.
 pub const IS_HERE: bool = cfg!(feature = "gdal");
 
-/// Takes `FILE:NAME` apart where there is no file of the whole name but one of the first part.
+/// Splits `FILE:NAME` if there is no file with the whole name, but one with the first part.
 fn split(path: &Path) -> (PathBuf, Option<String>) {
     let whole = (path.to_path_buf(), None);
     let (Some(text), false) = (path.to_str(), path.exists()) else {

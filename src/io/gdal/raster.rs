@@ -9,21 +9,21 @@ use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Window};
 use crate::error::{Error, Result};
 
-/// More cells than this are not read at once; 8 bytes each.
+/// Limit for the cells of one read; 8 bytes each.
 const MAX_CELLS: usize = 1 << 31;
 
-/// A raster that GDAL has open. Its first band is read: values are stored sample x scale + offset, NaN where it has
-/// none (by its nodata value or its mask).
+/// A raster that GDAL has open. Its first band is read: values are stored sample x scale + offset,
+/// and NaN for nodata (by its nodata value or its mask).
 #[derive(Debug)]
 pub struct Raster {
     path: PathBuf,
-    /// GDAL's datasets serve one thread at a time.
+    /// In a mutex because GDAL's datasets must be used by one thread at a time.
     dataset: Mutex<Dataset>,
     description: String,
     frame: Frame,
     crs: Option<Crs>,
     nodata: Option<f64>,
-    /// Samples are f32: the nodata value is meant as one.
+    /// True if samples are f32; the nodata value is then compared as f32.
     is_single: bool,
     has_mask: bool,
     scale: f64,
@@ -31,7 +31,7 @@ pub struct Raster {
     warnings: Vec<String>,
 }
 
-/// Opens a raster of any format that GDAL knows; also what GDAL calls a subdataset (`NETCDF:file.nc:z`).
+/// Opens a raster of any format that GDAL supports, or a subdataset (`NETCDF:file.nc:z`).
 ///
 /// # Errors
 /// If GDAL cannot open it, or it has no band.
@@ -90,27 +90,27 @@ pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
 }
 
 impl Raster {
-    /// "GDAL AAIGrid, Float32, 1 band"
+    /// Returns a description such as "GDAL AAIGrid, Float32, 1 band".
     pub fn description(&self) -> String {
         self.description.clone()
     }
 
-    /// Size and place.
+    /// Returns the size and position.
     pub fn frame(&self) -> Frame {
         self.frame
     }
 
-    /// Coordinate system, if known.
+    /// Returns the coordinate system, if known.
     pub fn crs(&self) -> Option<&Crs> {
         self.crs.as_ref()
     }
 
-    /// What a user should be told.
+    /// Returns warnings for the user.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// The values of a window, row by row; NaN is nodata.
+    /// Reads the values of a window, row by row; NaN is nodata.
     ///
     /// # Errors
     /// If the window is not within the raster, is larger than 2^31 cells, or GDAL fails to read it.
@@ -151,7 +151,7 @@ impl Raster {
         Ok(values)
     }
 
-    /// All values.
+    /// Reads all values.
     ///
     /// # Errors
     /// As [`read_window`](Raster::read_window).

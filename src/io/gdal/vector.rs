@@ -12,19 +12,19 @@ use crate::crs::Crs;
 use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
 
-/// Geometry collections in geometry collections; deeper ones are refused.
+/// Limit for the nesting of geometry collections; deeper ones lead to an error.
 const DEEPEST: usize = 16;
 
-/// Reads a layer of any vector file that GDAL knows.
+/// Reads a layer of any vector file that GDAL supports.
 ///
-/// `name` is `LAYER`, `FIELD` or `LAYER:FIELD`, and may also stand behind a colon in `path`; a file of one layer needs
-/// none. `FIELD` is the attribute with the heights; else they come from the geometry, and are NaN where that is flat.
-/// Arcs become polylines (by GDAL's default of a vertex every 4 degrees). The parts of a collection become shapes of
-/// their own.
+/// `name` is `LAYER`, `FIELD` or `LAYER:FIELD`. It may also follow a colon in `path`, and may be
+/// omitted if the file has only one layer. `FIELD` is the attribute that contains the heights;
+/// otherwise they come from the geometry, and are NaN if that is flat. Arcs become polylines (with
+/// GDAL's default of a vertex every 4 degrees). The parts of a collection become separate shapes.
 ///
 /// # Errors
-/// If GDAL cannot open the file, has no such layer or field, or fails while reading; and if the file has several layers
-/// and none is named.
+/// If GDAL cannot open the file, the file has no such layer or field, or reading fails; if the file
+/// has several layers and none is named.
 pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
     messages::listen();
     let (path, behind) = super::split(path);
@@ -73,7 +73,7 @@ pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
             layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
         }
     }
-    // The iterator ends at an error as at the end of the file.
+    // The iterator ends at an error as it does at the end of the file.
     if let Some(error) = messages::failure(path) {
         return Err(error.at(format!("layer {layer_name}, after {} records", layer.shapes.len())));
     }
@@ -84,7 +84,7 @@ pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
     Ok(layer)
 }
 
-/// The layer, and the field of the heights.
+/// Returns the name of the layer, and the field of the heights.
 fn choose(dataset: &Dataset, name: Option<&str>) -> Result<(String, Option<String>)> {
     let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
     let is_layer = |name: &str| layers.iter().any(|layer| layer == name);
@@ -101,7 +101,7 @@ fn choose(dataset: &Dataset, name: Option<&str>) -> Result<(String, Option<Strin
         if is_layer(name) {
             return Ok((name.to_owned(), None));
         }
-        // Layers may have colons in their names.
+        // The name of a layer may contain colons.
         let parts = name.match_indices(':').map(|(at, _)| (&name[..at], &name[at + 1..]));
         return match parts.into_iter().find(|(layer, _)| is_layer(layer)) {
             Some((layer, field)) => Ok((layer.to_owned(), Some(field.to_owned()))),
@@ -139,7 +139,7 @@ fn crs(reference: &SpatialRef, warnings: &mut Vec<String>) -> Option<Crs> {
     }
 }
 
-/// Whether the first coordinate is a latitude or northing, by the order that the data is in.
+/// Returns true if the first coordinate is a latitude or northing in the axis order of the data.
 fn is_north_first(reference: &SpatialRef) -> bool {
     let target = if reference.is_geographic() { "GEOGCS" } else { "PROJCS" };
     reference.axis_mapping_strategy() == AxisMappingStrategy::AuthorityCompliant
@@ -148,7 +148,7 @@ fn is_north_first(reference: &SpatialRef) -> bool {
 
 fn number(value: FieldValue) -> Option<f64> {
     let number = match value {
-        // GDAL's own conversion makes 0 of anything.
+        // GDAL's own conversion turns any other text into 0.
         FieldValue::StringValue(text) => text.trim().replace(',', ".").parse().ok(),
         FieldValue::IntegerValue(value) => Some(f64::from(value)),
         FieldValue::Integer64Value(value) => Some(value as f64),
@@ -167,7 +167,7 @@ fn each_vertex(shape: &mut Shape, mut change: impl FnMut(&mut [f64; 3])) {
     }
 }
 
-/// Adds the shape of a geometry; several for a collection.
+/// Adds the shape of a geometry, or several for a collection.
 fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()> {
     if depth > DEEPEST {
         return Err(Error::limit(format!("geometry collections nested more than {DEEPEST} deep")));
@@ -201,31 +201,35 @@ fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()
     Ok(())
 }
 
-/// Whether a record has no geometry: the `gdal` crate then wraps a null pointer, of which GDAL complains.
+/// Returns true if a record has no geometry: the `gdal` crate then wraps a null pointer, which GDAL
+/// would report as an error.
 #[allow(unsafe_code)]
 fn is_absent(geometry: &Geometry) -> bool {
-    // SAFETY: the pointer is looked at, not followed.
+    // SAFETY: the pointer is compared, not dereferenced.
     unsafe { geometry.c_geometry() }.is_null()
 }
 
-/// Shows a geometry with its arcs as polylines.
+/// Calls `show` with the geometry, in which arcs are replaced by polylines.
 #[allow(unsafe_code)]
 fn with_polylines(geometry: &Geometry, show: impl FnOnce(&Geometry) -> Result<()>) -> Result<()> {
-    // The `gdal` crate has no safe way to this, and GDAL's global flag for it forgets arcs with heights (seen in 3.6).
-    // SAFETY: the pointer is that of a geometry that lives; GDAL does not keep it, and a null pointer for the options
-    // and an angle of 0 stand for the defaults.
+    // The `gdal` crate has no safe function for this, and GDAL's global flag for it misses arcs
+    // with heights (observed in 3.6).
+    // SAFETY: the pointer is that of a live geometry, which GDAL does not keep; a null pointer for
+    // the options and an angle of 0 mean the defaults.
     let straight = unsafe { gdal_sys::OGR_G_GetLinearGeometry(geometry.c_geometry(), 0.0, std::ptr::null_mut()) };
     if straight.is_null() {
         return Err(Error::unsupported(format!("arcs of the type {}", geometry.geometry_name())));
     }
     let result = {
-        // SAFETY: a wrapper that does not own its geometry; it ends before the geometry does, below.
+        // SAFETY: the wrapper does not own its geometry, and is dropped before the geometry, below.
         let wrapper = unsafe { Geometry::lazy_feature_geometry() };
-        // SAFETY: the wrapper is empty and does not own, and the pointer is a geometry.
+        // SAFETY: the wrapper is empty and does not own its geometry, and the pointer is a
+        // geometry.
         unsafe { wrapper.set_c_geometry(straight) };
         show(&wrapper)
     };
-    // SAFETY: `OGR_G_GetLinearGeometry` gave the geometry to us, and nothing refers to it any more.
+    // SAFETY: `OGR_G_GetLinearGeometry` transferred ownership to us, and nothing refers to the
+    // geometry any more.
     unsafe { gdal_sys::OGR_G_DestroyGeometry(straight) };
     result
 }
@@ -239,12 +243,13 @@ fn vertices(geometry: &Geometry) -> Vec<[f64; 3]> {
     points.into_iter().map(|(x, y, z)| [x, y, if has_z { z } else { f64::NAN }]).collect()
 }
 
-/// The rings of one polygon as they are.
+/// Returns the rings of one polygon as stored.
 fn parts(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
     (0..polygon.geometry_count()).map(|i| vertices(&polygon.get_geometry(i))).filter(|ring| !ring.is_empty()).collect()
 }
 
-/// The rings of one polygon, the outer one clockwise and the others not, as [`Shape::Polygon`] has it.
+/// Returns the rings of one polygon, the outer one clockwise and the others counter-clockwise, as
+/// in [`Shape::Polygon`].
 fn rings(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
     let mut rings = parts(polygon);
     for (i, ring) in rings.iter_mut().enumerate() {
@@ -256,13 +261,14 @@ fn rings(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
     rings
 }
 
-/// Twice the signed area, positive counter-clockwise; from the first vertex, for precision.
+/// Returns twice the signed area, positive if counter-clockwise; relative to the first vertex, for
+/// precision.
 fn area(ring: &[[f64; 3]]) -> f64 {
     let Some(&[x0, y0, _]) = ring.first() else { return 0.0 };
     ring.windows(2).map(|pair| (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0)).sum()
 }
 
-/// Triangles, or polygons if any face has more corners.
+/// Returns triangles, or polygons if any face has more corners.
 fn surface(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Shape {
     let triangle = |face: &Vec<Vec<[f64; 3]>>| match face.as_slice() {
         [ring] if ring.len() == 4 => Some([ring[0], ring[1], ring[2]]),

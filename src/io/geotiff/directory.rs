@@ -1,4 +1,4 @@
-//! Writes the header of a TIFF or BigTIFF file with one directory (little-endian).
+//! Writes the header of a TIFF or BigTIFF file with one directory, little-endian.
 
 use super::tags;
 use crate::crs::GeoKeys;

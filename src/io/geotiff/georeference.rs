@@ -69,7 +69,7 @@ fn fit(tiepoints: &[f64]) -> Option<[f64; 6]> {
     let n = points.len() as f64;
     let mean = |i: usize| points.iter().map(|p| p[i]).sum::<f64>() / n;
     let [column, row, x, y] = [mean(0), mean(1), mean(3), mean(4)];
-    // Normal equations of (column, row) -> x and -> y.
+    // Normal equations of (column, row) -> x and (column, row) -> y.
     let (mut cc, mut cr, mut rr) = (0.0, 0.0, 0.0);
     let (mut cx, mut rx, mut cy, mut ry) = (0.0, 0.0, 0.0, 0.0);
     for p in &points {

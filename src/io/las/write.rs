@@ -17,7 +17,7 @@ use crate::io::output::{Destination, Output};
 /// Bytes of records that are compressed together, per thread: about two chunks of typical points.
 const BATCH_BYTES: usize = 1 << 22;
 
-/// Whether points are written compressed.
+/// The compression of written points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Packing {
     /// Uncompressed (LAS).

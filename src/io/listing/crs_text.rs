@@ -3,20 +3,21 @@
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 
-/// A definition of fewer bytes stands in one line: rply, which CloudCompare reads with, takes 1024 with the keyword.
+/// Definitions of fewer bytes are written in one line: the limit of rply, with which CloudCompare
+/// reads, is 1024 bytes including the keyword.
 const WHOLE: usize = 1000;
 
-/// Bytes of a line of a longer definition.
+/// Bytes per line of a longer definition.
 const PART: usize = 200;
 
-/// The comments that say a coordinate system: `crs: EPSG:25832` or `crs: WKT`, as QGIS reads it; of a long definition
-/// `crs PART`, one comment a part.
+/// Returns the comments that state a coordinate system: `crs: EPSG:25832` or `crs: WKT`, as QGIS
+/// reads them. A long definition is split into comments `crs PART`.
 pub(in crate::io) fn comments(crs: Option<&Crs>) -> Vec<String> {
     let Some(crs) = crs else { return Vec::new() };
     if let Some(code) = code(crs) {
         return vec![format!("crs: {code}")];
     }
-    // WKT may be laid out in lines; the breaks and indents between its parts mean nothing.
+    // WKT may be formatted in several lines; breaks and indentation have no meaning.
     let text: String = crs.to_wkt().lines().map(str::trim).collect();
     match text.len() {
         0 => Vec::new(),
@@ -25,7 +26,8 @@ pub(in crate::io) fn comments(crs: Option<&Crs>) -> Vec<String> {
     }
 }
 
-/// `EPSG:25832`, if that says all that is known. Two codes, as in `EPSG:25832+7837`, QGIS does not read.
+/// Returns `EPSG:25832`, if that is the complete definition. QGIS does not read two codes, as in
+/// `EPSG:25832+7837`.
 fn code(crs: &Crs) -> Option<String> {
     let code = crs.epsg?;
     let named = Crs::from_epsg(code).ok()?;
@@ -33,12 +35,12 @@ fn code(crs: &Crs) -> Option<String> {
     (facts(&named) == facts(crs) && named.unit.is_same(&crs.unit)).then(|| format!("EPSG:{code}"))
 }
 
-/// A text cut into short ones.
+/// Splits a text into short parts.
 fn parts(text: &str) -> Vec<String> {
     let mut parts = vec![String::new()];
     for c in text.chars() {
         let last = &parts[parts.len() - 1];
-        // A blank at the end of a line may get lost.
+        // A blank at the end of a line might get lost.
         if last.len() + c.len_utf8() > PART && !last.ends_with(' ') && c != ' ' {
             parts.push(String::new());
         }
@@ -47,12 +49,13 @@ fn parts(text: &str) -> Vec<String> {
     parts
 }
 
-/// What a comment says of the coordinate system, in whole or in part; `None` if it is about something else.
+/// Returns what a comment states of the coordinate system, in whole or in part; `None` for other
+/// comments.
 pub(in crate::io) fn said(comment: &str) -> Option<&str> {
     comment.strip_prefix("crs:").or_else(|| comment.strip_prefix("crs "))
 }
 
-/// The coordinate system that is said in all comments, joined; `None` if there are none.
+/// Parses the joined statements of all comments; `None` if there are none.
 pub(in crate::io) fn parse(joined: &str) -> Result<Option<Crs>> {
     if joined.is_empty() {
         return Ok(None);

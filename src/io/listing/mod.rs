@@ -1,4 +1,4 @@
-//! What the mesh formats share: the vertices and faces of a surface, as files list them.
+//! The code that all mesh formats share: lists the vertices and faces of a surface.
 
 pub(super) mod crs_text;
 pub(super) mod polygon;
@@ -8,21 +8,23 @@ use crate::data::{self, EdgeKind, Surface};
 
 const UNUSED: u32 = u32::MAX;
 
-/// The vertices and faces of a surface as a mesh file lists them: in the surface's own
-/// order, without what no face uses.
+/// The vertices and faces of a surface as listed in a mesh file: in the surface's own order,
+/// without unused vertices.
 pub(super) struct Listing<'a> {
     surface: &'a dyn Surface,
-    /// For each vertex of the surface its number in the file.
+    /// Maps each vertex of the surface to its number in the file.
     number: Vec<u32>,
     pub(super) vertex_count: usize,
     pub(super) face_count: usize,
-    /// Edges on breaklines and clip lines.
+    /// Number of edges on breaklines and clip lines.
     pub(super) constrained_edges: usize,
 }
 
 impl<'a> Listing<'a> {
+    /// Numbers the vertices of a surface.
+    ///
     /// # Complexity
-    /// Linear. Needs 4 bytes a vertex.
+    /// Linear. Needs 4 bytes per vertex.
     pub(super) fn new(surface: &'a dyn Surface) -> Self {
         let mut number = vec![UNUSED; surface.vertex_count()];
         let mut face_count = 0;
@@ -34,7 +36,7 @@ impl<'a> Listing<'a> {
         if surface.has_lines() {
             data::faces(surface).for_each(|face| {
                 add(face.corners);
-                // An edge inside is met from both sides.
+                // An interior edge is seen from both sides.
                 let is_first = |i: &usize| surface.neighbor(face.number, *i).is_none_or(|other| face.number < other);
                 constrained_edges += (0..3).filter(|&i| face.edges[i].is_constrained()).filter(is_first).count();
             });
@@ -54,12 +56,13 @@ impl<'a> Listing<'a> {
         used.map(|v| self.surface.position(v))
     }
 
-    /// The corners' numbers, counter-clockwise.
+    /// Returns the vertex numbers of each face, counter-clockwise.
     pub(super) fn faces(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.corners().map(|corners| corners.map(|v| self.number[v as usize]))
     }
 
-    /// The faces, with the kinds of the edges opposite their corners, and whether they are pieces of cut triangles.
+    /// Returns each face with the kinds of the edges opposite its corners, and true if it is a
+    /// fragment of a cut triangle.
     pub(super) fn lined_faces(&self) -> impl Iterator<Item = ([u32; 3], [EdgeKind; 3], bool)> + '_ {
         data::faces(self.surface).map(|face| {
             let corners = face.corners.map(|v| self.number[v as usize]);
@@ -67,7 +70,7 @@ impl<'a> Listing<'a> {
         })
     }
 
-    /// The corners' places, counter-clockwise.
+    /// Returns the coordinates of each face's corners, counter-clockwise.
     pub(super) fn triangles(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         self.corners().map(|corners| corners.map(|v| self.surface.position(v)))
     }

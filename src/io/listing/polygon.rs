@@ -2,14 +2,16 @@ use crate::data::{not_finite, orientation};
 use crate::error::{Error, Result};
 use crate::triangulation::num::Sign;
 
-/// Divides a polygon into triangles by a fan from one of its corners, and adds them to `faces`.
+/// Divides a polygon into a fan of triangles around one of its corners, and adds them to `faces`.
 ///
-/// Which corner matters: where three corners lie in line, a fan from the wrong one has a triangle
-/// without area. Triangles are taken as they are; [`Mesh::new`](crate::data::Mesh::new) judges them.
+/// The choice of the corner matters: if three corners are collinear, a fan around the wrong one has
+/// a triangle without area. Polygons that are triangles are added unchecked;
+/// [`Mesh::new`](crate::data::Mesh::new) checks them.
 ///
 /// # Errors
-/// If there are fewer than three corners, a corner is no vertex, one of four or more has no place in plan, or no fan fits:
-/// one does for every polygon that is convex in plan, and for some others.
+/// If there are fewer than three corners, a corner is not a vertex, a corner of a polygon with four
+/// or more has no finite position in plan, or no fan is valid. A valid fan exists for every polygon
+/// that is convex in plan, and for some others.
 pub(in crate::io) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: &mut Vec<[u32; 3]>) -> Result<()> {
     let count = corners.len();
     if count < 3 {
@@ -41,7 +43,7 @@ pub(in crate::io) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: 
     Ok(())
 }
 
-/// Trying all fans of a polygon takes the square of its corners.
+/// Limit for the corners of a polygon: trying all fans takes time quadratic in their number.
 const MOST_CORNERS: usize = 1000;
 
 #[cfg(test)]
@@ -75,7 +77,7 @@ mod tests {
                 let [x, y, z] = vertices[corner];
                 assert_eq!(error, format!("vertex {corner} is at {x} {y} {z}, expected finite coordinates"));
             }
-            // A height says nothing about how a polygon is divided.
+            // The height does not affect how a polygon is divided.
             let mut vertices = square;
             vertices[2][2] = odd;
             let mut faces = Vec::new();

@@ -5,10 +5,10 @@ use std::io::Write;
 use crate::error::Result;
 use crate::io::Output;
 
-/// Lines that one task writes; as many tasks as there are cores run at a time.
+/// Lines that a task writes; there are as many tasks at a time as cores.
 const LINES: usize = 1 << 14;
 
-/// Writes one line for each item, on all threads, in order.
+/// Writes one line per item, in order, using all threads.
 pub(in crate::io) fn write_lines<T: Copy + Sync>(
     output: &mut Output,
     mut items: impl Iterator<Item = T>,

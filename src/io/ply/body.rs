@@ -1,7 +1,7 @@
 use super::header::{Element, Encoding, Scalar};
 use crate::error::{Error, Result};
 
-/// The values of a file, one after the other.
+/// The values of a file that have not been read yet.
 pub(super) struct Body<'a> {
     rest: &'a [u8],
     encoding: Encoding,
@@ -12,10 +12,11 @@ impl<'a> Body<'a> {
         Body { rest: bytes, encoding }
     }
 
-    /// Refuses counts that the bytes left cannot hold, so that they may be trusted for allocation.
+    /// Returns an error if a count exceeds what the remaining bytes can contain, so that it may be
+    /// trusted for allocation.
     pub(super) fn check_room(&self, element: &Element) -> Result<()> {
         let least: usize = match self.encoding {
-            // A digit and what parts it from the next, but for the last.
+            // A digit and a separator each, except for the last.
             Encoding::Ascii => 2 * element.properties.len(),
             _ => element.properties.iter().map(|p| p.length.unwrap_or(p.kind).size()).sum(),
         };
@@ -35,8 +36,8 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Reads the rows of an element; `each` gets the number of the row and, for each property, its values:
-    /// one, or those of a list.
+    /// Reads the rows of an element. `each` receives the index of the row and the values of each
+    /// property: one value, or those of a list.
     pub(super) fn rows(
         &mut self,
         element: &Element,
@@ -66,7 +67,7 @@ impl<'a> Body<'a> {
             return Err(Error::format(format!("a list of {length} values")));
         }
         let least = if self.encoding == Encoding::Ascii { 1.0 } else { kind.size() as f64 };
-        // Also refuses infinite lengths, and NaN.
+        // Also refuses infinite lengths and NaN.
         if length * least <= self.rest.len() as f64 {
             return Ok(length as usize);
         }
@@ -89,7 +90,7 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// The next bytes, the least significant first.
+    /// Returns the next bytes, the least significant first.
     fn bytes<const N: usize>(&mut self) -> Result<[u8; N]> {
         let (bytes, rest) = self.rest.split_first_chunk::<N>().ok_or_else(cut_off)?;
         self.rest = rest;

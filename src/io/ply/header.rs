@@ -1,7 +1,7 @@
 use crate::error::{Error, Result};
 use crate::io::listing::crs_text;
 
-/// How values are written.
+/// The encoding of the values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -37,7 +37,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes of a value.
+    /// Returns the size in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Scalar::I8 | Scalar::U8 => 1,
@@ -48,32 +48,33 @@ impl Scalar {
     }
 }
 
-/// A named value, or a list of values, of each row of an element.
+/// A property of an element: a named value or list of values in each row.
 #[derive(Debug)]
 pub(super) struct Property {
     pub(super) name: String,
     pub(super) kind: Scalar,
-    /// The type of a list's length.
+    /// For a list, the type of its length.
     pub(super) length: Option<Scalar>,
 }
 
-/// A table: vertices, faces, or anything else.
+/// A table of vertices, faces, or anything else.
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) name: String,
-    /// As stated: not to be trusted before [`Body::check_room`](super::Body::check_room).
+    /// Number of rows, as stated: not to be trusted before
+    /// [`Body::check_room`](super::Body::check_room).
     pub(super) count: usize,
     pub(super) properties: Vec<Property>,
 }
 
-/// What stands before the values.
+/// The header, which precedes the values.
 #[derive(Debug)]
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// What comments say of the coordinate system, joined.
+    /// What comments state about the coordinate system, joined.
     pub(super) crs: String,
-    /// Bytes up to the values.
+    /// Length of the header in bytes.
     pub(super) length: usize,
 }
 
@@ -126,9 +127,9 @@ impl Header {
     }
 }
 
-/// A line without its end, and its bytes with it.
+/// Returns a line without its end, and its length in bytes including the end.
 fn line(bytes: &[u8]) -> Option<(String, usize)> {
-    /// A longer line is no header.
+    /// A longer line cannot belong to a header.
     const LONGEST: usize = 1 << 16;
     let length = bytes.iter().take(LONGEST).position(|&b| b == b'\n')?;
     let line = String::from_utf8_lossy(&bytes[..length]);

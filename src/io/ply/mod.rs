@@ -1,8 +1,8 @@
 //! The polygon file format (Turk 1994, "The PLY Polygon File Format").
 //!
-//! The header names elements and their properties; the body has their values in that order. Readers
-//! take what they know and pass over the rest, so that a file can carry more. What our files carry
-//! is told in the parent module.
+//! The header names elements and their properties; the body contains their values in that order.
+//! Readers take what they know and skip the rest, so that a file can contain more. The parent
+//! module describes the content of our files.
 
 mod body;
 mod header;
@@ -18,12 +18,13 @@ use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
 
-/// The kinds of a face's edges, by their numbers in the file: from the first corner to the second, and so on around.
+/// The kinds of a face's edges, by their numbers in the file. The first edge goes from the first
+/// corner to the second, and so on.
 const KINDS: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
 const EDGES: [&str; 3] = ["edge1", "edge2", "edge3"];
 const FRAGMENT: &str = "piece";
 
-/// Writes vertices, faces, the kinds of their edges where there are lines, and the coordinate system.
+/// Writes vertices, faces, the kinds of their edges if there are lines, and the coordinate system.
 pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let vertex_count = mesh.vertex_count;
     if i32::try_from(vertex_count).is_err() {
@@ -67,8 +68,8 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     target.put(output)
 }
 
-/// Reads the elements `vertex`, `face` and, of files from before the faces had kinds of edges, `constrained_edge`;
-/// whatever their order and types.
+/// Reads the elements `vertex`, `face` and, in files of earlier versions, `constrained_edge`, in
+/// any order and with any types.
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let header = Header::read(bytes)?;
     let has = |name: &str| header.elements.iter().any(|e| e.name == name && e.count > 0);
@@ -121,17 +122,17 @@ fn read_vertices(body: &mut Body, element: &Element) -> Result<Vec<[f64; 3]>> {
     Ok(vertices)
 }
 
-/// Faces as the file has them.
+/// Faces as stored in the file.
 #[derive(Default)]
 struct Polygons {
-    /// Their corners, one after the other.
+    /// The corners of all faces, one face after the other.
     corners: Vec<u32>,
-    /// Where the corners of each face end.
+    /// For each face, the end of its corners.
     ends: Vec<usize>,
-    /// Edges of these kinds.
+    /// Edges on breaklines; `clips` contains those on clip lines.
     breaklines: Vec<[u32; 2]>,
     clips: Vec<[u32; 2]>,
-    /// Which faces are pieces of cut triangles.
+    /// Indices of the faces that are fragments of cut triangles.
     fragments: Vec<usize>,
 }
 
@@ -166,7 +167,7 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         }
         Ok(())
     })?;
-    // Edges inside are met from both sides.
+    // Interior edges are seen from both sides.
     for edges in [&mut polygons.breaklines, &mut polygons.clips] {
         edges.sort_unstable();
         edges.dedup();
@@ -174,8 +175,9 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
     Ok(polygons)
 }
 
-/// Where the kinds of the edges of each face stand, and whether it is a piece; if all are there as they are written
-/// here. Properties of these names in files of other programs mean something else.
+/// Returns the positions of the properties for the kinds of a face's edges, and of the property
+/// that marks fragments, if all have the types that breakline writes. In files of other programs,
+/// properties with these names have another meaning.
 fn line_properties(element: &Element) -> Option<([usize; 3], usize)> {
     let position = |name: &str| {
         let at = scalar(element, name).ok()?;
@@ -202,7 +204,7 @@ fn read_edges(body: &mut Body, element: &Element) -> Result<Vec<[u32; 2]>> {
     Ok(edges)
 }
 
-/// Where a property with one value stands among the properties of its element.
+/// Returns the position of a property with a single value among the properties of its element.
 fn scalar(element: &Element, name: &str) -> Result<usize> {
     let is_it = |p: &Property| p.name == name && p.length.is_none();
     element

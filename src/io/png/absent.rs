@@ -1,4 +1,4 @@
-//! The same functions in a build without PNG.
+//! Stand-ins for the functions of this module in a build without PNG.
 
 use std::path::Path;
 
@@ -7,18 +7,18 @@ use super::Picture;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
 
-/// Fails: this build writes no pictures.
+/// Returns an error: this build writes no pictures.
 ///
 /// # Errors
-/// Always, with the cure.
+/// Always; the message says which feature is missing.
 pub fn write_gray<'a>(target: impl Into<Destination<'a>>, _source: &dyn BlockSource) -> Result<()> {
     Err(missing(target.into().path()))
 }
 
-/// Fails: this build reads no pictures.
+/// Returns an error: this build reads no pictures.
 ///
 /// # Errors
-/// Always, with the cure.
+/// Always; the message says which feature is missing.
 pub fn describe(path: &Path) -> Result<Picture> {
     Err(missing(path))
 }

@@ -1,30 +1,32 @@
-//! Auxiliary files of GDAL (`relief.png.aux.xml`): the coordinate system of a picture that cannot hold it.
+//! Auxiliary files of GDAL (`relief.png.aux.xml`): the coordinate system of a picture whose format
+//! cannot store it.
 
 use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 
-/// What stands for a character in XML; `&` comes first to write, last to read.
+/// Characters and their escapes in XML; `&` is replaced first when writing, last when reading.
 const ESCAPES: [(&str, &str); 4] = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;")];
 
-/// A file that is larger holds statistics, which are of no interest here.
+/// Limit for the bytes of the file; a larger one contains statistics, which are not used.
 const LARGEST: u64 = 1 << 20;
 
-/// The name of the auxiliary file of a picture: `relief.png` has `relief.png.aux.xml`.
+/// Returns the path of the auxiliary file of a picture: `relief.png` has `relief.png.aux.xml`.
 pub(crate) fn path_of(picture: &Path) -> PathBuf {
     let mut name = picture.as_os_str().to_owned();
     name.push(".aux.xml");
     name.into()
 }
 
-/// The text of an auxiliary file that says the coordinate system, with x before y.
+/// Returns the text of an auxiliary file that states the coordinate system, with x before y.
 pub(crate) fn text(crs: &Crs) -> String {
     let wkt = ESCAPES.iter().fold(crs.to_wkt(), |text, (character, escape)| text.replace(character, escape));
     format!("<PAMDataset>\n  <SRS dataAxisToSRSAxisMapping=\"1,2\">{wkt}</SRS>\n</PAMDataset>\n")
 }
 
-/// The coordinate system in the auxiliary file of a picture; `None` if there is no such file, or it says none.
+/// Reads the coordinate system from the auxiliary file of a picture; `None` if there is no such
+/// file, or it states none.
 pub(crate) fn read_beside(picture: &Path) -> Result<Option<Crs>> {
     let path = path_of(picture);
     if !path.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() < LARGEST) {

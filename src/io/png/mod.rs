@@ -1,7 +1,7 @@
-//! Shaded relief as a PNG picture, with its place in a world file and its coordinate system in an auxiliary file of GDAL
-//! beside it; behind the feature `png`.
+//! Shaded relief as a PNG picture, behind the feature `png`. The position is stored in a world
+//! file, the coordinate system in an auxiliary file of GDAL.
 //!
-//! Without the feature the functions are there, and fail with the cure.
+//! Without the feature the functions exist and return an error that says so.
 
 use std::path::{Path, PathBuf};
 
@@ -19,20 +19,20 @@ pub use absent::{describe, write_gray};
 #[cfg(feature = "png")]
 pub use with_png::{describe, write_gray};
 
-/// The name of the world file of a picture: `relief.png` has `relief.pgw`.
+/// Returns the path of the world file of a picture: `relief.png` has `relief.pgw`.
 pub fn world_file_of(target: &Path) -> PathBuf {
     target.with_extension("pgw")
 }
 
-/// What a picture and the files beside it say.
+/// A description of a picture and the files next to it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub size: [u32; 2],
-    /// "PNG, 8 bits, gray and alpha"
+    /// Description of the format: "PNG, 8 bits, gray and alpha".
     pub format: String,
-    /// The corners of its cells on the map (GDAL's order), if a world file is beside it.
+    /// The transform of cell corners to the map (in GDAL's order), if there is a world file.
     pub transform: Option<[f64; 6]>,
-    /// Coordinate system, if an auxiliary file is beside it.
+    /// Coordinate system, if there is an auxiliary file.
     pub crs: Option<Crs>,
 }

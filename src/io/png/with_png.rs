@@ -1,4 +1,4 @@
-//! Pictures by the crate `png`.
+//! Reads and writes pictures with the crate `png`.
 
 use std::io::Write;
 use std::path::Path;
@@ -14,14 +14,14 @@ use crate::error::{Error, Kind, Result};
 /// Rows that are computed and written together.
 const BAND: usize = 256;
 
-/// Columns that one core computes at a time.
+/// Columns that a core computes at a time.
 const BLOCK: usize = 256;
 
-/// Writes an 8-bit gray picture with transparency, its world file (see [`world_file_of`]) and, where the coordinate
-/// system is known, `relief.png.aux.xml` with it.
+/// Writes an 8-bit gray picture with transparency, its world file (see [`world_file_of`]) and, if
+/// the coordinate system is known, its auxiliary file (`relief.png.aux.xml`).
 ///
-/// Values are rounded and clamped to 0..255; NaN is transparent. Bands of rows are computed by all
-/// cores while the one before is packed, so memory is that of 512 rows, 10 bytes a cell.
+/// Values are rounded and clamped to 0..255; NaN is transparent. All cores compute one band of rows
+/// while the previous one is compressed, so memory is needed for 512 rows, 10 bytes per cell.
 ///
 /// # Errors
 /// If the raster has no cells or more than 2^31 - 1 in a row or column, the source fails, or a file
@@ -71,7 +71,7 @@ fn from_png(error: ::png::EncodingError) -> Error {
     }
 }
 
-/// Gray and alpha of some rows; nothing below the last.
+/// Returns gray and alpha of a band of rows, which ends with the last row of the raster.
 fn band(source: &dyn BlockSource, frame: Frame, row: usize) -> Result<Vec<u8>> {
     let height = BAND.min(frame.height.saturating_sub(row));
     if height == 0 {
@@ -98,10 +98,10 @@ fn band(source: &dyn BlockSource, frame: Frame, row: usize) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Reads what a picture is, to its last row, and where it lies.
+/// Describes a picture, which is read up to its last row, and its position.
 ///
 /// # Errors
-/// If it is no PNG or damaged, or a file beside it is.
+/// If the file is not a PNG or is damaged, or a file next to it is damaged.
 pub fn describe(path: &Path) -> Result<Picture> {
     let read = || {
         let file = std::io::BufReader::new(std::fs::File::open(path)?);
