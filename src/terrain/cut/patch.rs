@@ -120,7 +120,7 @@ impl Drawing {
             }
         }
         let arrangement = Arrangement::with_snapped(self.points.len(), site, &distinct, self.first_edge, step)
-            .settled(site, &distinct, step);
+            .crossing_free(site, &distinct, step);
         (arrangement, at)
     }
 }

@@ -26,31 +26,31 @@ impl Fraction {
         let [ab, cd] = [scene.difference(a, b), scene.difference(c, d)];
         let (along, whole) = (cross(scene.difference(a, c), cd.clone()), cross(ab.clone(), cd));
         let sign = if whole < zero { IBig::from(-1) } else { IBig::from(1) };
-        let [dx, dy] = ab.map(|way| way * &along * &sign);
+        let [dx, dy] = ab.map(|length| length * &along * &sign);
         let denominator = magnitude(whole);
-        let [x, y] = scene.places[a].clone().map(|x| x * &denominator);
+        let [x, y] = scene.sites[a].clone().map(|x| x * &denominator);
         Some(Fraction { numerators: [x + dx, y + dy], denominator })
     }
 
-    fn is_near(&self, place: &[IBig; 2], bound: &[IBig; 2]) -> bool {
+    fn is_near(&self, crossing: &[IBig; 2], bound: &[IBig; 2]) -> bool {
         (0..2).all(|axis| {
-            let off = &place[axis] * &self.denominator - &self.numerators[axis];
+            let off = &crossing[axis] * &self.denominator - &self.numerators[axis];
             magnitude(off) <= &bound[axis] * &self.denominator
         })
     }
 }
 
 pub(crate) fn judge(scene: &Scene<IBig>) -> Verdict {
-    let mut pieces = Vec::new();
+    let mut parts = Vec::new();
     for line in 0..scene.chains.len() {
-        pieces.extend(lines::pieces(scene, line)?);
+        parts.extend(lines::parts(scene, line)?);
     }
-    let mut unexplained: Vec<usize> = (0..scene.places.len()).collect();
+    let mut unexplained: Vec<usize> = (0..scene.sites.len()).collect();
     unexplained.retain(|v| !scene.vertices.contains(v));
-    for (i, (ends, chain)) in pieces.iter().enumerate() {
-        for (others, other) in &pieces[..i] {
-            let Some(place) = Fraction::crossing(scene, *ends, *others) else { continue };
-            let meets = |v: &&usize| other.contains(v) && place.is_near(&scene.places[**v], &scene.bound);
+    for (i, (ends, chain)) in parts.iter().enumerate() {
+        for (others, other) in &parts[..i] {
+            let Some(crossing) = Fraction::crossing(scene, *ends, *others) else { continue };
+            let meets = |v: &&usize| other.contains(v) && crossing.is_near(&scene.sites[**v], &scene.bound);
             if !chain.iter().any(|v| meets(&v)) {
                 let names = [ends[0], ends[1], others[0], others[1]].map(|v| scene.name(v));
                 return Err(format!(
@@ -58,7 +58,7 @@ pub(crate) fn judge(scene: &Scene<IBig>) -> Verdict {
                     names[0], names[1], names[2], names[3]
                 ));
             }
-            unexplained.retain(|&v| !place.is_near(&scene.places[v], &scene.bound));
+            unexplained.retain(|&v| !crossing.is_near(&scene.sites[v], &scene.bound));
         }
     }
     // Off the grid, bent pieces may cross where the drawn lines do not, and have a vertex there.

@@ -12,22 +12,22 @@ use super::scene::{Number, Scene, magnitude};
 /// - All constrained edges are steps of chains.
 pub(crate) fn judge<N: Number>(scene: &Scene<N>) -> Verdict {
     let mut by_x: Vec<usize> = scene.vertices.clone();
-    by_x.sort_by(|&a, &b| scene.places[a][0].cmp(&scene.places[b][0]));
+    by_x.sort_by(|&a, &b| scene.sites[a][0].cmp(&scene.sites[b][0]));
     by_x.dedup();
-    let mut steps = HashSet::with_capacity(scene.walls.len());
+    let mut steps = HashSet::with_capacity(scene.constrained.len());
     for (k, chain) in scene.chains.iter().enumerate() {
-        for (ends, piece) in pieces(scene, k)? {
-            judge_piece(scene, ends, piece, &by_x).map_err(|what| format!("line {k}: {what}"))?;
+        for (ends, part) in parts(scene, k)? {
+            judge_part(scene, ends, part, &by_x).map_err(|what| format!("line {k}: {what}"))?;
         }
         steps.extend(chain.windows(2).map(|step| [step[0].min(step[1]), step[0].max(step[1])]));
     }
     if scene.is_collinear {
         return Ok(()); // without triangles no edge can be one of a constraint
     }
-    if let Some([a, b]) = steps.difference(&scene.walls).next() {
+    if let Some([a, b]) = steps.difference(&scene.constrained).next() {
         return Err(format!("missing edge: {} to {} is not constrained", scene.name(*a), scene.name(*b)));
     }
-    if let Some([a, b]) = scene.walls.difference(&steps).next() {
+    if let Some([a, b]) = scene.constrained.difference(&steps).next() {
         return Err(format!("stray edge: {} to {} is constrained by no line", scene.name(*a), scene.name(*b)));
     }
     Ok(())
@@ -36,10 +36,7 @@ pub(crate) fn judge<N: Number>(scene: &Scene<N>) -> Verdict {
 /// The parts of a chain between the vertices of the line; the chain must consist of them. A vertex that follows
 /// itself is one.
 #[expect(clippy::type_complexity)]
-pub(crate) fn pieces<'a, N: Number>(
-    scene: &'a Scene<N>,
-    line: usize,
-) -> Result<Vec<([usize; 2], &'a [usize])>, String> {
+pub(crate) fn parts<'a, N: Number>(scene: &'a Scene<N>, line: usize) -> Result<Vec<([usize; 2], &'a [usize])>, String> {
     let chain = &scene.chains[line][..];
     let mut stops: Vec<usize> = scene.case.lines[line].iter().map(|&i| scene.vertices[i as usize]).collect();
     stops.dedup();
@@ -47,32 +44,32 @@ pub(crate) fn pieces<'a, N: Number>(
         return Err(format!("line {line}: chain begins at {:?}, not {:?}", chain.first(), stops.first()));
     }
     let mut at = 0;
-    let mut pieces = Vec::with_capacity(stops.len());
+    let mut parts = Vec::with_capacity(stops.len());
     for ends in stops.windows(2) {
         let Some(steps) = chain[at + 1..].iter().position(|&v| v == ends[1]) else {
             return Err(format!("line {line}: chain does not reach {}", scene.name(ends[1])));
         };
-        pieces.push(([ends[0], ends[1]], &chain[at..=at + 1 + steps]));
+        parts.push(([ends[0], ends[1]], &chain[at..=at + 1 + steps]));
         at += 1 + steps;
     }
     if at + 1 < chain.len() {
         return Err(format!("line {line}: chain goes on beyond the last point"));
     }
-    Ok(pieces)
+    Ok(parts)
 }
 
-fn judge_piece<N: Number>(scene: &Scene<N>, [a, b]: [usize; 2], piece: &[usize], by_x: &[usize]) -> Verdict {
-    for &v in &piece[1..piece.len() - 1] {
+fn judge_part<N: Number>(scene: &Scene<N>, [a, b]: [usize; 2], part: &[usize], by_x: &[usize]) -> Verdict {
+    for &v in &part[1..part.len() - 1] {
         if !is_beside(scene, v, [a, b]) {
             return Err(format!("too far: {} from {} - {}", scene.name(v), scene.name(a), scene.name(b)));
         }
     }
-    let way = scene.difference(a, b);
-    for step in piece.windows(2) {
-        let step_way = scene.difference(step[0], step[1]);
-        for (axis, ahead) in step_way.into_iter().enumerate() {
+    let vector = scene.difference(a, b);
+    for step in part.windows(2) {
+        let step_vector = scene.difference(step[0], step[1]);
+        for (axis, ahead) in step_vector.into_iter().enumerate() {
             let limit = scene.back[axis].clone();
-            let backward = match way[axis].cmp(&N::from(0)) {
+            let backward = match vector[axis].cmp(&N::from(0)) {
                 std::cmp::Ordering::Greater => -ahead,
                 std::cmp::Ordering::Less => ahead,
                 std::cmp::Ordering::Equal => magnitude(ahead),
@@ -82,14 +79,14 @@ fn judge_piece<N: Number>(scene: &Scene<N>, [a, b]: [usize; 2], piece: &[usize],
             }
         }
     }
-    let visited: HashSet<usize> = piece.iter().copied().collect();
-    if visited.len() < piece.len() {
+    let visited: HashSet<usize> = part.iter().copied().collect();
+    if visited.len() < part.len() {
         return Err(format!("visits a vertex twice between {} and {}", scene.name(a), scene.name(b)));
     }
-    let [low, high] = if scene.places[a][0] < scene.places[b][0] { [a, b] } else { [b, a] };
-    let first = by_x.partition_point(|&v| scene.places[v][0] < scene.places[low][0]);
+    let [low, high] = if scene.sites[a][0] < scene.sites[b][0] { [a, b] } else { [b, a] };
+    let first = by_x.partition_point(|&v| scene.sites[v][0] < scene.sites[low][0]);
     let none = [N::from(0), N::from(0)];
-    let near = by_x[first..].iter().take_while(|&&v| scene.places[v][0] <= scene.places[high][0]);
+    let near = by_x[first..].iter().take_while(|&&v| scene.sites[v][0] <= scene.sites[high][0]);
     for &v in near.filter(|v| !visited.contains(v)) {
         if scene.is_within(v, [a, b], &none) && scene.turn(a, b, v) == N::from(0) {
             return Err(format!("passes by: {} lies on {} - {}", scene.name(v), scene.name(a), scene.name(b)));

@@ -25,7 +25,7 @@ fn triangles(built: &Built) -> BTreeSet<Vec<Key>> {
     t.finite_cells().map(sorted).collect()
 }
 
-fn walls(built: &Built) -> BTreeSet<[Key; 2]> {
+fn constrained_edges(built: &Built) -> BTreeSet<[Key; 2]> {
     let t = &built.triangulation;
     let sorted = |[a, b]: [Key; 2]| if a < b { [a, b] } else { [b, a] };
     t.constrained_edges().map(|edge| sorted(edge.map(|v| key(t.point(v))))).collect()
@@ -41,11 +41,11 @@ fn shuffled(case: &Case, random: &mut Random) -> (Case, Vec<usize>, Vec<bool>) {
     let mut lines: Vec<usize> = (0..case.lines.len()).collect();
     random.shuffle(&mut points);
     random.shuffle(&mut lines);
-    let mut place = vec![0; points.len()];
-    points.iter().enumerate().for_each(|(new, &old)| place[old] = new as u32);
+    let mut position = vec![0; points.len()];
+    points.iter().enumerate().for_each(|(new, &old)| position[old] = new as u32);
     let turned: Vec<bool> = case.lines.iter().map(|_| random.below(2) == 0).collect();
     let line = |&old: &usize| {
-        let mut line: Vec<u32> = case.lines[old].iter().map(|&i| place[i as usize]).collect();
+        let mut line: Vec<u32> = case.lines[old].iter().map(|&i| position[i as usize]).collect();
         if turned[old] {
             line.reverse();
         }
@@ -59,7 +59,7 @@ fn shuffled(case: &Case, random: &mut Random) -> (Case, Vec<usize>, Vec<bool>) {
 pub(crate) fn judge(case: &Case, built: &Built, random: &mut Random) -> Verdict {
     let (other_case, lines, turned) = shuffled(case, random);
     let other = build(&other_case).map_err(|refused| format!("order: refused in another one: {refused}"))?;
-    if walls(&other) != walls(built) {
+    if constrained_edges(&other) != constrained_edges(built) {
         return Err("order: other constrained edges".to_owned());
     }
     for (new, &old) in lines.iter().enumerate() {

@@ -7,14 +7,14 @@ use dashu_ratio::RBig;
 use super::Verdict;
 use crate::subject::Built;
 
-type Place = [RBig; 2];
+type Site = [RBig; 2];
 
-fn turn([ax, ay]: &Place, [bx, by]: &Place, [cx, cy]: &Place) -> RBig {
+fn turn([ax, ay]: &Site, [bx, by]: &Site, [cx, cy]: &Site) -> RBig {
     (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 }
 
 /// Positive if `q` lies inside of the circle through a counter-clockwise triangle.
-fn in_circle(triangle: [&Place; 3], q: &Place) -> RBig {
+fn in_circle(triangle: [&Site; 3], q: &Site) -> RBig {
     let [a, b, c] = triangle.map(|p| {
         let [x, y] = [&p[0] - &q[0], &p[1] - &q[1]];
         let lift = &x * &x + &y * &y;
@@ -25,12 +25,12 @@ fn in_circle(triangle: [&Place; 3], q: &Place) -> RBig {
 }
 
 /// Twice the area of the hull, by Andrew's chains (1979).
-fn hull_area(places: &[Place]) -> RBig {
-    let mut sorted: Vec<&Place> = places.iter().collect();
+fn hull_area(sites: &[Site]) -> RBig {
+    let mut sorted: Vec<&Site> = sites.iter().collect();
     sorted.sort();
     let mut area = RBig::ZERO;
     for _ in 0..2 {
-        let mut chain: Vec<&Place> = Vec::new();
+        let mut chain: Vec<&Site> = Vec::new();
         for p in &sorted {
             while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= RBig::ZERO {
                 chain.pop();
@@ -48,14 +48,14 @@ pub(crate) fn judge(built: &Built) -> Verdict {
     if t.dimension() < 2 {
         return Ok(());
     }
-    let places: Vec<Place> =
+    let sites: Vec<Site> =
         t.points().iter().map(|p| p.map(|x| RBig::try_from(x).expect("coordinates are finite"))).collect();
     let mut opposite: HashMap<[usize; 2], usize> = HashMap::new();
     let mut area = RBig::ZERO;
     for cell in t.finite_cells() {
         let [a, b, c] = *t.tds().corners(cell);
         let [a, b, c] = [a.index(), b.index(), c.index()];
-        let size = turn(&places[a], &places[b], &places[c]);
+        let size = turn(&sites[a], &sites[b], &sites[c]);
         if size <= RBig::ZERO {
             return Err(format!("triangle {a} {b} {c} is not counter-clockwise"));
         }
@@ -66,7 +66,7 @@ pub(crate) fn judge(built: &Built) -> Verdict {
             }
         }
     }
-    if area != hull_area(&places) {
+    if area != hull_area(&sites) {
         return Err("the triangles do not tile the hull".to_owned());
     }
     for [a, b] in t.constrained_edges().map(|edge| edge.map(|v| v.index())) {
@@ -74,11 +74,11 @@ pub(crate) fn judge(built: &Built) -> Verdict {
             return Err(format!("constrained edge {a} {b} is no edge"));
         }
     }
-    let walls: std::collections::HashSet<[usize; 2]> =
+    let constrained: std::collections::HashSet<[usize; 2]> =
         t.constrained_edges().map(|edge| edge.map(|v| v.index())).collect();
-    for (&[a, b], &c) in opposite.iter().filter(|([a, b], _)| a < b && !walls.contains(&[*a, *b])) {
+    for (&[a, b], &c) in opposite.iter().filter(|([a, b], _)| a < b && !constrained.contains(&[*a, *b])) {
         let Some(&d) = opposite.get(&[b, a]) else { continue };
-        if in_circle([a, b, c].map(|v| &places[v]), &places[d]) > RBig::ZERO {
+        if in_circle([a, b, c].map(|v| &sites[v]), &sites[d]) > RBig::ZERO {
             return Err(format!("vertex {d} lies in the circle of {a} {b} {c}"));
         }
     }

@@ -70,14 +70,14 @@ pub(crate) fn judge_grid(case: &Case, built: &Built) -> Verdict {
 pub(crate) struct Scene<'a, N> {
     pub(crate) case: &'a Case,
     /// The places of the triangulation's vertices.
-    pub(crate) places: Vec<[N; 2]>,
+    pub(crate) sites: Vec<[N; 2]>,
     /// The vertex of each point of the input.
     pub(crate) vertices: Vec<usize>,
     pub(crate) chains: Vec<Vec<usize>>,
     /// Whether there are no triangles.
     pub(crate) is_collinear: bool,
     /// The constrained edges, the smaller vertex first.
-    pub(crate) walls: HashSet<[usize; 2]>,
+    pub(crate) constrained: HashSet<[usize; 2]>,
     /// How far from the drawn segment a vertex of its chain may lie, on each axis.
     pub(crate) bound: [N; 2],
     /// How far back the chain may go.
@@ -103,7 +103,7 @@ impl<'a, N: Number> Scene<'a, N> {
             let (mantissa, exponent) = parts(x).unwrap_or((0, lowest[axis]));
             N::shifted(mantissa, exponent.abs_diff(lowest[axis]))
         };
-        let place = |&[x, y]: &Point| Some([whole(x, 0)?, whole(y, 1)?]);
+        let site = |&[x, y]: &Point| Some([whole(x, 0)?, whole(y, 1)?]);
         let zero = [N::from(0), N::from(0)];
         let (bound, back) = match built.rounding {
             // Nothing moves a line that crosses none.
@@ -118,18 +118,18 @@ impl<'a, N: Number> Scene<'a, N> {
         };
         Some(Scene {
             case,
-            places: t.points().iter().map(place).collect::<Option<_>>()?,
+            sites: t.points().iter().map(site).collect::<Option<_>>()?,
             vertices: built.vertices.iter().map(|v| v.index()).collect(),
             chains: built.chains.iter().map(|chain| chain.iter().map(|v| v.index()).collect()).collect(),
             is_collinear: t.dimension() < 2,
-            walls: t.constrained_edges().map(|[a, b]| [a.index(), b.index()]).collect(),
+            constrained: t.constrained_edges().map(|[a, b]| [a.index(), b.index()]).collect(),
             bound,
             back,
         })
     }
 
     pub(crate) fn difference(&self, a: usize, b: usize) -> [N; 2] {
-        [0, 1].map(|axis| self.places[b][axis].clone() - self.places[a][axis].clone())
+        [0, 1].map(|axis| self.sites[b][axis].clone() - self.sites[a][axis].clone())
     }
 
     /// Twice the area of a triangle, positive if counter-clockwise.
@@ -140,7 +140,7 @@ impl<'a, N: Number> Scene<'a, N> {
     /// Whether the vertex lies between the two on both axes, or no further outside than told.
     pub(crate) fn is_within(&self, v: usize, [a, b]: [usize; 2], bound: &[N; 2]) -> bool {
         (0..2).all(|axis| {
-            let [p, a, b] = [v, a, b].map(|v| &self.places[v][axis]);
+            let [p, a, b] = [v, a, b].map(|v| &self.sites[v][axis]);
             let (low, high) = if a < b { (a, b) } else { (b, a) };
             low.clone() - bound[axis].clone() <= *p && *p <= high.clone() + bound[axis].clone()
         })

@@ -11,7 +11,7 @@ use crate::parallel::*;
 use super::boxes::{Box2, BoxTree};
 use super::pixel::Grid;
 use super::sweep;
-use super::{Arrangement, Crossing, FEW, Place, PlaceOf, Segment, lexicographic, starts};
+use super::{Arrangement, Crossing, FEW, Segment, Site, SiteOf, lexicographic, starts};
 
 /// A segment that is led through a site.
 #[derive(Debug, Clone, Copy)]
@@ -24,8 +24,8 @@ struct Pass {
 
 pub(super) struct Builder<'a> {
     grid: Grid,
-    places: usize,
-    place: &'a PlaceOf<'a>,
+    given_count: usize,
+    site_of: &'a SiteOf<'a>,
     ends: &'a [[u32; 2]],
     /// How many of the first segments are led through all pixels that they meet, without being bent by others.
     snapped: usize,
@@ -34,7 +34,7 @@ pub(super) struct Builder<'a> {
     large: f64,
     /// Whether many boxes overlap though the segments do not cross.
     is_crowded: bool,
-    added: Vec<Place>,
+    added: Vec<Site>,
     /// The segments whose crossing was rounded to an added site, each once, site after site; and where those of each
     /// end.
     crossed: Vec<u32>,
@@ -44,8 +44,8 @@ pub(super) struct Builder<'a> {
 impl<'a> Builder<'a> {
     pub(super) fn new(
         grid: Grid,
-        places: usize,
-        place: &'a PlaceOf<'a>,
+        given_count: usize,
+        site_of: &'a SiteOf<'a>,
         ends: &'a [[u32; 2]],
         snapped: usize,
         segments: &'a [Segment],
@@ -55,8 +55,8 @@ impl<'a> Builder<'a> {
         let large = MANY * whole.area() / segments.len() as f64;
         Builder {
             grid,
-            places,
-            place,
+            given_count,
+            site_of,
             ends,
             snapped,
             segments,
@@ -71,13 +71,13 @@ impl<'a> Builder<'a> {
     pub(super) fn run<K: Kernel>(mut self) -> Arrangement {
         let pairs = self.crossing_pairs::<K>();
         let crossings = self.round::<K>(pairs);
-        let (is_led, passes) = self.lead::<K>(&crossings);
-        self.collect(crossings, &is_led, passes)
+        let (has_chain, passes) = self.route::<K>(&crossings);
+        self.collect(crossings, &has_chain, passes)
     }
 
-    fn site(&self, site: u32) -> Place {
-        match (site as usize).checked_sub(self.places) {
-            None => (self.place)(site),
+    fn site(&self, site: u32) -> Site {
+        match (site as usize).checked_sub(self.given_count) {
+            None => (self.site_of)(site),
             Some(added) => self.added[added],
         }
     }
@@ -170,17 +170,17 @@ impl<'a> Builder<'a> {
     /// Phase 2: the site of each crossing, the center of its pixel; which may be a place that was given.
     fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>) -> Vec<Crossing> {
         let round = |&[i, j]: &[u32; 2]| self.grid.crossing::<K>(self.segments[i as usize], self.segments[j as usize]);
-        let rounded: Vec<Place> = pairs.par_iter().with_min_len(FEW).map(round).collect();
+        let rounded: Vec<Site> = pairs.par_iter().with_min_len(FEW).map(round).collect();
         let mut given_at: FxHashMap<[u64; 2], Option<u32>> =
             rounded.iter().map(|&center| (key(center), None)).collect();
         if !given_at.is_empty() {
-            for place in 0..self.places as u32 {
-                if let Some(at) = given_at.get_mut(&key((self.place)(place))) {
-                    *at = Some(place);
+            for site in 0..self.given_count as u32 {
+                if let Some(at) = given_at.get_mut(&key((self.site_of)(site))) {
+                    *at = Some(site);
                 }
             }
         }
-        let mut centers: Vec<(Place, u32)> = Vec::new();
+        let mut centers: Vec<(Site, u32)> = Vec::new();
         let mut crossings = Vec::with_capacity(pairs.len());
         for (segments, center) in pairs.into_iter().zip(rounded) {
             let given = given_at[&key(center)];
@@ -190,7 +190,7 @@ impl<'a> Builder<'a> {
         centers.par_sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
         let mut here: Vec<u32> = Vec::new();
         for same in centers.chunk_by(|(p, _), (q, _)| p == q) {
-            let site = (self.places + self.added.len()) as u32;
+            let site = (self.given_count + self.added.len()) as u32;
             here.clear();
             for &(_, crossing) in same {
                 crossings[crossing as usize].site = site;
@@ -209,18 +209,18 @@ impl<'a> Builder<'a> {
     /// Phase 3: leads the segments that cross others, and those to be snapped, through all sites whose pixels they
     /// meet; and, as long as there are any, those that meet a pixel by which another was bent, or an end of one that
     /// is snapped.
-    fn lead<K: Kernel>(&self, crossings: &[Crossing]) -> (Vec<bool>, Vec<Pass>) {
+    fn route<K: Kernel>(&self, crossings: &[Crossing]) -> (Vec<bool>, Vec<Pass>) {
         if crossings.is_empty() && self.snapped == 0 {
             return (vec![false; self.segments.len()], Vec::new());
         }
-        let mut is_hot = vec![false; self.places + self.added.len()];
+        let mut is_hot = vec![false; self.given_count + self.added.len()];
         let sites = self.hot_sites(crossings);
         sites.iter().for_each(|&site| is_hot[site as usize] = true);
         let mut hot = vec![self.pixels(sites)];
         let mut is_active = vec![false; is_hot.len()];
         self.ends[..self.snapped].as_flattened().iter().for_each(|&site| is_active[site as usize] = true);
-        let mut is_led = vec![false; self.segments.len()];
-        let mut led: Vec<u32> = Vec::new();
+        let mut has_chain = vec![false; self.segments.len()];
+        let mut routed: Vec<u32> = Vec::new();
         let mut fresh: Vec<u32> =
             crossings.iter().flat_map(|crossing| crossing.segments).chain(0..self.snapped as u32).collect();
         fresh.par_sort_unstable();
@@ -228,33 +228,33 @@ impl<'a> Builder<'a> {
         let mut passes = self.passes_of_crossings();
         let mut known = 0;
         while !fresh.is_empty() {
-            fresh.iter().for_each(|&i| is_led[i as usize] = true);
+            fresh.iter().for_each(|&i| has_chain[i as usize] = true);
             self.pass::<K>(&fresh, &hot, &mut passes);
             // Places that lie on a segment that may bend are kept on it.
-            let heated = self.places_on::<K>(&fresh, |site| !is_hot[site as usize]);
+            let heated = self.sites_exactly_on::<K>(&fresh, |site| !is_hot[site as usize]);
             heated.iter().for_each(|&site| is_hot[site as usize] = true);
-            led.append(&mut fresh);
+            routed.append(&mut fresh);
             hot.push(self.pixels(heated));
-            self.pass::<K>(&led, &hot[hot.len() - 1..], &mut passes);
+            self.pass::<K>(&routed, &hot[hot.len() - 1..], &mut passes);
             // What was bent may bend others.
             passes[known..].iter().filter(|pass| !pass.exact).for_each(|pass| is_active[pass.site as usize] = true);
             known = passes.len();
             let straight = (0..self.segments.len() as u32).into_par_iter().with_min_len(4096);
             let is_bent = |&i: &u32| {
                 let mut is_bent = false;
-                if !is_led[i as usize] {
+                if !has_chain[i as usize] {
                     self.sites_on::<K>(i, &hot, |site| is_bent |= is_active[site as usize]);
                 }
                 is_bent
             };
             fresh = straight.filter(is_bent).collect();
         }
-        (is_led, passes)
+        (has_chain, passes)
     }
 
     /// Of the segments that cross, where they do.
     fn passes_of_crossings(&self) -> Vec<Pass> {
-        let sites = (self.places..self.places + self.added.len()).map(|site| site as u32);
+        let sites = (self.given_count..self.given_count + self.added.len()).map(|site| site as u32);
         let here = |site| self.crossed_at(site).iter().map(move |&segment| Pass { segment, site, exact: false });
         sites.flat_map(here).collect()
     }
@@ -299,7 +299,7 @@ impl<'a> Builder<'a> {
             for &segment in segments {
                 let [a, b] = self.segments[segment as usize];
                 self.sites_on::<K>(segment, trees, |site| {
-                    let is_given = (site as usize) < self.places;
+                    let is_given = (site as usize) < self.given_count;
                     let exact = is_given && K::sign(&Orientation2([a, b, self.site(site)])) == Sign::Zero;
                     found.push(Pass { segment, site, exact });
                 });
@@ -311,27 +311,27 @@ impl<'a> Builder<'a> {
 
     /// The segments whose crossings were rounded to an added site; each of them is led through it.
     fn crossed_at(&self, site: u32) -> &[u32] {
-        let Some(added) = (site as usize).checked_sub(self.places) else { return &[] };
+        let Some(added) = (site as usize).checked_sub(self.given_count) else { return &[] };
         let from = if added == 0 { 0 } else { self.crossed_ends[added - 1] as usize };
         &self.crossed[from..self.crossed_ends[added] as usize]
     }
 
     /// Those of the places that lie on some segments exactly, in order.
-    fn places_on<K: Kernel>(&self, segments: &[u32], is_asked: impl Fn(u32) -> bool + Sync) -> Vec<u32> {
-        let places = (0..self.places as u32).into_par_iter().with_min_len(4096);
+    fn sites_exactly_on<K: Kernel>(&self, segments: &[u32], is_asked: impl Fn(u32) -> bool + Sync) -> Vec<u32> {
+        let sites = (0..self.given_count as u32).into_par_iter().with_min_len(4096);
         if !self.is_crowded {
             let tree = self.tree(segments.iter().copied());
-            return places.filter(|&site| is_asked(site) && self.is_on_one::<K>(site, &tree, segments)).collect();
+            return sites.filter(|&site| is_asked(site) && self.is_on_one::<K>(site, &tree, segments)).collect();
         }
         // A place is in many boxes, but on few segments: each of these is asked for its places.
-        let places: Vec<u32> = places.filter(|&site| is_asked(site)).collect();
-        let boxes: Vec<Box2> = places.iter().map(|&site| Box2::around([self.site(site); 2])).collect();
+        let sites: Vec<u32> = sites.filter(|&site| is_asked(site)).collect();
+        let boxes: Vec<Box2> = sites.iter().map(|&site| Box2::around([self.site(site); 2])).collect();
         let tree = BoxTree::new(&boxes);
         let on_segment = |&segment: &u32| {
             let mut found = Vec::new();
             let [a, b] = self.segments[segment as usize];
             tree.visit(self.along(segment), |member| {
-                let site = places[member as usize];
+                let site = sites[member as usize];
                 if K::sign(&Orientation2([a, b, self.site(site)])) == Sign::Zero {
                     found.push(site);
                 }
@@ -360,7 +360,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Phase 4: the sites of each segment, in order.
-    fn collect(self, crossings: Vec<Crossing>, is_led: &[bool], passes: Vec<Pass>) -> Arrangement {
+    fn collect(self, crossings: Vec<Crossing>, has_chain: &[bool], passes: Vec<Pass>) -> Arrangement {
         let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize], self.site(site));
         // Segment after segment, by counting; and each one's sites then by their place along it.
         let mut ends = vec![0; self.segments.len()];
@@ -376,14 +376,14 @@ impl<'a> Builder<'a> {
         let mut from = 0;
         let mut chains = FxHashMap::default();
         let mut rows = Vec::new();
-        for (segment, &end) in (0..).zip(&ends).filter(|(segment, _)| is_led[*segment as usize]) {
+        for (segment, &end) in (0..).zip(&ends).filter(|(segment, _)| has_chain[*segment as usize]) {
             let (row, others) = rest.split_at_mut((end - from) as usize);
             rest = others;
             rows.push((segment, row));
             chains.insert(segment, from..end);
             from = end;
         }
-        rows.into_par_iter().with_min_len(FEW).for_each(|(segment, row): (u32, &mut [(Place, u32)])| {
+        rows.into_par_iter().with_min_len(FEW).for_each(|(segment, row): (u32, &mut [(Site, u32)])| {
             row.sort_unstable_by(|(p, _), (q, _)| lexicographic(*p, *q));
             let [a, b] = self.segments[segment as usize];
             if lexicographic(a, b).is_gt() {
@@ -395,7 +395,7 @@ impl<'a> Builder<'a> {
         Arrangement {
             unit: self.grid.unit,
             on_grid,
-            places: self.places,
+            given_count: self.given_count,
             added: self.added,
             crossings,
             chains,
@@ -412,6 +412,6 @@ pub(super) fn cross<K: Kernel>([a, b]: Segment, [c, d]: Segment) -> bool {
 }
 
 /// Equal places have equal keys: of zeros, there is one.
-fn key(place: Place) -> [u64; 2] {
-    place.map(f64::to_bits)
+fn key(site: Site) -> [u64; 2] {
+    site.map(f64::to_bits)
 }

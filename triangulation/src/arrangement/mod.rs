@@ -47,11 +47,11 @@ pub(crate) use rounder::{Rounder, crosses, is_aligned, is_ordinary, step_at};
 /// takes longer.
 const FEW: usize = 256;
 
-type Place = [f64; 2];
+type Site = [f64; 2];
 /// Where the site of a number is. `PERF:` not a type of its own for each caller: all of this would be compiled anew for
 /// each, where a call by pointer is none of the time.
-type PlaceOf<'a> = dyn Fn(u32) -> Place + Sync + 'a;
-type Segment = [Place; 2];
+type SiteOf<'a> = dyn Fn(u32) -> Site + Sync + 'a;
+type Segment = [Site; 2];
 
 /// Two segments that cross in their interiors, by their numbers, and the site to which the crossing was rounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -69,8 +69,8 @@ pub struct Crossing {
 pub struct Arrangement {
     unit: [f64; 2],
     on_grid: bool,
-    places: usize,
-    added: Vec<Place>,
+    given_count: usize,
+    added: Vec<Site>,
     crossings: Vec<Crossing>,
     /// Of the segments that may bend: the sites between their ends.
     chains: FxHashMap<u32, Range<u32>>,
@@ -87,8 +87,8 @@ impl Arrangement {
     /// # Complexity
     /// O((n + k) log n) for n segments and k pairs of them that cross, to find these; to lead segments through sites, about
     /// as much in practice.
-    pub fn new(places: usize, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
-        Self::arrange(places, &place, segments, 0, step)
+    pub fn new(given_count: usize, site_of: impl Fn(u32) -> Site + Sync, segments: &[[u32; 2]], step: f64) -> Self {
+        Self::arrange(given_count, &site_of, segments, 0, step)
     }
 
     /// Like [`new`](Self::new), but the first `snapped` segments are led through all sites whose pixels they meet,
@@ -97,37 +97,37 @@ impl Arrangement {
     /// # Complexity
     /// That of [`new`](Self::new).
     pub fn with_snapped(
-        places: usize,
-        place: impl Fn(u32) -> Place + Sync,
+        given_count: usize,
+        site_of: impl Fn(u32) -> Site + Sync,
         segments: &[[u32; 2]],
         snapped: usize,
         step: f64,
     ) -> Self {
-        Self::arrange(places, &place, segments, snapped, step)
+        Self::arrange(given_count, &site_of, segments, snapped, step)
     }
 
-    fn arrange(places: usize, place: &PlaceOf<'_>, segments: &[[u32; 2]], snapped: usize, step: f64) -> Self {
-        let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(place)).collect();
-        let larger = |sum: Place, p: &Place| [sum[0].max(p[0].abs()), sum[1].max(p[1].abs())];
+    fn arrange(given_count: usize, site_of: &SiteOf<'_>, segments: &[[u32; 2]], snapped: usize, step: f64) -> Self {
+        let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(site_of)).collect();
+        let larger = |sum: Site, p: &Site| [sum[0].max(p[0].abs()), sum[1].max(p[1].abs())];
         let largest = drawn.as_flattened().iter().fold([0.0; 2], larger);
         // Half of the smallest subnormal number is none: away from there, by a power of two.
         const UP: f64 = f64::from_bits((1023 + 400) << 52);
-        let scale: Place = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
+        let scale: Site = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
         // Zero has one sign only.
-        let scaled = |p: Place| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
-        let place = |i: u32| scaled(place(i));
+        let scaled = |p: Site| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
+        let site_of = |i: u32| scaled(site_of(i));
         drawn.as_flattened_mut().iter_mut().for_each(|p| *p = scaled(*p));
         let smallest = scale.map(|s| step.max(f64::from_bits(1)) * s);
         // Places on segments count like ends, once they are known.
         let mut on_segments: Vec<u32> = Vec::new();
         let mut arrangement = loop {
-            let others: Vec<Place> = on_segments.iter().map(|&site| place(site)).collect();
+            let others: Vec<Site> = on_segments.iter().map(|&site| site_of(site)).collect();
             let grid = Grid::through(scaled(largest), smallest, [drawn.as_flattened(), &others]);
-            let builder = Builder::new(grid, places, &place, segments, snapped, &drawn);
+            let builder = Builder::new(grid, given_count, &site_of, segments, snapped, &drawn);
             let arrangement = if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() };
             let before = on_segments.len();
-            let given = arrangement.chain_sites.iter().filter(|&&site| (site as usize) < places);
-            on_segments.extend(given.filter(|&&site| !grid.has(place(site))));
+            let given = arrangement.chain_sites.iter().filter(|&&site| (site as usize) < given_count);
+            on_segments.extend(given.filter(|&&site| !grid.has(site_of(site))));
             if on_segments.len() == before {
                 break arrangement;
             }
@@ -149,30 +149,30 @@ impl Arrangement {
     /// # Complexity
     /// That of the arrangement for each round: one or two, but where coordinates span hundreds of powers of two.
     #[must_use]
-    pub fn settled(mut self, place: impl Fn(u32) -> Place + Sync, segments: &[[u32; 2]], step: f64) -> Self {
-        while self.again(&place, segments, step) {}
+    pub fn crossing_free(mut self, site_of: impl Fn(u32) -> Site + Sync, segments: &[[u32; 2]], step: f64) -> Self {
+        while self.again(&site_of, segments, step) {}
         self
     }
 
     /// Arranges the pieces once more; says whether any cross.
-    fn again(&mut self, place: &PlaceOf<'_>, segments: &[[u32; 2]], step: f64) -> bool {
+    fn again(&mut self, site_of: &SiteOf<'_>, segments: &[[u32; 2]], step: f64) -> bool {
         let row = |i: usize| {
             let [a, b] = segments[i];
             let sites = std::iter::once(a).chain(self.chain(i as u32).iter().copied()).chain([b]);
             sites.collect::<Vec<u32>>()
         };
-        let mut pieces: Vec<[u32; 2]> = (0..segments.len())
+        let mut parts: Vec<[u32; 2]> = (0..segments.len())
             .flat_map(|i| {
                 row(i).windows(2).map(|ends| [ends[0].min(ends[1]), ends[0].max(ends[1])]).collect::<Vec<_>>()
             })
             .collect();
-        pieces.sort_unstable();
-        pieces.dedup();
-        let site = |i: u32| match (i as usize).checked_sub(self.places) {
-            None => place(i),
+        parts.sort_unstable();
+        parts.dedup();
+        let site = |i: u32| match (i as usize).checked_sub(self.given_count) {
+            None => site_of(i),
             Some(added) => self.added[added],
         };
-        let inner = Arrangement::arrange(self.places + self.added.len(), &site, &pieces, 0, step);
+        let inner = Arrangement::arrange(self.given_count + self.added.len(), &site, &parts, 0, step);
         if inner.crossings.is_empty() {
             return false;
         }
@@ -180,13 +180,13 @@ impl Arrangement {
         let mut chain_sites = Vec::new();
         for i in 0..segments.len() {
             let from = chain_sites.len() as u32;
-            let mut is_led = self.is_led(i as u32);
+            let mut has_chain = self.has_chain(i as u32);
             for ends in row(i).windows(2) {
-                let piece = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                let at = pieces.partition_point(|other| *other < piece) as u32;
-                is_led |= inner.is_led(at);
+                let part = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+                let at = parts.partition_point(|other| *other < part) as u32;
+                has_chain |= inner.has_chain(at);
                 let chain = inner.chain(at);
-                if ends[0] == piece[0] {
+                if ends[0] == part[0] {
                     chain_sites.extend(chain);
                 } else {
                     chain_sites.extend(chain.iter().rev());
@@ -194,7 +194,7 @@ impl Arrangement {
                 chain_sites.push(ends[1]);
             }
             chain_sites.truncate(chain_sites.len().saturating_sub(1).max(from as usize));
-            if is_led {
+            if has_chain {
                 chains.insert(i as u32, from..chain_sites.len() as u32);
             }
         }
@@ -215,7 +215,7 @@ impl Arrangement {
     }
 
     /// The sites that were added: distinct.
-    pub fn added(&self) -> &[Place] {
+    pub fn added(&self) -> &[Site] {
         &self.added
     }
 
@@ -226,7 +226,7 @@ impl Arrangement {
 
     /// Whether a segment crosses others, or comes near what they are bent by; so that it is led through all sites whose
     /// pixels it meets, and through the places on it.
-    pub fn is_led(&self, segment: u32) -> bool {
+    pub fn has_chain(&self, segment: u32) -> bool {
         self.chains.contains_key(&segment)
     }
 
@@ -239,7 +239,7 @@ impl Arrangement {
     /// The segments that are led through sites that were added: pairs of the site's position among these and the
     /// segment, in order.
     pub fn through_added(&self) -> Vec<(u32, u32)> {
-        let given = self.places as u32;
+        let given = self.given_count as u32;
         let added = |site: &u32| site.checked_sub(given);
         // Site after site, by counting.
         let mut ends = vec![0u32; self.added.len()];
@@ -264,6 +264,6 @@ fn starts(counts: &mut [u32]) -> u32 {
 }
 
 /// By x, then by y; of coordinates that have one zero.
-fn lexicographic(p: Place, q: Place) -> std::cmp::Ordering {
+fn lexicographic(p: Site, q: Site) -> std::cmp::Ordering {
     p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
 }

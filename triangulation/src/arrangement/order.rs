@@ -46,8 +46,8 @@ impl Order {
 
     /// The place behind all for which a question is answered with yes, which are the first: the node before it on each
     /// level.
-    pub(super) fn place(&self, is_before: impl Fn(u32) -> bool) -> [u32; LEVELS] {
-        let mut place = [self.head(); LEVELS];
+    pub(super) fn position(&self, is_before: impl Fn(u32) -> bool) -> [u32; LEVELS] {
+        let mut position = [self.head(); LEVELS];
         let mut at = self.head();
         let mut refused = self.head();
         for level in (0..LEVELS).rev() {
@@ -60,15 +60,15 @@ impl Order {
                 }
                 at = next;
             }
-            place[level] = at;
+            position[level] = at;
         }
-        place
+        position
     }
 
     /// Inserts a number, once, at a place.
-    pub(super) fn insert(&mut self, number: u32, place: &[u32; LEVELS]) {
+    pub(super) fn insert(&mut self, number: u32, position: &[u32; LEVELS]) {
         let node = number; // which nobody else ever had before
-        for (level, &before) in place.iter().enumerate().take(levels(node)) {
+        for (level, &before) in position.iter().enumerate().take(levels(node)) {
             let behind = self.next(before, level);
             *self.links(node, level) = [before, behind];
             self.links(before, level)[1] = node;
@@ -133,7 +133,7 @@ mod tests {
         for number in 0..1000 {
             let at = below(naive.len() + 1);
             let first = naive[..at].to_vec();
-            order.insert(number, &order.place(|other| first.contains(&other)));
+            order.insert(number, &order.position(|other| first.contains(&other)));
             naive.insert(at, number);
             if naive.len() > 2 {
                 let i = below(naive.len() - 1);

@@ -5,7 +5,7 @@ use crate::num::lattice::lowest_bit;
 use crate::num::{Dyadic, Pair, Sign};
 
 use super::boxes::Box2;
-use super::{Place, Segment, lexicographic};
+use super::{Segment, Site, lexicographic};
 
 /// The places to which crossings are rounded. On each axis these are either the multiples of the *unit*, a power of
 /// two; or the doubles, of which those near zero are multiples of the *smallest* step.
@@ -24,7 +24,7 @@ pub(super) struct Grid {
 }
 
 /// The unit in the last place of a number.
-pub(super) fn last_place(x: f64) -> f64 {
+pub(super) fn ulp(x: f64) -> f64 {
     let x = x.abs();
     // Of the largest numbers there is none above.
     if x < f64::MAX / 2.0 { x.next_up() - x } else { x - x.next_down() }
@@ -33,14 +33,14 @@ pub(super) fn last_place(x: f64) -> f64 {
 impl Grid {
     /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles, but
     /// none smaller than `smallest`.
-    pub(super) fn through(largest: Place, smallest: Place, places: [&[Place]; 2]) -> Self {
-        let is_ordinary = places.into_iter().all(|some| some.as_flattened().iter().all(|&x| RANGE.admits(x)));
+    pub(super) fn through(largest: Site, smallest: Site, sites: [&[Site]; 2]) -> Self {
+        let is_ordinary = sites.into_iter().all(|some| some.as_flattened().iter().all(|&x| RANGE.admits(x)));
         // Crossings of what the fast kernels admit are to be admitted.
         let ordinary = RANGE.min * f64::EPSILON;
         let smallest = if is_ordinary { smallest.map(|step| step.max(ordinary)) } else { smallest };
-        let unit = [0, 1].map(|k| last_place(largest[k]).max(smallest[k]));
+        let unit = [0, 1].map(|k| ulp(largest[k]).max(smallest[k]));
         let mut grid = Grid { unit, is_even: true, smallest, is_ordinary };
-        grid.is_even = places.into_iter().all(|some| some.iter().all(|&place| grid.holds(place)));
+        grid.is_even = sites.into_iter().all(|some| some.iter().all(|&site| grid.holds(site)));
         grid
     }
 
@@ -78,20 +78,20 @@ impl Grid {
     }
 
     /// A box around the pixel of a place.
-    pub(super) fn around(&self, place: Place) -> Box2 {
-        let halves = [0, 1].map(|k| self.down(k, place[k]).max(self.up(k, place[k])));
-        Box2::around([place, place]).grown(halves)
+    pub(super) fn around(&self, site: Site) -> Box2 {
+        let halves = [0, 1].map(|k| self.down(k, site[k]).max(self.up(k, site[k])));
+        Box2::around([site, site]).grown(halves)
     }
 
     /// Whether a place is the center of a pixel, in the arithmetic that is used.
-    pub(super) fn has(&self, place: Place) -> bool {
-        let is_center = !self.is_even || self.holds(place);
-        is_center && (!self.is_ordinary || place.iter().all(|&x| RANGE.admits(x)))
+    pub(super) fn has(&self, site: Site) -> bool {
+        let is_center = !self.is_even || self.holds(site);
+        is_center && (!self.is_ordinary || site.iter().all(|&x| RANGE.admits(x)))
     }
 
     /// Whether a place is a multiple of the unit on both axes.
-    pub(super) fn holds(&self, place: Place) -> bool {
-        (0..2).all(|k| place[k] == 0.0 || lowest_bit(place[k]) >= lowest_bit(self.unit[k]))
+    pub(super) fn holds(&self, site: Site) -> bool {
+        (0..2).all(|k| site[k] == 0.0 || lowest_bit(site[k]) >= lowest_bit(self.unit[k]))
     }
 
     /// Whether a segment has a point in the pixel around a place.
@@ -99,7 +99,7 @@ impl Grid {
     /// Of two convex sets without a common point, a line along a side of one of them keeps them apart: a side of the
     /// pixel or the segment. That the pixel lacks two of its sides makes no difference: it is the union of growing
     /// closed rectangles.
-    pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Place) -> bool {
+    pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Site) -> bool {
         let within = |k: usize| {
             let (low, high) = if a[k] < b[k] { (a[k], b[k]) } else { (b[k], a[k]) };
             reaches(high, center[k], -self.down(k, center[k])) && !reaches(low, center[k], self.up(k, center[k]))
@@ -131,7 +131,7 @@ impl Grid {
     /// Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
     /// column from one side to the other.
     #[inline]
-    pub(super) fn along(&self, [a, b]: Segment, site: Place) -> Place {
+    pub(super) fn along(&self, [a, b]: Segment, site: Site) -> Site {
         let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
         let [dx, dy] = [0, 1].map(|k| b[k] / self.unit[k] - a[k] / self.unit[k]);
         let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
@@ -140,7 +140,7 @@ impl Grid {
 
     /// Where two segments cross in their interiors, rounded to the grid: the center of the pixel that the crossing lies
     /// in, exactly.
-    pub(super) fn crossing<K: Kernel>(&self, ab: Segment, cd: Segment) -> Place {
+    pub(super) fn crossing<K: Kernel>(&self, ab: Segment, cd: Segment) -> Site {
         if let Some(center) = self.crossing_by_pairs(ab, cd) {
             return center;
         }
@@ -149,13 +149,13 @@ impl Grid {
     }
 
     /// The same with twice the digits of a double, if the error leaves no doubt.
-    fn crossing_by_pairs(&self, [a, b]: Segment, [c, d]: Segment) -> Option<Place> {
+    fn crossing_by_pairs(&self, [a, b]: Segment, [c, d]: Segment) -> Option<Site> {
         if !self.is_ordinary {
             return None;
         }
-        let minus = |p: Place, q: Place| [0, 1].map(|k| Pair::difference(p[k], q[k]));
-        let ([ux, uy], [vx, vy], way) = (minus(d, c), minus(a, c), minus(a, b));
-        let products = [ux * vy, uy * vx, ux * way[1], uy * way[0]];
+        let minus = |p: Site, q: Site| [0, 1].map(|k| Pair::difference(p[k], q[k]));
+        let ([ux, uy], [vx, vy], vector) = (minus(d, c), minus(a, c), minus(a, b));
+        let products = [ux * vy, uy * vx, ux * vector[1], uy * vector[0]];
         let [area, divisor] = [products[0] - products[1], products[2] - products[3]];
         let fraction = area / divisor;
         // Each area comes of two products and a difference; ten errors are more than all that they and the quotient
@@ -169,8 +169,8 @@ impl Grid {
         let of_fraction = 2.0 * (error(products[0], products[1]) + doubt) / divided + 10.0 * Pair::ERROR;
         let mut center = [0.0; 2];
         for (along, center) in center.iter_mut().enumerate() {
-            let x = Pair::difference(a[along], 0.0) - way[along] * fraction;
-            let doubt = of_fraction * way[along].estimate().abs() + 10.0 * Pair::ERROR * a[along].abs();
+            let x = Pair::difference(a[along], 0.0) - vector[along] * fraction;
+            let doubt = of_fraction * vector[along].estimate().abs() + 10.0 * Pair::ERROR * a[along].abs();
             *center = self.nearest(along, x.estimate());
             let beside = (x - Pair::difference(*center, 0.0)).estimate();
             let inside =
@@ -196,8 +196,9 @@ impl Grid {
             // An estimate is a step or two off, unless the angle is small: then the exact way is gone, rounded, as
             // often as it is longer than a step or two.
             let exact = || CrossingSide { ab, cd, along, center, offset: 0.0 }.value(Dyadic::difference);
-            let way = if tries < 2 { step } else { exact().quotient(&divisor(ab, cd)) };
-            center = if way.abs() <= 1.5 * step.abs() { center + step } else { self.nearest(along, center + way) };
+            let move_by = if tries < 2 { step } else { exact().quotient(&divisor(ab, cd)) };
+            center =
+                if move_by.abs() <= 1.5 * step.abs() { center + step } else { self.nearest(along, center + move_by) };
         }
         center + 0.0 // zero has one sign only
     }
@@ -205,7 +206,7 @@ impl Grid {
 
 /// About where segments cross, on one axis.
 fn estimate([a, b]: Segment, [c, d]: Segment, along: usize) -> f64 {
-    let area = |p: Place| (d[0] - c[0]) * (p[1] - c[1]) - (d[1] - c[1]) * (p[0] - c[0]);
+    let area = |p: Site| (d[0] - c[0]) * (p[1] - c[1]) - (d[1] - c[1]) * (p[0] - c[0]);
     let (at_a, at_b) = (area(a), area(b));
     let fraction = at_a / (at_a - at_b);
     let fraction = if (0.0..=1.0).contains(&fraction) { fraction } else { 0.5 };
@@ -221,12 +222,12 @@ fn divisor([a, b]: Segment, [c, d]: Segment) -> Dyadic {
 
 /// Whether `x >= center + offset`, exactly, for an offset that is a power of two.
 fn reaches(x: f64, center: f64, offset: f64) -> bool {
-    let way = x - center;
-    if way != offset {
-        return way > offset; // rounding is monotone
+    let distance = x - center;
+    if distance != offset {
+        return distance > offset; // rounding is monotone
     }
     // Knuth's error of the difference.
-    let back = way - x;
-    let error = (x - (way - back)) - (center + back);
+    let back = distance - x;
+    let error = (x - (distance - back)) - (center + back);
     error >= 0.0
 }

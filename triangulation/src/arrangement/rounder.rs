@@ -4,8 +4,8 @@ use crate::kernel::{Adaptive, Kernel, Orientation2, RANGE};
 use crate::num::Sign;
 
 use super::builder::cross;
-use super::pixel::{Grid, last_place};
-use super::{Place, Segment};
+use super::pixel::{Grid, ulp};
+use super::{Segment, Site};
 
 /// The grid to which the crossings of some segments are rounded.
 ///
@@ -18,7 +18,7 @@ pub(crate) struct Rounder {
 impl Rounder {
     /// The rounding of segments whose ends have these largest magnitudes on the axes, given whether all places that
     /// count are multiples of the unit. `None` for magnitudes beside the range of the fast kernels.
-    pub(crate) fn new(largest: Place, step: f64, is_even: bool) -> Option<Self> {
+    pub(crate) fn new(largest: Site, step: f64, is_even: bool) -> Option<Self> {
         // Tiny numbers are arranged scaled.
         let is_in_range = largest.iter().all(|&x| x >= RANGE.min && RANGE.admits(x));
         is_in_range.then(|| Rounder { grid: Grid::through(largest, [step; 2], [&[], &[]]).with_steps(is_even) })
@@ -35,22 +35,22 @@ impl Rounder {
     }
 
     /// Whether a place is a multiple of the unit on both axes.
-    pub(crate) fn holds(&self, place: Place) -> bool {
-        self.grid.holds(place)
+    pub(crate) fn holds(&self, site: Site) -> bool {
+        self.grid.holds(site)
     }
 
     /// The site of the crossing of two segments; `None` unless they cross in their interiors.
-    pub(crate) fn crossing(&self, ab: Segment, cd: Segment) -> Option<Place> {
+    pub(crate) fn crossing(&self, ab: Segment, cd: Segment) -> Option<Site> {
         crosses(ab, cd).then(|| self.grid.crossing::<Adaptive>(ab, cd))
     }
 
     /// Whether a segment has a point in the pixel of a site.
-    pub(crate) fn hits(&self, segment: Segment, site: Place) -> bool {
+    pub(crate) fn hits(&self, segment: Segment, site: Site) -> bool {
         self.grid.hits::<Adaptive>(segment, site)
     }
 
     /// A key by which sites whose pixels a segment meets are in order, from its lexicographically smaller end.
-    pub(crate) fn along(&self, segment: Segment, site: Place) -> Place {
+    pub(crate) fn along(&self, segment: Segment, site: Site) -> Site {
         self.grid.along(segment, site)
     }
 }
@@ -61,16 +61,16 @@ pub(crate) fn crosses(ab: Segment, cd: Segment) -> bool {
 }
 
 /// Whether a place lies on the line through a segment.
-pub(crate) fn is_aligned([a, b]: Segment, place: Place) -> bool {
-    Adaptive::sign(&Orientation2([a, b, place])) == Sign::Zero
+pub(crate) fn is_aligned([a, b]: Segment, site: Site) -> bool {
+    Adaptive::sign(&Orientation2([a, b, site])) == Sign::Zero
 }
 
 /// A number that grows with the unit of the grid: the step between doubles of a magnitude.
 pub(crate) fn step_at(x: f64) -> f64 {
-    last_place(x)
+    ulp(x)
 }
 
 /// Whether the fast kernels take a place.
-pub(crate) fn is_ordinary(place: Place) -> bool {
-    place.into_iter().all(|x| RANGE.admits(x))
+pub(crate) fn is_ordinary(site: Site) -> bool {
+    site.into_iter().all(|x| RANGE.admits(x))
 }

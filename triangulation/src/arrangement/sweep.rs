@@ -22,7 +22,7 @@ use crate::num::Sign;
 use crate::parallel::*;
 
 use super::order::Order;
-use super::{Place, Segment, lexicographic};
+use super::{Segment, Site, lexicographic};
 
 /// The pairs of segments that cross in their interiors, in no order.
 ///
@@ -43,7 +43,7 @@ pub(super) fn crossing_pairs<K: Kernel>(segments: &[Segment]) -> Vec<[u32; 2]> {
 /// An end of a segment.
 #[derive(Clone, Copy)]
 struct End {
-    at: Place,
+    at: Site,
     segment: u32,
     is_last: bool,
 }
@@ -52,7 +52,7 @@ struct Sweep<K> {
     /// Each from its lexicographically smaller end to the larger.
     segments: Vec<Segment>,
     /// The places of all ends, in order.
-    stops: Vec<Place>,
+    stops: Vec<Site>,
     /// The stop at which each segment ends.
     lasts: Vec<u32>,
     /// Those that are met, from the lowest up.
@@ -94,9 +94,9 @@ impl<K: Kernel> Sweep<K> {
     }
 
     /// Positive if a place is above a segment.
-    fn side(&self, segment: u32, place: Place) -> Sign {
+    fn side(&self, segment: u32, site: Site) -> Sign {
         let [a, b] = self.segments[segment as usize];
-        K::sign(&Orientation2([a, b, place]))
+        K::sign(&Orientation2([a, b, site]))
     }
 
     fn insert(&mut self, segment: u32, stop: u32) {
@@ -106,7 +106,7 @@ impl<K: Kernel> Sweep<K> {
             Sign::Zero => self.side(other, end) == Sign::Positive, // both go on from here
             side => side == Sign::Positive,
         };
-        let below = self.order.place(is_below);
+        let below = self.order.position(is_below);
         self.order.insert(segment, &below);
         self.look_at(self.order.below(segment), Some(segment), stop);
         self.look_at(Some(segment), self.order.above(segment), stop);
@@ -145,16 +145,16 @@ impl<K: Kernel> Sweep<K> {
         if will_cross {
             let last = self.lasts[lower as usize].min(self.lasts[upper as usize]);
             let ahead = &self.stops[stop as usize..last as usize];
-            let due = stop + ahead.partition_point(|&place| is_beyond::<K>([a, b], [c, d], place)) as u32;
+            let due = stop + ahead.partition_point(|&site| is_beyond::<K>([a, b], [c, d], site)) as u32;
             self.due.push(Reverse((due, lower, upper)));
         }
     }
 }
 
 /// Whether the crossing of two segments, the second of which begins above the first, comes after a place.
-fn is_beyond<K: Kernel>(ab: Segment, cd: Segment, place: Place) -> bool {
+fn is_beyond<K: Kernel>(ab: Segment, cd: Segment, site: Site) -> bool {
     // Below `c d`, `a` is on its right: the turn of `c d a` is negative.
-    let side = |along: usize| K::sign(&CrossingSide { ab, cd, along, center: place[along], offset: 0.0 });
+    let side = |along: usize| K::sign(&CrossingSide { ab, cd, along, center: site[along], offset: 0.0 });
     match side(0) {
         Sign::Zero => side(1) == Sign::Negative,
         side => side == Sign::Negative,
@@ -190,8 +190,8 @@ mod tests {
         };
         for round in 0..600 {
             let (side, count) = (2 + round % 9, 1 + below(40));
-            let mut place = || [below(side) as f64, below(side) as f64];
-            let mut segments: Vec<Segment> = (0..count).map(|_| [place(), place()]).collect();
+            let mut site = || [below(side) as f64, below(side) as f64];
+            let mut segments: Vec<Segment> = (0..count).map(|_| [site(), site()]).collect();
             segments.retain(|[a, b]| a != b);
             let (found, wide) = (crossing_pairs::<Adaptive>(&segments), crossing_pairs::<Wide>(&segments));
             assert_eq!(sorted(found), naive(&segments), "round {round}");
@@ -249,11 +249,11 @@ mod tests {
             segments.push([from, [to[0] + across, to[1]]]);
         }
         let expected = sorted(crossing_pairs::<Adaptive>(&segments));
-        let places: Vec<Place> = segments.as_flattened().to_vec();
+        let sites: Vec<Site> = segments.as_flattened().to_vec();
         let ends: Vec<[u32; 2]> = (0..segments.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
         for _ in 0..50 {
             let arranged =
-                on_threads(4, || super::super::Arrangement::new(places.len(), |i| places[i as usize], &ends, 0.0));
+                on_threads(4, || super::super::Arrangement::new(sites.len(), |i| sites[i as usize], &ends, 0.0));
             assert!(arranged.crossings().iter().map(|crossing| crossing.segments).eq(expected.iter().copied()));
         }
     }

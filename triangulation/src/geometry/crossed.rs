@@ -15,7 +15,7 @@ type Segment = [[f64; 2]; 2];
 /// Where two segments cross, in plan: on the first of them, within its box; or, unless that is exact, an
 /// end within [`REACH`] of the other segment. The end divides that segment into shorter ones, so that
 /// no sequence of such places goes on forever. Does not depend on the order of segments and ends.
-pub(super) fn place(ab: Segment, cd: Segment) -> [f64; 2] {
+pub(super) fn site(ab: Segment, cd: Segment) -> [f64; 2] {
     let sorted = |[p, q]: Segment| if lexicographic(p, q).is_gt() { [q, p] } else { [p, q] };
     let (mut ab, mut cd) = (sorted(ab), sorted(cd));
     if lexicographic(ab[0], cd[0]).then_with(|| lexicographic(ab[1], cd[1])).is_gt() {
@@ -23,24 +23,24 @@ pub(super) fn place(ab: Segment, cd: Segment) -> [f64; 2] {
     }
     let ([a, b], [c, d]) = (ab, cd);
     let along = kernel::crossing(a, b, c, d);
-    let place = std::array::from_fn(|axis| {
+    let site = std::array::from_fn(|axis| {
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
         between(a[axis], b[axis], along).clamp(low, high)
     });
-    if [ab, cd].iter().all(|&[p, q]| kernel::twice_area(p, q, place) == 0.0) {
-        return place;
+    if [ab, cd].iter().all(|&[p, q]| kernel::twice_area(p, q, site) == 0.0) {
+        return site;
     }
     let reach: [f64; 2] =
         std::array::from_fn(|axis| REACH * [a, b, c, d].map(|p| p[axis].abs()).into_iter().fold(0.0, f64::max));
     let ends = [(a, cd), (b, cd), (c, ab), (d, ab)];
     let near = ends.into_iter().find(|&(p, segment)| divides(p, segment) && is_near(p, segment, reach));
-    near.map_or(place, |(end, _)| end)
+    near.map_or(site, |(end, _)| end)
 }
 
 /// The number at a fraction of the way from one to another.
 fn between(from: f64, to: f64, along: f64) -> f64 {
-    let way = to - from;
-    if way.is_finite() { from + along * way } else { from * (1.0 - along) + to * along }
+    let length = to - from;
+    if length.is_finite() { from + along * length } else { from * (1.0 - along) + to * along }
 }
 
 /// Whether both ways from `p` to the ends of a segment are shorter than the segment.

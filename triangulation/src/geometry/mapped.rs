@@ -43,19 +43,19 @@ use crate::num::Sign;
 /// ```
 #[derive(Clone, Copy)]
 pub struct Mapped<P, F, K = Adaptive> {
-    place: F,
+    site: F,
     of: PhantomData<fn(P) -> K>,
 }
 
 impl<P, F: Fn(&P) -> [f64; 2]> Mapped<P, F> {
     /// By the function that gives a point its place.
-    pub fn new(place: F) -> Self {
-        Mapped { place, of: PhantomData }
+    pub fn new(site: F) -> Self {
+        Mapped { site, of: PhantomData }
     }
 
     /// The same with another arithmetic.
     pub fn with_kernel<K: Kernel>(self) -> Mapped<P, F, K> {
-        Mapped { place: self.place, of: PhantomData }
+        Mapped { site: self.site, of: PhantomData }
     }
 }
 
@@ -113,32 +113,32 @@ where
 
     #[inline]
     fn admits(&self, p: &P) -> bool {
-        Plane::<K>::default().admits(&(self.place)(p))
+        Plane::<K>::default().admits(&(self.site)(p))
     }
 
     #[inline(always)]
     fn compare(&self, p: &P, q: &P) -> Ordering {
-        Plane::<K>::default().compare(&(self.place)(p), &(self.place)(q))
+        Plane::<K>::default().compare(&(self.site)(p), &(self.site)(q))
     }
 
     #[inline]
     fn rough_distance(&self, p: &P, q: &P) -> f64 {
-        Plane::<K>::default().rough_distance(&(self.place)(p), &(self.place)(q))
+        Plane::<K>::default().rough_distance(&(self.site)(p), &(self.site)(q))
     }
 
     #[inline(always)]
     fn rough_sides(&self, simplex: [&P; 3], q: &P) -> [f64; 3] {
-        Plane::<K>::default().rough_sides(simplex.map(&self.place).each_ref(), &(self.place)(q))
+        Plane::<K>::default().rough_sides(simplex.map(&self.site).each_ref(), &(self.site)(q))
     }
 
     #[inline(always)]
     fn orientation(&self, simplex: [&P; 3]) -> Sign {
-        Plane::<K>::default().orientation(simplex.map(&self.place).each_ref())
+        Plane::<K>::default().orientation(simplex.map(&self.site).each_ref())
     }
 
     #[inline(always)]
     fn side_of_sphere(&self, simplex: [&P; 3], q: &P) -> Sign {
-        Plane::<K>::default().side_of_sphere(simplex.map(&self.place).each_ref(), &(self.place)(q))
+        Plane::<K>::default().side_of_sphere(simplex.map(&self.site).each_ref(), &(self.site)(q))
     }
 }
 
@@ -152,12 +152,12 @@ where
 
     #[inline]
     fn coordinates(&self, p: &P) -> [f64; 2] {
-        (self.place)(p)
+        (self.site)(p)
     }
 
     #[inline(always)]
     fn exact_plan(&self, p: &P) -> Option<[f64; 2]> {
-        Plane::<K>::default().exact_plan(&(self.place)(p))
+        Plane::<K>::default().exact_plan(&(self.site)(p))
     }
 }
 
@@ -169,7 +169,7 @@ where
 {
     #[inline]
     fn compare_distance(&self, q: &P, a: &P, b: &P) -> Ordering {
-        let [q, a, b] = [q, a, b].map(&self.place);
+        let [q, a, b] = [q, a, b].map(&self.site);
         Plane::<K>::default().compare_distance(&q, &a, &b)
     }
 }

@@ -27,21 +27,21 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 ///
 /// type Pixel = [u16; 2];
 /// struct Screen(Plane);
-/// fn place([x, y]: &Pixel) -> [f64; 2] { [f64::from(*x), -f64::from(*y)] }
+/// fn site([x, y]: &Pixel) -> [f64; 2] { [f64::from(*x), -f64::from(*y)] }
 ///
 /// impl Geometry<3> for Screen {
 ///     type Point = Pixel;
 ///     fn admits(&self, _: &Pixel) -> bool { true }
-///     fn compare(&self, p: &Pixel, q: &Pixel) -> Ordering { self.0.compare(&place(p), &place(q)) }
-///     fn orientation(&self, s: [&Pixel; 3]) -> Sign { self.0.orientation(s.map(place).each_ref()) }
+///     fn compare(&self, p: &Pixel, q: &Pixel) -> Ordering { self.0.compare(&site(p), &site(q)) }
+///     fn orientation(&self, s: [&Pixel; 3]) -> Sign { self.0.orientation(s.map(site).each_ref()) }
 ///     fn side_of_sphere(&self, s: [&Pixel; 3], q: &Pixel) -> Sign {
-///         self.0.side_of_sphere(s.map(place).each_ref(), &place(q))
+///         self.0.side_of_sphere(s.map(site).each_ref(), &site(q))
 ///     }
 /// }
 ///
 /// impl Metric for Screen {
 ///     fn compare_distance(&self, q: &Pixel, a: &Pixel, b: &Pixel) -> Ordering {
-///         self.0.compare_distance(&place(q), &place(a), &place(b))
+///         self.0.compare_distance(&site(q), &site(a), &site(b))
 ///     }
 /// }
 ///
@@ -59,8 +59,8 @@ pub trait Metric: Geometry<3> {
     fn compare_distance(&self, q: &Self::Point, a: &Self::Point, b: &Self::Point) -> Ordering;
 }
 
-fn compare<K: Kernel>(places: [[f64; 2]; 3]) -> Ordering {
-    (K::sign(&CompareDistance(places)) as i8).cmp(&0)
+fn compare<K: Kernel>(sites: [[f64; 2]; 3]) -> Ordering {
+    (K::sign(&CompareDistance(sites)) as i8).cmp(&0)
 }
 
 impl<K: Kernel> Metric for Plane<K> {

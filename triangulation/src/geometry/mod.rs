@@ -257,14 +257,14 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 /// impl Crossing for Site {
 ///     fn plan(&self, p: &Station) -> [f64; 2] { p.at }
 ///     fn step(&self) -> f64 { self.0.step() }
-///     fn meet(&self, place: [f64; 2], _: &[[&Station; 2]]) -> Station { Station { at: place, is_surveyed: false } }
+///     fn meet(&self, site: [f64; 2], _: &[[&Station; 2]]) -> Station { Station { at: site, is_surveyed: false } }
 /// }
 ///
 /// let stations = [[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]].map(|at| Station { at, is_surveyed: true });
 /// let lines = [[0, 1], [2, 3]];
 /// let (t, _) = ConstrainedDelaunay::<_>::from_lines(Site(Plane::default()), &stations, &lines, OnCrossing::Split)?;
-/// let made: Vec<_> = t.points().iter().filter(|p| !p.is_surveyed).map(|p| p.at).collect();
-/// assert_eq!(made, [[2.0, 2.0]]);
+/// let added: Vec<_> = t.points().iter().filter(|p| !p.is_surveyed).map(|p| p.at).collect();
+/// assert_eq!(added, [[2.0, 2.0]]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Crossing: Coordinates<3> {
@@ -278,20 +278,20 @@ pub trait Crossing: Coordinates<3> {
     }
 
     /// A point at a place at which segments meet that pass by it no further away than a rounding.
-    fn meet(&self, place: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;
+    fn meet(&self, site: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;
 
     /// The point where segments `a b` and `c d` cross in their interiors, rounded; or an end of one of them
     /// that is so near to the other that rounding may hide on which side of it the end lies.
     fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point {
-        let place = crossed::place(ab.map(|p| self.plan(p)), cd.map(|p| self.plan(p)));
-        self.meet(self.on_step(place), &[ab, cd])
+        let site = crossed::site(ab.map(|p| self.plan(p)), cd.map(|p| self.plan(p)));
+        self.meet(self.on_step(site), &[ab, cd])
     }
 
     /// The place that is nearest to one on a line between points that are admitted, and whose coordinates are multiples
     /// of the [step](Self::step).
-    fn on_step(&self, place: [f64; 2]) -> [f64; 2] {
+    fn on_step(&self, site: [f64; 2]) -> [f64; 2] {
         let step = self.step();
-        if step == 0.0 { place } else { place.map(|x| (x / step).round() * step + 0.0) } // zero has one sign only
+        if step == 0.0 { site } else { site.map(|x| (x / step).round() * step + 0.0) } // zero has one sign only
     }
 }
 

@@ -75,8 +75,8 @@ impl<K: Kernel> Crossing for Plane<K> {
         K::RANGE.min * f64::EPSILON
     }
 
-    fn meet(&self, place: [f64; 2], _: &[[&[f64; 2]; 2]]) -> [f64; 2] {
-        place
+    fn meet(&self, site: [f64; 2], _: &[[&[f64; 2]; 2]]) -> [f64; 2] {
+        site
     }
 }
 

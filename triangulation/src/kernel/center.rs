@@ -6,11 +6,11 @@ use crate::num::{Bounded, Dyadic, Expansion, Number};
 
 /// From the first of three weighted points to the place of which they have the same power: twice the area of the
 /// triangle is the last number, and the first two are the way times twice that.
-fn way<T: Number>([a, b, c]: [[f64; 3]; 3], difference: impl Fn(f64, f64) -> T + Copy) -> [T; 3] {
+fn scaled_offset<T: Number>([a, b, c]: [[f64; 3]; 3], difference: impl Fn(f64, f64) -> T + Copy) -> [T; 3] {
     let [(u, u_length), (v, v_length)] = [b, c].map(|p| {
-        let way = minus([p[0], p[1]], [a[0], a[1]], difference);
-        let length = square(&way[0]) + square(&way[1]) - difference(p[2], a[2]);
-        (way, length)
+        let vector = minus([p[0], p[1]], [a[0], a[1]], difference);
+        let length = square(&vector[0]) + square(&vector[1]) - difference(p[2], a[2]);
+        (vector, length)
     });
     [
         cross(&u_length, &v[1], &v_length, &u[1]),
@@ -36,15 +36,15 @@ pub fn power_center(corners: [[f64; 3]; 3]) -> [f64; 2] {
     const TOLERANCE: f64 = 1.0 / (1u64 << 42) as f64;
     let divided = |[x, y, area]: [f64; 3]| [x / area / 2.0, y / area / 2.0];
     if !corners.iter().flatten().all(|&x| RANGE.admits(x)) {
-        let [x, y, area] = way(corners, Dyadic::difference);
+        let [x, y, area] = scaled_offset(corners, Dyadic::difference);
         return [x, y].map(|x| x.quotient(&area) / 2.0);
     }
-    let rough = way(corners, Bounded::difference);
+    let rough = scaled_offset(corners, Bounded::difference);
     let [x, y, area] = rough.map(Bounded::value);
     let [x_error, y_error, area_error] = rough.map(Bounded::error);
     if x_error.max(y_error) <= TOLERANCE * x.abs().max(y.abs()) && area_error <= TOLERANCE * area.abs() {
         divided([x, y, area])
     } else {
-        divided(way(corners, Expansion::difference).map(|x| x.estimate()))
+        divided(scaled_offset(corners, Expansion::difference).map(|x| x.estimate()))
     }
 }

@@ -18,8 +18,8 @@ fn axis<const N: usize>(points: &[[f64; 3]; N], axis: usize) -> impl Iterator<It
 /// How far apart two points are in the plane, squared, less what `p` weighs more than `q`: the lift of `p` seen from
 /// `q`.
 #[inline(always)]
-fn lift<T: Number>(way: &[T; 2], p: [f64; 3], q: [f64; 3], difference: impl Fn(f64, f64) -> T) -> T {
-    square(&way[0]) + square(&way[1]) - difference(p[2], q[2]) * difference(1.0, 0.0)
+fn lift<T: Number>(vector: &[T; 2], p: [f64; 3], q: [f64; 3], difference: impl Fn(f64, f64) -> T) -> T {
+    square(&vector[0]) + square(&vector[1]) - difference(p[2], q[2]) * difference(1.0, 0.0)
 }
 
 /// Of three weighted points `[x, y, w]` that turn counter-clockwise and a fourth: positive if the fourth's lift is

@@ -74,10 +74,10 @@ impl Predicate for CrossingSide {
         let [c, d] = self.cd;
         let [ux, uy] = minus(d, c, difference);
         let [vx, vy] = minus(a, c, difference);
-        let way = minus(a, b, difference);
+        let vector = minus(a, b, difference);
         let area = cross(&ux, &vy, &uy, &vx);
-        let divisor = cross(&ux, &way[1], &uy, &way[0]);
+        let divisor = cross(&ux, &vector[1], &uy, &vector[0]);
         let beside = difference(a[self.along], self.center) - difference(self.offset, 0.0);
-        beside * divisor - way[self.along].clone() * area
+        beside * divisor - vector[self.along].clone() * area
     }
 }

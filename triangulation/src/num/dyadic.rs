@@ -5,23 +5,24 @@ use super::Sign;
 
 /// An exact number `± mantissa * 2^exponent` with a mantissa of any length.
 ///
-/// Closed under +, - and *: nothing a polynomial does can overflow, underflow or round. This is the
-/// judge, and what computes where magnitudes leave the range of the faster numbers.
+/// Closed under `+`, `-` and `*`: evaluating a polynomial cannot overflow, underflow or round. It
+/// is the reference in tests, and the fallback where magnitudes leave the range of the faster
+/// numbers.
 #[derive(Debug, Clone)]
 pub struct Dyadic {
     negative: bool,
-    /// Least significant limb first, no leading zero limb; empty is zero.
+    /// The least significant limb first, without leading zero limbs; empty for zero.
     limbs: Vec<u64>,
     exponent: i64,
 }
 
 impl Dyadic {
-    /// `a - b`, exactly.
+    /// Returns `a - b`, exactly.
     pub fn difference(a: f64, b: f64) -> Self {
         Self::from(a) - Self::from(b)
     }
 
-    /// The sign.
+    /// Returns the sign.
     pub fn sign(&self) -> Sign {
         match (self.limbs.is_empty(), self.negative) {
             (true, _) => Sign::Zero,
@@ -30,20 +31,21 @@ impl Dyadic {
         }
     }
 
-    /// The number rounded to one double, to within a unit in the last place; infinite or zero beyond its
-    /// range.
+    /// Returns the number rounded to a double, to within a unit in the last place; infinite or zero
+    /// beyond the range of doubles.
     pub fn estimate(&self) -> f64 {
         let (leading, exponent) = self.leading();
         scaled(leading, exponent)
     }
 
-    /// The quotient of two numbers, rounded to within two units in the last place.
+    /// Returns the quotient of two numbers, rounded to within two units in the last place.
     pub fn quotient(&self, divisor: &Self) -> f64 {
         let ((leading, exponent), (by, by_exponent)) = (self.leading(), divisor.leading());
         scaled(leading / by, exponent - by_exponent)
     }
 
-    /// The number as a double, at most 2^128 in magnitude, times a power of two.
+    /// Returns the leading digits as a double of magnitude at most `2^128`, and the exponent of the
+    /// power of two to multiply it with.
     fn leading(&self) -> (f64, i64) {
         let Some((&high, lower)) = self.limbs.split_last() else { return (0.0, 0) };
         let (magnitude, below) = match lower.split_last() {
@@ -53,7 +55,8 @@ impl Dyadic {
         (if self.negative { -magnitude } else { magnitude }, self.exponent + 64 * below as i64)
     }
 
-    /// The mantissa shifted so that it counts units of `2^exponent`, which is no larger than its own.
+    /// Returns the mantissa counted in units of `2^exponent`, for an exponent that is at most its
+    /// own.
     fn limbs_at(&self, exponent: i64) -> Vec<u64> {
         let shift = (self.exponent - exponent) as u64;
         let (words, bits) = ((shift / 64) as usize, shift % 64);
@@ -97,7 +100,8 @@ impl Dyadic {
     }
 }
 
-/// `x * 2^exponent`, in steps that neither overflow nor underflow before the product does.
+/// Returns `x * 2^exponent`, multiplied in steps that neither overflow nor underflow before the
+/// product does.
 fn scaled(mut x: f64, exponent: i64) -> f64 {
     let mut left = exponent.clamp(-4000, 4000) as i32;
     while left != 0 {
@@ -129,7 +133,7 @@ fn add(a: &[u64], b: &[u64]) -> Vec<u64> {
         .collect()
 }
 
-/// `a - b` for `a >= b`.
+/// Returns `a - b`, for `a >= b`.
 fn subtract(a: &[u64], b: &[u64]) -> Vec<u64> {
     let mut borrow = false;
     (0..a.len().max(b.len()))
@@ -144,7 +148,7 @@ fn subtract(a: &[u64], b: &[u64]) -> Vec<u64> {
 
 impl From<f64> for Dyadic {
     /// # Panics
-    /// On NaN and infinities, which no geometry admits.
+    /// If `x` is NaN or infinite; no geometry admits such coordinates.
     fn from(x: f64) -> Self {
         assert!(x.is_finite(), "{x} is not a real number");
         let bits = x.to_bits();

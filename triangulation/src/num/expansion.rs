@@ -2,18 +2,18 @@ use std::ops::{Add, Mul, Sub};
 
 use super::Sign;
 
-/// An exact number as a sum of floating-point numbers that do not overlap, smallest first.
+/// An exact number as a sum of doubles that do not overlap, smallest first.
 ///
 /// After Shewchuk, *Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
-/// Predicates* (1997). Exact while no product of components underflows or overflows, which
+/// Predicates* (1997). Exact as long as no product of components underflows or overflows, which
 /// [`RANGE`](crate::kernel::RANGE) guarantees for the predicates of this crate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expansion {
-    /// Increasing in magnitude, without zeros; empty is zero.
+    /// In increasing magnitude, without zeros; empty for zero.
     components: Vec<f64>,
 }
 
-/// `a + b` as the rounded sum and its error (Knuth).
+/// Returns the rounded sum `a + b` and its error (Knuth).
 #[inline(always)]
 pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -22,8 +22,9 @@ pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - a_part) + (b - b_part))
 }
 
-/// `a * b` as the rounded product and its error (Dekker's splitting: portable builds have no fused
-/// multiply-add, and its emulation is slow).
+/// Returns the rounded product `a * b` and its error.
+///
+/// With Dekker's splitting: portable builds have no fused multiply-add, and its emulation is slow.
 #[inline(always)]
 pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
@@ -40,7 +41,7 @@ pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
 }
 
 impl Expansion {
-    /// `a - b`, exactly.
+    /// Returns `a - b`, exactly.
     pub fn difference(a: f64, b: f64) -> Self {
         let (value, error) = two_sum(a, -b);
         let mut components = Vec::with_capacity(2);
@@ -48,17 +49,18 @@ impl Expansion {
         Expansion { components }
     }
 
-    /// The sign of the number: that of its largest component.
+    /// Returns the sign: that of the largest component.
     pub fn sign(&self) -> Sign {
         self.components.last().map_or(Sign::Zero, Sign::of)
     }
 
-    /// The number rounded to one double, to within a unit in the last place.
+    /// Returns the number rounded to a double, to within a unit in the last place.
     pub fn estimate(&self) -> f64 {
         self.components.iter().sum()
     }
 
-    /// Merges by magnitude and sums with carry (`FAST-EXPANSION-SUM` with zero elimination).
+    /// Returns `self + factor * other`, for a factor of 1 or -1: merges by magnitude and sums with
+    /// carry (`FAST-EXPANSION-SUM` with zero elimination).
     fn sum(&self, other: &Self, factor: f64) -> Self {
         let (a, b) = (&self.components, &other.components);
         if a.is_empty() || b.is_empty() {
@@ -90,7 +92,7 @@ impl Expansion {
         Expansion { components }
     }
 
-    /// `SCALE-EXPANSION` with zero elimination.
+    /// Returns `self * factor` (`SCALE-EXPANSION` with zero elimination).
     fn scaled(&self, factor: f64) -> Self {
         let mut components = Vec::with_capacity(2 * self.components.len());
         let mut carry = 0.0;
@@ -131,8 +133,8 @@ impl Sub for Expansion {
 impl Mul for Expansion {
     type Output = Self;
 
-    /// Products of one operand with each component of the other, summed as a balanced tree so that
-    /// no partial sum is merged more than logarithmically often.
+    /// Multiplies one operand by each component of the other. The products are summed as a balanced
+    /// tree, so that no partial sum is merged more than logarithmically often.
     fn mul(self, other: Self) -> Self {
         let (long, short) =
             if self.components.len() >= other.components.len() { (&self, &other) } else { (&other, &self) };

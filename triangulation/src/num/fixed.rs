@@ -2,13 +2,13 @@ use std::ops::{Add, Mul, Sub};
 
 use super::Sign;
 
-/// A floating-point result from whole numbers of magnitude `2^BITS` at the most, 52 bits at the most, whose error bound
-/// is known before it is computed.
+/// A floating-point result computed from whole numbers of magnitude up to `2^BITS`, with an error
+/// bound that is known in advance. `BITS` is at most 52.
 ///
-/// Beside the value go two numbers that depend on the formula only, so that the optimizer sees constants and what is
-/// left at run time is plain floating point and one comparison (the *static filter* of Fortune and Van Wyk 1996,
-/// without their compiler): the largest magnitude `M` that the value can have, and the largest error `E`. Let `u` be
-/// `2^-53`:
+/// Besides the value it carries two numbers that depend on the formula only: the largest magnitude
+/// `M` that the value can have, and the largest error `E`. The optimizer sees constants, and what
+/// is left at run time is plain floating point and one comparison (the *static filter* of Fortune
+/// and Van Wyk 1996, without their compiler). Let `u` be `2^-53`:
 ///
 /// | | `M` | `E` |
 /// |---|---|---|
@@ -16,11 +16,12 @@ use super::Sign;
 /// | `x ± y` | `Mx + My` | `Ex + Ey`, and the rounding |
 /// | `x y` | `Mx My` | `Mx Ey + My Ex + Ex Ey`, and the rounding |
 ///
-/// `M` is computed in floating point, too: rounding keeps the order, so that no computed value exceeds it. The rounding
-/// of a result is at most `u M`; and none where `M <= 2^53`, as all values are whole numbers, rounded ones included.
+/// `M` is computed in floating point, too: rounding is monotone, so no computed value exceeds it. A
+/// result is rounded by at most `u M`. Where `M <= 2^53` it is not rounded at all, because all
+/// values are whole numbers, rounded ones included.
 ///
-/// With 24 bits, an orientation in the plane is always certain, and an in-circle test is if the determinant, a sum of
-/// products of up to `2^102`, is above `2^53`.
+/// With 24 bits, an orientation in the plane is always certain. An in-circle test is certain if the
+/// determinant, a sum of products of up to `2^102`, is above `2^53`.
 #[derive(Debug, Clone, Copy)]
 pub struct Fixed<const BITS: i32> {
     value: f64,
@@ -28,26 +29,27 @@ pub struct Fixed<const BITS: i32> {
     error: f64,
 }
 
-/// Up to where all whole numbers are doubles.
+/// The magnitude up to which all whole numbers are doubles.
 const WHOLE: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
 
-/// The largest error of a rounding to a whole number of at most this magnitude.
+/// Returns the largest error of a rounding to a whole number of at most this magnitude.
 #[inline(always)]
 fn rounding(magnitude: f64) -> f64 {
     if magnitude <= WHOLE { 0.0 } else { magnitude / WHOLE }
 }
 
 impl<const BITS: i32> Fixed<BITS> {
-    /// `a - b`, exactly.
+    /// Returns `a - b`, exactly.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         const { assert!(0 <= BITS && BITS <= 52, "differences have one bit more, and 53 is all there are") };
         Fixed { value: a - b, magnitude: f64::from_bits((1023 + 1 + BITS as u64) << 52), error: 0.0 }
     }
 
-    /// The sign, if the error cannot have changed it.
+    /// Returns the sign, or `None` if the error may have changed it.
     ///
-    /// Fewer than 2^10 operations have rounded the bound, each by `2^-53` of it: a fiftieth on top is ample.
+    /// The bound was computed in fewer than 2^10 operations, each of which rounded it by `2^-53`: a
+    /// margin of 2 % is ample.
     #[inline(always)]
     pub fn sign(self) -> Option<Sign> {
         let bound = 1.02 * self.error;
@@ -99,7 +101,7 @@ mod tests {
     use super::super::Dyadic;
     use super::*;
 
-    /// Sums of products of two, three and four differences of the largest numbers there are.
+    /// Sums of products of two, three and four differences of numbers of the largest magnitude.
     #[test]
     fn errors_are_within_the_bound() {
         let mut state = 1u64;

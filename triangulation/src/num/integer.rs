@@ -4,16 +4,16 @@ use super::Sign;
 
 /// A whole number of 256 bits, wrapping around beyond `-2^255 .. 2^255`.
 ///
-/// For polynomials of which it is known beforehand that they fit, see [`lattice`](super::lattice): no branch, no
-/// memory.
+/// For polynomials that are known in advance to fit, see [`lattice`](super::lattice): no branches,
+/// no allocation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Integer {
-    /// The lowest first, the highest with the sign.
+    /// Two's complement, the lowest limb first.
     limbs: [u64; 4],
 }
 
 impl Integer {
-    /// Which side of zero it is on.
+    /// Returns the sign.
     #[inline]
     pub fn sign(self) -> Sign {
         if self.limbs[3] >> 63 == 1 {
@@ -25,7 +25,7 @@ impl Integer {
         }
     }
 
-    /// The sum with another number, given limb by limb, and a carry.
+    /// Returns the sum with another number, given limb by limb, and a carry.
     #[inline]
     fn plus(self, limb: impl Fn(usize) -> u64, mut carry: bool) -> Self {
         let limbs = std::array::from_fn(|i| {
@@ -68,7 +68,7 @@ impl Sub for Integer {
 impl Mul for Integer {
     type Output = Self;
 
-    /// Modulo `2^256` the sign makes no difference.
+    /// Modulo `2^256`, the product is the same for signed and unsigned numbers.
     #[inline]
     fn mul(self, other: Self) -> Self {
         let mut limbs = [0; 4];
@@ -90,7 +90,7 @@ impl Mul for Integer {
 mod tests {
     use super::*;
 
-    /// Where 128 bits hold all, they are the judge; beyond, the laws of powers are.
+    /// As long as 128 bits suffice, they are the reference; beyond, the laws of arithmetic are.
     #[test]
     fn arithmetic_is_that_of_whole_numbers() {
         let numbers = [0, 1, -1, 3, -7, 1 << 31, -(1 << 40), i64::MAX, i64::MIN, 0x1234_5678_9ABC_DEF0];

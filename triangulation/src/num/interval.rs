@@ -3,15 +3,16 @@ use std::ops::{Add, Mul, Sub};
 use super::Sign;
 use super::expansion::{two_product, two_sum};
 
-/// All that a number can be, after roundings: from `low` to `high`.
+/// The range of values that a rounded number may stand for: from `low` to `high`.
 ///
-/// Bounds are rounded outward without a change of the processor's rounding mode: the error of a sum or product, which
-/// is known exactly, says to which side of the result the truth lies, and only there the bound moves to the next
-/// double. What is exact stays one number, so that ties of small whole numbers are certain. Tighter than
-/// [`Bounded`](super::Bounded), which takes every rounding for the largest that there may be; and slower.
+/// Bounds are rounded outward without changing the processor's rounding mode. The error of a sum or
+/// product is known exactly; its sign says on which side of the result the true value lies, and
+/// only that bound moves to the next double. Exact results stay single numbers, so ties of small
+/// whole numbers are certain. Tighter than [`Bounded`](super::Bounded), which assumes the largest
+/// possible error for every rounding, and slower.
 ///
-/// Exact while no product underflows or overflows, which [`RANGE`](crate::kernel::RANGE) guarantees for the predicates
-/// of this crate.
+/// Sound as long as no product underflows or overflows, which [`RANGE`](crate::kernel::RANGE)
+/// guarantees for the predicates of this crate.
 #[derive(Debug, Clone, Copy)]
 pub struct Interval {
     low: f64,
@@ -19,13 +20,14 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// `a - b`, within one rounding.
+    /// Returns an interval around `a - b`: one number if that is exact, else two consecutive
+    /// doubles.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         Self::around(two_sum(a, -b))
     }
 
-    /// The sign, if all numbers in the interval have it.
+    /// Returns the sign, or `None` unless all numbers in the interval have the same.
     #[inline(always)]
     pub fn sign(self) -> Option<Sign> {
         if self.low > 0.0 {
@@ -39,7 +41,7 @@ impl Interval {
         }
     }
 
-    /// Between the two doubles beside a rounded value and its error.
+    /// Returns the interval of a rounded value and its error.
     #[inline(always)]
     fn around(rounded: (f64, f64)) -> Self {
         Interval { low: down(rounded), high: up(rounded) }
@@ -51,13 +53,13 @@ impl Interval {
     }
 }
 
-/// A rounded value, whose error is known, rounded down instead.
+/// Returns a value rounded down, given the rounded value and its error.
 #[inline(always)]
 fn down((value, error): (f64, f64)) -> f64 {
     if error < 0.0 { value.next_down() } else { value }
 }
 
-/// A rounded value, whose error is known, rounded up instead.
+/// Returns a value rounded up, given the rounded value and its error.
 #[inline(always)]
 fn up((value, error): (f64, f64)) -> f64 {
     if error > 0.0 { value.next_up() } else { value }
@@ -89,8 +91,9 @@ impl Mul for Interval {
         if self.is_exact() && other.is_exact() {
             return Self::around(two_product(self.low, other.low));
         }
-        // Rounding keeps the order: the least of the rounded products is the least product, rounded. It moves out even
-        // if it was exact, and if it is zero, perhaps by an underflow.
+        // Rounding is monotone: the smallest of the rounded products is the smallest product,
+        // rounded. The bounds move outward even if they are exact; a zero may come from an
+        // underflow.
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         Interval {
             low: products.into_iter().fold(f64::INFINITY, f64::min).next_down(),
@@ -110,7 +113,7 @@ mod tests {
         below != Sign::Negative && above != Sign::Negative
     }
 
-    /// Random polynomials of random numbers, those of few bits and equal ones among them.
+    /// Random polynomials of random numbers; some of few bits, some equal.
     #[test]
     fn the_truth_is_within_and_the_bounds_are_near() {
         let mut state = 1u64;

@@ -1,20 +1,20 @@
-//! Numbers that can tell their sign.
+//! Numbers for evaluating predicates: rounded ones with error bounds, and exact ones.
 //!
-//! A predicate of computational geometry is the sign of a polynomial in differences of
-//! coordinates. The polynomials are written once, in [`kernel`](crate::kernel), generic in
-//! [`Number`]; what differs from kernel to kernel is the number put in.
+//! A predicate of computational geometry is the sign of a polynomial in differences of coordinates.
+//! The polynomials are written once, in [`kernel`](crate::kernel), generic in [`Number`]; kernels
+//! differ in the numbers that they put in.
 //!
 //! | number | exact | cost | used for |
 //! |---|---|---|---|
 //! | `f64` | no | 1 | experiments, comparison |
-//! | [`Bounded`] | knows how wrong it may be | 2 | filter: nearly every call ends here |
-//! | [`Fixed`] | knows before how wrong it may be | 1 | filter for whole numbers of few bits |
-//! | [`Interval`] | knows between which two doubles it is | 10 | filter; exact on small whole numbers |
+//! | [`Bounded`] | computes an error bound | 2 | filter: nearly every call ends here |
+//! | [`Fixed`] | has a constant error bound | 1 | filter for whole numbers of few bits |
+//! | [`Interval`] | computes a lower and an upper bound | 10 | filter; exact on small whole numbers |
 //! | `i128` | within its range, see [`lattice`] | 5 | coordinates on a common grid: ties are the rule there |
-//! | [`Pair`] | to twice the digits | 15 | places that are then rounded; filter near zero, in [`Bounded`] |
+//! | [`Pair`] | to twice the digits of `f64` | 15 | positions that are then rounded; filter near zero, in [`Bounded`] |
 //! | [`Integer`] | within its 256 bits | 20 | coordinates on a fine common grid |
-//! | [`Expansion`] | within the exponents of f64 | 100 | what the filters leave open |
-//! | [`Dyadic`] | always | 500 | the judge, and magnitudes outside of everything else |
+//! | [`Expansion`] | within the exponents of `f64` | 100 | what the filters leave undecided |
+//! | [`Dyadic`] | always | 500 | the reference in tests; magnitudes out of range of all others |
 
 mod bounded;
 mod dyadic;
@@ -48,7 +48,7 @@ pub enum Sign {
 }
 
 impl Sign {
-    /// The sign of a number that is not NaN.
+    /// Returns the sign of a number that is not NaN.
     #[inline]
     pub fn of<T: PartialOrd + Default>(value: &T) -> Self {
         let zero = T::default();
@@ -99,14 +99,15 @@ impl From<std::cmp::Ordering> for Sign {
     }
 }
 
-/// What the polynomials are computed in: a commutative ring.
+/// The numbers in which polynomials are evaluated: a commutative ring.
 ///
 /// # Laws
-/// Sum, difference and product are those of real numbers; or a number knows by how much they may be off, so that
-/// whoever asks for its sign can be told that it is not certain. `f64` breaks this law, and is for experiments.
+/// Sums, differences and products are those of real numbers. Or the type keeps track of the error,
+/// so that its sign can be reported as uncertain. `f64` breaks this law; it is for experiments.
 ///
 /// # Models
-/// Everything that can be added, subtracted, multiplied and cloned is a `Number`; see the table on the
+/// Everything that can be added, subtracted, multiplied and cloned is a `Number`; see the table on
+/// the [module's page](self). This one counts products:
 /// [module's page](self). Here one that counts products:
 ///
 /// ```

@@ -2,11 +2,12 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use super::expansion::{two_product, two_sum};
 
-/// A number as the unevaluated sum of two doubles, the second below the last place of the first: twice the digits.
+/// A number as the unevaluated sum of two doubles, the second below the last place of the first:
+/// twice the digits of a double.
 ///
-/// Sums, products and quotients are right to within `2^-101` of their magnitude, while nothing overflows or underflows
-/// (Joldes, Muller and Popescu 2017: the algorithms AccurateDWPlusDW, DWTimesDW and DWDivDW with 3, 5 and 15 squares of
-/// `2^-53`).
+/// Sums, products and quotients are correct to within `2^-101` of their magnitude, as long as
+/// nothing overflows or underflows (Joldes, Muller and Popescu 2017: the algorithms
+/// AccurateDWPlusDW, DWTimesDW and DWDivDW with 3, 5 and 15 squares of `2^-53`).
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
     high: f64,
@@ -14,24 +15,24 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// The relative error of one operation, rounded up.
+    /// A bound on the relative error of one operation.
     pub const ERROR: f64 = f64::from_bits((1023 - 101) << 52);
 
-    /// `a - b`, exactly.
+    /// Returns `a - b`, exactly.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         let (high, low) = two_sum(a, -b);
         Pair { high, low }
     }
 
-    /// The double nearest to it.
+    /// Returns the nearest double.
     #[inline(always)]
     pub fn estimate(self) -> f64 {
         self.high
     }
 }
 
-/// The sum where the first is not smaller.
+/// Returns `a + b` as a pair, if `a` is not smaller in magnitude than `b`.
 #[inline(always)]
 fn quick_two_sum(a: f64, b: f64) -> Pair {
     let high = a + b;
@@ -74,7 +75,7 @@ impl Div for Pair {
 
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        // The quotient of the leading parts, and what it leaves.
+        // The quotient of the leading parts, and the remainder that it leaves.
         let high = self.high / other.high;
         let rest = self - other * Pair { high, low: 0.0 };
         quick_two_sum(high, rest.high / other.high)

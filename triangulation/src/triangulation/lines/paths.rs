@@ -119,7 +119,7 @@ impl Paths {
         let mut parts = Vec::with_capacity(segments.len());
         for (i, ends) in (0..).zip(segments) {
             let [a, b] = ends.map(&vertex);
-            if !arrangement.is_led(i) {
+            if !arrangement.has_chain(i) {
                 parts.push(undirected(a, b));
                 continue;
             }

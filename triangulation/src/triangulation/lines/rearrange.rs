@@ -59,7 +59,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         self.lines.missing = self.carry_out(&arrangement, &demand, leaving);
         self.lines.recrossed = !self.lines.missing.is_empty();
         if self.lines.recrossed {
-            let arrangement = arrangement.settled(position, &demand.segments, step);
+            let arrangement = arrangement.crossing_free(position, &demand.segments, step);
             self.lines.missing = self.carry_out(&arrangement, &demand, HashSet::new());
         }
     }
