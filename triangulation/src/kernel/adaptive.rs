@@ -1,7 +1,8 @@
 use super::{Filter, Predicate, RANGE, Range};
 use crate::num::{self, Bounded, Sign, lattice};
 
-/// Floating point with an error bound that is computed along: the semi-static filter.
+/// Floating point with an error bound that is computed along with the value: the semi-static
+/// filter.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ErrorBound;
 
@@ -14,8 +15,8 @@ impl Filter for ErrorBound {
     }
 }
 
-/// [`ErrorBound`] for every finite coordinate: it gives up where differences are so small that products might
-/// underflow, and on zeros.
+/// Like [`ErrorBound`], but for every finite coordinate: it gives up on zeros, and where
+/// differences are so small that products might underflow.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FlooredErrorBound;
 
@@ -28,8 +29,9 @@ impl Filter for FlooredErrorBound {
     }
 }
 
-/// [`ErrorBound`] with twice the digits ([`num::Pair`], double-word arithmetic after Joldes, Muller and Popescu 2017):
-/// certain where three points are nearly collinear, or four nearly cocircular, but not where they are.
+/// Like [`ErrorBound`], but with twice the digits ([`num::Pair`], double-word arithmetic after
+/// Joldes, Muller and Popescu 2017): certain where three points are nearly collinear or four nearly
+/// cocircular, but not where they are exactly so.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PairBound;
 
@@ -42,22 +44,23 @@ impl Filter for PairBound {
     }
 }
 
-/// Intervals that are rounded outward: the dynamic filter of CGAL's kernels (Brönnimann, Burnikel and Pion 2001).
+/// Intervals that are rounded outward: the dynamic filter of CGAL's kernels (Brönnimann, Burnikel
+/// and Pion 2001).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct IntervalBound;
 
 impl Filter for IntervalBound {
     const RANGE: Range = RANGE;
 
-    // Too long to stand wherever a triangulation asks.
+    // Too long to be inlined at every call in a triangulation.
     #[inline(never)]
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         predicate.value(num::Interval::difference).sign()
     }
 }
 
-/// Floating point with an error bound that is a constant of each formula, for whole numbers of magnitude `2^BITS` at
-/// the most: the static filter. [`num::Fixed`] derives the constants.
+/// Floating point with an error bound that is a constant of each formula: the static filter. For
+/// whole numbers of magnitude up to `2^BITS`. [`num::Fixed`] derives the constants.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FixedBound<const BITS: i32>;
 
@@ -70,20 +73,24 @@ impl<const BITS: i32> Filter for FixedBound<BITS> {
     }
 }
 
-/// The bits that differences may have so that integers of so many hold the polynomial: one of degree `d` in differences
-/// below `2^b` is below `2^(b d + 7)` for every formula of this crate (in-sphere has 4 * 3 * 6 terms). `most` is what
-/// the way from coordinates to differences allows.
+/// Returns the number of bits that differences may have so that integers of `of_integers` bits hold
+/// the polynomial.
+///
+/// A polynomial of degree `d` in differences below `2^b` is below `2^(b d + 7)` for every formula
+/// of this crate (in-sphere has 4 * 3 * 6 terms). `most` is the limit of the conversion from
+/// coordinates to differences.
 const fn bits(of_integers: i32, degree: i32, most: i32) -> i32 {
     let bits = (of_integers - 8) / degree;
     if bits < most { bits } else { most }
 }
 
-/// The same for 128 bits, where a difference must fit a double.
+/// Like [`bits`], for integers of 128 bits, where a difference must fit a double.
 const fn coarse_bits(degree: i32) -> i32 {
     bits(128, degree, 53)
 }
 
-/// Integers, where the coordinates of this one question lie on a coarse enough common grid.
+/// Integers of 128 bits, where the coordinates of the predicate at hand lie on a coarse enough
+/// common grid.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OnLattice;
 
@@ -97,8 +104,9 @@ impl Filter for OnLattice {
     }
 }
 
-/// Integers of 256 bits, where the coordinates of this one question, and their differences, have up to 62 bits if they
-/// are counted in a common unit: in the plane, any of about one size. In an in-sphere test it is 49 bits.
+/// Integers of 256 bits, where the coordinates of the predicate at hand, counted in a common unit,
+/// and their differences have up to 62 bits: in the plane, any coordinates of about one size. In an
+/// in-sphere test the limit is 49 bits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OnFineLattice;
 
@@ -107,20 +115,21 @@ impl Filter for OnFineLattice {
 
     #[inline(never)] // long, and no faster where it is called
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
-        // With zero among them, not only the differences are that short.
+        // With zero among them, the limit holds for the coordinates, too, not only for their
+        // differences.
         let axes = (0..P::AXES).map(|axis| predicate.axis(axis).chain([0.0]));
         let inverse_unit = lattice::inverse_unit(axes, bits(256, P::DEGREE, 62))?;
         Some(predicate.value(|a, b| lattice::long_difference(a, b, inverse_unit)).sign())
     }
 }
 
-/// Integers, for coordinates that are whole numbers: [`OnLattice`] whose unit is 1. The differences in an in-circle or
-/// in-sphere test may be up to `2^30` and `2^24`.
+/// Integers of 128 bits, for coordinates that are whole numbers: [`OnLattice`] with a unit of 1.
+/// The differences in an in-circle or in-sphere test may be up to `2^30` and `2^24`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct WholeNumbers;
 
 impl Filter for WholeNumbers {
-    /// Of the numbers below `2^52` only the multiples of 1 are admitted.
+    /// Of the numbers below `2^52`, only multiples of 1 are admitted.
     const RANGE: Range = Range { min: 1.0 / f64::EPSILON, max: 2.0 / f64::EPSILON };
 
     #[inline]

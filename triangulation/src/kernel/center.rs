@@ -1,11 +1,15 @@
-//! The center of a circle: a construction, rounded once where it would otherwise be wrong.
+//! The circumcenter and the power center: constructions, in exact arithmetic where floating point
+//! would be wrong.
 
 use super::RANGE;
 use super::formula::{cross, minus, square};
 use crate::num::{Bounded, Dyadic, Expansion, Number};
 
-/// From the first of three weighted points to the place of which they have the same power: twice the area of the
-/// triangle is the last number, and the first two are the way times twice that.
+/// Returns the offset from the first of three weighted points to their power center, scaled, and
+/// the scale.
+///
+/// The last number is twice the area of the triangle; the first two are the offset times twice
+/// that.
 fn scaled_offset<T: Number>([a, b, c]: [[f64; 3]; 3], difference: impl Fn(f64, f64) -> T + Copy) -> [T; 3] {
     let [(u, u_length), (v, v_length)] = [b, c].map(|p| {
         let vector = minus([p[0], p[1]], [a[0], a[1]], difference);
@@ -19,20 +23,22 @@ fn scaled_offset<T: Number>([a, b, c]: [[f64; 3]; 3], difference: impl Fn(f64, f
     ]
 }
 
-/// The circumcenter of a triangle that has an area, relative to its first corner: the [power center](power_center) of
-/// points of one weight.
+/// Returns the circumcenter of a triangle, relative to its first corner: the [power
+/// center](power_center) of points of equal weight. The triangle has an area.
 pub fn circumcenter(corners: [[f64; 2]; 3]) -> [f64; 2] {
     power_center(corners.map(|[x, y]| [x, y, 0.0]))
 }
 
-/// The place with the same power to three points `[x, y, weight]` that are not collinear, its squared distance less the
-/// weight; relative to the first of them. Right to within `2^-40` of its distance from that corner, however flat the
-/// triangle is; not finite where the numbers have no room for it.
+/// Returns the point that has the same power to three points `[x, y, weight]`, relative to the
+/// first of them. The power is the squared distance less the weight.
+///
+/// The points are not collinear. The result is correct to within `2^-40` of its distance from the
+/// first point, however flat the triangle is. It is not finite if it exceeds the range of doubles.
 ///
 /// # Complexity
-/// Some twenty operations if the triangle is not very flat, exact arithmetic else.
+/// About twenty operations, unless the triangle is very flat; exact arithmetic then.
 pub fn power_center(corners: [[f64; 3]; 3]) -> [f64; 2] {
-    /// Of numerator and denominator, each.
+    /// Of the numerator and of the denominator.
     const TOLERANCE: f64 = 1.0 / (1u64 << 42) as f64;
     let divided = |[x, y, area]: [f64; 3]| [x / area / 2.0, y / area / 2.0];
     if !corners.iter().flatten().all(|&x| RANGE.admits(x)) {

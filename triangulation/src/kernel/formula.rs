@@ -1,9 +1,9 @@
-//! The formulas, each written once.
+//! The formulas of the predicates, each written once.
 
 use super::{Predicate, RANGE};
 use crate::num::{Dyadic, Expansion, Number};
 
-/// `a b - c d`
+/// Returns `a b - c d`.
 #[inline(always)]
 pub(super) fn cross<T: Number>(a: &T, b: &T, c: &T, d: &T) -> T {
     a.clone() * b.clone() - c.clone() * d.clone()
@@ -14,13 +14,14 @@ pub(super) fn square<T: Number>(a: &T) -> T {
     a.clone() * a.clone()
 }
 
-/// `p - q`, axis by axis.
+/// Returns `p - q`, axis by axis.
 #[inline(always)]
 pub(super) fn minus<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T) -> [T; D] {
     std::array::from_fn(|axis| difference(p[axis], q[axis]))
 }
 
-/// Of three points in the plane: positive if they turn counter-clockwise, zero if collinear.
+/// The orientation of three points in the plane: positive if they turn counter-clockwise, zero if
+/// they are collinear.
 #[derive(Debug, Clone, Copy)]
 pub struct Orientation2(pub [[f64; 2]; 3]);
 
@@ -42,8 +43,8 @@ impl Predicate for Orientation2 {
     }
 }
 
-/// The in-circle determinant of three vectors from the point in question, given in a plane, and
-/// their squared lengths.
+/// Returns the in-circle determinant of three vectors in a plane, which start at the query point,
+/// and their squared lengths.
 #[inline(always)]
 pub(super) fn in_circle<T: Number>(a: [T; 2], b: [T; 2], c: [T; 2], lengths: [T; 3]) -> T {
     let [a_length, b_length, c_length] = lengths;
@@ -53,8 +54,8 @@ pub(super) fn in_circle<T: Number>(a: [T; 2], b: [T; 2], c: [T; 2], lengths: [T;
     a_length * bc + b_length * ca + c_length * ab
 }
 
-/// Of a counter-clockwise triangle and a fourth point: positive if the point lies inside of the
-/// circumscribed circle, zero if on it.
+/// The in-circle test of a counter-clockwise triangle and a fourth point: positive if the point
+/// lies inside the circumscribed circle, zero if on it.
 #[derive(Debug, Clone, Copy)]
 pub struct InCircle(pub [[f64; 2]; 4]);
 
@@ -76,8 +77,8 @@ impl Predicate for InCircle {
     }
 }
 
-/// Of four points in space: positive if `b - a`, `c - a`, `d - a` are a right-handed system, zero if
-/// coplanar.
+/// The orientation of four points in space: positive if `b - a`, `c - a`, `d - a` are a
+/// right-handed system, zero if the points are coplanar.
 #[derive(Debug, Clone, Copy)]
 pub struct Orientation3(pub [[f64; 3]; 4]);
 
@@ -93,7 +94,7 @@ impl Predicate for Orientation3 {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d] = self.0;
-        // From d, the determinant changes its sign: exchanging a and b makes up for it.
+        // Relative to d, the determinant has the opposite sign: exchanging a and b makes up for it.
         let [ux, uy, uz] = minus(b, d, difference);
         let [vx, vy, vz] = minus(a, d, difference);
         let [wx, wy, wz] = minus(c, d, difference);
@@ -104,8 +105,8 @@ impl Predicate for Orientation3 {
     }
 }
 
-/// Of a positively oriented tetrahedron and a fifth point: positive if the point lies inside of the
-/// circumscribed sphere, zero if on it.
+/// The in-sphere test of a positively oriented tetrahedron and a fifth point: positive if the point
+/// lies inside the circumscribed sphere, zero if on it.
 #[derive(Debug, Clone, Copy)]
 pub struct InSphere(pub [[f64; 3]; 5]);
 
@@ -121,7 +122,7 @@ impl Predicate for InSphere {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d, e] = self.0;
-        // Rows b, a, c, d: the 4 x 4 determinant is then positive inside.
+        // With rows b, a, c, d the 4 x 4 determinant is positive inside.
         let [a, b, c, d] = [b, a, c, d].map(|p| minus(p, e, difference));
         let plane = |p: &[T; 3], q: &[T; 3]| cross(&p[0], &q[1], &p[1], &q[0]);
         let (ab, bc, cd, da) = (plane(&a, &b), plane(&b, &c), plane(&c, &d), plane(&d, &a));
@@ -139,14 +140,15 @@ impl Predicate for InSphere {
     }
 }
 
-/// Of three points in a plane in space and a fourth in the same plane: the in-circle test there,
-/// positive inside if the first three turn counter-clockwise seen along the axis that is left out.
+/// The in-circle test of four points in a common plane in space: positive if the fourth lies inside
+/// the circle of the first three, which turn counter-clockwise seen along the axis that is left
+/// out.
 ///
-/// Areas in the plane and in a projection of it have a constant ratio, so that the determinant of
-/// the plane can be taken with projected areas and lengths in space.
+/// Areas in the plane and in a projection of it have a constant ratio. So the determinant can be
+/// computed from projected areas and from lengths in space.
 #[derive(Debug, Clone, Copy)]
 pub struct InCircleOfPlane {
-    /// The triangle, and the point in question.
+    /// The triangle, and the query point.
     pub points: [[f64; 3]; 4],
     /// The two axes of a projection in which the triangle has an area.
     pub axes: [usize; 2],
@@ -169,7 +171,8 @@ impl Predicate for InCircleOfPlane {
     }
 }
 
-/// Of three points in the plane: positive if the second is further from the first than the third is.
+/// A comparison of distances in the plane: positive if the second point is further from the first
+/// than the third is.
 #[derive(Debug, Clone, Copy)]
 pub struct CompareDistance(pub [[f64; 2]; 3]);
 
@@ -190,8 +193,11 @@ impl Predicate for CompareDistance {
     }
 }
 
-/// Of three points in the plane: positive if the angle at the second is acute, zero if it is right or one of the others
-/// is there. Negative, the second point lies inside of the circle that has the other two as its diameter.
+/// The dot product at the second of three points in the plane: positive if the angle there is
+/// acute, zero if it is right or one of the other points coincides with the second.
+///
+/// If it is negative, the second point lies inside the circle that has the other two as its
+/// diameter.
 #[derive(Debug, Clone, Copy)]
 pub struct DotProduct(pub [[f64; 2]; 3]);
 
@@ -213,8 +219,8 @@ impl Predicate for DotProduct {
     }
 }
 
-/// Twice the signed area of the triangle of three points, right to the last bits: positive if they turn
-/// counter-clockwise, zero only if they are collinear (or the area is too small for a number).
+/// Returns twice the signed area of a triangle, correct to the last bits: positive if the points
+/// turn counter-clockwise, zero only if they are collinear or the area is too small for a double.
 pub fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let area = Orientation2([a, b, c]);
     if in_range(&area) {
@@ -224,10 +230,12 @@ pub fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     }
 }
 
-/// Where segment `a b` crosses the line through `c` and `d`, as the fraction of the way from `a`.
+/// Returns where segment `a b` crosses the line through `c` and `d`, as a fraction of the segment
+/// from `a`.
 ///
-/// The two areas are computed exactly and only their quotient is rounded, so that the place is right
-/// to the last bits however small the angle is. The caller knows that the segment crosses.
+/// The two areas are computed exactly and only their quotient is rounded, so the result is correct
+/// to the last bits however small the angle is. The segment must cross the line; this is not
+/// checked.
 pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
     let (area_a, area_b) = (Orientation2([c, d, a]), Orientation2([c, d, b]));
     if in_range(&area_a) && in_range(&area_b) {
@@ -240,7 +248,7 @@ pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
     }
 }
 
-/// Whether expansions are exact for these coordinates.
+/// Returns true if expansions are exact for these coordinates.
 pub(super) fn in_range<P: Predicate>(predicate: &P) -> bool {
     (0..P::AXES).all(|axis| predicate.axis(axis).all(|x| RANGE.admits(x)))
 }

@@ -1,32 +1,35 @@
-//! The power test: in-circle for points with a weight.
+//! The power test: the in-circle test for points with a weight.
 //!
-//! A weight is an area, of degree 2 in the coordinates, which would break the law that all terms of a predicate have
-//! one degree (integers on a common grid, and [`Scaled`](super::Scaled), count in units). So it is multiplied by a
-//! difference that is one, which counts as well: weights, and that difference, are on axes of their own.
+//! A weight is an area, of degree 2 in the coordinates. That would break the law that all terms of
+//! a predicate have one degree, which integers on a common grid and [`Scaled`](super::Scaled) rely
+//! on. So each weight is multiplied by a difference that is 1. Weights, and that difference, are on
+//! axes of their own.
 
 use super::Predicate;
 use super::formula::{cross, in_circle, minus, square};
 use crate::num::Number;
 
-/// The coordinates of weighted points on an axis: x, y, weights, and those whose difference is one.
+/// Returns the coordinates of weighted points on an axis: x, y, weights, and the two whose
+/// difference is 1.
 fn axis<const N: usize>(points: &[[f64; 3]; N], axis: usize) -> impl Iterator<Item = f64> + Clone {
     let of_point = move |p: &[f64; 3]| if axis < 3 { p[axis] } else { 1.0 };
     let zero = (axis == 3).then_some(0.0);
     points.iter().map(of_point).chain(zero)
 }
 
-/// How far apart two points are in the plane, squared, less what `p` weighs more than `q`: the lift of `p` seen from
-/// `q`.
+/// Returns the lift of `p` relative to `q`: the squared distance in the plane, less the difference
+/// of the weights.
 #[inline(always)]
 fn lift<T: Number>(vector: &[T; 2], p: [f64; 3], q: [f64; 3], difference: impl Fn(f64, f64) -> T) -> T {
     square(&vector[0]) + square(&vector[1]) - difference(p[2], q[2]) * difference(1.0, 0.0)
 }
 
-/// Of three weighted points `[x, y, w]` that turn counter-clockwise and a fourth: positive if the fourth's lift is
-/// below the plane through theirs, zero if on it. Of equal weights that is [`InCircle`](super::InCircle).
+/// The power test of three weighted points `[x, y, w]` that turn counter-clockwise and a fourth:
+/// positive if the fourth's lift is below the plane through theirs, zero if on it. For equal
+/// weights, this is [`InCircle`](super::InCircle).
 ///
-/// The *lift* of a point is at the height `x^2 + y^2 - w` above it. The lower hull of all lifts is the regular
-/// triangulation, as that of points without weights is Delaunay's (Aurenhammer 1987).
+/// The *lift* of a point lies above it, at height `x^2 + y^2 - w`. The lower hull of all lifts is
+/// the regular triangulation; without weights, it is the Delaunay triangulation (Aurenhammer 1987).
 #[derive(Debug, Clone, Copy)]
 pub struct PowerTest2(pub [[f64; 3]; 4]);
 
@@ -48,13 +51,14 @@ impl Predicate for PowerTest2 {
     }
 }
 
-/// Of three weighted points `[x, y, w]` on a line, of which the first has the smaller coordinate on an axis than the
-/// second: positive if the third's lift is below the line through the lifts of these two, zero if on it.
+/// The power test of three weighted points `[x, y, w]` on a line: positive if the third's lift is
+/// below the line through the lifts of the first two, zero if on it. The first has the smaller
+/// coordinate.
 #[derive(Debug, Clone, Copy)]
 pub struct PowerOnLine {
-    /// The two, and the point in question.
+    /// The two points, and the query point.
     pub points: [[f64; 3]; 3],
-    /// The axis on which they differ: 0 or 1.
+    /// The axis on which the first two differ: 0 or 1.
     pub along: usize,
 }
 
@@ -76,8 +80,9 @@ impl Predicate for PowerOnLine {
     }
 }
 
-/// Of a place and two weighted points `[x, y, w]`: positive if the first of these has the larger power there, which is
-/// its squared distance less its weight. The weight of the place counts for neither.
+/// A comparison of powers at a point: positive if the first of two weighted points `[x, y, w]` has
+/// the larger power there, which is its squared distance less its weight. The query point comes
+/// first; its own weight does not count.
 #[derive(Debug, Clone, Copy)]
 pub struct ComparePower(pub [[f64; 3]; 3]);
 

@@ -1,20 +1,21 @@
 //! Predicates of rounding: on which side of a pixel's border something lies.
 //!
-//! A border stands half a unit beside a center, which takes one bit more than a coordinate has. So center and
-//! offset enter apart, and the sum is made in the arithmetic.
+//! A border is half a unit from the center of its pixel, which takes one bit more than a coordinate
+//! has. So center and offset are passed separately, and their sum is computed in the arithmetic.
 
 use super::Predicate;
 use super::formula::{cross, minus};
 use crate::num::Number;
 
-/// Of a segment and a place that is given as a center and an offset: positive if the place lies to the left.
+/// The side of a segment on which a corner lies, given as a center and an offset: positive if to
+/// the left.
 #[derive(Debug, Clone, Copy)]
 pub struct CornerSide {
-    /// The segment's ends.
+    /// The ends of the segment.
     pub segment: [[f64; 2]; 2],
     /// The center of a pixel.
     pub center: [f64; 2],
-    /// From there to the corner.
+    /// The vector from the center to the corner.
     pub offset: [f64; 2],
 }
 
@@ -38,19 +39,19 @@ impl Predicate for CornerSide {
     }
 }
 
-/// Of two segments that cross and a value on one axis, given as a center and an offset: the side on which the
-/// crossing lies. Positive if beyond the value, times the turn of `c d a`.
+/// The side of a value on one axis on which two segments cross: positive if the crossing lies
+/// beyond the value, times the turn of `c d a`. The value is given as a center and an offset.
 #[derive(Debug, Clone, Copy)]
 pub struct CrossingSide {
     /// One segment, `a b`.
     pub ab: [[f64; 2]; 2],
-    /// The other, `c d`.
+    /// The other segment, `c d`.
     pub cd: [[f64; 2]; 2],
     /// The axis: 0 or 1.
     pub along: usize,
     /// The center of a pixel, on that axis.
     pub center: f64,
-    /// From there to the value.
+    /// The offset from the center to the value.
     pub offset: f64,
 }
 
@@ -62,12 +63,14 @@ impl Predicate for CrossingSide {
     fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
         let [a, b] = self.ab;
         let [c, d] = self.cd;
-        // On the other axis nothing but the segments enters: something of theirs stands in.
+        // On the other axis only the segments enter; one of their coordinates stands in for the
+        // center.
         let [center, offset] = if axis == self.along { [self.center, self.offset] } else { [a[axis], 0.0] };
         [a[axis], b[axis], c[axis], d[axis], center, offset, 0.0].into_iter()
     }
 
-    /// The crossing is `a + (b - a) A / D` with the areas `A = [c d a]` and `D = A - [c d b] = (d - c) x (a - b)`.
+    /// The crossing is `a + (b - a) A / D` with the areas `A = [c d a]` and
+    /// `D = A - [c d b] = (d - c) x (a - b)`.
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b] = self.ab;

@@ -3,8 +3,8 @@ use std::marker::PhantomData;
 use super::{Filter, Kernel, Predicate, Range};
 use crate::num::{Number, Sign};
 
-/// A kernel asked about all coordinates times a power of two, if that brings them into its range without a
-/// rounding. The sign stays, as all terms of a predicate have the same degree.
+/// A kernel applied to all coordinates times a power of two, if that brings them into its range
+/// without rounding. The sign does not change, since all terms of a predicate have the same degree.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Scaled<K>(PhantomData<K>);
 
@@ -14,25 +14,26 @@ impl<K: Kernel> Filter for Scaled<K> {
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         let mut coordinates = (0..P::AXES).flat_map(|axis| predicate.axis(axis));
         let largest = coordinates.clone().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        // The largest goes to the upper end of the range: there is most room below.
+        // The largest goes to the upper end of the range, so that as many as possible of the others
+        // fit below.
         let factor = power_of_two(exponent(K::RANGE.max) - 1 - exponent(largest));
-        // What is a normal number was not rounded.
+        // A normal number was not rounded.
         let fits = |x: f64| x == 0.0 || (x * factor).is_normal() && K::RANGE.admits(x * factor);
         coordinates.all(fits).then(|| K::sign(&Times { predicate, factor }))
     }
 }
 
-/// That of the leading bit of a normal number.
+/// Returns the exponent of a normal number.
 fn exponent(x: f64) -> i64 {
     (x.to_bits() >> 52 & 0x7ff) as i64 - 1023
 }
 
-/// `2^exponent`, or the nearest that is far from both ends of what there is.
+/// Returns `2^exponent`; exponents beyond ±1000 are clamped.
 fn power_of_two(exponent: i64) -> f64 {
     f64::from_bits(((1023 + exponent.clamp(-1000, 1000)) as u64) << 52)
 }
 
-/// A question about the same coordinates times a factor.
+/// A predicate whose coordinates are multiplied by a factor.
 struct Times<'a, P> {
     predicate: &'a P,
     factor: f64,
