@@ -2,19 +2,22 @@ use super::lexicographic;
 use crate::kernel::{self, CompareDistance, Exact, Kernel};
 use crate::num::Sign;
 
-/// How near, in units of the largest coordinate on an axis, an end of one segment may be to the other to
-/// be the place where they cross: several times what the place can be off by rounding.
+/// How near, in units of the largest coordinate on an axis, an end of one segment may be to the
+/// other to be taken as the crossing: several times the rounding error of the crossing.
 ///
-/// Segments that run along each other a rounding apart (a border digitized twice, a segment drawn again
-/// after others have split it) cross anywhere and everywhere. Were the rounded place always a new vertex, its
-/// pieces would cross the others anew, without end.
+/// Segments that run along each other a rounding apart (a border digitized twice, a segment
+/// inserted again after others have split it) cross anywhere and everywhere. If the rounded
+/// crossing were always a new vertex, the parts of the split segment would cross the others anew,
+/// without end.
 const REACH: f64 = 4.0 * f64::EPSILON;
 
 type Segment = [[f64; 2]; 2];
 
-/// Where two segments cross, in plan: on the first of them, within its box; or, unless that is exact, an
-/// end within [`REACH`] of the other segment. The end divides that segment into shorter ones, so that
-/// no sequence of such places goes on forever. Does not depend on the order of segments and ends.
+/// Returns where two segments cross, in plan: on the first of them, within its box; or, unless that
+/// is exact, an end within [`REACH`] of the other segment.
+///
+/// The end divides that segment into shorter ones, so no sequence of such crossings goes on
+/// forever. Does not depend on the order of segments and ends.
 pub(super) fn site(ab: Segment, cd: Segment) -> [f64; 2] {
     let sorted = |[p, q]: Segment| if lexicographic(p, q).is_gt() { [q, p] } else { [p, q] };
     let (mut ab, mut cd) = (sorted(ab), sorted(cd));
@@ -37,18 +40,18 @@ pub(super) fn site(ab: Segment, cd: Segment) -> [f64; 2] {
     near.map_or(site, |(end, _)| end)
 }
 
-/// The number at a fraction of the way from one to another.
+/// Returns the number at a fraction of the interval between two others.
 fn between(from: f64, to: f64, along: f64) -> f64 {
     let length = to - from;
     if length.is_finite() { from + along * length } else { from * (1.0 - along) + to * along }
 }
 
-/// Whether both ways from `p` to the ends of a segment are shorter than the segment.
+/// Returns true if `p` is nearer to both ends of a segment than these are to each other.
 fn divides(p: [f64; 2], [a, b]: Segment) -> bool {
     [[a, b], [b, a]].into_iter().all(|[a, b]| Exact::sign(&CompareDistance([a, b, p])) == Sign::Positive)
 }
 
-/// Whether the line through a segment touches the box of half sides `reach` around `p`.
+/// Returns true if the line through a segment touches the box of half sides `reach` around `p`.
 fn is_near(p: [f64; 2], [a, b]: Segment, reach: [f64; 2]) -> bool {
     let touches = reach[0] * (b[1] - a[1]).abs() + reach[1] * (b[0] - a[0]).abs();
     // Where this overflows or vanishes (kernels without a range), no end is near.
@@ -63,7 +66,7 @@ mod tests {
     fn crossings_are_points_that_the_geometry_admits() {
         let geometry: Plane = Plane::default();
         let tiny = crate::kernel::RANGE.min;
-        // They cross at half of the smallest coordinate there is.
+        // They cross at half of the smallest coordinate that is admitted.
         let (ab, cd) = ([[0.0, 0.0], [1.0, 1.0]], [[-1.0, tiny], [1.0, 0.0]]);
         let x = geometry.crossing(ab.each_ref(), cd.each_ref());
         assert_eq!(x, [0.0, 0.0]);

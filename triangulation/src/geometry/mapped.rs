@@ -6,20 +6,20 @@ use super::{Coordinates, Geometry, Metric, Plane};
 use crate::kernel::{Adaptive, Kernel};
 use crate::num::Sign;
 
-/// Points of any type, by the place in the plane that a function gives them: records of one's own, another plane,
-/// another metric.
+/// Points of any type, by the site in the plane that a function computes: records of your own,
+/// another plane, another metric.
 ///
-/// A place is computed, in floating point, whenever a point is looked at; to the same place each time, or the laws are
-/// broken. What the function rounds is rounded before any question: all answers are exact for these places. Points
-/// whose places are equal are one site. There are no constraints: where lines cross, a point would have to be made of a
-/// place.
+/// The site is computed, in floating point, whenever a point is looked at. It must be the same each
+/// time, or the laws are broken. What the function rounds is rounded before any predicate: all
+/// answers are exact for these sites. Points with equal sites are one site. Constraints are not
+/// supported: where lines cross, a point would have to be created from a site.
 ///
 /// ```
 /// use breakline_triangulation::geometry::Mapped;
 /// use breakline_triangulation::kernel::Fixed;
 /// use breakline_triangulation::Delaunay;
 ///
-/// // A type of one's own.
+/// // A type of your own.
 /// #[derive(Clone, Copy, Debug)]
 /// struct Well { east: f64, north: f64, depth: f32 }
 ///
@@ -48,22 +48,24 @@ pub struct Mapped<P, F, K = Adaptive> {
 }
 
 impl<P, F: Fn(&P) -> [f64; 2]> Mapped<P, F> {
-    /// By the function that gives a point its place.
+    /// Returns the geometry whose points lie at the sites that the function computes.
     pub fn new(site: F) -> Self {
         Mapped { site, of: PhantomData }
     }
 
-    /// The same with another arithmetic.
+    /// Returns the same geometry with another arithmetic.
     pub fn with_kernel<K: Kernel>(self) -> Mapped<P, F, K> {
         Mapped { site: self.site, of: PhantomData }
     }
 }
 
-/// The places of points in space in a plane with this normal, of any length: triangles of such places are
-/// counter-clockwise for whoever looks from where the normal points to. `None` if it is zero, or not finite.
+/// Returns a function that maps points in space to sites in a plane with this normal, of any
+/// length. `None` if the normal is zero or not finite.
 ///
-/// Along an axis, places are coordinates, perhaps with the other sign. Otherwise they are rounded: to within a few
-/// units in the last place of a point's largest coordinate.
+/// Triangles are counter-clockwise for a viewer toward whom the normal points.
+///
+/// Along an axis, sites are coordinates, perhaps with the other sign. Otherwise they are rounded:
+/// to within a few units in the last place of a point's largest coordinate.
 ///
 /// ```
 /// use breakline_triangulation::geometry::{Mapped, seen_along};
@@ -80,10 +82,10 @@ pub fn seen_along(normal: [f64; 3]) -> Option<impl Fn(&[f64; 3]) -> [f64; 2] + C
     Some(move |p: &[f64; 3]| [along(p, u), along(p, v)])
 }
 
-/// Two axes that are a right-handed system with the normal, of length one (Duff et al., *Building an Orthonormal Basis,
-/// Revisited*, 2017).
+/// Returns two axes of length one that are a right-handed system with the normal (Duff et al.,
+/// *Building an Orthonormal Basis, Revisited*, 2017).
 fn axes_across(normal: [f64; 3]) -> Option<[[f64; 3]; 2]> {
-    // In parts of the largest: squares of extreme magnitudes are none.
+    // Relative to the largest: squares of extreme magnitudes would overflow or vanish.
     let largest = normal.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let parts = normal.map(|x| x / largest);
     let length = parts.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -3,21 +3,21 @@ use std::cmp::Ordering;
 use super::{Geometry, Plane, Steps, Terrain, Weighted};
 use crate::kernel::{CompareDistance, ComparePower, Kernel};
 
-/// A geometry of the plane that can tell which of two points is nearer.
+/// A geometry of the plane that can compare distances.
 ///
-/// Needed for [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest),
+/// Required for [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest),
 /// [`nearest_first`](crate::triangulation::Delaunay::nearest_first) and
 /// [`within`](crate::triangulation::Delaunay::within).
 ///
 /// # Laws
-/// - The distance is the one that the circles of the [geometry](Geometry::side_of_sphere) are circles of: walks to the
-///   nearest vertex follow from the empty circles.
-/// - The answer is exact: `Equal` for equal distances, and `Less` for no two points at once.
+/// - The circles of [`side_of_sphere`](Geometry::side_of_sphere) are circles of this distance:
+///   walks to the nearest vertex rely on the empty circles.
+/// - The answer is exact: `Equal` for equal distances, and antisymmetric.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`], whose distance
-/// is the power. A geometry of one's own that leaves places to one of these leaves distances to it, too. Here on a map
-/// whose y axis points down:
+/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`],
+/// whose distance is the power. A geometry of your own that forwards positions to one of these
+/// forwards distances, too. This one is for a map whose y axis points down:
 ///
 /// ```
 /// use std::cmp::Ordering;
@@ -55,7 +55,7 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Metric: Geometry<3> {
-    /// Whether `a` is nearer to `q` than `b` is (`Less`), or further away.
+    /// Compares the distances from `q`: `Less` if `a` is nearer than `b`.
     fn compare_distance(&self, q: &Self::Point, a: &Self::Point, b: &Self::Point) -> Ordering;
 }
 
@@ -71,7 +71,7 @@ impl<K: Kernel> Metric for Plane<K> {
 }
 
 impl<K: Kernel> Metric for Terrain<K> {
-    /// In plan.
+    /// Compares in plan.
     #[inline]
     fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
         compare::<K>([q, a, b].map(super::plan))
@@ -79,7 +79,7 @@ impl<K: Kernel> Metric for Terrain<K> {
 }
 
 impl<K: Kernel> Metric for Steps<K> {
-    /// In plan.
+    /// Compares in plan.
     #[inline]
     fn compare_distance(&self, q: &[i32; 3], a: &[i32; 3], b: &[i32; 3]) -> Ordering {
         compare::<K>([q, a, b].map(super::steps::plan))
@@ -87,7 +87,7 @@ impl<K: Kernel> Metric for Steps<K> {
 }
 
 impl<K: Kernel> Metric for Weighted<K> {
-    /// By power: squared distance less weight. That of `q` counts for neither.
+    /// Compares powers: squared distance less weight. The weight of `q` does not count.
     #[inline]
     fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
         (K::sign(&ComparePower([*q, *a, *b])) as i8).cmp(&0)

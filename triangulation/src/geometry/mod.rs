@@ -8,21 +8,22 @@
 //! |---|---|---|
 //! | [`Plane`] | `[f64; 2]` | in the plane |
 //! | [`Terrain`] | `[f64; 3]` | in plan: on x and y; z is carried along |
-//! | [`Steps`] | `[i32; 3]` | in plan, of points on a lattice like that of a LAS file |
-//! | [`Mapped`] | any type | in the plane, at places that a function gives: other planes ([`seen_along`]), scaled axes |
+//! | [`Steps`] | `[i32; 3]` | in plan, for points on a lattice like that of a LAS file |
+//! | [`Mapped`] | any type | in the plane, on sites that a function computes: other planes ([`seen_along`]), scaled axes |
 //! | [`Weighted`] | `[f64; 3]` | in the plane, with weights: x, y, weight |
 //! | [`Space`] | `[f64; 3]` | in space |
 //!
 //! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
 //!
-//! | for | a geometry of one's own needs |
+//! | for | a geometry of your own needs |
 //! |---|---|
 //! | insertion one by one, location, checks | [`Geometry`] |
 //! | construction in bulk | [`Coordinates`], too |
 //! | constraints | [`Crossing`], too |
-//! | the nearest vertices of a place | [`Metric`], too |
+//! | the vertices nearest to a point | [`Metric`], too |
 //!
-//! Distances are asked for where a walk may start and for what is nearest only, angles nowhere, and units play no part.
+//! Distances are used only to choose where a walk starts, and to find what is nearest. Angles are
+//! never used, and units do not matter.
 
 mod crossed;
 mod mapped;
@@ -49,21 +50,22 @@ use std::fmt::Debug;
 use crate::kernel::{Orientation2, Predicate};
 use crate::num::Sign;
 
-/// The questions a triangulation asks of points. `N` is the number of vertices of a full cell: 3 for
+/// The predicates that a triangulation needs. `N` is the number of vertices of a cell: 3 for
 /// triangles, 4 for tetrahedra.
 ///
 /// # Laws
 /// - `compare` is a total order; points that compare `Equal` are the same *site* for all other
-///   questions. Along any straight line it runs monotonically.
+///   predicates. Along any straight line it is monotone.
 /// - `orientation` changes its sign when two points are exchanged, and is zero exactly when the
 ///   points lie in a common hyperplane (line, plane).
 /// - `side_of_sphere` is positive inside for a positively oriented simplex, negative outside, zero
 ///   on the sphere, and changes its sign with the orientation.
-/// - All answers are those of one and the same set of exact points.
+/// - All answers are those for one and the same set of exact points.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`]. For points that have a place in the plane,
-/// `Mapped` is a geometry in one line. Users add their own, here one that counts what it is asked:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`]. For points that have a
+/// position in the plane, `Mapped` is a geometry in one line. You can add your own; this one counts
+/// how often a predicate is evaluated:
 ///
 /// ```
 /// use std::cell::Cell;
@@ -95,42 +97,50 @@ use crate::num::Sign;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Geometry<const N: usize> {
-    /// What is triangulated.
+    /// The type of the points that are triangulated.
     type Point: Copy + Debug + Send + Sync;
 
-    /// Whether the point's coordinates are finite and in the range that the arithmetic is proven for.
+    /// Returns true if the point's coordinates are finite and in the range that the arithmetic is
+    /// proven for.
     fn admits(&self, p: &Self::Point) -> bool;
 
-    /// Total order on sites; lexicographic by coordinates in the models here.
+    /// Compares two sites: a total order, lexicographic by coordinates in the models here.
     fn compare(&self, p: &Self::Point, q: &Self::Point) -> Ordering;
 
-    /// The orientation of a simplex: positive if counter-clockwise (right-handed in space).
+    /// Returns the orientation of a simplex: positive if counter-clockwise (right-handed in space).
     fn orientation(&self, simplex: [&Self::Point; N]) -> Sign;
 
-    /// On which side of the simplex's circumscribed sphere `q` lies: positive inside, if the simplex
-    /// is positively oriented.
+    /// Returns on which side of the simplex's circumscribed sphere `q` lies: positive inside, if
+    /// the simplex is positively oriented.
     fn side_of_sphere(&self, simplex: [&Self::Point; N], q: &Self::Point) -> Sign;
 
-    /// About how far two points are from each other, in any measure: for choosing where a walk starts, no answer
-    /// depends on it. Without one, which is NaN, walks from far away take long.
+    /// Returns the approximate distance of two points, in any measure.
+    ///
+    /// Used to choose where a walk starts; no result depends on it. The default is NaN, for no
+    /// measure: walks then start far away and take long.
     #[inline]
     fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> f64 {
         f64::NAN
     }
 
-    /// About how far inside of each facet of a positively oriented simplex `q` lies, opposite the vertex in the same
-    /// place; negative outside. Any measure will do in which facets can be compared, as the areas (volumes) that they
-    /// span with `q`: for choosing which way a walk goes, no answer depends on it (structural filtering; Funke,
-    /// Mehlhorn and Näher 1999). Without one, which is NaN, walks ask for orientations at each step, and take 1.6 times as
-    /// long.
+    /// Returns about how far `q` lies inside of each facet of a positively oriented simplex;
+    /// negative outside.
+    ///
+    /// The facets are in the order of the vertices opposite to them. Any measure will do that makes
+    /// facets comparable, such as the area (volume) that each spans with `q`. Used to choose the
+    /// direction of a walk; no result depends on it (structural filtering; Funke, Mehlhorn and
+    /// Näher 1999). The default is NaN, for no measure: walks then evaluate orientations at each
+    /// step, and take 1.6 times as long.
     #[inline]
     fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> [f64; N] {
         [f64::NAN; N]
     }
 
-    /// The orientation of fewer than `N` points within the flat (line, plane) that they span: of two
-    /// points their order, of three (asked for `N = 4` only) their turn in a plane, seen from a side
-    /// that is fixed for the plane. Zero if they span less.
+    /// Returns the orientation of fewer than `N` points within the flat (line, plane) that they
+    /// span.
+    ///
+    /// For two points it is their order. For three (with `N = 4` only) it is their turn in the
+    /// plane, seen from a side that is fixed for the plane. Zero if they span less.
     fn orientation_in_flat(&self, simplex: &[&Self::Point]) -> Sign {
         match simplex {
             [p, q] => self.compare(q, p).into(),
@@ -138,10 +148,12 @@ pub trait Geometry<const N: usize> {
         }
     }
 
-    /// Whether `q`, which lies in the flat of the simplex, lies inside (positive), on or outside of the sphere around
-    /// it there; whatever the orientation of the simplex. Two points: between them. One point: `q` is on the same site,
-    /// and inside if its weight is larger; asked of weighted points only, of which the answer without weights, that no
-    /// point is inside of another, is wrong.
+    /// Returns on which side of a simplex's circumscribed sphere `q` lies, within the flat that the
+    /// simplex spans and `q` lies in: positive inside, whatever the orientation of the simplex.
+    ///
+    /// For two points, inside means between them. A single point is only asked about for weighted
+    /// points: `q` is then on the same site, and inside if its weight is larger. The default, for
+    /// points without weights, answers that no point is inside of another.
     fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
         match simplex {
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
@@ -150,20 +162,21 @@ pub trait Geometry<const N: usize> {
     }
 }
 
-/// A geometry that knows numbers for its points.
+/// A geometry whose points have coordinates.
 ///
-/// Needed for: construction from many points at once ([`from_points`](crate::triangulation::Delaunay::from_points),
-/// [`spatial_order`](crate::triangulation::spatial_order)), questions about rectangles, Voronoi cells, natural neighbor
-/// coordinates, pictures, and as a part of [`Crossing`].
+/// Required for construction from many points at once
+/// ([`from_points`](crate::triangulation::Delaunay::from_points),
+/// [`spatial_order`](crate::triangulation::spatial_order)), for queries by rectangle, Voronoi
+/// cells, natural neighbor coordinates and pictures, and by [`Crossing`].
 ///
 /// # Laws
-/// - In space coordinates are for sorting only: no answer depends on them.
-/// - In the plane they are exact: two sites have different ones, and if the predicates say that points lie along a line
-///   in some order, the coordinates say so, too.
+/// - In space, coordinates are for sorting only: no result depends on them.
+/// - In the plane they are exact: different sites have different coordinates, and if the predicates
+///   say that points lie along a line in some order, so do the coordinates.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with three. Here a type
-/// of one's own, which passes all questions on to `Plane`:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with
+/// three. A type of your own can forward all predicates to `Plane`:
 ///
 /// ```
 /// use std::cmp::Ordering;
@@ -186,7 +199,7 @@ pub trait Geometry<const N: usize> {
 /// impl Coordinates<3> for Forest {
 ///     type Coordinates = [f64; 2];
 ///     fn coordinates(&self, p: &Tree) -> [f64; 2] { p.at }
-///     // The predicates are those of floating point numbers in the plane: construction takes half the time.
+///     // The predicates are those of floating-point numbers in the plane: construction takes half the time.
 ///     fn exact_plan(&self, p: &Tree) -> Option<[f64; 2]> { self.0.exact_plan(&p.at) }
 /// }
 ///
@@ -198,36 +211,39 @@ pub trait Geometry<const N: usize> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
-    /// The coordinates, up to three of them.
+    /// Up to three coordinates.
     type Coordinates: AsRef<[f64]>;
 
-    /// Coordinates of a point.
+    /// Returns the coordinates of a point.
     fn coordinates(&self, p: &Self::Point) -> Self::Coordinates;
 
-    /// Where a point lies in the plane, if the predicates' answers are the signs of
-    /// [`Orientation2`] and [`InCircle`](crate::kernel::InCircle) of such places, within the
-    /// [range](crate::kernel::RANGE) of floating point. Construction in bulk then asks the geometry what floating
-    /// point cannot answer with certainty only, and takes half the time.
+    /// Returns the position of a point in the plane, if the predicates are the signs of
+    /// [`Orientation2`] and [`InCircle`](crate::kernel::InCircle) of such positions, within the
+    /// [range](crate::kernel::RANGE) of floating point.
+    ///
+    /// Construction in bulk then asks the geometry only if floating point is not certain, and takes
+    /// half the time.
     #[inline(always)]
     fn exact_plan(&self, _: &Self::Point) -> Option<[f64; 2]> {
         None
     }
 }
 
-/// A geometry of the plane that can make points where segments meet: what constrained triangulations need
-/// beyond predicates.
+/// A geometry of the plane that can create points where segments meet: what constrained
+/// triangulations need beyond predicates.
 ///
 /// # Laws
 /// - The predicates of the geometry are those of the points' plans.
-/// - `plan` of `meet` is the place that was asked for.
-/// - `meet` does not depend on the order of the segments, nor of their ends.
+/// - `plan` of `meet` is the site that was passed to it.
+/// - `meet` does not depend on the order of the segments, nor on the order of their ends.
 ///
-/// Needed for [`ConstrainedDelaunay`](crate::triangulation::ConstrainedDelaunay). The other kind with constraints,
-/// [`Constrained`](crate::triangulation::Constrained), makes no points and does without.
+/// Required for [`ConstrainedDelaunay`](crate::triangulation::ConstrainedDelaunay). The other kind
+/// with constraints, [`Constrained`](crate::triangulation::Constrained), creates no points and does
+/// not need it.
 ///
 /// # Models
-/// [`Plane`]; [`Terrain`], where the lowest of the lines' heights is taken. Here points that know whether they were
-/// surveyed or made:
+/// [`Plane`]; [`Terrain`], which takes the lowest of the lines' heights. These points know whether
+/// they were surveyed or added:
 ///
 /// ```
 /// use std::cmp::Ordering;
@@ -268,53 +284,57 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Crossing: Coordinates<3> {
-    /// The point's coordinates in the plane, exactly.
+    /// Returns the point's coordinates in the plane, exactly.
     fn plan(&self, p: &Self::Point) -> [f64; 2];
 
-    /// A power of two that all coordinates that are admitted are multiples of, those near zero included; zero if there
-    /// is none.
+    /// Returns a power of two of which all admitted coordinates are multiples, those near zero
+    /// included; zero if there is none.
     fn step(&self) -> f64 {
         0.0
     }
 
-    /// A point at a place at which segments meet that pass by it no further away than a rounding.
+    /// Returns a point at a site where segments meet. Each of them passes the site within a
+    /// rounding.
     fn meet(&self, site: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;
 
-    /// The point where segments `a b` and `c d` cross in their interiors, rounded; or an end of one of them
-    /// that is so near to the other that rounding may hide on which side of it the end lies.
+    /// Returns the point where segments `a b` and `c d` cross in their interiors, rounded.
+    ///
+    /// Or an end of one of them, if it is so near to the other segment that rounding may hide on
+    /// which side of it the end lies.
     fn crossing(&self, ab: [&Self::Point; 2], cd: [&Self::Point; 2]) -> Self::Point {
         let site = crossed::site(ab.map(|p| self.plan(p)), cd.map(|p| self.plan(p)));
         self.meet(self.on_step(site), &[ab, cd])
     }
 
-    /// The place that is nearest to one on a line between points that are admitted, and whose coordinates are multiples
-    /// of the [step](Self::step).
+    /// Rounds a site to the nearest one whose coordinates are multiples of the [step](Self::step).
+    /// The site lies on a line between points that are admitted.
     fn on_step(&self, site: [f64; 2]) -> [f64; 2] {
         let step = self.step();
         if step == 0.0 { site } else { site.map(|x| (x / step).round() * step + 0.0) } // zero has one sign only
     }
 }
 
-/// A point seen from above.
+/// Returns the position of a point seen from above.
 #[inline(always)]
 fn plan(p: &[f64; 3]) -> [f64; 2] {
     [p[0], p[1]]
 }
 
-/// Twice the areas that `q` spans with the edges of a triangle, rounded: from a corner, so that a triangle which is small
-/// beside its distance from `q` is not lost.
+/// Returns twice the areas that `q` spans with the edges of a triangle, rounded. Coordinates are
+/// relative to a corner, so that a triangle that is small compared to its distance from `q` is not
+/// lost.
 #[inline(always)]
 fn rough_areas([a, b, c]: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
     [[b, c], [c, a], [a, b]].map(|[from, to]| Orientation2([to, q, from]).value(|x, y| x - y))
 }
 
-/// Along the axes.
+/// Returns the distance along the axes.
 #[inline(always)]
 fn manhattan<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
     (0..D).map(|axis| (p[axis] - q[axis]).abs()).sum()
 }
 
-/// Lexicographic order of coordinates.
+/// Compares coordinates lexicographically.
 #[inline(always)]
 fn lexicographic<const D: usize>(p: [f64; D], q: [f64; D]) -> Ordering {
     for axis in 0..D {

@@ -5,12 +5,13 @@ use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, rough_are
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
-/// Points of the plane.
+/// The geometry of points in the plane, `[x, y]`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Plane<K = Adaptive>(PhantomData<K>);
 
 impl Plane {
-    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Plane::<K>::default()`.
+    /// Returns the geometry with the kernel [`Adaptive`]. For another kernel, use
+    /// `Plane::<K>::default()`.
     pub fn new() -> Self {
         Plane::default()
     }
@@ -80,8 +81,10 @@ impl<K: Kernel> Crossing for Plane<K> {
     }
 }
 
-/// How far a place is from a segment, rounded: in the unit of the coordinates, which is the same on both axes. A
-/// segment whose ends share a place is that place. O(1).
+/// Returns the distance of a point from a segment, rounded, in the unit of the coordinates, which
+/// is the same on both axes.
+///
+/// A segment whose ends coincide is a point. O(1).
 pub fn distance_to_segment(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
     let [vx, vy] = [p[0] - a[0], p[1] - a[1]];

@@ -5,20 +5,21 @@ use super::{Coordinates, Geometry, lexicographic, manhattan};
 use crate::kernel::{Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3, Predicate};
 use crate::num::Sign;
 
-/// Points in space.
+/// The geometry of points in space, `[x, y, z]`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Space<K = Adaptive>(PhantomData<K>);
 
 impl Space {
-    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Space::<K>::default()`.
+    /// Returns the geometry with the kernel [`Adaptive`]. For another kernel, use
+    /// `Space::<K>::default()`.
     pub fn new() -> Self {
         Space::default()
     }
 }
 
 impl<K: Kernel> Space<K> {
-    /// The first projection along an axis in which three points have an area, and its sign. For
-    /// triangles of one plane that is always the same projection.
+    /// Returns the first projection along an axis in which three points have an area, and its sign.
+    /// For all triangles of one plane, it is the same projection.
     fn projection(&self, [a, b, c]: [&[f64; 3]; 3]) -> Option<([usize; 2], Sign)> {
         [[0, 1], [1, 2], [2, 0]].into_iter().find_map(|axes| {
             let sign = K::sign(&Orientation2([a, b, c].map(|p| axes.map(|axis| p[axis]))));

@@ -5,21 +5,24 @@ use super::{Coordinates, Geometry, Plane, manhattan, rough_areas};
 use crate::kernel::{Kernel, Lattice};
 use crate::num::Sign;
 
-/// Points as LAS files hold them, in whole steps on three axes, seen in plan: 12 bytes a point, and nothing is rounded.
-/// See `data::Lattice` of the crate `breakline` for the way from coordinates to steps and back.
+/// The geometry of points as LAS files store them, in whole steps on three axes, seen in plan: 12
+/// bytes a point, and nothing is rounded.
 ///
-/// A step is as long on one axis as on the other. Two heights over one footprint are one site.
+/// A step has the same length on both horizontal axes. Points with equal x and y are one site,
+/// whatever their heights. `data::Lattice` of the crate `breakline` converts coordinates to steps
+/// and steps to coordinates.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Steps<K = Lattice>(PhantomData<K>);
 
 impl Steps {
-    /// Returns the geometry with the kernel [`Lattice`]; with another one, use `Steps::<K>::default()`.
+    /// Returns the geometry with the kernel [`Lattice`]. For another kernel, use
+    /// `Steps::<K>::default()`.
     pub fn new() -> Self {
         Steps::default()
     }
 }
 
-/// Every 32-bit number is a double.
+/// Returns the position in plan. Every 32-bit integer is a double.
 #[inline(always)]
 pub(super) fn plan(p: &[i32; 3]) -> [f64; 2] {
     [p[0].into(), p[1].into()]

@@ -5,15 +5,17 @@ use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, plan, rou
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
-/// Points in space, seen in plan: all questions are answered on x and y, the height is carried along.
+/// The geometry of points in space, seen in plan: predicates look at x and y, the height is carried
+/// along.
 ///
-/// Two heights over one footprint are one site. Where breaklines cross, each has a height of its own:
-/// the vertex there takes the lower one, as points do.
+/// Points with equal x and y are one site, whatever their heights. Where breaklines cross, each has
+/// a height of its own: the vertex there takes the lower one, as points of one site do.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Terrain<K = Adaptive>(PhantomData<K>);
 
 impl Terrain {
-    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Terrain::<K>::default()`.
+    /// Returns the geometry with the kernel [`Adaptive`]. For another kernel, use
+    /// `Terrain::<K>::default()`.
     pub fn new() -> Self {
         Terrain::default()
     }
@@ -84,13 +86,14 @@ impl<K: Kernel> Crossing for Terrain<K> {
     }
 }
 
-/// The height of a segment where it passes by a place in plan; the same for either order of its ends.
+/// Returns the height of a segment at a point in plan; the same for either order of its ends.
 ///
-/// That is at the foot of the perpendicular in plan, or at the end that the place lies beyond; where the ends share a
-/// place in plan, the lower height. In the unit of the ends' heights, which need not be that of the plan. O(1).
+/// It is taken at the foot of the perpendicular in plan, or at the end that the point lies beyond.
+/// If the ends have the same x and y, it is the lower height. In the unit of the ends' heights,
+/// which need not be that of the plan. O(1).
 pub fn height_along(p: [f64; 3], q: [f64; 3], [x, y]: [f64; 2]) -> f64 {
     let (p, q) = if lexicographic(plan(&p), plan(&q)).is_gt() { (q, p) } else { (p, q) };
-    // In parts of the longer side: squares of extreme magnitudes are none.
+    // Relative to the longer side: squares of extreme magnitudes would overflow or vanish.
     let [dx, dy] = [0, 1].map(|k| q[k] / 2.0 - p[k] / 2.0);
     let longer = dx.abs().max(dy.abs());
     let [ux, uy] = [dx / longer, dy / longer];

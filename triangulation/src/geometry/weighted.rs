@@ -5,27 +5,32 @@ use super::{Coordinates, Geometry, lexicographic, manhattan, plan, rough_areas};
 use crate::kernel::{Adaptive, Kernel, Orientation2, PowerOnLine, PowerTest2};
 use crate::num::Sign;
 
-/// Points of the plane with a weight: `[x, y, weight]`, the weight in the square of the unit of x and y. A point stands
-/// for a circle of squared radius `weight`, and weights may be negative: only their differences count.
+/// The geometry of points in the plane with a weight: `[x, y, weight]`, the weight in the square of
+/// the unit of x and y.
 ///
-/// Orientation and order are those of the plane; two weights at one place are one site. In place of a
-/// simplex's circumscribed circle stands the circle that is orthogonal to those of its corners: a point is *inside* if
-/// its [lift](PowerTest2) is below the plane through the lifts of the corners.
+/// A point stands for a circle of squared radius `weight`. Weights may be negative: only their
+/// differences count. Orientation and order are those of the plane; points with equal x and y are
+/// one site. The circumscribed circle of a simplex is replaced by the circle that is orthogonal to
+/// those of its corners: a point is *inside* if its [lift](PowerTest2) is below the plane through
+/// the lifts of the corners.
 ///
-/// For regular triangulations, in which a point may be hidden by others. [`Delaunay`](crate::triangulation::Delaunay)
-/// triangulations know no hidden points: with unequal weights their law is broken.
+/// For regular triangulations, in which a point may be hidden by others.
+/// [`Delaunay`](crate::triangulation::Delaunay) triangulations have no hidden points: with unequal
+/// weights their law is broken.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Weighted<K = Adaptive>(PhantomData<K>);
 
 impl Weighted {
-    /// Returns the geometry with the kernel [`Adaptive`]; with another one, use `Weighted::<K>::default()`.
+    /// Returns the geometry with the kernel [`Adaptive`]. For another kernel, use
+    /// `Weighted::<K>::default()`.
     pub fn new() -> Self {
         Weighted::default()
     }
 }
 
 impl<K> Weighted<K> {
-    /// The order of two points' weights: of those at one site, the greater is in the regular triangulation.
+    /// Compares the weights of two points: of those at one site, the greater is in the regular
+    /// triangulation.
     #[inline]
     pub fn compare_weights(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
         lexicographic([p[2]], [q[2]])
@@ -35,7 +40,7 @@ impl<K> Weighted<K> {
 impl<K: Kernel> Geometry<3> for Weighted<K> {
     type Point = [f64; 3];
 
-    /// Of the weight, too.
+    /// Returns true if the coordinates and the weight are admitted.
     #[inline]
     fn admits(&self, p: &[f64; 3]) -> bool {
         p.iter().all(|&x| K::RANGE.admits(x))
@@ -66,15 +71,16 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
         K::sign(&PowerTest2([*a, *b, *c, *q]))
     }
 
-    /// Of two points: whether the lift of `q`, anywhere on the line through them, is below the line through theirs. Of
-    /// one: whether `q`, on the same site, is heavier.
+    /// For two points, positive if the lift of `q`, anywhere on the line through them, is below the
+    /// line through their lifts. For one, positive if `q`, on the same site, is heavier.
     fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
         let (a, b) = match *simplex {
             [a] => return self.compare_weights(q, a).into(),
             [a, b] => (a, b),
             _ => return Sign::Negative,
         };
-        // In lexicographic order, the first has the smaller coordinate on the first axis on which they differ.
+        // In lexicographic order, the first has the smaller coordinate on the first axis on which
+        // they differ.
         let (a, b) = match self.compare(a, b) {
             Ordering::Less => (a, b),
             Ordering::Equal => return Sign::Negative,
@@ -84,8 +90,8 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
     }
 }
 
-/// For their order and place; the predicates are not those of [`exact_plan`](Coordinates::exact_plan), so that there is
-/// none.
+/// Coordinates for sorting and positions. There is no [`exact_plan`](Coordinates::exact_plan),
+/// because the in-circle test is not that of the plane.
 impl<K: Kernel> Coordinates<3> for Weighted<K> {
     type Coordinates = [f64; 2];
 
