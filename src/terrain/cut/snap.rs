@@ -42,8 +42,8 @@ pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
     }
     let step = base.geometry().step();
     let site = |i: u32| points[i as usize];
-    let arrangement =
-        Arrangement::with_snapped(points.len(), site, &segments, segments.len(), step).crossing_free(site, &segments, step);
+    let arrangement = Arrangement::with_snapped(points.len(), site, &segments, segments.len(), step)
+        .crossing_free(site, &segments, step);
     let site = |site: u32| match (site as usize).checked_sub(points.len()) {
         Some(added) => arrangement.added()[added],
         None => points[site as usize],

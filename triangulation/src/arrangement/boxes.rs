@@ -1,13 +1,14 @@
-//! Which boxes overlap: a packed R-tree, built once.
+//! Overlaps of boxes: a packed R-tree, built once.
 //!
-//! Boxes are sorted into vertical slabs and within each by height (sort-tile-recursive: Leutenegger, Lopez and
-//! Edgington 1997), and every [`FAN`] of them in a row get a box around them, and so on up.
+//! Boxes are sorted into vertical slabs and within each by height (sort-tile-recursive:
+//! Leutenegger, Lopez and Edgington 1997). Each row of [`FAN`] boxes gets a box around them, and so
+//! on up.
 
 use crate::parallel::*;
 
 use super::FEW;
 
-/// Children of a node: a power of two.
+/// The number of children of a node: a power of two.
 const FAN: usize = 1 << FAN_BITS;
 const FAN_BITS: usize = 3;
 
@@ -25,7 +26,8 @@ impl Box2 {
         Box2 { min: [p[0].min(q[0]), p[1].min(q[1])], max: [p[0].max(q[0]), p[1].max(q[1])] }
     }
 
-    /// Grown by this much on each axis. Outward roundings keep it a superset.
+    /// Returns the box grown by this much on each axis. Rounded outward, so that it stays a
+    /// superset.
     pub(super) fn grown(self, by: [f64; 2]) -> Self {
         let axis = |k: usize| ((self.min[k] - by[k]).next_down(), (self.max[k] + by[k]).next_up());
         let [(x0, x1), (y0, y1)] = [axis(0), axis(1)];
@@ -41,23 +43,24 @@ impl Box2 {
 
     #[inline(always)]
     pub(super) fn overlaps(&self, other: &Self) -> bool {
-        // Without branches: all four are cheaper than a misprediction.
+        // Without branches: evaluating all four is cheaper than a misprediction.
         (self.min[0] <= other.max[0])
             & (other.min[0] <= self.max[0])
             & (self.min[1] <= other.max[1])
             & (other.min[1] <= self.max[1])
     }
 
-    /// Whether all of the box lies on one side of the line through a segment, and not so near to it that rounding could
-    /// hide the side. The coordinates are those of the fast kernels.
+    /// Returns true if the whole box lies on one side of the line through a segment, and not so
+    /// near to the line that rounding could hide the side. The coordinates are in the range of the
+    /// fast kernels.
     #[inline(always)]
     pub(super) fn is_beside(&self, [a, b]: [[f64; 2]; 2]) -> bool {
         let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
         // The corners that are furthest to the right and to the left of the direction.
         let (right_x, left_x) = if uy > 0.0 { (self.max[0], self.min[0]) } else { (self.min[0], self.max[0]) };
         let (right_y, left_y) = if ux > 0.0 { (self.min[1], self.max[1]) } else { (self.max[1], self.min[1]) };
-        // Twice the area of segment and corner, and more than its error: four roundings, each of 2^-53, in either
-        // product.
+        // Twice the area of segment and corner, and a bound on its error: four roundings, each of
+        // 2^-53, in either product.
         let area = |x: f64, y: f64| {
             let (left, right) = (ux * (y - a[1]), uy * (x - a[0]));
             (left - right, 4.0 * f64::EPSILON * (left.abs() + right.abs()))
@@ -70,24 +73,24 @@ impl Box2 {
         (self.max[0] - self.min[0]) * (self.max[1] - self.min[1])
     }
 
-    /// On one axis, halved so that it does not overflow.
+    /// Returns the center on one axis; halved first, so that it does not overflow.
     fn center(&self, axis: usize) -> f64 {
         self.min[axis] / 2.0 + self.max[axis] / 2.0
     }
 }
 
-/// The tree over numbered boxes.
+/// A tree over numbered boxes.
 #[derive(Debug, Clone)]
 pub(super) struct BoxTree {
-    /// The boxes' numbers in the order of the leaves.
+    /// The numbers of the boxes in the order of the leaves.
     order: Vec<u32>,
-    /// The boxes in that order, then the level of those around each [`FAN`] of them, and so on.
+    /// The boxes in that order, then the level of boxes around each [`FAN`] of them, and so on.
     levels: Vec<Vec<Box2>>,
 }
 
 impl BoxTree {
     pub(super) fn new(boxes: &[Box2]) -> Self {
-        // The keys travel with the numbers: half the time of looking them up.
+        // The keys are stored with the numbers: half the time of looking them up.
         let centers = boxes.iter().zip(0..).map(|(boxed, i)| ([0, 1].map(|axis| boxed.center(axis)), i));
         let mut order: Vec<([f64; 2], u32)> = centers.collect();
         let by_center = |axis: usize| {
@@ -108,18 +111,19 @@ impl BoxTree {
         BoxTree { order, levels }
     }
 
-    /// The box's number at each place of the leaves.
+    /// The numbers of the boxes in the order of the leaves.
     pub(super) fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// Calls with the number of every box that is met; where a box is, those are that it lies in.
+    /// Calls `visit` with the number of every box that is met. `is_met` must also be true for every
+    /// box that contains one that is met.
     #[inline]
     pub(super) fn visit(&self, is_met: impl Fn(&Box2) -> bool, mut visit: impl FnMut(u32)) {
         self.visit_from(0, is_met, &mut visit);
     }
 
-    /// The same with those leaves only that stand at `first` or behind.
+    /// Like [`visit`](Self::visit), but for leaves from position `first` on only.
     #[inline]
     pub(super) fn visit_from(&self, first: usize, is_met: impl Fn(&Box2) -> bool, visit: &mut impl FnMut(u32)) {
         let top = self.levels.len() - 1;
@@ -139,7 +143,7 @@ impl BoxTree {
             }
             let below = &self.levels[level - 1];
             let row = node * FAN..below.len().min((node + 1) * FAN);
-            // A node's leaves are FAN^level in a row.
+            // A node has FAN^level leaves in a row.
             let skipped = (first >> (FAN_BITS * (level - 1))).saturating_sub(row.start);
             for (child, boxed) in row.clone().zip(&below[row]).skip(skipped) {
                 // PERF: without a branch, of which one in three would be mispredicted.

@@ -13,12 +13,12 @@ use super::pixel::Grid;
 use super::sweep;
 use super::{Arrangement, Crossing, FEW, Segment, Site, SiteOf, lexicographic, starts};
 
-/// A segment that is led through a site.
+/// A segment that is routed through a site.
 #[derive(Debug, Clone, Copy)]
 struct Pass {
     segment: u32,
     site: u32,
-    /// Whether the site is known to lie on the segment exactly; of those that were added, none is.
+    /// True if the site is known to lie on the segment exactly; never for added sites.
     exact: bool,
 }
 
@@ -27,16 +27,17 @@ pub(super) struct Builder<'a> {
     given_count: usize,
     site_of: &'a SiteOf<'a>,
     ends: &'a [[u32; 2]],
-    /// How many of the first segments are led through all pixels that they meet, without being bent by others.
+    /// The number of segments, the first ones, that are routed through all pixels that they meet,
+    /// even if no other segment bends them.
     snapped: usize,
     segments: &'a [Segment],
-    /// The area of a box over which many of the segments come to lie, if they are spread evenly.
+    /// The area of a box that many of the segments would overlap, if they were spread evenly.
     large: f64,
-    /// Whether many boxes overlap though the segments do not cross.
+    /// True if many boxes overlap though the segments do not cross.
     is_crowded: bool,
     added: Vec<Site>,
-    /// The segments whose crossing was rounded to an added site, each once, site after site; and where those of each
-    /// end.
+    /// The segments whose crossing was rounded to an added site, each once, grouped by site; and
+    /// where each site's segments end.
     crossed: Vec<u32>,
     crossed_ends: Vec<u32>,
 }
@@ -82,13 +83,13 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// A tree over some segments, by their position in the list.
+    /// Returns a tree over some segments, which numbers them by their position in the list.
     fn tree(&self, segments: impl Iterator<Item = u32>) -> BoxTree {
         let boxes: Vec<Box2> = segments.map(|i| Box2::around(self.segments[i as usize])).collect();
         BoxTree::new(&boxes)
     }
 
-    /// The ends of all segments, and the sites of crossings; each once.
+    /// Returns the ends of all segments, and the sites of crossings, each once.
     fn hot_sites(&self, crossings: &[Crossing]) -> Vec<u32> {
         let mut sites: Vec<u32> = self.ends.iter().flatten().copied().collect();
         sites.extend(crossings.iter().map(|crossing| crossing.site));
@@ -97,7 +98,7 @@ impl<'a> Builder<'a> {
         sites
     }
 
-    /// Phase 1: the pairs of segments that cross in their interiors.
+    /// Phase 1: returns the pairs of segments that cross in their interiors.
     fn crossing_pairs<K: Kernel>(&mut self) -> Vec<[u32; 2]> {
         if self.segments.len() <= FEW {
             return self.crossing_pairs_of_few::<K>();
@@ -111,17 +112,20 @@ impl<'a> Builder<'a> {
         pairs.into_iter().map(|pair| [(pair >> 32) as u32, pair as u32]).collect()
     }
 
-    /// The pairs that cross, each as one number, in no order; `None` as soon as many boxes have overlapped in vain.
+    /// Returns the pairs that cross, each as one number, in no order; `None` as soon as too many
+    /// boxes have overlapped in vain.
     ///
-    /// `PERF:` of segments that are short, or cross most of what they come near, half the time of the sweep, on one
-    /// thread.
+    /// `PERF:` takes half the time of the sweep, on one thread, for segments that are short or
+    /// cross most of what they come near.
     fn crossing_pairs_by_boxes<K: Kernel>(&self, number: impl Fn([u32; 2]) -> u64 + Sync) -> Option<Vec<u64>> {
-        /// So many in vain, for each segment and each pair found, take about as long as the sweep.
+        /// So many overlaps in vain, for each segment and each pair found, take about as long as
+        /// the sweep.
         const PATIENCE: usize = 64;
         const CHUNK: usize = 64;
         let tree = self.tree(0..self.segments.len() as u32);
         let (asked, allowed) = (AtomicUsize::new(0), AtomicUsize::new(PATIENCE * self.segments.len()));
-        // Once true it stays: what other threads find later does not bring back the pairs that were skipped.
+        // Once true, it stays true: pairs that other threads find later do not bring back those
+        // that were skipped.
         let is_given_up = AtomicBool::new(false);
         let of_chunk = |(chunk, leaves): (usize, &[u32])| {
             let (mut found, mut count) = (Vec::new(), 0);
@@ -148,9 +152,11 @@ impl<'a> Builder<'a> {
         (!is_given_up.into_inner()).then_some(pairs)
     }
 
-    /// Phase 1 for few segments: each is asked against those that begin before it ends, from left to right.
+    /// Phase 1 for few segments: from left to right, tests each against those that begin before it
+    /// ends.
     ///
-    /// `PERF:` of 141 segments of a coast, 90 000 instructions instead of 250 000 with a tree, which is to be built.
+    /// `PERF:` for 141 segments of a coast, 90 000 instructions instead of 250 000 with a tree,
+    /// which has to be built first.
     fn crossing_pairs_of_few<K: Kernel>(&self) -> Vec<[u32; 2]> {
         let mut boxes: Vec<(Box2, u32)> = self.segments.iter().map(|&s| Box2::around(s)).zip(0..).collect();
         boxes.sort_unstable_by(|(p, i), (q, j)| p.min[0].total_cmp(&q.min[0]).then(i.cmp(j)));
@@ -167,7 +173,8 @@ impl<'a> Builder<'a> {
         pairs
     }
 
-    /// Phase 2: the site of each crossing, the center of its pixel; which may be a place that was given.
+    /// Phase 2: returns the crossings with their sites, which are the centers of their pixels. A
+    /// center may be a given site; others are added.
     fn round<K: Kernel>(&mut self, pairs: Vec<[u32; 2]>) -> Vec<Crossing> {
         let round = |&[i, j]: &[u32; 2]| self.grid.crossing::<K>(self.segments[i as usize], self.segments[j as usize]);
         let rounded: Vec<Site> = pairs.par_iter().with_min_len(FEW).map(round).collect();
@@ -196,7 +203,7 @@ impl<'a> Builder<'a> {
                 crossings[crossing as usize].site = site;
                 here.extend(crossings[crossing as usize].segments);
             }
-            // Two crossings of one segment may have come to one site.
+            // Two crossings of one segment may have been rounded to one site.
             here.sort_unstable();
             here.dedup();
             self.added.push(same[0].0);
@@ -206,9 +213,9 @@ impl<'a> Builder<'a> {
         crossings
     }
 
-    /// Phase 3: leads the segments that cross others, and those to be snapped, through all sites whose pixels they
-    /// meet; and, as long as there are any, those that meet a pixel by which another was bent, or an end of one that
-    /// is snapped.
+    /// Phase 3: routes the segments that cross others, and those to be snapped, through all sites
+    /// whose pixels they meet. Then, until there are no more, those that meet the pixel of a site
+    /// at which another one was bent, or of an end of a snapped one.
     fn route<K: Kernel>(&self, crossings: &[Crossing]) -> (Vec<bool>, Vec<Pass>) {
         if crossings.is_empty() && self.snapped == 0 {
             return (vec![false; self.segments.len()], Vec::new());
@@ -230,7 +237,7 @@ impl<'a> Builder<'a> {
         while !fresh.is_empty() {
             fresh.iter().for_each(|&i| has_chain[i as usize] = true);
             self.pass::<K>(&fresh, &hot, &mut passes);
-            // Places that lie on a segment that may bend are kept on it.
+            // Given sites that lie on a segment that may bend are kept on it.
             let heated = self.sites_exactly_on::<K>(&fresh, |site| !is_hot[site as usize]);
             heated.iter().for_each(|&site| is_hot[site as usize] = true);
             routed.append(&mut fresh);
@@ -252,24 +259,26 @@ impl<'a> Builder<'a> {
         (has_chain, passes)
     }
 
-    /// Of the segments that cross, where they do.
+    /// Returns the passes of segments through the sites of their crossings.
     fn passes_of_crossings(&self) -> Vec<Pass> {
         let sites = (self.given_count..self.given_count + self.added.len()).map(|site| site as u32);
         let here = |site| self.crossed_at(site).iter().map(move |&segment| Pass { segment, site, exact: false });
         sites.flat_map(here).collect()
     }
 
-    /// A tree over the pixels of some sites.
+    /// Returns a tree over the pixels of some sites.
     fn pixels(&self, sites: Vec<u32>) -> (BoxTree, Vec<u32>) {
         let boxes: Vec<Box2> =
             sites.par_iter().with_min_len(FEW).map(|&site| self.grid.around(self.site(site))).collect();
         (BoxTree::new(&boxes), sites)
     }
 
-    /// What a segment may meet, by boxes; of a long one, by the side on which they lie, too.
+    /// Returns a test for boxes that a segment may meet; for a long segment, it also rejects those
+    /// on one side of it.
     ///
-    /// `PERF:` beside a short segment that finds little, and costs more than all of the rest: 50 000 segments between a
-    /// million points take 18 ms instead of 30, and 100 000 that cross 13 % less in all.
+    /// `PERF:` for a short segment, which finds little, the side test would cost more than it
+    /// saves. With it, 50 000 segments between a million points take 18 ms instead of 30, and 100
+    /// 000 that cross take 13 % less in total.
     fn along(&self, segment: u32) -> impl Fn(&Box2) -> bool + use<'a> {
         let s = self.segments[segment as usize];
         let around = Box2::around(s);
@@ -277,8 +286,8 @@ impl<'a> Builder<'a> {
         move |boxed| around.overlaps(boxed) & !(has_sides && boxed.is_beside(s))
     }
 
-    /// Calls with each site in some trees whose pixel a segment meets, and that is no end of it, nor added for a
-    /// crossing with it.
+    /// Calls `visit` with each site in some trees whose pixel a segment meets, except for its ends
+    /// and for sites added for its own crossings.
     fn sites_on<K: Kernel>(&self, segment: u32, trees: &[(BoxTree, Vec<u32>)], mut visit: impl FnMut(u32)) {
         let is_met = self.along(segment);
         for (tree, sites) in trees {
@@ -292,7 +301,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the sites of some trees that some segments pass through.
+    /// Adds the passes of some segments through the sites of some trees.
     fn pass<K: Kernel>(&self, segments: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
         let of_segments = |segments: &[u32]| {
             let mut found = Vec::new();
@@ -309,21 +318,22 @@ impl<'a> Builder<'a> {
         passes.par_extend(segments.par_chunks(64).with_min_len(FEW / 64).flat_map_iter(of_segments));
     }
 
-    /// The segments whose crossings were rounded to an added site; each of them is led through it.
+    /// Returns the segments whose crossings were rounded to an added site; each of them is routed
+    /// through it.
     fn crossed_at(&self, site: u32) -> &[u32] {
         let Some(added) = (site as usize).checked_sub(self.given_count) else { return &[] };
         let from = if added == 0 { 0 } else { self.crossed_ends[added - 1] as usize };
         &self.crossed[from..self.crossed_ends[added] as usize]
     }
 
-    /// Those of the places that lie on some segments exactly, in order.
+    /// Returns the given sites that lie exactly on one of some segments, in order.
     fn sites_exactly_on<K: Kernel>(&self, segments: &[u32], is_asked: impl Fn(u32) -> bool + Sync) -> Vec<u32> {
         let sites = (0..self.given_count as u32).into_par_iter().with_min_len(4096);
         if !self.is_crowded {
             let tree = self.tree(segments.iter().copied());
             return sites.filter(|&site| is_asked(site) && self.is_on_one::<K>(site, &tree, segments)).collect();
         }
-        // A place is in many boxes, but on few segments: each of these is asked for its places.
+        // A site is in many boxes, but on few segments: look for the sites on each segment instead.
         let sites: Vec<u32> = sites.filter(|&site| is_asked(site)).collect();
         let boxes: Vec<Box2> = sites.iter().map(|&site| Box2::around([self.site(site); 2])).collect();
         let tree = BoxTree::new(&boxes);
@@ -344,7 +354,7 @@ impl<'a> Builder<'a> {
         on
     }
 
-    /// Whether a place lies on a segment of the tree exactly.
+    /// Returns true if a site lies exactly on a segment of the tree.
     fn is_on_one<K: Kernel>(&self, site: u32, tree: &BoxTree, members: &[u32]) -> bool {
         let at = self.site(site);
         let mut is_on = false;
@@ -359,10 +369,10 @@ impl<'a> Builder<'a> {
         is_on
     }
 
-    /// Phase 4: the sites of each segment, in order.
+    /// Phase 4: returns the arrangement, with the sites of each segment in order.
     fn collect(self, crossings: Vec<Crossing>, has_chain: &[bool], passes: Vec<Pass>) -> Arrangement {
         let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize], self.site(site));
-        // Segment after segment, by counting; and each one's sites then by their place along it.
+        // Grouped by segment, by counting; then each group is sorted along its segment.
         let mut ends = vec![0; self.segments.len()];
         passes.iter().for_each(|pass| ends[pass.segment as usize] += 1);
         starts(&mut ends);
@@ -404,14 +414,15 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Whether two segments cross in their interiors.
+/// Returns true if two segments cross in their interiors.
 #[inline]
 pub(super) fn cross<K: Kernel>([a, b]: Segment, [c, d]: Segment) -> bool {
     let apart = |p, q, r, s| K::sign(&Orientation2([p, q, r])) * K::sign(&Orientation2([p, q, s])) == Sign::Negative;
     apart(a, b, c, d) && apart(c, d, a, b)
 }
 
-/// Equal places have equal keys: of zeros, there is one.
+/// Returns the bits of a site as a hash key. Equal sites have equal keys, since zeros have one
+/// sign.
 fn key(site: Site) -> [u64; 2] {
     site.map(f64::to_bits)
 }

@@ -1,31 +1,37 @@
-//! Segments that cross, made into segments that meet at common ends only: snap rounding.
+//! Arrangements of segments by snap rounding: segments that cross become segments that meet at
+//! common ends only.
 //!
-//! Where two segments cross, coordinates of doubles do not reach: the place must be rounded, both lines bend there a
-//! little, and may so cross others anew. *Snap rounding* (Hobby 1999; Guibas and Marimont 1998) ends that at once:
-//! the crossings of the **original** segments are rounded, once, to the centers of the pixels of a grid; and every
-//! segment that meets the pixel of such a center, or of an end of a segment, is led through that center. Then no two
-//! of the pieces cross.
+//! The exact crossing of two segments is not representable in doubles. It must be rounded, which
+//! bends both lines a little, so that they may cross others anew. *Snap rounding* (Hobby 1999;
+//! Guibas and Marimont 1998) avoids that. The crossings of the **original** segments are rounded,
+//! once, to the centers of the pixels of a grid. Every segment that meets the pixel of such a
+//! center, or of an end of a segment, is routed through that center. Then no two of the resulting
+//! parts cross.
 //!
-//! *Why.* Let a piece lead from center `A` to center `B`, and let `C` be a center in whose pixel the segment `s` has
-//! no point. `A` and `B` lie in `s - Q`, where `Q` is a pixel around zero, and so does all of `A B`, since that set is
-//! convex; `C` does not. On its way from `s` to `A B` the line therefore never passes over a center that it is not
-//! led through, and lines that do not cross at first can cross at last only by passing over an end of one of them.
+//! *Why.* Let a part run from center `A` to center `B`, and let `C` be a center whose pixel the
+//! segment `s` does not meet. `A` and `B` lie in `s - Q`, where `Q` is a pixel around zero, and so
+//! does all of `A B`, since that set is convex; `C` does not. When the line is moved from `s` to
+//! `A B`, it therefore never passes over a center that it is not routed through. And lines that do
+//! not cross before can only cross afterwards if one passes over an end of another.
 //!
-//! *The grid.* The unit on each axis is that of the last place of the largest coordinate there, of all ends of
-//! segments. Ends that are multiples of it are centers of pixels themselves, pixels do not overlap, and the argument
-//! above holds without a gap: **no point of a line is displaced by more than half a unit on each axis**.
+//! *The grid.* The unit on each axis is the unit in the last place of the largest coordinate on
+//! that axis, among all ends of segments. Ends that are multiples of it are centers of pixels
+//! themselves, pixels do not overlap, and the argument above holds without a gap: **no point of a
+//! line is displaced by more than half a unit on each axis**.
 //!
-//! Ends may be finer than that, when coordinates near zero and large ones come together. The grid is then that of the
-//! doubles themselves, whose steps shrink towards zero, so that ends still are centers and pixels still tile the plane.
-//! The bound holds. But a pixel at a large coordinate may bend a line across the small pixel of an end nearer to zero
-//! without meeting it: there pieces may cross after all, and are arranged [again](Arrangement::settled), with up to
-//! another half a unit of displacement.
+//! Ends may be finer than that, when coordinates near zero and large ones come together. The grid
+//! is then that of the doubles themselves, whose steps shrink towards zero, so that ends still are
+//! centers and pixels still tile the plane. The bound holds. But a pixel at a large coordinate may
+//! bend a line across the small pixel of an end nearer to zero without meeting it. There parts may
+//! still cross, and are arranged [again](Arrangement::crossing_free), with up to half a unit more
+//! of displacement.
 //!
-//! *What stays.* A segment that crosses nothing, and comes near nothing that another one is bent by, is not touched,
-//! however close it passes by an end: nothing forces it. Unless it is to be [snapped](Arrangement::with_snapped): then
-//! it is led through every center whose pixel it meets, so that what runs within a rounding of it runs along it.
+//! *What stays.* A segment that crosses nothing, and does not come near a site at which another one
+//! is bent, is not changed, however close it passes by an end. Unless it is to be
+//! [snapped](Arrangement::with_snapped): then it is routed through every center whose pixel it
+//! meets, so that lines within a rounding of it become parts of it.
 //!
-//! The result is a function of the set of segments: no order shows.
+//! The result is a function of the set of segments: it does not depend on their order.
 
 mod boxes;
 mod builder;
@@ -43,28 +49,28 @@ use builder::Builder;
 use pixel::Grid;
 pub(crate) use rounder::{Rounder, crosses, is_aligned, is_ordinary, step_at};
 
-/// Less work than of so many segments or places is done by one thread, without trees: to wake another, or to build one,
-/// takes longer.
+/// Work on fewer segments or sites than this is done by one thread, without trees: waking another
+/// thread or building a tree takes longer.
 const FEW: usize = 256;
 
 type Site = [f64; 2];
-/// Where the site of a number is. `PERF:` not a type of its own for each caller: all of this would be compiled anew for
-/// each, where a call by pointer is none of the time.
+/// Returns the site of a given number. `PERF:` a trait object, because a type parameter would
+/// compile the whole module anew for each caller, while calls by pointer take no measurable time.
 type SiteOf<'a> = dyn Fn(u32) -> Site + Sync + 'a;
 type Segment = [Site; 2];
 
-/// Two segments that cross in their interiors, by their numbers, and the site to which the crossing was rounded.
+/// Two segments that cross in their interiors, and the site to which the crossing was rounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Crossing {
-    /// The segments, the smaller number first.
+    /// The numbers of the segments, the smaller one first.
     pub segments: [u32; 2],
-    /// The site.
+    /// The number of the site.
     pub site: u32,
 }
 
-/// The arrangement of some segments, rounded.
+/// A rounded arrangement of segments.
 ///
-/// *Sites* are numbered: first the places that were given, then those that were added.
+/// *Sites* are numbered: first the given ones, then those that were added.
 #[derive(Debug, Clone)]
 pub struct Arrangement {
     unit: [f64; 2],
@@ -72,27 +78,30 @@ pub struct Arrangement {
     given_count: usize,
     added: Vec<Site>,
     crossings: Vec<Crossing>,
-    /// Of the segments that may bend: the sites between their ends.
+    /// The sites between the ends of each segment that may bend: a range of `chain_sites`.
     chains: FxHashMap<u32, Range<u32>>,
     chain_sites: Vec<u32>,
 }
 
 impl Arrangement {
-    /// Arranges segments between places, given by their numbers below `places`, which are all different. Of the places
-    /// that are no end of a segment, those count that lie exactly on a segment that is bent: it is led through them.
+    /// Arranges segments between given sites. A segment is a pair of site numbers below
+    /// `given_count`.
     ///
-    /// All coordinates are finite. Segments are different; one from a place to itself is none. Coordinates are
-    /// multiples of `step`, a power of two or zero, and so will be those that are added.
+    /// Given sites are all different, their coordinates finite and multiples of `step`, a power of
+    /// two or zero; the coordinates of added sites will be multiples of it, too. Segments are all
+    /// different, and the ends of a segment differ. A given site that is no end of a segment has an
+    /// effect only if it lies exactly on a segment that is bent: the segment is routed through it.
     ///
     /// # Complexity
-    /// O((n + k) log n) for n segments and k pairs of them that cross, to find these; to lead segments through sites, about
-    /// as much in practice.
+    /// O((n + k) log n) to find the k pairs that cross among n segments. Routing segments through
+    /// sites takes about as much in practice.
     pub fn new(given_count: usize, site_of: impl Fn(u32) -> Site + Sync, segments: &[[u32; 2]], step: f64) -> Self {
         Self::arrange(given_count, &site_of, segments, 0, step)
     }
 
-    /// Like [`new`](Self::new), but the first `snapped` segments are led through all sites whose pixels they meet,
-    /// whether they cross anything or not; and others are led through the ends of these whose pixels they meet.
+    /// Like [`new`](Self::new), but the first `snapped` segments are routed through all sites whose
+    /// pixels they meet, even if they cross nothing; and other segments are routed through the ends
+    /// of these whose pixels they meet.
     ///
     /// # Complexity
     /// That of [`new`](Self::new).
@@ -110,15 +119,15 @@ impl Arrangement {
         let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(site_of)).collect();
         let larger = |sum: Site, p: &Site| [sum[0].max(p[0].abs()), sum[1].max(p[1].abs())];
         let largest = drawn.as_flattened().iter().fold([0.0; 2], larger);
-        // Half of the smallest subnormal number is none: away from there, by a power of two.
+        // Half of the smallest subnormal number is zero: scale away from there, by a power of two.
         const UP: f64 = f64::from_bits((1023 + 400) << 52);
         let scale: Site = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
-        // Zero has one sign only.
+        // Normalizes the sign of zero.
         let scaled = |p: Site| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
         let site_of = |i: u32| scaled(site_of(i));
         drawn.as_flattened_mut().iter_mut().for_each(|p| *p = scaled(*p));
         let smallest = scale.map(|s| step.max(f64::from_bits(1)) * s);
-        // Places on segments count like ends, once they are known.
+        // Sites on segments count like ends, once they are known.
         let mut on_segments: Vec<u32> = Vec::new();
         let mut arrangement = loop {
             let others: Vec<Site> = on_segments.iter().map(|&site| site_of(site)).collect();
@@ -139,22 +148,26 @@ impl Arrangement {
         arrangement
     }
 
-    /// Arranges the pieces of an arrangement of these segments as long as any cross, which they can off the even grid
-    /// only: these are split by the same rule, and displaced by up to another half a unit each time.
+    /// Arranges the parts of an arrangement of these segments again, until none cross.
     ///
-    /// It comes to an end. Sites of a segment come in order on both axes, those of its pieces lie between their ends,
-    /// and there are finitely many places in a box. Of two pieces that cross at least one is divided: they have no
-    /// common end, so the site of the crossing is an end of one of them at most.
+    /// Only off the even grid can parts cross. They are split by the same rule, and displaced by up
+    /// to half a unit more each time.
+    ///
+    /// It terminates. The sites of a segment are ordered on both axes, those of its parts lie
+    /// between their ends, and a box contains finitely many sites. Of two parts that cross, at
+    /// least one is divided: they have no common end, so the site of the crossing is an end of at
+    /// most one of them.
     ///
     /// # Complexity
-    /// That of the arrangement for each round: one or two, but where coordinates span hundreds of powers of two.
+    /// That of the arrangement for each round. There are one or two rounds, unless coordinates span
+    /// hundreds of powers of two.
     #[must_use]
     pub fn crossing_free(mut self, site_of: impl Fn(u32) -> Site + Sync, segments: &[[u32; 2]], step: f64) -> Self {
         while self.again(&site_of, segments, step) {}
         self
     }
 
-    /// Arranges the pieces once more; says whether any cross.
+    /// Arranges the parts once more; returns false if none cross.
     fn again(&mut self, site_of: &SiteOf<'_>, segments: &[[u32; 2]], step: f64) -> bool {
         let row = |i: usize| {
             let [a, b] = segments[i];
@@ -203,45 +216,46 @@ impl Arrangement {
         true
     }
 
-    /// The grid's unit on each axis: a power of two.
+    /// The unit of the grid on each axis: a power of two.
     pub fn unit(&self) -> [f64; 2] {
         self.unit
     }
 
-    /// Whether all ends of segments, and all places on those that are led through sites, are multiples of the unit, so
-    /// that the pieces are proven not to cross.
+    /// Returns true if all ends of segments, and all given sites on segments that are routed, are
+    /// multiples of the unit. The parts are then proven not to cross.
     pub fn is_on_grid(&self) -> bool {
         self.on_grid
     }
 
-    /// The sites that were added: distinct.
+    /// The added sites: distinct.
     pub fn added(&self) -> &[Site] {
         &self.added
     }
 
-    /// Every pair of segments that cross in their interiors, in order.
+    /// The pairs of segments that cross in their interiors, in order.
     pub fn crossings(&self) -> &[Crossing] {
         &self.crossings
     }
 
-    /// Whether a segment crosses others, or comes near what they are bent by; so that it is led through all sites whose
-    /// pixels it meets, and through the places on it.
+    /// Returns true if a segment crosses others, or comes near a site at which another one is bent.
+    /// It is then routed through all sites whose pixels it meets, and through the given sites on
+    /// it.
     pub fn has_chain(&self, segment: u32) -> bool {
         self.chains.contains_key(&segment)
     }
 
-    /// The sites that a segment is led through between its ends, in the order from its first to its second. (Beside
-    /// them, it passes exactly through the places that lie on its pieces.)
+    /// The sites that a segment is routed through between its ends, in order from the first end to
+    /// the second. (It also passes exactly through the given sites that lie on its parts.)
     pub fn chain(&self, segment: u32) -> &[u32] {
         self.chains.get(&segment).map_or(&[], |range| &self.chain_sites[range.start as usize..range.end as usize])
     }
 
-    /// The segments that are led through sites that were added: pairs of the site's position among these and the
-    /// segment, in order.
+    /// Returns the segments that are routed through added sites: pairs of the site's position among
+    /// the added ones and the segment, in order.
     pub fn through_added(&self) -> Vec<(u32, u32)> {
         let given = self.given_count as u32;
         let added = |site: &u32| site.checked_sub(given);
-        // Site after site, by counting.
+        // Grouped by site, by counting.
         let mut ends = vec![0u32; self.added.len()];
         self.chain_sites.iter().filter_map(added).for_each(|site| ends[site as usize] += 1);
         let mut through = vec![(0, 0); starts(&mut ends) as usize];
@@ -258,12 +272,12 @@ impl Arrangement {
     }
 }
 
-/// Makes of each count the sum of those before it; returns the sum of all.
+/// Replaces each count by the sum of those before it; returns the total.
 fn starts(counts: &mut [u32]) -> u32 {
     counts.iter_mut().fold(0, |sum, count| sum + std::mem::replace(count, sum))
 }
 
-/// By x, then by y; of coordinates that have one zero.
+/// Compares by x, then by y, coordinates whose zeros have one sign.
 fn lexicographic(p: Site, q: Site) -> std::cmp::Ordering {
     p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
 }

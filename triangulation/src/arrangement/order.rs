@@ -1,23 +1,24 @@
-//! A list in order, in which a place is found by questions: a skip list (Pugh 1990).
+//! An ordered list that is searched with a predicate: a skip list (Pugh 1990).
 
-/// On each level every fourth of those below.
+/// The number of levels. Each level has a quarter of the nodes of the one below.
 const LEVELS: usize = 12;
 
-/// Some of the numbers below a limit, in an order that is kept by whoever inserts and exchanges them.
+/// A list of some of the numbers below a limit, in an order that the caller maintains by where it
+/// inserts and what it exchanges.
 #[derive(Debug, Clone)]
 pub(super) struct Order {
-    /// Of each node the first of its links, which stand level by level; the last node is the head, where the list begins
-    /// and ends.
+    /// For each node, the index of the first of its links, which are stored level by level. The
+    /// last node is the head, where the list begins and ends.
     starts: Vec<u32>,
-    /// The nodes before and behind.
+    /// The nodes before and after, for each node and level.
     links: Vec<[u32; 2]>,
-    /// What each node holds, and the node that holds each.
+    /// Maps each node to the number that it holds, and in `nodes` each number to its node.
     held: Vec<u32>,
     nodes: Vec<u32>,
 }
 
 impl Order {
-    /// An empty list for numbers below a limit.
+    /// Returns an empty list for numbers below a limit.
     pub(super) fn of(limit: usize) -> Self {
         let head = limit as u32;
         let mut starts = Vec::with_capacity(limit + 2);
@@ -44,8 +45,8 @@ impl Order {
         self.links[self.starts[node as usize] as usize + level][1]
     }
 
-    /// The place behind all for which a question is answered with yes, which are the first: the node before it on each
-    /// level.
+    /// Returns the position after all numbers for which `is_before` is true, which come first in
+    /// the list: the node before the position, on each level.
     pub(super) fn position(&self, is_before: impl Fn(u32) -> bool) -> [u32; LEVELS] {
         let mut position = [self.head(); LEVELS];
         let mut at = self.head();
@@ -53,7 +54,7 @@ impl Order {
         for level in (0..LEVELS).rev() {
             loop {
                 let next = self.next(at, level);
-                // What was refused on the level above need not be asked again.
+                // A number that was refused on the level above need not be tested again.
                 if next == refused || next == self.head() || !is_before(self.held[next as usize]) {
                     refused = next;
                     break;
@@ -65,7 +66,7 @@ impl Order {
         position
     }
 
-    /// Inserts a number, once, at a place.
+    /// Inserts a number at a position. Each number can be inserted once.
     pub(super) fn insert(&mut self, number: u32, position: &[u32; LEVELS]) {
         let node = number; // which nobody else ever had before
         for (level, &before) in position.iter().enumerate().take(levels(node)) {
@@ -86,7 +87,7 @@ impl Order {
         }
     }
 
-    /// Exchanges the places of two numbers.
+    /// Exchanges the positions of two numbers.
     pub(super) fn exchange(&mut self, p: u32, q: u32) {
         self.nodes.swap(p as usize, q as usize);
         for number in [p, q] {
@@ -94,12 +95,12 @@ impl Order {
         }
     }
 
-    /// The number before.
+    /// Returns the number before `number`.
     pub(super) fn below(&self, number: u32) -> Option<u32> {
         self.beside(number, 0)
     }
 
-    /// The number behind.
+    /// Returns the number after `number`.
     pub(super) fn above(&self, number: u32) -> Option<u32> {
         self.beside(number, 1)
     }
@@ -111,7 +112,7 @@ impl Order {
     }
 }
 
-/// On how many levels a node is: pseudo-random.
+/// Returns the number of levels of a node: pseudo-random.
 fn levels(node: u32) -> usize {
     let mixed = node.wrapping_add(1).wrapping_mul(0x9E37_79B9);
     1 + ((mixed ^ mixed >> 15).wrapping_mul(0x85EB_CA6B).leading_zeros() as usize / 2).min(LEVELS - 1)

@@ -7,35 +7,37 @@ use crate::num::{Dyadic, Pair, Sign};
 use super::boxes::Box2;
 use super::{Segment, Site, lexicographic};
 
-/// The places to which crossings are rounded. On each axis these are either the multiples of the *unit*, a power of
-/// two; or the doubles, of which those near zero are multiples of the *smallest* step.
+/// The sites to which crossings are rounded. On each axis these are either the multiples of the
+/// *unit*, a power of two; or the doubles, of which those near zero are multiples of the *smallest*
+/// step.
 ///
-/// The *pixel* of a place is what is nearer to it than to its neighbors, a half-open rectangle: it holds its left and
-/// its lower border. These tile the plane.
+/// The *pixel* of a site is what is nearer to it than to its neighbors, a half-open rectangle that
+/// contains its left and its lower border. Pixels tile the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
     pub(super) unit: [f64; 2],
     pub(super) is_even: bool,
-    /// Off the even grid only.
+    /// Used off the even grid only.
     smallest: [f64; 2],
-    /// Whether coordinates are in the range of the fast kernels. Halves of steps then enter their polynomials as
-    /// multiples of 2^-213, instead of 2^-212, which the degree of 3 makes up for.
+    /// True if coordinates are in the range of the fast kernels. Halves of steps then enter their
+    /// polynomials as multiples of 2^-213 instead of 2^-212, which is sound because the degree is
+    /// only 3.
     pub(super) is_ordinary: bool,
 }
 
-/// The unit in the last place of a number.
+/// Returns the unit in the last place of a number.
 pub(super) fn ulp(x: f64) -> f64 {
     let x = x.abs();
-    // Of the largest numbers there is none above.
+    // The largest numbers have no neighbor above.
     if x < f64::MAX / 2.0 { x.next_up() - x } else { x - x.next_down() }
 }
 
 impl Grid {
-    /// For places up to these magnitudes: of equal steps, if all of these lie on it, else of the steps of doubles, but
-    /// none smaller than `smallest`.
+    /// Returns the grid for sites up to these magnitudes: with equal steps, if all given sites lie
+    /// on it, else with the steps of doubles, but none smaller than `smallest`.
     pub(super) fn through(largest: Site, smallest: Site, sites: [&[Site]; 2]) -> Self {
         let is_ordinary = sites.into_iter().all(|some| some.as_flattened().iter().all(|&x| RANGE.admits(x)));
-        // Crossings of what the fast kernels admit are to be admitted.
+        // Crossings of what the fast kernels admit must be admitted.
         let ordinary = RANGE.min * f64::EPSILON;
         let smallest = if is_ordinary { smallest.map(|step| step.max(ordinary)) } else { smallest };
         let unit = [0, 1].map(|k| ulp(largest[k]).max(smallest[k]));
@@ -44,12 +46,12 @@ impl Grid {
         grid
     }
 
-    /// The same with steps that are all equal, or those of doubles.
+    /// Returns the same grid with equal steps, or with the steps of doubles.
     pub(super) fn with_steps(self, is_even: bool) -> Self {
         Grid { is_even, ..self }
     }
 
-    /// From a place to the next one above on an axis.
+    /// Returns the distance from a site to the next one above, on an axis.
     #[inline(always)]
     fn gap_above(&self, axis: usize, x: f64) -> f64 {
         if self.is_even {
@@ -58,47 +60,47 @@ impl Grid {
         (x.next_up() - x).clamp(self.smallest[axis], self.unit[axis])
     }
 
-    /// How far the pixel around a value reaches down on an axis.
+    /// Returns how far the pixel around a value reaches down on an axis.
     #[inline(always)]
     fn down(&self, axis: usize, x: f64) -> f64 {
         self.gap_above(axis, -x) / 2.0 // nothing, if the gap is one that has no half
     }
 
-    /// How far it reaches up.
+    /// Returns how far the pixel around a value reaches up on an axis.
     #[inline(always)]
     fn up(&self, axis: usize, x: f64) -> f64 {
         let gap = self.gap_above(axis, x);
         gap - gap / 2.0
     }
 
-    /// The place that is nearest to a value, on an axis.
+    /// Returns the site nearest to a value, on an axis.
     fn nearest(&self, axis: usize, x: f64) -> f64 {
         let step = self.gap_above(axis, x);
         (x / step).round() * step + 0.0 // zero has one sign only
     }
 
-    /// A box around the pixel of a place.
+    /// Returns a box around the pixel of a site.
     pub(super) fn around(&self, site: Site) -> Box2 {
         let halves = [0, 1].map(|k| self.down(k, site[k]).max(self.up(k, site[k])));
         Box2::around([site, site]).grown(halves)
     }
 
-    /// Whether a place is the center of a pixel, in the arithmetic that is used.
+    /// Returns true if a site is the center of a pixel, in the arithmetic that is used.
     pub(super) fn has(&self, site: Site) -> bool {
         let is_center = !self.is_even || self.holds(site);
         is_center && (!self.is_ordinary || site.iter().all(|&x| RANGE.admits(x)))
     }
 
-    /// Whether a place is a multiple of the unit on both axes.
+    /// Returns true if a site is a multiple of the unit on both axes.
     pub(super) fn holds(&self, site: Site) -> bool {
         (0..2).all(|k| site[k] == 0.0 || lowest_bit(site[k]) >= lowest_bit(self.unit[k]))
     }
 
-    /// Whether a segment has a point in the pixel around a place.
+    /// Returns true if a segment has a point in the pixel around a site.
     ///
-    /// Of two convex sets without a common point, a line along a side of one of them keeps them apart: a side of the
-    /// pixel or the segment. That the pixel lacks two of its sides makes no difference: it is the union of growing
-    /// closed rectangles.
+    /// Two convex sets without a common point are separated by a line along a side of one of them:
+    /// a side of the pixel, or the segment. That the pixel lacks two of its sides makes no
+    /// difference: it is the union of growing closed rectangles.
     pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Site) -> bool {
         let within = |k: usize| {
             let (low, high) = if a[k] < b[k] { (a[k], b[k]) } else { (b[k], a[k]) };
@@ -114,8 +116,8 @@ impl Grid {
         let [left, down] = [0, 1].map(|k| -self.down(k, center[k]));
         let [right, up] = [0, 1].map(|k| self.up(k, center[k]));
         let side = |offset| K::sign(&CornerSide { segment: [a, b], center, offset });
-        // The two corners furthest to the left and to the right of the line; of all four only the lower left one is
-        // part of the pixel.
+        // The two corners furthest to the left and to the right of the line. Of all four corners,
+        // only the lower left one belongs to the pixel.
         if (rightward > 0.0) == (upward > 0.0) {
             side([left, up]) * side([right, down]) == Sign::Negative
         } else {
@@ -126,10 +128,11 @@ impl Grid {
         }
     }
 
-    /// A key by which sites whose pixels a segment meets are in order, from its lexicographically smaller end.
+    /// Returns a key that sorts the sites whose pixels a segment meets, from its lexicographically
+    /// smaller end.
     ///
-    /// Pixels come in the order of their centers on the axis along which the segment is longer, in units, and in one
-    /// column from one side to the other.
+    /// Pixels are ordered by their centers on the axis along which the segment is longer, in units,
+    /// and within a column from one side to the other.
     #[inline]
     pub(super) fn along(&self, [a, b]: Segment, site: Site) -> Site {
         let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
@@ -138,8 +141,8 @@ impl Grid {
         [first, second].map(|k| if a[k] <= b[k] { site[k] } else { -site[k] })
     }
 
-    /// Where two segments cross in their interiors, rounded to the grid: the center of the pixel that the crossing lies
-    /// in, exactly.
+    /// Returns where two segments cross in their interiors, rounded to the grid: the center of the
+    /// pixel that contains the exact crossing.
     pub(super) fn crossing<K: Kernel>(&self, ab: Segment, cd: Segment) -> Site {
         if let Some(center) = self.crossing_by_pairs(ab, cd) {
             return center;
@@ -148,7 +151,8 @@ impl Grid {
         std::array::from_fn(|along| self.round::<K>(ab, cd, turn, along))
     }
 
-    /// The same with twice the digits of a double, if the error leaves no doubt.
+    /// Like `crossing`, computed with twice the digits of a double; `None` if the error leaves a
+    /// doubt.
     fn crossing_by_pairs(&self, [a, b]: Segment, [c, d]: Segment) -> Option<Site> {
         if !self.is_ordinary {
             return None;
@@ -158,8 +162,8 @@ impl Grid {
         let products = [ux * vy, uy * vx, ux * vector[1], uy * vector[0]];
         let [area, divisor] = [products[0] - products[1], products[2] - products[3]];
         let fraction = area / divisor;
-        // Each area comes of two products and a difference; ten errors are more than all that they and the quotient
-        // have.
+        // Each area is computed from two products and a difference; ten roundings cover all that
+        // they and the quotient have.
         let error = |p: Pair, q: Pair| 10.0 * Pair::ERROR * (p.estimate().abs() + q.estimate().abs());
         let divided = divisor.estimate().abs();
         let doubt = error(products[2], products[3]);
@@ -193,8 +197,8 @@ impl Grid {
             } else {
                 break;
             };
-            // An estimate is a step or two off, unless the angle is small: then the exact way is gone, rounded, as
-            // often as it is longer than a step or two.
+            // An estimate is a step or two off, unless the angle is small. Then move by the exact
+            // distance, rounded, as long as it is more than a step or two.
             let exact = || CrossingSide { ab, cd, along, center, offset: 0.0 }.value(Dyadic::difference);
             let move_by = if tries < 2 { step } else { exact().quotient(&divisor(ab, cd)) };
             center =
@@ -204,7 +208,7 @@ impl Grid {
     }
 }
 
-/// About where segments cross, on one axis.
+/// Returns about where two segments cross, on one axis.
 fn estimate([a, b]: Segment, [c, d]: Segment, along: usize) -> f64 {
     let area = |p: Site| (d[0] - c[0]) * (p[1] - c[1]) - (d[1] - c[1]) * (p[0] - c[0]);
     let (at_a, at_b) = (area(a), area(b));
@@ -214,13 +218,13 @@ fn estimate([a, b]: Segment, [c, d]: Segment, along: usize) -> f64 {
     x.clamp(a[along].min(b[along]), a[along].max(b[along]))
 }
 
-/// What [`CrossingSide`] divides by.
+/// Returns the divisor of [`CrossingSide`].
 fn divisor([a, b]: Segment, [c, d]: Segment) -> Dyadic {
     let [turn_a, turn_b] = [a, b].map(|p| Orientation2([c, d, p]).value(Dyadic::difference));
     turn_a - turn_b
 }
 
-/// Whether `x >= center + offset`, exactly, for an offset that is a power of two.
+/// Returns true if `x >= center + offset`, exactly, for an offset that is a power of two.
 fn reaches(x: f64, center: f64, offset: f64) -> bool {
     let distance = x - center;
     if distance != offset {

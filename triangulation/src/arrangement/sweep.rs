@@ -1,17 +1,19 @@
-//! Which segments cross, by a sweep: where boxes tell too little, as of long segments side by side.
+//! Finds the segments that cross by a sweep: for long segments side by side, whose boxes overlap in
+//! vain.
 //!
-//! A line sweeps over the plane, from left to right (and as if it were tilted: of places above each other, it meets the
-//! lowest first). The segments that it meets are kept in order, from the lowest up. Two segments that cross are
-//! neighbors just before; so neighbors are all that is looked at (Bentley and Ottmann 1979).
+//! A line sweeps over the plane from left to right (as if slightly tilted: of sites above each
+//! other, it meets the lowest first). The segments that it meets are kept in order, from the lowest
+//! up. Two segments that cross are neighbors just before; so only neighbors are compared (Bentley
+//! and Ottmann 1979).
 //!
-//! *No crossings are compared with each other*, which would take numbers of many digits. The sweep stops at ends of
-//! segments only. A crossing is put off to the first stop that is not before it; there, neighbors that have crossed
-//! change places until none are left, in any order: each exchange undoes one inversion, and every pair of neighbors has
-//! been looked at.
+//! *No crossings are compared with each other*, which would take numbers of many digits. The sweep
+//! stops at ends of segments only. A crossing is deferred to the first stop that is not before it.
+//! There, neighbors that have crossed exchange their positions until none are left, in any order:
+//! each exchange undoes one inversion, and every pair of neighbors has been compared.
 //!
-//! *Touching.* After a stop the order is that just behind it. So segments that cross in the place of the stop have
-//! changed places, those that end there are gone, and others begin between them. What runs along each other is in any
-//! order, and stays so.
+//! *Touching.* After a stop, the order is that just behind it. So segments that cross at the stop
+//! have been exchanged, those that end there are removed, and others begin between them. Segments
+//! that overlap are in any order, and stay so.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -24,7 +26,7 @@ use crate::parallel::*;
 use super::order::Order;
 use super::{Segment, Site, lexicographic};
 
-/// The pairs of segments that cross in their interiors, in no order.
+/// Returns the pairs of segments that cross in their interiors, in no order.
 ///
 /// # Complexity
 /// O((n + k) log n) for n segments and k crossings, on one thread.
@@ -49,15 +51,16 @@ struct End {
 }
 
 struct Sweep<K> {
-    /// Each from its lexicographically smaller end to the larger.
+    /// The segments, each from its lexicographically smaller end to the larger.
     segments: Vec<Segment>,
-    /// The places of all ends, in order.
+    /// The sites of all ends, in order.
     stops: Vec<Site>,
     /// The stop at which each segment ends.
     lasts: Vec<u32>,
-    /// Those that are met, from the lowest up.
+    /// The segments that the sweep line meets, from the lowest up.
     order: Order,
-    /// Neighbors that will have crossed: the stop, the lower one, the upper one.
+    /// Neighbors that cross further on: the stop at which they are to be exchanged, the lower one,
+    /// the upper one.
     due: BinaryHeap<Reverse<(u32, u32, u32)>>,
     crossed: Vec<[u32; 2]>,
     kernel: PhantomData<K>,
@@ -77,7 +80,8 @@ impl<K: Kernel> Sweep<K> {
         }
     }
 
-    /// All ends in the order of the sweep. Records the stops: their places, and at which one each segment ends.
+    /// Returns all ends in the order of the sweep. Records the stops, and at which one each segment
+    /// ends.
     fn ends(&mut self) -> Vec<End> {
         let lines = (0..).zip(&self.segments).filter(|(_, [a, b])| a != b);
         let mut ends: Vec<End> = lines
@@ -93,7 +97,7 @@ impl<K: Kernel> Sweep<K> {
         ends
     }
 
-    /// Positive if a place is above a segment.
+    /// Returns on which side of a segment a site is: positive if above.
     fn side(&self, segment: u32, site: Site) -> Sign {
         let [a, b] = self.segments[segment as usize];
         K::sign(&Orientation2([a, b, site]))
@@ -118,7 +122,7 @@ impl<K: Kernel> Sweep<K> {
         self.look_at(below, above, stop);
     }
 
-    /// Exchanges neighbors that have crossed.
+    /// Exchanges the neighbors that are due at a stop.
     fn exchange_until(&mut self, stop: u32) {
         while let Some(&Reverse((due, lower, upper))) = self.due.peek()
             && due <= stop
@@ -151,7 +155,7 @@ impl<K: Kernel> Sweep<K> {
     }
 }
 
-/// Whether the crossing of two segments, the second of which begins above the first, comes after a place.
+/// Returns true if two segments cross beyond a site. The second begins above the first.
 fn is_beyond<K: Kernel>(ab: Segment, cd: Segment, site: Site) -> bool {
     // Below `c d`, `a` is on its right: the turn of `c d a` is negative.
     let side = |along: usize| K::sign(&CrossingSide { ab, cd, along, center: site[along], offset: 0.0 });
@@ -199,7 +203,7 @@ mod tests {
         }
     }
 
-    /// Lines through one place, and that place rounded.
+    /// Lines through one site, which is rounded.
     #[test]
     fn a_sheaf_crosses_pair_by_pair() {
         let at = |angle: f64, r: f64| [0.1 + r * angle.cos(), 0.7 + r * angle.sin()];
@@ -223,25 +227,26 @@ mod tests {
         }
     }
 
-    /// Of 2 000 segments side by side all boxes overlap: two million pairs.
+    /// The boxes of 2 000 segments side by side all overlap: two million pairs.
     #[test]
     fn side_by_side_few_are_compared() {
         let side_by_side = |i: u32| [[0.1 * f64::from(i), 0.0], [0.1 * f64::from(i) + 1000.0, 1000.0]];
         let mut segments: Vec<Segment> = (0..2000).map(side_by_side).collect();
         assert!(crossing_pairs::<Counting>(&segments).is_empty());
         assert!(ASKED.swap(0, Relaxed) < 60 * 2000);
-        // One over all of them.
+        // One segment across all of them.
         segments.push([[-1.0, 499.0], [1300.0, 501.0]]);
         assert_eq!(crossing_pairs::<Counting>(&segments).len(), 2000);
         assert!(ASKED.swap(0, Relaxed) < 120 * 2000);
     }
 
-    /// Where many boxes overlap in vain, the pairs found before are not all; what other threads find meanwhile does not
-    /// make them so.
+    /// Where many boxes overlap in vain, the pairs that were found first are incomplete; pairs that
+    /// other threads find meanwhile do not complete them.
     #[test]
     fn whether_boxes_were_asked_first_does_not_show() {
         let diagonal = |x: f64, y: f64, size: f64| [[x, y], [x + size, y + size]];
-        // In the first bundle nothing crosses, in the second one pair in fifty: as much as is enough to go on.
+        // In the first bundle nothing crosses, in the second one pair in fifty: just enough to go
+        // on.
         let mut segments: Vec<Segment> = (0..600).map(|i| diagonal(0.1 * f64::from(i), 0.0, 1000.0)).collect();
         for i in 0..1200 {
             let [from, to] = diagonal(5000.0 + 0.1 * f64::from(i), 0.0, 1000.0);
