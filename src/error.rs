@@ -1,25 +1,25 @@
-//! The one error of the I/O side.
+//! The error type of everything outside of the triangulations.
 //!
-//! Errors are sorted by who can act on them ([`Kind`]), and say where it happened, what was found,
-//! what was expected and, where there is one, the cure. The geometric core has no errors of this
-//! kind: it cannot fail on input that it accepted.
+//! Errors are sorted by who can act on them ([`Kind`]). Each says where it happened, what was
+//! found, what was expected and, if there is one, the cure. The triangulations have error types of
+//! their own: they refuse invalid input, and cannot fail on input that they accepted.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// The result of everything that reads, writes or is told what to do.
+/// The result of an operation that can fail with an [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Who can act on an [`Error`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// The data is not what its format says: the file is to be repaired.
+    /// The data breaks the rules of its format; the file has to be repaired.
     Format,
-    /// The data is fine, but this program (or this build of it) cannot read it.
+    /// The data is valid, but this program (or this build of it) cannot read it.
     Unsupported,
     /// The caller asked for something that makes no sense.
     Usage,
-    /// A stated limit was passed.
+    /// A documented limit was exceeded.
     Limit,
     /// The operating system failed.
     Io,
@@ -29,8 +29,9 @@ pub enum Kind {
 
 /// What went wrong, where, and what to do about it.
 ///
-/// Shown as `path: place: message`; the cure is kept apart, so that the command line can print it
-/// on a line of its own. Messages are lower case, without a full stop.
+/// Displayed as `path: location: message`. The [cure](Error::cure_text) is not part of the message,
+/// so that the command line can print it on a line of its own. Messages are lower case, without a
+/// full stop.
 #[derive(Debug)]
 pub struct Error {
     inner: Box<Inner>,
@@ -52,37 +53,37 @@ impl Error {
         Error { inner: Box::new(Inner { kind, message, path: None, location: None, cure: None, source: None }) }
     }
 
-    /// The data breaks the rules of its format.
+    /// Creates an error for data that breaks the rules of its format.
     #[cold]
     pub fn format(message: impl Into<String>) -> Self {
         Self::new(Kind::Format, message.into())
     }
 
-    /// The data uses something that is not supported; the message names it.
+    /// Creates an error for data that uses an unsupported feature; the message should name it.
     #[cold]
     pub fn unsupported(message: impl Into<String>) -> Self {
         Self::new(Kind::Unsupported, message.into())
     }
 
-    /// The caller asked for something that makes no sense.
+    /// Creates an error for a request that makes no sense.
     #[cold]
     pub fn usage(message: impl Into<String>) -> Self {
         Self::new(Kind::Usage, message.into())
     }
 
-    /// A stated limit was passed; the message names the limit and the value.
+    /// Creates an error for an exceeded limit; the message should name the limit and the value.
     #[cold]
     pub fn limit(message: impl Into<String>) -> Self {
         Self::new(Kind::Limit, message.into())
     }
 
-    /// The caller canceled the work.
+    /// Creates the error that canceled work ends with.
     #[cold]
     pub fn canceled() -> Self {
         Self::new(Kind::Canceled, "canceled".to_owned())
     }
 
-    /// Something below failed: the operating system, or a library that reads for us.
+    /// Wraps an error of the operating system or of a library; its text becomes the message.
     #[cold]
     pub fn caused_by(kind: Kind, source: impl std::error::Error + Send + Sync + 'static) -> Self {
         let mut error = Self::new(kind, source.to_string());
@@ -90,14 +91,15 @@ impl Error {
         error
     }
 
-    /// Adds the file, unless one is named already (the innermost is the most exact).
+    /// Adds the path of the file, unless there is one already: the innermost is the most exact.
     #[must_use]
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
         self.inner.path.get_or_insert_with(|| path.as_ref().to_path_buf());
         self
     }
 
-    /// Adds the place in the file ("record 12", "byte 4096", "line 3"), unless one is named already.
+    /// Adds the location in the file ("record 12", "byte 4096", "line 3"), unless there is one
+    /// already.
     #[must_use]
     pub fn at(mut self, location: impl Into<String>) -> Self {
         self.inner.location.get_or_insert_with(|| location.into());
@@ -111,17 +113,17 @@ impl Error {
         self
     }
 
-    /// Who can act on it.
+    /// Returns who can act on the error.
     pub fn kind(&self) -> Kind {
         self.inner.kind
     }
 
-    /// What the user can do about it, if anything is known.
+    /// Returns what the user can do about it, if anything is known.
     pub fn cure_text(&self) -> Option<&str> {
         self.inner.cure.as_deref()
     }
 
-    /// The file it happened in, if any.
+    /// Returns the path of the file that the error is about, if any.
     pub fn path(&self) -> Option<&Path> {
         self.inner.path.as_deref()
     }
@@ -158,10 +160,10 @@ impl From<std::io::Error> for Error {
     }
 }
 
-/// What the system says in words of its own, where a user can act on it; and the cure.
+/// A plain message and a cure for the errors of the operating system that a user can act on.
 fn plain_words(error: &std::io::Error) -> Option<(&'static str, &'static str)> {
     use std::io::ErrorKind;
-    // Others come from this crate, and say more.
+    // Errors without a code of the system come from this crate, and say more themselves.
     error.raw_os_error()?;
     match error.kind() {
         ErrorKind::StorageFull => Some(("the disk is full", "free some space, or write to another disk")),

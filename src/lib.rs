@@ -1,5 +1,6 @@
-//! Lidar and breaklines in; TIN, DEM, contours and mesh out. And, underneath, triangulations that
-//! never fail.
+//! Terrain surfaces from lidar points and breaklines: TIN, DEM, contours and meshes.
+//!
+//! Underneath is a crate of exact triangulations, which can be used on its own.
 //!
 //! # From a LAZ file to contours
 //!
@@ -45,37 +46,38 @@
 //! # Ok::<(), breakline::triangulation::Refused>(())
 //! ```
 //!
-//! What a point is, how exactly its predicates are computed and which law the triangulation obeys are
-//! three choices that do not depend on each other: a [geometry](triangulation::geometry), a [kernel](triangulation::kernel), a
-//! kind of [`triangulation`]. The [guide](triangulation::guide) is for those who come from CGAL, spade or Triangle.
+//! A triangulation combines three independent choices: a [geometry](triangulation::geometry) says
+//! what a point is, a [kernel](triangulation::kernel) how exactly predicates are computed, and the
+//! kind of [`triangulation`] which law holds. If you know CGAL, spade or Triangle, the
+//! [guide](triangulation::guide) maps their calls to ours.
 //!
 //! # Features
 //!
 //! | feature | default | without it |
 //! |---|---|---|
-//! | `cli` | yes | no program, and no crates for a command line |
+//! | `cli` | yes | no command line program, and none of its dependencies |
 //! | `geo` | yes | no conversions to the types of the crate `geo` |
-//! | `png` | yes | pictures are refused, with the feature's name |
-//! | `zstd` | yes | GeoTIFF with ZSTD is refused, with the feature's name |
-//! | `gdal`, `proj` | no | files that only GDAL reads, and reprojection, are refused, with the feature's name |
-//! | `serde` | no | triangulations are not saved and read with serde |
+//! | `png` | yes | PNG images are refused; the error names the feature |
+//! | `zstd` | yes | GeoTIFF with ZSTD compression is refused; the error names the feature |
+//! | `gdal`, `proj` | no | files that only GDAL reads, and reprojection, are refused; the error names the feature |
+//! | `serde` | no | triangulations do not implement the traits of serde |
 //!
-//! # The floors
+//! # Modules
 //!
-//! Each module uses only those above it in this list.
+//! Each module depends only on those above it in this table.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`triangulation`] | the crate `breakline-triangulation`: numbers, predicates, geometry, combinatorics, all kinds of triangulations |
 //! | [`crs`] | coordinate systems: names, codes, units |
-//! | [`data`] | plain records between formats and algorithms |
+//! | [`data`] | plain records that formats and algorithms share |
 //! | [`terrain`] | TIN, contours, DEM, hillshade |
 //! | [`io`] | formats: LAS, GeoTIFF, shapefile, PLY and others |
-//! | [`run`] | what a verb of the program does, from a request to a product |
-//! | `cli` | the command line; not for other programs |
+//! | [`run`] | the verbs of the program: each turns a request into a product |
+//! | `cli` | the command line; not part of the public API |
 
 #[cfg(feature = "cli")]
-#[doc(hidden)] // the program as a function: no part of what the library promises
+#[doc(hidden)] // the program as a function, not covered by semantic versioning
 pub mod cli;
 pub mod crs;
 pub mod data;

@@ -1,6 +1,7 @@
-/// An axis-aligned box in space; in plan where only `x` and `y` are used.
+/// An axis-aligned box in space, or in plan if only `x` and `y` are used.
 ///
-/// The default is empty (`min > max`), so that boxes can be grown from nothing.
+/// The default is empty (`min > max`), so that [`add`](Self::add) and [`merge`](Self::merge) can
+/// start from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// Smallest x, y and z.
@@ -16,7 +17,7 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// Grows the box so that it holds `p`. A NaN coordinate changes nothing.
+    /// Grows the box to contain `p`. A NaN coordinate changes nothing.
     pub fn add(&mut self, p: [f64; 3]) {
         for ((min, max), value) in self.min.iter_mut().zip(&mut self.max).zip(p) {
             *min = min.min(value);
@@ -24,7 +25,7 @@ impl Bounds {
         }
     }
 
-    /// Grows the box so that it holds `other`. An empty box changes nothing.
+    /// Grows the box to contain `other`. An empty box changes nothing.
     pub fn merge(&mut self, other: &Bounds) {
         for axis in 0..3 {
             self.min[axis] = self.min[axis].min(other.min[axis]);
@@ -32,12 +33,12 @@ impl Bounds {
         }
     }
 
-    /// Whether nothing was added yet (in plan).
+    /// Returns true if the box contains no position in plan.
     pub fn is_empty(&self) -> bool {
         !(self.min[0] <= self.max[0] && self.min[1] <= self.max[1])
     }
 
-    /// Whether `(x, y)` lies in the box or on its border.
+    /// Returns true if `(x, y)` lies in the box or on its border.
     pub fn holds(&self, x: f64, y: f64) -> bool {
         self.min[0] <= x && x <= self.max[0] && self.min[1] <= y && y <= self.max[1]
     }

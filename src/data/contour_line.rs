@@ -1,4 +1,4 @@
-/// One contour: a polyline on one level, high ground on its right.
+/// A contour: a polyline at one level, with higher ground on its right.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContourLine {
     /// The height, in the units of the data.
@@ -8,7 +8,7 @@ pub struct ContourLine {
 }
 
 impl ContourLine {
-    /// Whether the line ends where it began.
+    /// Returns true if the line ends where it begins.
     pub fn is_closed(&self) -> bool {
         self.points.len() > 2 && self.points.first() == self.points.last()
     }

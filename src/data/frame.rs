@@ -1,26 +1,27 @@
 use super::Bounds;
 use crate::error::{Error, Result};
 
-/// The most columns or rows of a frame: what GDAL can count.
+/// The largest number of columns or rows of a frame, which is that of GDAL.
 pub const MAX_SIDE: usize = i32::MAX as usize;
 
-/// Pixels are at least this much wider than the distance of neighboring numbers at their
-/// coordinates: cell centers then stay within 2^-13 of a cell of where they should be.
+/// The smallest ratio of a pixel's width to the distance of neighboring doubles at its coordinates.
+///
+/// Rounded cell centers then stay within 2^-13 of a cell of their exact positions.
 const MIN_PIXEL: f64 = (1u64 << 13) as f64;
 
-/// The size and place of a raster.
+/// The size and georeference of a raster.
 ///
 /// `transform` is in GDAL's order and meaning: the outer corner of the first pixel is at
 /// `(t[0], t[3])`, a step of one column adds `(t[1], t[4])`, a step of one row adds `(t[2], t[5])`.
-/// A north-up raster has `t[2] = t[4] = 0` and `t[5] < 0`. Readers bring PixelIsPoint files to this
-/// form.
+/// A north-up raster has `t[2] = t[4] = 0` and `t[5] < 0`. Readers convert PixelIsPoint files to
+/// this form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// Columns.
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// From pixel corner to coordinates, see above.
+    /// The affine transform from pixel corners to coordinates, see above.
     pub transform: [f64; 6],
 }
 
@@ -38,19 +39,20 @@ pub struct Window {
 }
 
 impl Frame {
-    /// A north-up frame with its outer top left corner at `(left, top)` and square cells.
+    /// Creates a north-up frame of square cells with its outer top left corner at `(left, top)`.
     pub fn north_up(left: f64, top: f64, resolution: f64, width: usize, height: usize) -> Self {
         Frame { width, height, transform: [left, resolution, 0.0, top, 0.0, -resolution] }
     }
 
-    /// The smallest north-up frame around `bounds` whose lines are multiples of `resolution`.
+    /// Creates the smallest north-up frame around `bounds` whose grid lines are multiples of
+    /// `resolution`.
     ///
-    /// Frames of neighboring tiles share their grid. The multiples are those that decimals give:
+    /// So the frames of neighboring tiles share a grid. Multiples are those of decimal numbers:
     /// 0.1 x 3 is 0.3.
     ///
     /// # Errors
     /// If the resolution is not a positive number or too fine for the coordinates, the bounds are
-    /// empty or not finite, or a side passes [`MAX_SIDE`].
+    /// empty or not finite, or a side exceeds [`MAX_SIDE`].
     pub fn snapped(bounds: &Bounds, resolution: f64) -> Result<Self> {
         check_extent(bounds, resolution)?;
         let left = whole_below(bounds.min[0] / resolution);
@@ -62,11 +64,10 @@ impl Frame {
         Frame::north_up(corner.0, corner.1, resolution, width, height).checked()
     }
 
-    /// A north-up frame with its outer top left corner at that of `bounds`, and as many whole cells
-    /// as it takes to cover them.
+    /// Creates the smallest north-up frame that covers `bounds` and shares their top left corner.
     ///
     /// # Errors
-    /// As [`snapped`](Frame::snapped).
+    /// Those of [`snapped`](Frame::snapped).
     pub fn covering(bounds: &Bounds, resolution: f64) -> Result<Self> {
         check_extent(bounds, resolution)?;
         let cells = |axis: usize| whole_above((bounds.max[axis] - bounds.min[axis]) / resolution).max(1.0);
@@ -74,10 +75,11 @@ impl Frame {
         Frame::north_up(bounds.min[0], bounds.max[1], resolution, width, height).checked()
     }
 
-    /// The smallest frame around `bounds` on the grid of `other`, continued beyond its edges.
+    /// Creates the smallest frame around `bounds` on the grid of `other`, extended beyond its
+    /// edges.
     ///
     /// # Errors
-    /// If the bounds are empty or not finite, `other` cannot be inverted, or a side passes
+    /// If the bounds are empty or not finite, `other` cannot be inverted, or a side exceeds
     /// [`MAX_SIDE`].
     pub fn aligned_to(other: &Frame, bounds: &Bounds) -> Result<Self> {
         check_bounds(bounds)?;
@@ -102,7 +104,7 @@ impl Frame {
         Frame { width, height, transform }.checked()
     }
 
-    /// The box around all cells, corners included; without heights.
+    /// Returns the box around the outer corners of all cells; without heights.
     pub fn extent(&self) -> Bounds {
         let mut bounds = Bounds::default();
         let (width, height) = (self.width as f64, self.height as f64);
@@ -113,11 +115,11 @@ impl Frame {
         bounds
     }
 
-    /// The frame itself, if it can be worked with.
+    /// Returns the frame if it is valid.
     ///
     /// # Errors
-    /// If it has no cell, a side passes [`MAX_SIDE`], the transform is not finite or has no
-    /// inverse, or the pixels are too small for numbers to tell their centers apart.
+    /// If it has no cell, a side exceeds [`MAX_SIDE`], the transform is not finite or has no
+    /// inverse, or the pixels are too small for doubles to distinguish their centers.
     pub fn checked(self) -> Result<Self> {
         let (width, height) = (self.width, self.height);
         if width == 0 || height == 0 {
@@ -145,13 +147,13 @@ impl Frame {
         Ok(self)
     }
 
-    /// The coordinates of a place given in pixels (`column + 0.5` is a cell's center).
+    /// Converts pixels to coordinates (`column + 0.5` is a cell's center).
     pub fn to_map(&self, column: f64, row: f64) -> [f64; 2] {
         let t = &self.transform;
         [t[0] + column * t[1] + row * t[2], t[3] + column * t[4] + row * t[5]]
     }
 
-    /// The way back from coordinates to pixels.
+    /// Returns the conversion from coordinates to pixels.
     pub fn inverse(&self) -> ToPixels {
         let t = &self.transform;
         let determinant = t[1] * t[5] - t[2] * t[4];
@@ -162,26 +164,27 @@ impl Frame {
         }
     }
 
-    /// The center of a cell.
+    /// Returns the center of a cell.
     pub fn center(&self, column: usize, row: usize) -> [f64; 2] {
         self.to_map(column as f64 + 0.5, row as f64 + 0.5)
     }
 
-    /// Whether rows run from north to south and columns from west to east, without rotation.
+    /// Returns true if rows run from north to south and columns from west to east, without
+    /// rotation.
     pub fn is_north_up(&self) -> bool {
         let t = &self.transform;
         t[2] == 0.0 && t[4] == 0.0 && t[1] > 0.0 && t[5] < 0.0
     }
 
-    /// The whole raster as a window.
+    /// Returns the window of the whole raster.
     pub fn window(&self) -> Window {
         Window { column: 0, row: 0, width: self.width, height: self.height }
     }
 
-    /// Whether `window` lies inside and has `cells` cells.
+    /// Checks that `window` lies inside the raster and has `cells` cells.
     ///
     /// # Errors
-    /// If not; the message says which.
+    /// If one of these is not the case; the message says which.
     pub fn check_window(&self, window: Window, cells: usize) -> Result<()> {
         let Window { column, row, width, height } = window;
         let inside = |first: usize, count: usize, limit: usize| first <= limit && count <= limit - first;
@@ -198,7 +201,7 @@ impl Frame {
     }
 }
 
-/// From coordinates to pixels: the inverse of a frame's transform.
+/// A conversion from coordinates to pixels: the inverse of a frame's transform.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToPixels {
     corner: [f64; 2],
@@ -207,30 +210,30 @@ pub struct ToPixels {
 }
 
 impl ToPixels {
-    /// Column and row of a place; the center of the first cell is `[0.5, 0.5]`.
+    /// Returns column and row of a position; the center of the first cell is `[0.5, 0.5]`.
     pub fn apply(&self, x: f64, y: f64) -> [f64; 2] {
         let (x, y) = (x - self.corner[0], y - self.corner[1]);
         [self.columns[0] * x + self.columns[1] * y, self.rows[0] * x + self.rows[1] * y]
     }
 
-    /// What one unit of the map along x changes in column and row.
+    /// Returns the change of column and row per map unit along x.
     pub fn along_x(&self) -> [f64; 2] {
         [self.columns[0], self.rows[0]]
     }
 
-    /// What one unit of the map along y changes in column and row.
+    /// Returns the change of column and row per map unit along y.
     pub fn along_y(&self) -> [f64; 2] {
         [self.columns[1], self.rows[1]]
     }
 
-    /// The gradient per unit of the map of what changes by `(per_column, per_row)`.
+    /// Converts a gradient per column and row to one per map unit along x and y.
     pub fn gradient(&self, per_column: f64, per_row: f64) -> [f64; 2] {
         [per_column * self.columns[0] + per_row * self.rows[0], per_column * self.columns[1] + per_row * self.rows[1]]
     }
 }
 
-/// A bound counts as lying on a grid line when it is off by less than this part of a cell: bounds in
-/// decimals rarely are exact multiples of a resolution in decimals.
+/// The distance, in cells, within which a bound counts as lying on a grid line: decimal bounds are
+/// rarely exact multiples of a decimal resolution.
 fn slack(cells: f64) -> f64 {
     (4.0 * f64::EPSILON * cells.abs()).max(1e-9)
 }
@@ -243,8 +246,8 @@ fn whole_above(cells: f64) -> f64 {
     (cells - slack(cells)).ceil()
 }
 
-/// `count * resolution` as decimals have it: by division where the resolution is one part of a
-/// whole number, because 1/10 has no exact form and 10 has.
+/// `count * resolution` as in decimal arithmetic. If the resolution is one divided by a whole
+/// number, this divides by that number, because 10 is exact as a double and 1/10 is not.
 fn multiple(count: f64, resolution: f64) -> f64 {
     let parts = (1.0 / resolution).round();
     if parts >= 1.0 && 1.0 / parts == resolution { count / parts } else { count * resolution }

@@ -1,7 +1,8 @@
-//! To and from the types of the [`geo`](https://docs.rs/geo) crate (0.33), for what its algorithms offer:
-//! simplification, buffers, predicates, areas.
+//! Conversions to and from the types of the [`geo`](https://docs.rs/geo) crate (0.33), for its
+//! algorithms: simplification, buffers, predicates, areas.
 //!
-//! `geo` is flat: heights are dropped on the way there, and unknown (NaN) on the way back.
+//! The types of `geo` are two-dimensional: heights are dropped in one direction, and unknown (NaN)
+//! in the other.
 //!
 //! | from | to | |
 //! |---|---|---|
@@ -33,15 +34,15 @@ use super::{Bounds, ContourLine, Shape};
 use crate::error::{Error, Result};
 
 impl From<&Shape> for Geometry<f64> {
-    /// The shape in plan: single where it has one part, multiple otherwise; an empty collection for a
-    /// null shape.
+    /// Converts a shape to its geometry in plan.
     ///
-    /// Which ring of a polygon is a hole follows from which lies within which, not from the
-    /// direction: a ring within an odd number of others is a hole of the innermost of them. Outer rings
-    /// come out counter-clockwise, holes clockwise, as OGC has it.
+    /// A shape of one part becomes a single geometry, one of several parts a multiple, a null shape
+    /// an empty collection. The holes of a polygon follow from how its rings are nested, not from
+    /// their direction: a ring within an odd number of others is a hole of the innermost of them.
+    /// Outer rings become counter-clockwise and holes clockwise, as OGC requires.
     ///
     /// # Complexity
-    /// Linear; for a polygon of `k` rings in addition `k^2` comparisons of boxes.
+    /// Linear; for a polygon of `k` rings, `k^2` comparisons of boxes in addition.
     fn from(shape: &Shape) -> Self {
         match shape {
             Shape::Null => Geometry::GeometryCollection(GeometryCollection::default()),
@@ -64,8 +65,10 @@ impl From<&Shape> for Geometry<f64> {
 impl TryFrom<&Geometry<f64>> for Shape {
     type Error = Error;
 
-    /// The shape with heights of NaN, which [`Shape::set_height`] replaces. Rings are directed as
-    /// [`Shape::Polygon`] says; an empty collection is a null shape.
+    /// Converts a geometry to a shape with heights of NaN; see [`Shape::set_height`].
+    ///
+    /// Rings are directed as described at [`Shape::Polygon`]. An empty collection becomes a null
+    /// shape.
     ///
     /// # Errors
     /// If it is a collection whose members are not all points, all lines or all polygons.
@@ -88,7 +91,7 @@ impl TryFrom<&Geometry<f64>> for Shape {
 }
 
 impl From<&ContourLine> for LineString<f64> {
-    /// The line in plan, high ground on its right; the level is dropped.
+    /// Converts a contour to a line in plan, with higher ground on its right; the level is dropped.
     fn from(line: &ContourLine) -> Self {
         LineString::from_iter(line.points.iter().copied())
     }
@@ -97,10 +100,10 @@ impl From<&ContourLine> for LineString<f64> {
 impl TryFrom<Bounds> for Rect<f64> {
     type Error = Error;
 
-    /// The box in plan.
+    /// Converts a box to a rectangle in plan.
     ///
     /// # Errors
-    /// If it is empty, which a `Rect` cannot be.
+    /// If the box is empty, which a `Rect` cannot be.
     fn try_from(bounds: Bounds) -> Result<Self> {
         if bounds.is_empty() {
             return Err(Error::usage("an empty box is no rectangle"));
@@ -111,7 +114,7 @@ impl TryFrom<Bounds> for Rect<f64> {
 }
 
 impl From<Rect<f64>> for Bounds {
-    /// The box with heights of 0.
+    /// Converts a rectangle to a box with heights of 0.
     fn from(rect: Rect<f64>) -> Self {
         let (min, max) = (rect.min(), rect.max());
         Bounds { min: [min.x, min.y, 0.0], max: [max.x, max.y, 0.0] }
@@ -141,10 +144,10 @@ fn one_or_many(polygons: Vec<Polygon<f64>>) -> Geometry<f64> {
     }
 }
 
-/// Makes polygons of rings that do not cross.
+/// The polygons that rings form which do not cross.
 fn nested(rings: Vec<LineString<f64>>) -> Vec<Polygon<f64>> {
     let rings: Vec<Ring> = rings.into_iter().map(Ring::new).collect();
-    // The rings around each ring, outermost first.
+    // For each ring the rings around it, outermost first.
     let around: Vec<Vec<usize>> = (0..rings.len())
         .map(|inner| {
             let mut around: Vec<usize> = (0..rings.len()).filter(|&outer| rings[inner].is_in(&rings[outer])).collect();
@@ -183,7 +186,7 @@ impl Ring {
         Ring { line: polygon.into_inner().0, bounds, area }
     }
 
-    /// Whether all of the ring lies within another one, knowing that the two do not cross.
+    /// Returns true if the ring lies within another one; the two must not cross.
     fn is_in(&self, outer: &Ring) -> bool {
         let (Some(inner_box), Some(outer_box)) = (self.bounds, outer.bounds) else { return false };
         let boxes_fit = (outer_box.min().x <= inner_box.min().x && inner_box.max().x <= outer_box.max().x)
@@ -191,7 +194,8 @@ impl Ring {
         if !boxes_fit || self.area.abs() >= outer.area.abs() {
             return false;
         }
-        // Vertices may touch the other ring; then the middles of edges, which may only along it.
+        // The first point that is not on the other ring decides. Vertices may all touch it;
+        // midpoints of edges do so only if the edge runs along it.
         let middles = self.line.lines().map(|edge| (edge.start + edge.end) / 2.0);
         self.line
             .coords_iter()
@@ -201,7 +205,7 @@ impl Ring {
             .is_some_and(|position| position == CoordPos::Inside)
     }
 
-    /// The line, turned so that its area has a sign.
+    /// The line, reversed if necessary so that its area has the sign of `sign`.
     fn directed(&self, sign: f64) -> LineString<f64> {
         let mut line = self.line.clone();
         if self.area * sign < 0.0 {
@@ -211,14 +215,14 @@ impl Ring {
     }
 }
 
-/// The rings of a polygon as [`Shape::Polygon`] has them.
+/// The rings of a polygon, directed as in [`Shape::Polygon`].
 fn rings(polygon: &Polygon<f64>) -> Vec<Vec<[f64; 3]>> {
     let outer = (polygon.exterior(), -1.0);
     let holes = polygon.interiors().iter().map(|hole| (hole, 1.0));
     std::iter::once(outer).chain(holes).map(|(ring, sign)| vertices(&Ring::new(ring.clone()).directed(sign))).collect()
 }
 
-/// Both shapes as one.
+/// Combines two shapes of one kind.
 fn joined(all: Shape, more: Shape) -> Result<Shape> {
     Ok(match (all, more) {
         (Shape::Null, shape) | (shape, Shape::Null) => shape,
@@ -268,7 +272,8 @@ mod tests {
 
     #[test]
     fn rings_nest_whatever_their_order_and_direction() {
-        // A lake, an island in it with a pond, and a ring that touches the lake's shore from within.
+        // A lake, an island in it with a pond, and a ring that touches the lake's shore from
+        // within.
         let touching = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
         let rings = [square(0.0, 10.0, 1.0), square(2.0, 8.0, 1.0), square(4.0, 6.0, 1.0), touching];
         for order in [[0, 1, 2, 3], [3, 2, 1, 0], [2, 0, 3, 1]] {

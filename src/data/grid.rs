@@ -4,25 +4,25 @@ use super::{Bounds, Frame, Window};
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 
-/// Rows of a raster that are asked for at once when all of it is.
+/// The number of rows in a block when a whole raster is read.
 const ROWS: usize = 64;
 
-/// A raster of heights in memory. A cell without a value is NaN.
+/// A raster of heights in memory.
 #[derive(Debug, Clone)]
 pub struct Grid {
-    /// Size and place.
+    /// The size and georeference.
     pub frame: Frame,
     /// Coordinate system, if known.
     pub crs: Option<Crs>,
-    /// Row by row from the first, `frame.width * frame.height` values; NaN is nodata.
+    /// The `frame.width * frame.height` values, row by row from the first; NaN is nodata.
     pub values: Vec<f64>,
 }
 
 impl Grid {
-    /// All cells of a source, by all cores.
+    /// Reads all cells of a source, with all cores.
     ///
     /// # Errors
-    /// If the raster is larger than memory can be, or the source fails.
+    /// If the raster does not fit into memory, or the source fails.
     pub fn collect(source: &dyn BlockSource) -> Result<Self> {
         let frame = source.frame();
         let count = frame.width.saturating_mul(frame.height);
@@ -43,7 +43,7 @@ impl Grid {
         Ok(Grid { frame, crs: source.crs().cloned(), values })
     }
 
-    /// The box around all cells, with the lowest and the highest height if there is any.
+    /// Returns the box around all cells, with the lowest and the highest height if there are any.
     ///
     /// # Complexity
     /// Linear.
@@ -60,30 +60,31 @@ impl Grid {
         Error::usage(format!("a grid of {width} x {height} cells holds {} values", self.values.len()))
     }
 
-    /// The value of a cell.
+    /// Returns the value of a cell.
     ///
     /// # Panics
-    /// If the cell is not in the raster.
+    /// If the cell is outside of the raster.
     pub fn value(&self, column: usize, row: usize) -> f64 {
         self.values[row * self.frame.width + column]
     }
 }
 
-/// Something that can fill any block of a raster: a TIN, a grid, the hillshade of either.
+/// A source that can fill any block of a raster: a TIN, a grid, the hillshade of either.
 ///
-/// Blocks are asked for in any order and from many threads; what a cell holds must not depend on
-/// the block it is asked in.
+/// Blocks are requested in any order and from many threads. The value of a cell must not depend on
+/// the block in which it is requested.
 pub trait BlockSource: Sync {
-    /// Size and place of the whole raster.
+    /// The size and georeference of the whole raster.
     fn frame(&self) -> Frame;
 
     /// Coordinate system, if known.
     fn crs(&self) -> Option<&Crs>;
 
-    /// Fills `out` (row by row, `window.width * window.height` values; NaN is nodata).
+    /// Fills `out` with the `window.width * window.height` values of a window, row by row; NaN is
+    /// nodata.
     ///
     /// # Errors
-    /// Only if the source reads from somewhere that can fail.
+    /// Only if the source reads from something that can fail.
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()>;
 }
 

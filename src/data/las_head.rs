@@ -1,4 +1,5 @@
-/// What a LAS file says beside its points, as bytes: with it, points go to another file and nothing of them is lost.
+/// The content of a LAS file apart from its points, as bytes, so that points can be copied to
+/// another file without loss.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LasHead {
     /// The header.

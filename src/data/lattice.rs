@@ -1,5 +1,6 @@
-/// An integer lattice in space, as the header of a LAS file has it: a number `n` of steps on an axis stands for the
-/// coordinate `n * scale + offset`.
+/// An integer lattice in space, as in the header of a LAS file.
+///
+/// `n` steps on an axis stand for the coordinate `n * scale + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
     /// The length of a step on each axis.
@@ -9,22 +10,24 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// The coordinates of a point of the lattice, rounded as a reader of LAS does.
+    /// Returns the coordinates of a point of the lattice, rounded like a reader of LAS does.
     #[inline]
     pub fn point(&self, steps: [i32; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| f64::from(steps[k]) * self.scale[k] + self.offset[k])
     }
 
-    /// The steps to a point; `None` if it is no [point](Self::point) of the lattice.
+    /// Returns the steps to a point; `None` if it is not a [point](Self::point) of the lattice.
     #[inline]
     pub fn steps(&self, point: [f64; 3]) -> Option<[i32; 3]> {
         let steps = [0, 1, 2].map(|k| ((point[k] - self.offset[k]) / self.scale[k]).round() as i32);
         (self.point(steps) == point).then_some(steps)
     }
 
-    /// The way from this lattice into another one that has all of its points, up to roundings of coordinates to
-    /// doubles: a step here is a whole number of steps there, and so is the way between the origins. `None` if it is
-    /// not.
+    /// Returns the embedding of this lattice in a finer one; `None` if the other lacks some of its
+    /// points.
+    ///
+    /// A step here must be a whole number of steps there, and so must the distance between the
+    /// origins, up to the rounding of coordinates to doubles.
     pub fn embed(&self, into: &Lattice) -> Option<Embedding> {
         let mut embedding = Embedding { factor: [1; 3], shift: [0; 3] };
         for k in 0..3 {
@@ -38,14 +41,14 @@ impl Lattice {
     }
 }
 
-/// A number that is whole but for a few roundings of its size.
+/// Rounds `x` if it is whole up to a few roundings of numbers as large as `size`.
 fn whole(x: f64, size: f64) -> Option<i32> {
     let tolerance = (4.0 * f64::EPSILON * size.abs()).min(0.01);
     let is_whole = (x - x.round()).abs() <= tolerance && x.abs() < f64::from(i32::MAX);
     is_whole.then_some(x.round() as i32)
 }
 
-/// Of [`Lattice::embed`].
+/// Maps the points of a lattice to those of a finer one; see [`Lattice::embed`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Embedding {
     factor: [i32; 3],
@@ -53,7 +56,7 @@ pub struct Embedding {
 }
 
 impl Embedding {
-    /// The same point in steps of the other lattice; `None` if these are more than 32 bits hold.
+    /// Returns the same point in steps of the finer lattice; `None` if these exceed 32 bits.
     #[inline]
     pub fn steps(&self, steps: [i32; 3]) -> Option<[i32; 3]> {
         let mut there = [0; 3];

@@ -6,20 +6,20 @@ use crate::error::{Error, Result};
 use crate::triangulation::kernel::{Adaptive, Exact, Kernel, Orientation2};
 use crate::triangulation::num::Sign;
 
-/// Triangles as lists: what a mesh file holds.
+/// A surface of triangles as lists, like the content of a mesh file.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
     neighbors: Vec<[u32; 3]>,
-    /// Plain, breakline or clip; what is rim follows from the neighbors.
+    /// Plain, breakline or clip; rim edges follow from the neighbors.
     kinds: Vec<[EdgeKind; 3]>,
     /// In ascending order.
     fragments: Vec<u32>,
     crs: Option<Crs>,
 }
 
-/// No neighbor. Also the limit of what can be numbered.
+/// No neighbor; also the limit for numbers.
 const NONE: u32 = u32::MAX;
 
 impl Surface for Mesh {
@@ -60,23 +60,25 @@ impl Surface for Mesh {
 }
 
 impl Mesh {
-    /// Changes the coordinate system; no coordinate changes.
+    /// Sets the coordinate system; coordinates do not change.
     pub fn set_crs(&mut self, crs: Option<Crs>) {
         self.crs = crs;
     }
 
-    /// Links triangles to their neighbors. Clockwise faces are turned; vertices may be unused.
+    /// Builds a mesh: links triangles to their neighbors.
     ///
-    /// A mesh is a surface: one height per place. Folds are found where faces meet in an edge, not
-    /// where they overlap without one. Numbers in messages count from 0.
+    /// Clockwise faces are reversed; vertices may be unused. A mesh is a surface, with one height
+    /// at each position. Folds are detected where faces share an edge, not where they overlap
+    /// without one. Numbers in messages count from 0.
     ///
     /// # Errors
     /// If a coordinate is not finite, a face or an edge names a vertex that does not exist, a face
-    /// has no area in plan, two faces lie on one side of an edge that they share (three faces at
-    /// one edge always do), or a constrained edge is no edge of a face.
+    /// has no area in plan, two faces lie on the same side of an edge that they share (of three
+    /// faces at one edge, two always do), or a constrained edge is not an edge of a face.
     ///
     /// # Complexity
-    /// Linear, but for sorting the edges around each vertex; 24 bytes a face beside the result.
+    /// Linear, except for sorting the edges around each vertex; 24 bytes per face in addition to
+    /// the result.
     pub fn new(
         vertices: Vec<[f64; 3]>,
         faces: Vec<[u32; 3]>,
@@ -87,11 +89,12 @@ impl Mesh {
         Self::of(Triangles { vertices, faces, constrained_edges, crs, ..Triangles::default() })
     }
 
-    /// Like [`new`](Self::new), but of all that a file can tell of a surface. Neighbors that it states are not
-    /// looked at.
+    /// Like [`new`](Self::new), but from everything that a file can contain.
+    ///
+    /// [`Triangles::neighbors`] is ignored.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new); a clip edge has to be an edge of a face, too.
+    /// Those of [`new`](Self::new), and if a clip edge is not an edge of a face.
     pub fn of(triangles: Triangles) -> Result<Self> {
         let Triangles { vertices, mut faces, constrained_edges, clip_edges, fragments, crs, .. } = triangles;
         check_numbers(&vertices, &faces)?;
@@ -109,11 +112,14 @@ impl Mesh {
         Ok(Mesh { vertices, faces, neighbors, kinds, fragments, crs })
     }
 
-    /// Links triangles as far as they can be linked, for whoever wants to know what is wrong with them: a
-    /// side where faces fold has no neighbor. Only a mesh that is clockwise as a whole is turned.
+    /// Links triangles as far as possible, and returns the mesh with the flaws that were found.
+    ///
+    /// Meant for checks of files that [`of`](Self::of) refuses. Where faces fold, an edge has no
+    /// neighbor. Faces are reversed only if all of them are clockwise.
     ///
     /// # Errors
-    /// If a face names a vertex that does not exist, or there are more than can be numbered.
+    /// If a face names a vertex that does not exist, or there are more faces or vertices than can
+    /// be numbered.
     ///
     /// # Complexity
     /// That of [`new`](Self::new).
@@ -146,7 +152,7 @@ impl Mesh {
 }
 
 fn check_numbers(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
-    // Half edges are numbered too, three for each face.
+    // Half edges are numbered as well, three per face.
     if vertices.len() >= NONE as usize || faces.len() >= (NONE / 3) as usize {
         return Err(Error::limit(format!(
             "{} vertices and {} faces, but a mesh holds at most {} and {}",
@@ -176,7 +182,7 @@ fn check_values(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
     Ok(())
 }
 
-/// Vertices that are nowhere, and that no face has.
+/// Vertices with coordinates that are not finite, unless a face uses them.
 fn strays(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<LinkFlaw> {
     let is_nowhere = |&vertex: &u32| !vertices[vertex as usize].iter().all(|c| c.is_finite());
     let nowhere: Vec<u32> = (0..vertices.len() as u32).filter(is_nowhere).collect();
@@ -187,13 +193,13 @@ fn strays(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<LinkFlaw> {
     nowhere.into_iter().filter(|vertex| !used.contains(vertex)).map(LinkFlaw::StrayVertex).collect()
 }
 
-/// Says that a vertex is nowhere.
+/// The error for a vertex with coordinates that are not finite.
 #[cold]
 pub(crate) fn not_finite(vertex: usize, [x, y, z]: [f64; 3]) -> Error {
     Error::format(format!("vertex {vertex} is at {x} {y} {z}, expected finite coordinates"))
 }
 
-/// Whether there are clockwise faces and no counter-clockwise ones.
+/// Returns true if there are clockwise faces and no counter-clockwise ones.
 fn is_clockwise(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> bool {
     let places = faces.iter().map(|face| face.map(|v| vertices[v as usize]));
     let finite = places.filter(|places| places.iter().all(|[x, y, _]| x.is_finite() && y.is_finite()));
@@ -216,9 +222,9 @@ fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]]) -> Resu
     Ok(())
 }
 
-/// The side of a face: one edge, seen from one face.
+/// One side of a face: an edge as seen from one of its faces.
 ///
-/// Ordered by the larger vertex of the edge, so that the table below can be searched.
+/// Ordered by the larger vertex of the edge, so that [`EdgeTable`] can be searched.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct HalfEdge {
     high: u32,
@@ -234,7 +240,7 @@ impl HalfEdge {
         self.number as usize % 3
     }
 
-    /// Where the edge starts when walking around its face.
+    /// The vertex at which the edge starts, counter-clockwise around its face.
     fn start(self, faces: &[[u32; 3]]) -> u32 {
         faces[self.face()][(self.side() + 1) % 3]
     }
@@ -242,7 +248,8 @@ impl HalfEdge {
 
 /// All half edges, sorted by the smaller and then by the larger vertex of their edge.
 struct EdgeTable {
-    /// Where the half edges of a smaller vertex begin; one more entry than vertices.
+    /// For each vertex, where the half edges that have it as the smaller one begin; and their
+    /// number.
     first: Vec<u32>,
     halves: Vec<HalfEdge>,
 }
@@ -278,7 +285,7 @@ impl EdgeTable {
         EdgeTable { first, halves }
     }
 
-    /// The face beyond each side, and where that cannot be told. Sides where faces fold have no neighbor.
+    /// The face across each side, and the flaws. Sides where faces fold have no neighbor.
     fn neighbors(&self, faces: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<LinkFlaw>) {
         let mut neighbors = vec![[NONE; 3]; faces.len()];
         let mut flaws = Vec::new();
@@ -306,7 +313,8 @@ impl EdgeTable {
         (neighbors, flaws)
     }
 
-    /// The kinds of the sides of so many faces, and the edges that are the side of none.
+    /// The kinds of the sides of `face_count` faces, and a flaw for each edge that is no side of
+    /// them.
     fn kinds(
         &self,
         face_count: usize,
@@ -315,7 +323,7 @@ impl EdgeTable {
     ) -> (Vec<[EdgeKind; 3]>, Vec<LinkFlaw>) {
         let mut kinds = vec![[EdgeKind::Plain; 3]; face_count];
         let mut strays = Vec::new();
-        // Breaklines last: where both run along an edge, it is a breakline.
+        // Breaklines last: an edge that is both is a breakline.
         for (edges, kind) in [(clip_edges, EdgeKind::Clip), (constrained_edges, EdgeKind::Breakline)] {
             for &edge in edges {
                 let halves = self.find(edge);
@@ -343,8 +351,8 @@ fn folded(flaw: LinkFlaw) -> Error {
     Error::format(flaw.to_string()).cure("a surface has one height per place: remove overhangs and repeated faces")
 }
 
-/// Positive if three places turn counter-clockwise in plan, zero if they are in line. Exact for all
-/// finite coordinates.
+/// The orientation of three points in plan: positive if counter-clockwise, zero if collinear. Exact
+/// for all finite coordinates.
 pub(crate) fn orientation(places: [[f64; 3]; 3]) -> Sign {
     let turn = Orientation2(places.map(|[x, y, _]| [x, y]));
     let is_ordinary = turn.0.as_flattened().iter().all(|&c| Adaptive::RANGE.admits(c));

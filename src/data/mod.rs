@@ -1,24 +1,29 @@
-//! Plain records that stand between formats and algorithms.
+//! Plain records that formats and algorithms share.
 //!
-//! [`io`](crate::io) turns bytes into these and these into bytes; [`terrain`](crate::terrain) turns
-//! these into each other. Neither knows the other. A verb returns a *source* (a surface, an iterator
-//! of lines, a filler of raster blocks) and a writer takes one, so that nothing has to be whole in
-//! memory because of the border between them.
+//! [`io`](crate::io) converts between bytes and these records; [`terrain`](crate::terrain) computes
+//! one record from another. Neither depends on the other. A verb returns a *source* (a surface, an
+//! iterator of lines, a filler of raster blocks) and a writer accepts one, so that results need not
+//! fit into memory.
 //!
 //! | what | record | stream |
 //! |---|---|---|
 //! | points | [`PointBatch`] (columns), [`PointInfo`], [`Columns`], [`Lattice`], [`LasHead`] | [`PointSource`], [`PointSink`] |
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
-//! | rasters | [`Grid`], with its place: [`Frame`] | [`BlockSource`], asked by [`Window`] |
+//! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
 //! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked | [`Surface`] |
 //! | a box | [`Bounds`] | |
 //!
-//! Conventions: x to the east, y to the north, z up, in the units of the coordinate system that comes
-//! along (`crs`, where it is known); NaN is a height, or a cell, without a value; faces are
-//! counter-clockwise in plan; rasters have their transform in GDAL's order, for the corners of cells.
-//! Nothing here reads, writes or computes a result. `geo`, behind the feature of that name, converts to the types of
-//! the crate of that name.
+//! # Conventions
+//!
+//! - x to the east, y to the north, z up, in the units of the coordinate system (`crs`, where it is
+//!   known).
+//! - NaN is a missing height, or a nodata cell.
+//! - Faces are counter-clockwise in plan.
+//! - The transform of a raster is in GDAL's order, and refers to the corners of cells.
+//!
+//! Nothing here reads, writes or computes a result. With the feature `geo`, the module `geo`
+//! converts to and from the types of the crate `geo`.
 
 mod bounds;
 mod contour_line;

@@ -4,29 +4,29 @@ use super::{Bounds, LasHead, Lattice};
 use crate::crs::Crs;
 use crate::error::Result;
 
-/// What a lidar point says of itself, as in LAS 1.4.
+/// The classification flags of a lidar point, as in LAS 1.4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PointFlags(pub u8);
 
 impl PointFlags {
-    /// Made by other means than the sensor.
+    /// Created by other means than the sensor.
     pub const SYNTHETIC: u8 = 1;
     /// A model key point.
     pub const KEY_POINT: u8 = 2;
-    /// Deleted: not to be used.
+    /// Deleted: must not be used.
     pub const WITHHELD: u8 = 4;
     /// In the overlap of two flight lines.
     pub const OVERLAP: u8 = 8;
 
-    /// Whether the point is to be ignored.
+    /// Returns true if the point must not be used.
     pub fn is_withheld(self) -> bool {
         self.0 & Self::WITHHELD != 0
     }
 }
 
-/// A run of points as columns of equal length.
+/// A batch of points, as columns of equal length.
 ///
-/// Formats without classes or returns leave those columns empty.
+/// Columns that a format does not have, such as classes or return numbers, are empty.
 #[derive(Debug, Clone, Default)]
 pub struct PointBatch {
     /// Eastings, or longitudes.
@@ -41,23 +41,23 @@ pub struct PointBatch {
     pub flags: Vec<PointFlags>,
     /// Return numbers, or empty.
     pub return_number: Vec<u8>,
-    /// The records of the points as LAS has them, one after the other, all of one length; empty unless the source was
-    /// asked for them.
+    /// The LAS records of the points, one after the other, all of the same length; empty unless
+    /// they were requested from the source.
     pub records: Vec<u8>,
 }
 
 impl PointBatch {
-    /// Points in the batch.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.x.len()
     }
 
-    /// Whether the batch holds no point.
+    /// Returns true if the batch contains no points.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
 
-    /// Forgets the points and keeps the memory.
+    /// Removes all points and keeps the allocated memory.
     pub fn clear(&mut self) {
         self.x.clear();
         self.y.clear();
@@ -68,7 +68,7 @@ impl PointBatch {
         self.records.clear();
     }
 
-    /// Keeps the points that are marked, in order.
+    /// Keeps only the points whose entry in `keep` is true, in order.
     ///
     /// # Complexity
     /// Linear.
@@ -91,13 +91,13 @@ impl PointBatch {
     }
 }
 
-/// Keeps the items that are marked; a column that is not there stays empty.
+/// Keeps the items whose entry in `keep` is true; an empty column stays empty.
 fn retain<T: Copy>(column: &mut Vec<T>, keep: &[bool]) {
     let mut marks = keep.iter();
     column.retain(|_| marks.next().is_some_and(|keep| *keep));
 }
 
-/// Which columns of a table are taken for the coordinates, counted from 1.
+/// The columns of a table that contain the coordinates, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Columns {
     /// Eastings, or longitudes.
@@ -110,7 +110,7 @@ pub struct Columns {
     pub class: Option<usize>,
 }
 
-/// As "x 3, y 2, z 4".
+/// Formats the columns as "x 3, y 2, z 4".
 impl fmt::Display for Columns {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "x {}, y {}, z {}", self.x, self.y, self.z)?;
@@ -118,8 +118,9 @@ impl fmt::Display for Columns {
     }
 }
 
-/// What a file says of its points before they are read. None of it is to be trusted for
-/// allocation.
+/// What a file states about its points before they are read.
+///
+/// It may be wrong: memory must not be allocated by it.
 #[derive(Debug, Clone, Default)]
 pub struct PointInfo {
     /// "LAS 1.4, point format 6, LAZ"
@@ -130,62 +131,62 @@ pub struct PointInfo {
     pub bounds: Option<Bounds>,
     /// Coordinate system.
     pub crs: Option<Crs>,
-    /// Whether the points carry classes.
+    /// True if the points have classes.
     pub has_classes: bool,
-    /// The columns that are taken, for text.
+    /// The columns that are read, for text files.
     pub columns: Option<Columns>,
     /// The lattice of the coordinates, for formats that have one.
     pub lattice: Option<Lattice>,
-    /// The head of a LAS file, if the source was asked for the records of its points.
+    /// The head of a LAS file, if the records of its points were requested.
     pub head: Option<LasHead>,
-    /// What a user should be told: a disagreement, a guess, something ignored.
+    /// Warnings for the user: contradictions, guesses, ignored content.
     pub warnings: Vec<String>,
 }
 
 /// A stream of points, in batches of bounded size.
 pub trait PointSource {
-    /// What the header says.
+    /// What the header of the file states.
     fn info(&self) -> &PointInfo;
 
-    /// Replaces the content of `batch` with the next points; an empty batch is the end.
+    /// Replaces the content of `batch` by the next points; an empty batch marks the end.
     ///
     /// # Errors
-    /// When the data is damaged. Points already handed out are good.
+    /// If the data is damaged. Points returned before are valid.
     fn read(&mut self, batch: &mut PointBatch) -> Result<()>;
 
-    /// What came up while reading (a file that ends early, say); complete after the last batch.
+    /// Warnings from reading, such as a file that ends early; complete after the last batch.
     fn warnings(&self) -> &[String] {
         &[]
     }
 }
 
-/// What was written: points, counted.
+/// What a [`PointSink`] wrote.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PointSummary {
-    /// Points.
+    /// The number of points.
     pub count: u64,
-    /// The box around them, as they read back.
+    /// The box around the points, with the coordinates that a reader gets.
     pub bounds: Bounds,
 }
 
-/// Takes points in batches and writes them; nothing is there before [`finish`](Self::finish).
+/// Writes points in batches. The file does not exist before [`finish`](Self::finish).
 pub trait PointSink {
-    /// Says that the points that follow come from this source.
+    /// Announces the source of the points that follow.
     ///
     /// # Errors
-    /// If its points cannot be written with those before.
+    /// If its points cannot be written together with those before.
     fn next_source(&mut self, info: &PointInfo) -> Result<()>;
 
-    /// Writes points.
+    /// Writes a batch of points.
     ///
     /// # Errors
-    /// If a point cannot be written without a loss, or the system fails.
+    /// If a point cannot be written without loss, or the system fails.
     fn write(&mut self, batch: &PointBatch) -> Result<()>;
 
-    /// Writes what is left, and lets the file appear.
+    /// Writes the remaining points and creates the file at its final path.
     ///
     /// # Errors
-    /// If the system fails; then there is no file.
+    /// If the system fails; then no file is created.
     fn finish(self: Box<Self>) -> Result<PointSummary>;
 }
 

@@ -2,8 +2,7 @@ use crate::crs::Crs;
 
 /// The geometry of one record of a vector layer.
 ///
-/// A vertex is `[x, y, z]`; a `z` of NaN says that the vertex has no height. Measures (M) are not
-/// kept.
+/// A vertex is `[x, y, z]`, with a `z` of NaN if it has no height. Measures (M) are dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A record without geometry.
@@ -12,8 +11,8 @@ pub enum Shape {
     Points(Vec<[f64; 3]>),
     /// The parts of a polyline.
     Lines(Vec<Vec<[f64; 3]>>),
-    /// The rings of a polygon, each with its first vertex repeated at the end, outer rings
-    /// clockwise as in a shapefile (readers do not repair the order).
+    /// The rings of a polygon, each with its first vertex repeated at the end. Outer rings are
+    /// clockwise as in a shapefile; readers do not repair the direction.
     Polygon(Vec<Vec<[f64; 3]>>),
     /// The triangles of a multipatch.
     Triangles(Vec<[[f64; 3]; 3]>),
@@ -35,7 +34,7 @@ pub enum ShapeKind {
 }
 
 impl Shape {
-    /// The kind of geometry.
+    /// Returns the kind of the geometry.
     pub fn kind(&self) -> ShapeKind {
         match self {
             Shape::Null => ShapeKind::Null,
@@ -46,7 +45,7 @@ impl Shape {
         }
     }
 
-    /// Every vertex, in order.
+    /// Returns all vertices, in order.
     pub fn vertices(&self) -> Box<dyn Iterator<Item = &[f64; 3]> + '_> {
         match self {
             Shape::Null => Box::new(std::iter::empty()),
@@ -56,7 +55,7 @@ impl Shape {
         }
     }
 
-    /// Gives every vertex this height.
+    /// Sets the height of every vertex.
     pub fn set_height(&mut self, z: f64) {
         match self {
             Shape::Null => {}
@@ -72,18 +71,18 @@ impl Shape {
 pub struct Layer {
     /// "shapefile PolyLineZ"
     pub format: String,
-    /// In the order of the file; null shapes included.
+    /// The shapes in the order of the file, null shapes included.
     pub shapes: Vec<Shape>,
     /// Coordinate system, if known.
     pub crs: Option<Crs>,
-    /// Names of the attributes.
+    /// The names of the attributes.
     pub fields: Vec<String>,
-    /// What a user should be told.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl Layer {
-    /// The parts of all lines and the rings of all polygons.
+    /// Returns the parts of all lines and the rings of all polygons.
     pub fn lines(&self) -> impl Iterator<Item = &[[f64; 3]]> + '_ {
         self.shapes.iter().flat_map(|shape| match shape {
             Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter().map(Vec::as_slice),

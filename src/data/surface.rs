@@ -2,40 +2,41 @@ use std::ops::Range;
 
 use crate::crs::Crs;
 
-/// What an edge of a surface is, beyond a side of its triangles.
+/// The role of an edge in a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 #[non_exhaustive]
 pub enum EdgeKind {
-    /// An edge within the surface, with no line along it.
+    /// Inside the surface, with no line along it.
     #[default]
     Plain,
     /// Part of a breakline (or of another constraint of the triangulation).
     Breakline,
     /// Part of a line that the surface was cut along: a boundary or bounds.
     Clip,
-    /// An edge at the rim of the surface, with no line along it.
+    /// At the rim of the surface, with no line along it.
     Rim,
 }
 
-/// A face of a surface, with what there is to know of it.
+/// A face of a surface, with its corners and the kinds of its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Face {
-    /// Its number.
+    /// The number of the face.
     pub number: u32,
-    /// Its corners, counter-clockwise.
+    /// The corners, counter-clockwise.
     pub corners: [u32; 3],
-    /// What the edge opposite each corner is.
+    /// The kind of the edge opposite each corner.
     pub edges: [EdgeKind; 3],
 }
 
 impl EdgeKind {
-    /// Whether it lies on a breakline or a clip line.
+    /// Returns true for an edge on a breakline or a clip line.
     pub fn is_constrained(self) -> bool {
         matches!(self, EdgeKind::Breakline | EdgeKind::Clip)
     }
 }
 
-/// A surface of triangles, in plan without overlaps: a TIN, a mesh from a file, the cells of a grid.
+/// A surface of triangles that do not overlap in plan: a TIN, a mesh from a file, the cells of a
+/// grid.
 ///
 /// Vertices and faces are numbered from 0; some numbers may be unused. Corners are
 /// counter-clockwise in plan, and neighbor `i` of a face lies across the edge opposite corner `i`.
@@ -43,54 +44,60 @@ pub trait Surface: Sync {
     /// One more than the largest vertex number.
     fn vertex_count(&self) -> usize;
 
-    /// Where a vertex is.
+    /// The coordinates of a vertex.
     fn position(&self, vertex: u32) -> [f64; 3];
 
     /// One more than the largest face number.
     fn face_count(&self) -> usize;
 
-    /// The corners of a face, counter-clockwise; `None` where the number is unused or the face is
-    /// not part of the surface.
+    /// The corners of a face, counter-clockwise; `None` if the number is unused or the face is not
+    /// part of the surface.
     fn face(&self, face: u32) -> Option<[u32; 3]>;
 
-    /// The face across the edge opposite corner `i`; `None` at the edge of the surface.
+    /// The face across the edge opposite corner `i`; `None` at the rim of the surface.
     fn neighbor(&self, face: u32, i: usize) -> Option<u32>;
 
-    /// What the edge opposite corner `i` is; the same seen from both of its faces. Where a clip line runs along a
-    /// breakline, the edge is a [`Breakline`](EdgeKind::Breakline).
+    /// The kind of the edge opposite corner `i`; both faces of an edge return the same.
+    ///
+    /// Where a clip line runs along a breakline, the edge is a [`Breakline`](EdgeKind::Breakline).
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind;
 
-    /// Whether there may be edges on breaklines or clip lines; if not, none has to be looked at for that.
+    /// Returns false if no edge is on a breakline or a clip line, so that callers can skip a
+    /// search.
     fn has_lines(&self) -> bool {
         true
     }
 
-    /// Whether the edge opposite corner `i` lies on a breakline or a clip line.
+    /// Returns true if the edge opposite corner `i` lies on a breakline or a clip line.
     fn is_constrained(&self, face: u32, i: usize) -> bool {
         self.edge_kind(face, i).is_constrained()
     }
 
-    /// Whether the face is a piece of a triangle that was cut. The Delaunay law holds between whole triangles only.
+    /// Returns true if the face is a fragment of a triangle that was cut.
+    ///
+    /// The Delaunay law holds between whole triangles only.
     fn is_fragment(&self, _face: u32) -> bool {
         false
     }
 
-    /// Coordinate system, if known.
+    /// The coordinate system, if known.
     fn crs(&self) -> Option<&Crs>;
 
-    /// Where the corners of a face are; `None` where there is none.
+    /// The coordinates of the corners of a face; `None` if there is no such [face](Self::face).
     fn triangle(&self, face: u32) -> Option<[[f64; 3]; 3]> {
         Some(self.face(face)?.map(|v| self.position(v)))
     }
 
-    /// Appends the faces with these numbers, in order, each with its corners, unused ones left out.
+    /// Appends the faces in a range of numbers, in order, each with its corners; unused numbers are
+    /// skipped.
     ///
-    /// `PERF:` this and [`faces_in`](Self::faces_in) are compiled for each kind of surface: one virtual call for many faces.
+    /// `PERF:` this and [`faces_in`](Self::faces_in) are compiled for each kind of surface, so that
+    /// one virtual call covers many faces.
     fn corners_in(&self, numbers: Range<u32>, faces: &mut Vec<(u32, [u32; 3])>) {
         faces.extend(numbers.filter_map(|face| Some((face, self.face(face)?))));
     }
 
-    /// Appends the faces with these numbers, in order, unused ones left out.
+    /// Appends the faces in a range of numbers, in order; unused numbers are skipped.
     fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
         faces.extend(numbers.filter_map(|number| {
             let corners = self.face(number)?;
@@ -98,13 +105,15 @@ pub trait Surface: Sync {
         }));
     }
 
-    /// Appends the faces with these numbers, in order, that are wanted for their lowest and highest corner, each with
-    /// the heights of its corners.
+    /// Appends the faces in a range of numbers whose heights are wanted, in order, each with the
+    /// heights of its corners.
     ///
-    /// `is_wanted` may be asked for several faces at once, with the lowest and the highest corner of them all, so it
-    /// must hold of every range that holds a wanted one.
+    /// `is_wanted` receives the lowest and the highest height of a face. It may also be called once
+    /// for several faces, with the lowest and the highest height of all of them. So it must return
+    /// true for every range that contains a wanted one.
     ///
-    /// `PERF:` a raster asks once for the four faces between four cells: most of them are skipped at once.
+    /// `PERF:` a raster calls it once for the four faces between four cells, and skips most of them
+    /// together.
     fn heights_in(&self, numbers: Range<u32>, is_wanted: &dyn Fn(f64, f64) -> bool, faces: &mut Vec<(u32, [f64; 3])>) {
         faces.extend(numbers.filter_map(|number| {
             let [a, b, c] = self.face(number)?.map(|v| self.position(v)[2]);
@@ -113,12 +122,13 @@ pub trait Surface: Sync {
     }
 }
 
-/// Faces that are asked for at a time: they stay in a core's cache.
+/// The number of faces fetched at a time: few enough to stay in a core's cache.
 const BATCH: u32 = 1 << 11;
 
 /// All faces of a surface with their corners, in order of their numbers.
 ///
-/// `PERF:` by `for_each` and the like, a loop over each batch; `next` asks each time whether the batch is over.
+/// `PERF:` `for_each` and the like loop over each batch; `next` checks each time whether the batch
+/// is exhausted.
 pub(crate) fn corners<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
     batches(surface, S::corners_in)
 }

@@ -1,41 +1,41 @@
 use super::Surface;
 use crate::crs::Crs;
 
-/// Triangles as a file lists them, whether they are a surface or not.
+/// Triangles as a file lists them; they need not form a surface.
 #[derive(Debug, Clone, Default)]
 pub struct Triangles {
-    /// Places; not all need to be used.
+    /// The coordinates of the vertices; some may be unused.
     pub vertices: Vec<[f64; 3]>,
-    /// Corners, as positions among the vertices.
+    /// The corners of each face, as indices of vertices.
     pub faces: Vec<[u32; 3]>,
     /// Edges that are breaklines or other constraints.
     pub constrained_edges: Vec<[u32; 2]>,
     /// Edges along which the surface was cut.
     pub clip_edges: Vec<[u32; 2]>,
-    /// Positions of the faces that are pieces of triangles that were cut, in ascending order.
+    /// The indices of the faces that are fragments of triangles that were cut, in ascending order.
     pub fragments: Vec<u32>,
-    /// The face opposite each corner, where the file says so.
+    /// The face opposite each corner of each face, if the file states neighbors.
     pub neighbors: Option<Vec<[Option<u32>; 3]>>,
-    /// Coordinate system, if known.
+    /// The coordinate system, if known.
     pub crs: Option<Crs>,
 }
 
-/// Why triangles are no surface, found while linking them ([`Mesh::link`](super::Mesh::link)). Numbers count
+/// Why triangles do not form a surface, found by [`Mesh::link`](super::Mesh::link). Numbers count
 /// from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinkFlaw {
-    /// Two faces run the same way along an edge: they overlap, or one is turned around.
+    /// Two faces pass an edge in the same direction: they overlap, or one of them is reversed.
     Folded {
         /// The faces.
         faces: [u32; 2],
         /// The vertices of the edge.
         edge: [u32; 2],
     },
-    /// A vertex has a coordinate that is not finite, and no face has it as a corner.
+    /// A vertex with a coordinate that is not finite, and that is not a corner of any face.
     StrayVertex(u32),
-    /// A constraint between these vertices is no edge of a face.
+    /// A constrained edge between these vertices that is not an edge of any face.
     NoEdge([u32; 2]),
-    /// The file names another neighbor than the face that has the same edge.
+    /// The file states a neighbor other than the face that shares the edge.
     Neighbor {
         /// The face.
         face: u32,
@@ -49,7 +49,9 @@ pub enum LinkFlaw {
 }
 
 impl LinkFlaw {
-    /// The vertices at which it shows: one, or the ends of an edge. Those of a constraint that is none may not exist.
+    /// Returns the vertices of the flaw: one, or the ends of an edge.
+    ///
+    /// The ends of a constrained edge that is not an edge of any face may not exist.
     pub fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         match *self {
             LinkFlaw::Folded { edge, .. } | LinkFlaw::NoEdge(edge) => edge.to_vec(),

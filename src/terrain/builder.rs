@@ -14,10 +14,11 @@ use super::tin::Count;
 use super::window::uncertain;
 use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin, Window};
 
-/// Collects points and lines and makes a [`Tin`] of them.
+/// Builds a [`Tin`] from points and breaklines.
 ///
-/// The result depends on the set of points and lines only, not on the order in which they are added
-/// (except under [`DuplicateRule::First`] and [`Last`](DuplicateRule::Last), for duplicates and crossings).
+/// The result depends on the set of points and lines only, not on the order in which they are
+/// added. The exceptions are [`DuplicateRule::First`] and [`Last`](DuplicateRule::Last), for
+/// duplicates and crossings.
 ///
 /// ```
 /// use breakline::data::Surface;
@@ -33,54 +34,62 @@ use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin, Window};
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct TinBuilder {
-    /// Which height stands where several points share one place.
+    /// Which height is used where several points share a site.
     pub duplicates: DuplicateRule,
-    /// Whether breaklines may cross between their vertices.
+    /// What happens when breaklines cross between their vertices.
     pub on_crossing: OnCrossing,
-    /// Which height stands where they do. (At a vertex that several were given by, `duplicates` holds.)
+    /// Which height a vertex gets where breaklines cross between their vertices.
+    ///
+    /// A vertex that several breaklines were given with gets its height by
+    /// [`duplicates`](Self::duplicates).
     pub crossing_heights: CrossingRule,
-    /// Heights that differ by no more than this, in their units, are not worth a word.
+    /// The largest difference of heights at a crossing that is not reported, in units of height.
     pub crossing_tolerance: f64,
-    /// Faces that can be reached from outside over unconstrained edges longer than this (in plan, in
-    /// the units of the data) are left out; `None` keeps the whole convex hull.
+    /// The longest edge (in plan, in the units of the data) at the rim of the surface.
+    ///
+    /// Faces that can be reached from outside over longer unconstrained edges are left out. `None`
+    /// keeps the whole convex hull.
     pub max_edge: Option<f64>,
     /// Clips the surface to this box in plan.
     pub bounds: Option<Bounds>,
-    /// What was read, if the points that are added are some of many, read for the sake of `bounds`:
-    /// [`TinReport::uncertain`] says then whether these are enough.
+    /// What was read, if not all points are added but those needed for [`bounds`](Self::bounds).
+    ///
+    /// [`TinReport::uncertain`] then says whether they suffice.
     pub window: Option<Window>,
-    /// Coordinate system of everything that is added.
+    /// The coordinate system of all points and lines.
     pub crs: Option<Crs>,
     points: Vec<[f64; 3]>,
-    /// The breaklines, one after the other, and where each ends.
+    /// The vertices of all breaklines, one after the other.
     line_points: Vec<[f64; 3]>,
+    /// For each breakline, where its vertices end.
     line_ends: Vec<usize>,
-    /// Clip polygons, as rings in plan.
+    /// The polygons to clip to, as rings in plan.
     boundaries: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
-/// What a [`TinBuilder`] took and made.
+/// Counts of what a [`TinBuilder`] was given and what it built.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TinReport {
     /// Points added.
     pub points: usize,
-    /// Points that share a place with another point and were merged into it.
+    /// Points merged into another point at the same site.
     pub duplicates: usize,
-    /// Points that gave way to a breakline's vertex at the same place.
+    /// Points replaced by a breakline's vertex at the same site.
     pub points_on_breaklines: usize,
-    /// Breaklines added (parts and rings count one each).
+    /// Breaklines added; each part and each ring counts as one.
     pub breaklines: usize,
-    /// Distinct places among the vertices of the breaklines.
+    /// Distinct sites of the vertices of the breaklines.
     pub breakline_vertices: usize,
     /// Edges of the surface that are breaklines.
     pub constrained_edges: usize,
     /// Edges of the surface along the boundary or the bounds, except those that are breaklines.
     pub clip_edges: usize,
-    /// Vertices added where breaklines cross between their own.
+    /// Vertices added where breaklines cross between their vertices.
     pub crossings: usize,
-    /// How these were rounded; `None` if no breaklines cross.
+    /// How the crossings were rounded; `None` if no breaklines cross.
     pub rounding: Option<Rounding>,
-    /// Where breaklines meet with heights that differ by more than the tolerance, from west to east; within the bounds.
+    /// The sites within the bounds at which breaklines meet with heights that differ by more than
+    /// the tolerance, from west to east.
     pub crossing_heights: Vec<CrossingHeights>,
     /// Vertices of the surface.
     pub vertices: usize,
@@ -90,22 +99,22 @@ pub struct TinReport {
     pub extent: Bounds,
     /// Triangles left out by `max_edge`.
     pub faces_beyond_max_edge: usize,
-    /// Triangles within the bounds that may be others once all points are read; see [`TinBuilder::window`]. If there
-    /// are none, the surface is that of all points, in every triangle and every height.
+    /// Triangles within the bounds that points outside of the [window](TinBuilder::window) may
+    /// change. If there are none, the surface is that of all points, in every triangle and height.
     pub uncertain: usize,
-    /// Vertices that are not part of the surface since all of their triangles were left out by `max_edge`.
+    /// Vertices left out of the surface because `max_edge` left out all of their triangles.
     pub vertices_beyond_max_edge: usize,
     /// Triangles left out by the boundary or the bounds.
     pub faces_clipped: usize,
-    /// Vertices that are not part of the surface since all that was left of their triangles was clipped.
+    /// Vertices left out of the surface because clipping left out all of their remaining triangles.
     pub vertices_clipped: usize,
-    /// Vertices that were added where the boundary or the bounds cut triangles.
+    /// Vertices added where the boundary or the bounds cut triangles.
     pub vertices_cut: usize,
-    /// Triangles that the boundary or the bounds cut: what is left of them is part of the surface in pieces.
+    /// Triangles cut by the boundary or the bounds; the surface contains fragments of them.
     pub faces_cut: usize,
 }
 
-/// Zero has one sign only: places are compared bit by bit when sorted, and of two zeros neither is the lower.
+/// Replaces -0 by 0: sites are compared bit by bit when sorted, and neither zero is the lower one.
 fn positive_zero([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x + 0.0, y + 0.0, z + 0.0]
 }
@@ -121,7 +130,7 @@ impl TinBuilder {
         self.points.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| positive_zero([x, y, z])));
     }
 
-    /// Adds points without a copy of them, where they are the first.
+    /// Adds points from a vector; the first vector is taken over without a copy.
     pub fn add_owned_points(&mut self, mut points: Vec<[f64; 3]>) {
         points.iter_mut().for_each(|point| *point = positive_zero(*point));
         if self.points.is_empty() {
@@ -131,42 +140,49 @@ impl TinBuilder {
         }
     }
 
-    /// Makes room for that many more points, where the number is known.
+    /// Reserves memory for exactly that many more points.
     pub fn reserve(&mut self, points: usize) {
         self.points.reserve_exact(points);
     }
 
-    /// Adds a breakline: its vertices and the straight pieces between them hold in the surface. A
-    /// breakline's height wins over points at the same place.
+    /// Adds a breakline: the surface contains its vertices and the segments between them.
+    ///
+    /// At a site that a point and a breakline share, the breakline's height is used.
     pub fn add_breakline(&mut self, line: &[[f64; 3]]) {
         self.line_points.extend(line.iter().copied().map(positive_zero));
         self.line_ends.push(self.line_points.len());
     }
 
-    /// Clips the surface to a polygon, given as its rings (by the even-odd rule: a ring within a ring is
-    /// a hole). The finished surface is cut along them, and no height changes. May be called several times: what is
-    /// inside of any polygon stays.
+    /// Clips the surface to a polygon, given as its rings.
+    ///
+    /// The even-odd rule applies: a ring within a ring is a hole. The finished surface is cut along
+    /// the rings, so no height changes. With several polygons, the surface is kept inside any of
+    /// them.
     pub fn add_boundary(&mut self, rings: &[Vec<[f64; 2]>]) {
         self.boundaries.push(rings.to_vec());
     }
 
-    /// Makes the TIN.
+    /// Builds the TIN.
     ///
     /// # Errors
-    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit numbers can count,
-    /// nothing spans an area, or breaklines cross or differ in height where that is refused.
+    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit
+    /// numbers can count, the input does not span an area, or breaklines cross or differ in height
+    /// where the rules refuse that.
     ///
     /// # Complexity
-    /// O(n log n) in practice; about 80 bytes a point beside the input.
+    /// O(n log n) in practice; about 80 bytes per point in addition to the input.
     pub fn build(self) -> Result<Tin> {
         self.build_named(&|line| format!("breakline {line}"), &AtomicBool::new(false))
     }
 
-    /// Like [`build`](TinBuilder::build), but ends early once `cancel` is set, and errors call a breakline what `name`
-    /// says of its position among those that were added.
+    /// Like [`build`](TinBuilder::build), but can be canceled, and with names for breaklines.
+    ///
+    /// Building stops once `cancel` is set. `name` returns what errors call a breakline, given its
+    /// position among those that were added.
     ///
     /// # Errors
-    /// Those of [`build`](TinBuilder::build), and one of the kind [`Canceled`](crate::error::Kind::Canceled).
+    /// Those of [`build`](TinBuilder::build), and one of kind
+    /// [`Canceled`](crate::error::Kind::Canceled).
     pub fn build_named(mut self, name: &dyn Fn(usize) -> String, cancel: &AtomicBool) -> Result<Tin> {
         let go_on = || if cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) };
         let mut report =
@@ -181,7 +197,7 @@ impl TinBuilder {
             return Err(refused(self.line_points[at]).at(name(line)));
         }
 
-        // One vertex for each place, in spatial order.
+        // One vertex per site, in spatial order.
         let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
         go_on()?;
         let lines = lines_of(&line_vertices, &self.line_ends);
@@ -217,7 +233,7 @@ impl TinBuilder {
             report.faces_beyond_max_edge = tin.peel(limit);
         }
         let clip = Clip { polygons: std::mem::take(&mut self.boundaries), bounds: self.bounds };
-        // Counted only where it cannot be told from what comes out.
+        // Counted only if it does not follow from the final counts.
         let mut left = None;
         if !clip.is_everything() {
             left = Some(if report.faces_beyond_max_edge > 0 { tin.count().old_vertices } else { all });
@@ -238,14 +254,14 @@ impl TinBuilder {
         } else if has_lines {
             (tin.triangulation.constrained_edges().count(), 0)
         } else {
-            (0, 0) // however many edges there are to look at
+            (0, 0) // without a loop over all edges
         };
         (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
         tin.report = report;
         Ok(tin)
     }
 
-    /// Merges what shares a place, by the rules. Takes the points.
+    /// Merges the points and vertices that share a site, by the rules. Leaves `self.points` empty.
     fn merge(&mut self, report: &mut TinReport) -> Result<Sites> {
         let mut all = std::mem::take(&mut self.points);
         let lines_from = all.len();
@@ -264,10 +280,10 @@ impl TinBuilder {
             if let &[only] = group
                 && (only as usize) < lines_from
             {
-                vertices.push(all[only as usize]); // nothing to choose: nearly all
+                vertices.push(all[only as usize]); // the common case: nothing to choose
                 continue;
             }
-            // Equal places are in the order of the input: points first, then lines.
+            // Within a site, indices are in the order of the input: points first, then lines.
             let first_of_lines = group.partition_point(|&i| (i as usize) < lines_from);
             let (points, lines) = group.split_at(first_of_lines);
             let standing = if lines.is_empty() {

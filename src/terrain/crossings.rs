@@ -1,4 +1,4 @@
-//! Heights where breaklines meet: each has one of its own there.
+//! Heights at the sites where breaklines meet, each with a height of its own.
 
 use std::cmp::Ordering;
 use std::collections::HashSet;
@@ -10,13 +10,14 @@ use crate::triangulation::{ConstrainedDelaunay, LineId};
 
 use super::DuplicateRule;
 
-/// Which height stands where breaklines cross between their vertices, each with one of its own.
+/// Which height a vertex gets where breaklines with different heights cross between their vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrossingRule {
-    /// One of them, or their mean; first and last mean the order in which the lines were added. The default is
-    /// the lowest, which does not depend on any order: a ditch under a road's edge stays a ditch.
+    /// One of the heights, or their mean; first and last refer to the order in which the lines were
+    /// added. The default is the lowest, which does not depend on the order: a ditch under a road's
+    /// edge stays a ditch.
     Choose(DuplicateRule),
-    /// None: heights that differ by more than the tolerance are an error.
+    /// No height: a difference larger than the tolerance is an error.
     Refuse,
 }
 
@@ -26,29 +27,33 @@ impl Default for CrossingRule {
     }
 }
 
-/// A place where breaklines with different heights meet: they cross, or one passes or shares a vertex of the other.
+/// A site where breaklines with different heights meet.
+///
+/// They cross there, or one of them passes through or shares a vertex of the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrossingHeights {
-    /// In plan.
+    /// The site, in plan.
     pub site: [f64; 2],
-    /// Each line, by its position among those that were added, and its own height there; in order of the lines. A line
-    /// that comes there twice, with two heights, is there twice.
+    /// Each line with its own height, in order of the lines.
+    ///
+    /// A line is named by its position among those that were added. A line that passes the site
+    /// twice with two heights is listed twice.
     pub heights: Vec<(usize, f64)>,
-    /// The height that stands.
+    /// The height of the vertex in the surface.
     pub chosen: f64,
-    /// Whether a vertex was added there, which takes its height by the [`CrossingRule`]. One that was given keeps the
-    /// height that it has by the [`DuplicateRule`].
+    /// True if the vertex was added, and has its height by the [`CrossingRule`]; a vertex that was
+    /// given keeps its height by the [`DuplicateRule`].
     pub is_added: bool,
 }
 
 impl CrossingHeights {
-    /// By how much the heights differ.
+    /// Returns the difference between the highest and the lowest height.
     pub fn difference(&self) -> f64 {
         let [(_, lowest), (_, highest)] = self.extremes();
         highest - lowest
     }
 
-    /// The line with the lowest height, and that with the highest; of equal ones the first.
+    /// Returns the lines with the lowest and with the highest height; among equals, the first.
     pub fn extremes(&self) -> [(usize, f64); 2] {
         let first = self.heights.first().copied().unwrap_or_default();
         self.heights.iter().fold([first; 2], |[low, high], &(line, z)| {
@@ -65,10 +70,10 @@ pub(super) struct Pass {
     pub(super) height: f64,
 }
 
-/// Gives every vertex that was added where lines cross its height, by the rule. Returns, in lexicographic order of
-/// their places, those at which the heights differ by more than the tolerance.
+/// Sets the heights of the vertices that were added at crossings, by the rule. Returns the sites at
+/// which heights differ by more than the tolerance, in lexicographic order.
 ///
-/// `disputed` are the lines at vertices that they were given by with different heights.
+/// `disputed` contains the lines at vertices that were given with different heights.
 pub(super) fn choose_heights(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
     disputed: Vec<Pass>,
@@ -98,7 +103,8 @@ pub(super) fn choose_heights(
     reported
 }
 
-/// All lines at the vertices that lines pass between their own and at disputed ones, by vertex and line.
+/// The lines at each disputed vertex and at each vertex that a line passes between its own
+/// vertices, sorted by vertex and line.
 fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> Vec<Pass> {
     let mut passes = Vec::new();
     for line in triangulation.lines() {
@@ -110,7 +116,8 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> 
             }));
         }
     }
-    // Where one passes a vertex that others were given by, without dispute among them, these have its height.
+    // A vertex that is passed may be one that other lines were given with. If these agree on its
+    // height, they are not disputed, and have to be added.
     let mut passed: HashSet<VertexId> =
         passes.iter().map(|pass| pass.vertex).filter(|&vertex| !triangulation.is_added(vertex)).collect();
     for pass in &disputed {
@@ -123,7 +130,7 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> 
         }
     }
     passes.extend(disputed);
-    // A line that passes twice keeps both of its heights; equal ones are one.
+    // A line that passes twice with different heights is kept twice.
     passes.sort_by(|p, q| p.vertex.cmp(&q.vertex).then(p.line.cmp(&q.line)).then(p.height.total_cmp(&q.height)));
     passes.dedup();
     passes
@@ -133,7 +140,8 @@ fn by_site(p: &CrossingHeights, q: &CrossingHeights) -> Ordering {
     p.site[0].total_cmp(&q.site[0]).then(p.site[1].total_cmp(&q.site[1]))
 }
 
-/// The error for breaklines that differ, if there are any; `name` tells of a line what the user calls it.
+/// Returns an error that names the first of the crossings, if there is one; `name` returns what the
+/// user calls a line.
 pub(super) fn refuse(crossings: &[CrossingHeights], tolerance: f64, name: &dyn Fn(usize) -> String) -> Result<()> {
     let Some(first) = crossings.first() else { return Ok(()) };
     let [x, y] = first.site;
@@ -159,7 +167,8 @@ mod tests {
 
     type Line<'a> = &'a [[f64; 3]];
 
-    /// Two lines that cross at the origin, at heights 1 and 4, and one that crosses them there at 2.5.
+    /// Two lines that cross at the origin, at heights 1 and 4, and one that crosses them there at
+    /// 2.5.
     const STAR: [Line; 3] = [
         &[[-4.0, 0.0, 0.0], [4.0, 0.0, 2.0]],
         &[[0.0, -4.0, 4.0], [0.0, 4.0, 4.0]],

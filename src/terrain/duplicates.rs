@@ -1,26 +1,27 @@
-/// Which height stands where several points share one place in plan.
+/// Which height is used where several points share a site in plan.
 ///
-/// Under the first three the result does not depend on the order of the input.
+/// With [`Lowest`](Self::Lowest), [`Highest`](Self::Highest) and [`Mean`](Self::Mean) the result
+/// does not depend on the order of the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DuplicateRule {
-    /// The lowest: what is left of vegetation and noise lies above the ground.
+    /// The lowest: remaining vegetation and noise lie above the ground.
     #[default]
     Lowest,
     /// The highest.
     Highest,
-    /// The mean, summed from the lowest up.
+    /// The mean; heights are summed in ascending order.
     Mean,
-    /// The one that came first.
+    /// The first in the input.
     First,
-    /// The one that came last.
+    /// The last in the input.
     Last,
 }
 
 impl DuplicateRule {
-    /// The height that stands, of heights in order of appearance. Sorts them where that helps.
+    /// Returns the height to use, given the heights in the order of the input. May reorder them.
     ///
     /// # Panics
-    /// If there is none.
+    /// If `heights` is empty.
     pub(super) fn choose(self, heights: &mut [f64]) -> f64 {
         match self {
             DuplicateRule::First => heights[0],

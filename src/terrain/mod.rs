@@ -1,32 +1,34 @@
-//! What a surveyor says: TIN, breakline, contour, raster, hillshade.
+//! Terrain models in a surveyor's terms: TIN, breakline, contour, raster, hillshade.
 //!
 //! | I have | I want | |
 //! |---|---|---|
 //! | points of many classes | the ground | [`Selection`] |
-//! | points and breaklines | a surface | [`TinBuilder`], which makes a [`Tin`] |
-//! | a TIN | the height at a place | [`Tin::elevation`] |
+//! | points and breaklines | a surface | [`TinBuilder`], which builds a [`Tin`] |
+//! | a TIN | the height at a position | [`Tin::elevation`] |
 //! | any surface | a DEM | [`Dem`] |
 //! | any surface | contours | [`contours()`], at [`Levels`] |
-//! | a DEM | contours | [`GridSurface`], which is a surface |
+//! | a DEM | contours | [`GridSurface`], a surface over its cells |
 //! | a DEM | shaded relief | [`Hillshade`] |
-//! | any surface | to know that it is sound | [`surface_flaws`], [`shape_flaws`]; of a TIN, [`Tin::check`] |
+//! | any surface | a check that it is sound | [`surface_flaws`], [`shape_flaws`]; for a TIN also [`Tin::check`] |
 //!
-//! A surface is whatever implements [`Surface`](crate::data::Surface): a [`Tin`], a
-//! [`Mesh`](crate::data::Mesh) from a file, a [`GridSurface`]. What comes out is a source (of raster blocks, of
-//! lines) that a writer in [`io`](crate::io) takes, so that a result need not fit into memory.
+//! A surface is anything that implements [`Surface`](crate::data::Surface): a [`Tin`], a
+//! [`Mesh`](crate::data::Mesh) from a file, a [`GridSurface`]. Results are sources (of raster
+//! blocks, of lines), which the writers in [`io`](crate::io) accept. So a result need not fit into
+//! memory.
 //!
 //! # Conventions
 //!
-//! - Everything is seen in plan: x to the east, y to the north, one height for each place. Walls and
-//!   overhangs cannot be held.
+//! - Surfaces are seen in plan: x to the east, y to the north, one height at each position.
+//!   Vertical faces and overhangs cannot be represented.
 //! - Lengths and heights are in the units of the data. Heights are linear on each triangle.
-//! - Results are functions of the set of points and lines: order and number of threads do not show.
-//! - All questions take `&self`, and may be asked from many threads at once.
+//! - Results depend on the set of points and lines alone, not on their order or on the number of
+//!   threads.
+//! - All queries take `&self`, and may be called from many threads at once.
 //!
 //! # What it does not do
 //!
-//! Coordinates are not reprojected, ground is not told from vegetation (classes are taken as given), and
-//! nothing is smoothed or thinned out.
+//! Coordinates are not reprojected, ground is not separated from vegetation (classes are taken as
+//! given), and nothing is smoothed or thinned out.
 
 mod builder;
 mod clip;

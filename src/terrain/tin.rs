@@ -10,21 +10,23 @@ use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 use super::TinReport;
 use super::cut::Cut;
 
-/// A surface of triangles over points and breaklines: a constrained Delaunay triangulation in plan, and
-/// which of its triangles are part of the surface.
+/// A surface of triangles over points and breaklines.
+///
+/// In plan it is a constrained Delaunay triangulation, not all of whose triangles need to be part
+/// of the surface: a longest edge, a boundary or bounds leave some out.
 #[derive(Debug)]
 pub struct Tin {
     pub(super) triangulation: ConstrainedDelaunay<Terrain>,
-    /// For each cell number, whether it is part of the surface as a whole.
+    /// For each cell number: true if the whole cell is part of the surface.
     pub(super) inside: Vec<bool>,
-    /// Pieces of triangles that are part of the surface, if it was cut.
+    /// The fragments of triangles that are part of the surface, if it was cut.
     pub(super) cut: Option<Cut>,
     pub(super) report: TinReport,
     crs: Option<Crs>,
 }
 
 impl Tin {
-    /// With all finite faces.
+    /// A surface of all finite faces of a triangulation.
     pub(super) fn new(triangulation: ConstrainedDelaunay<Terrain>, crs: Option<Crs>) -> Self {
         let mut tin = Tin { triangulation, inside: Vec::new(), cut: None, report: TinReport::default(), crs };
         tin.include_all();
@@ -38,31 +40,37 @@ impl Tin {
         self.inside = (0..tds.cell_slots()).map(|index| is_face(CellId::new(index))).collect();
     }
 
-    /// What went in and what became of it.
+    /// Returns the counts of what was given and what was built.
     pub fn report(&self) -> &TinReport {
         &self.report
     }
 
-    /// The triangulation beneath, which goes on to the convex hull, and knows of no cut by a boundary or bounds.
+    /// Returns the underlying triangulation.
+    ///
+    /// It covers the whole convex hull, and is not cut by the boundary or the bounds.
     pub fn triangulation(&self) -> &ConstrainedDelaunay<Terrain> {
         &self.triangulation
     }
 
-    /// Checks the triangulation up to the level, with exact predicates; no flaw means that it is a
-    /// constrained Delaunay triangulation. The pieces of triangles that were cut are no part of it:
-    /// [`surface_flaws`](super::surface_flaws) checks them.
+    /// Returns the flaws of the triangulation up to a level, found with exact predicates.
+    ///
+    /// If there are none at [`Level::Law`], it is a constrained Delaunay triangulation. The
+    /// fragments of triangles that were cut are not part of it;
+    /// [`surface_flaws`](super::surface_flaws) checks these.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         self.triangulation.check(level)
     }
 
-    /// The height at a place in plan, linear on the triangle there; `None` outside of the surface, and where a coordinate is
-    /// not finite.
+    /// Returns the height at a position in plan, linear on the triangle there.
+    ///
+    /// `None` outside of the surface, or if a coordinate is not finite.
     ///
     /// # Complexity
     /// A walk through about as many triangles as lie in a row across the surface.
     pub fn elevation(&self, x: f64, y: f64) -> Option<f64> {
-        // Closer to zero than the arithmetic goes is zero; what is beyond its other end is beyond all vertices.
+        // Coordinates below the range of the arithmetic count as zero; those above are beyond all
+        // vertices.
         let [x, y] = [x, y].map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
         let location = self.triangulation.locate(&[x, y, 0.0], None);
         let in_whole = match location {
@@ -81,8 +89,8 @@ impl Tin {
         in_whole.or_else(|| self.cut.as_ref()?.elevation([x, y]))
     }
 
-    /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges longer
-    /// than `limit`. Returns their number.
+    /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges
+    /// longer than `limit`. Returns their number.
     pub(super) fn peel(&mut self, limit: f64) -> usize {
         let tds = self.triangulation.tds();
         let mut peeled = 0;
@@ -104,12 +112,12 @@ impl Tin {
         peeled
     }
 
-    /// The triangles that a cut looked at.
+    /// The triangles that the patch of a cut replaces.
     pub(super) fn replaced(&self) -> &[CellId] {
         self.cut.as_ref().map(Cut::replaced).unwrap_or_default()
     }
 
-    /// What the surface consists of.
+    /// Counts the vertices and faces of the surface.
     pub(super) fn count(&self) -> Count {
         let mut used = vec![false; self.vertex_count()];
         let mut faces = 0;
@@ -127,9 +135,9 @@ impl Tin {
         count
     }
 
-    /// What the edges opposite the corners of a face are.
+    /// The kinds of the edges opposite the corners of a face.
     ///
-    /// `PERF:` without a cut, no more than a look at each neighbor.
+    /// `PERF:` without a cut, this only looks at each neighbor.
     #[inline(always)]
     fn kinds(&self, face: u32) -> [EdgeKind; 3] {
         if self.cut.is_some() {
@@ -147,7 +155,7 @@ impl Tin {
         })
     }
 
-    /// How many edges of the surface are breaklines, and how many lie on clip lines.
+    /// The numbers of edges of the surface that are breaklines and that lie on clip lines.
     pub(super) fn count_lines(&self) -> (usize, usize) {
         let (mut breaklines, mut clips) = (0, 0);
         let has_lines = |face: &u32| {
@@ -156,7 +164,7 @@ impl Tin {
         for face in (0..self.face_count() as u32).filter(has_lines).filter(|&face| self.face(face).is_some()) {
             for (i, kind) in self.kinds(face).into_iter().enumerate() {
                 match kind {
-                    // From the face with the larger number, if there are two.
+                    // An edge with two faces is counted from the one with the larger number.
                     EdgeKind::Breakline if self.neighbor(face, i).is_none_or(|beside| beside < face) => {
                         breaklines += 1;
                     }
@@ -169,21 +177,23 @@ impl Tin {
     }
 }
 
-/// What a surface consists of.
+/// The vertices and faces of a surface, counted.
 pub(super) struct Count {
-    /// Vertices of the triangulation.
+    /// Vertices that belong to the triangulation.
     pub(super) old_vertices: usize,
-    /// These and those of the cut.
+    /// All vertices: those of the triangulation and those of the cut.
     pub(super) vertices: usize,
     pub(super) faces: usize,
     pub(super) extent: Bounds,
 }
 
-/// Where a triangle is thinner than this part of its longest side, rounding hides where across it a place lies: such
-/// are made where lines are led through crossings.
+/// The ratio of width to longest side below which a triangle is a sliver.
+///
+/// Rounding hides where across a sliver a position lies. Slivers arise where lines are bent through
+/// rounded crossings.
 const THINNEST: f64 = 1e-9;
 
-/// The height at `q` of the plane through three points. Exactly that of a corner at a corner.
+/// The height at `q` of the plane through three points; at a corner exactly its height.
 pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     let cross = |p: [f64; 3], r: [f64; 3]| (p[0] - q[0]) * (r[1] - q[1]) - (p[1] - q[1]) * (r[0] - q[0]);
     let (at_a, at_b, at_c) = (cross(b, c), cross(c, a), cross(a, b));
@@ -195,7 +205,7 @@ pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     a[2] + (at_b * (b[2] - a[2]) + at_c * (c[2] - a[2])) / area
 }
 
-/// The same of a triangle that is hardly more than a line: along its two shorter sides.
+/// The height at `q` on a sliver, interpolated along its two shorter sides.
 fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     let sides = [(a, b, c), (b, c, a), (c, a, b)];
     let length = |&(p, r, _): &([f64; 3], [f64; 3], [f64; 3])| square(p, r);
