@@ -94,8 +94,8 @@ pub(in super::super) fn is_empty<const N: usize, T: Embedded<N>>(
 }
 
 fn vertex_beyond<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) -> Result<VertexId, T::Error> {
-    let beside = t.complex().neighbor(cell, i)?;
-    t.complex().vertex(beside, t.complex().index_of_neighbor(beside, cell)?)
+    let neighbor = t.complex().neighbor(cell, i)?;
+    t.complex().vertex(neighbor, t.complex().index_of_neighbor(neighbor, cell)?)
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {

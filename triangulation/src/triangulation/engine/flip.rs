@@ -63,17 +63,17 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 continue;
             }
             let flippable = (0..3).find(|&i| {
-                let beside = self.tds.neighbor(cell, i);
-                if edges.is_constrained(self.tds.cell_data(cell), i) || self.tds.is_infinite(beside) {
+                let neighbor = self.tds.neighbor(cell, i);
+                if edges.is_constrained(self.tds.cell_data(cell), i) || self.tds.is_infinite(neighbor) {
                     return false;
                 }
-                let far = self.tds.vertex(beside, self.tds.index_of_neighbor(beside, cell));
+                let far = self.tds.vertex(neighbor, self.tds.index_of_neighbor(neighbor, cell));
                 in_sphere(&self.geometry, self.simplex(cell), self.point(far))
             });
             if let Some(i) = flippable {
-                let beside = self.tds.neighbor(cell, i);
+                let neighbor = self.tds.neighbor(cell, i);
                 self.exchange_diagonal(edges, cell, i);
-                to_legalize.extend([cell, beside]);
+                to_legalize.extend([cell, neighbor]);
             }
         }
     }
@@ -85,12 +85,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         if self.dimension() < 2 || i > 2 || !tds.is_used(cell) {
             return false;
         }
-        let beside = tds.neighbor(cell, i);
-        if tds.is_infinite(cell) || tds.is_infinite(beside) {
+        let neighbor = tds.neighbor(cell, i);
+        if tds.is_infinite(cell) || tds.is_infinite(neighbor) {
             return false;
         }
         let [a, b, c] = [i, ccw(i), cw(i)].map(|k| self.point(tds.vertex(cell, k)));
-        let d = self.point(tds.vertex(beside, tds.index_of_neighbor(beside, cell)));
+        let d = self.point(tds.vertex(neighbor, tds.index_of_neighbor(neighbor, cell)));
         [[a, b, d], [a, d, c]].into_iter().all(|turn| self.geometry.orientation(turn) == Sign::Positive)
     }
 
@@ -98,24 +98,24 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// around it, which must be convex.
     pub(in super::super) fn exchange_diagonal(&mut self, edges: impl Edges<C>, cell: CellId, i: usize) {
         let tds = &mut self.tds;
-        let beside = tds.neighbor(cell, i);
-        let j = tds.index_of_neighbor(beside, cell);
-        // cell = (p, q, r), beside = (s, r, q), the edge q r becomes p s.
+        let neighbor = tds.neighbor(cell, i);
+        let j = tds.index_of_neighbor(neighbor, cell);
+        // cell = (p, q, r), neighbor = (s, r, q), the edge q r becomes p s.
         let (p, q, r) = (tds.vertex(cell, i), tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
-        let s = tds.vertex(beside, j);
+        let s = tds.vertex(neighbor, j);
         let side = |tds: &Tds<3, V, C>, of: CellId, k: usize| {
             let outside = tds.neighbor(of, k);
             (outside, tds.index_of_neighbor(outside, of))
         };
         let pq = side(tds, cell, cw(i));
         let rp = side(tds, cell, ccw(i));
-        let sr = side(tds, beside, cw(j));
-        let qs = side(tds, beside, ccw(j));
+        let sr = side(tds, neighbor, cw(j));
+        let qs = side(tds, neighbor, ccw(j));
         tds.set_corners(cell, [p, q, s]);
-        tds.set_corners(beside, [p, s, r]);
-        tds.link(cell, 1, beside, 2);
+        tds.set_corners(neighbor, [p, s, r]);
+        tds.link(cell, 1, neighbor, 2);
         self.renew_edges(edges, cell, [(2, pq), (0, qs)]);
-        self.renew_edges(edges, beside, [(0, sr), (1, rp)]);
+        self.renew_edges(edges, neighbor, [(0, sr), (1, rp)]);
     }
 
     /// Resets a cell's payload and links some of its edges to neighbors, each given with the index
@@ -139,10 +139,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         &mut self,
         edges: impl Edges<C>,
         (cell, i): (CellId, usize),
-        (beside, j): (CellId, usize),
+        (neighbor, j): (CellId, usize),
     ) {
-        self.tds.link(cell, i, beside, j);
-        let is_constrained = edges.is_constrained(self.tds.cell_data(beside), j);
+        self.tds.link(cell, i, neighbor, j);
+        let is_constrained = edges.is_constrained(self.tds.cell_data(neighbor), j);
         let data = self.tds.cell_data_mut(cell);
         *data = edges.with_constraint(*data, i, is_constrained);
     }

@@ -99,7 +99,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     /// Returns a finite neighbor of a vertex, which still exists after the vertex has been removed.
-    pub(in super::super) fn beside(&self, vertex: VertexId) -> Option<VertexId> {
+    pub(in super::super) fn finite_neighbor(&self, vertex: VertexId) -> Option<VertexId> {
         let corners = self.tds.cell_vertices(self.tds.cell_of(vertex)?);
         corners.iter().copied().find(|&v| v != vertex && v != VertexId::INFINITE)
     }

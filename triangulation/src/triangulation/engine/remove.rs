@@ -145,8 +145,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             self.cut(edges, &mut ring, k, &cells);
         }
         // One of the two sides of the last edge is the last triangle.
-        let ((last, i), (beside, j)) = (ring.beyond[apex], ring.beyond[ring.next[apex]]);
-        self.renew_edge(edges, (last, i), (beside, j));
+        let ((last, i), (neighbor, j)) = (ring.beyond[apex], ring.beyond[ring.next[apex]]);
+        self.renew_edge(edges, (last, i), (neighbor, j));
         cells
     }
 

@@ -299,9 +299,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
             return Ok(vertex);
         }
-        let beside = self.inner.beside(vertex);
+        let neighbor = self.inner.finite_neighbor(vertex);
         self.remove(vertex)?;
-        let location = self.inner.locate(&p, beside.and_then(|v| self.tds().cell_of(v)));
+        let location = self.inner.locate(&p, neighbor.and_then(|v| self.tds().cell_of(v)));
         let split = self.inner.constraint_at(location);
         let moved =
             self.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i)).unwrap_or(vertex);
@@ -422,13 +422,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         (cell, i): (CellId, usize),
         is_constrained: bool,
     ) -> [CellId; 2] {
-        let beside = self.tds.neighbor(cell, i);
-        let j = self.tds.index_of_neighbor(beside, cell);
-        for (cell, i) in [(cell, i), (beside, j)] {
+        let neighbor = self.tds.neighbor(cell, i);
+        let j = self.tds.index_of_neighbor(neighbor, cell);
+        for (cell, i) in [(cell, i), (neighbor, j)] {
             let data = self.tds.cell_data_mut(cell);
             *data = data.with(i, is_constrained);
         }
-        [cell, beside]
+        [cell, neighbor]
     }
 
     /// Returns the ends of the constraint that a location lies on, between the ends.
@@ -458,8 +458,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     pub(in super::super) fn one_sided_constraints(&self) -> Vec<Flaw> {
         let edges = self.tds.cells().filter(|_| self.dimension() == 2).flat_map(|cell| (0..3).map(move |i| (cell, i)));
         let is_one_sided = |&(cell, i): &(CellId, usize)| {
-            let beside = self.tds.neighbor(cell, i);
-            self.is_constrained(cell, i) != self.is_constrained(beside, self.tds.index_of_neighbor(beside, cell))
+            let neighbor = self.tds.neighbor(cell, i);
+            self.is_constrained(cell, i) != self.is_constrained(neighbor, self.tds.index_of_neighbor(neighbor, cell))
         };
         edges.filter(is_one_sided).map(|(cell, i)| Flaw::OneSided(cell, i)).collect()
     }

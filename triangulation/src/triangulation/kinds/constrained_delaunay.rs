@@ -50,14 +50,14 @@ impl<C> ConstrainedEdges<C> {
     }
 
     /// Returns true for the mark of a triangle that is being replaced.
-    pub(in super::super) fn is_taken_out(&self) -> bool {
+    pub(in super::super) fn is_being_replaced(&self) -> bool {
         self.0 == u8::MAX
     }
 }
 
 impl<C: Default> ConstrainedEdges<C> {
     /// Returns the mark of a triangle that is being replaced.
-    pub(in super::super) fn taken_out() -> Self {
+    pub(in super::super) fn being_replaced() -> Self {
         ConstrainedEdges(u8::MAX, C::default())
     }
 }

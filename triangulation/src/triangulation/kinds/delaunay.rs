@@ -260,9 +260,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
             return Ok(vertex);
         }
-        let beside = self.inner.beside(vertex);
+        let neighbor = self.inner.finite_neighbor(vertex);
         self.remove(vertex)?;
-        let location = self.inner.locate(&p, beside.and_then(|v| self.tds().cell_of(v)));
+        let location = self.inner.locate(&p, neighbor.and_then(|v| self.tds().cell_of(v)));
         let takes = |t: &Triangulation<G, 3, V, C>, _, _, beyond| t.in_conflict(beyond, &p);
         let moved = self.inner.insert_again(p, location, takes, |data, _| *data);
         Ok(moved.unwrap_or(vertex))

@@ -248,8 +248,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
             Location::Vertex(vertex) if self.dimension() == 2 => tds.around(vertex).collect(),
             Location::Vertex(_) => tds.cells().collect(),
             Location::Cell { cell, touching } => {
-                let beside = (0..3).filter(|i| touching >> i & 1 == 1).map(|i| tds.neighbor(cell, i));
-                beside.chain([cell]).collect()
+                let neighbors = (0..3).filter(|i| touching >> i & 1 == 1).map(|i| tds.neighbor(cell, i));
+                neighbors.chain([cell]).collect()
             }
             _ => return None,
         };

@@ -55,7 +55,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// Expected time linear in the length of the chain.
     pub(in super::super) fn triangulate_long(&self, side: &Side, apexes: &mut Vec<u32>) -> Option<()> {
         let count = side.chain.len();
-        let (gone, neighbors) = out_in_random_order(count, |u, [p, n]| self.may_go(side, u, p, n))?;
+        let (gone, neighbors) = random_removal_order(count, |u, [p, n]| self.may_be_removed(side, u, p, n))?;
         let mut tree = Tree {
             triangulation: self,
             side,
@@ -72,7 +72,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
 
     /// Returns true if the angle at a vertex between two others, on the side of the segment, is
     /// less than a full turn.
-    fn may_go(&self, side: &Side, u: u32, p: u32, n: u32) -> bool {
+    fn may_be_removed(&self, side: &Side, u: u32, p: u32, n: u32) -> bool {
         let [v, first, last] = [u, p, n].map(|k| side.chain[k as usize]);
         let across = side.across[u as usize];
         // The edge across splits the angle. Both parts are less than half a turn if the neighbors
@@ -85,16 +85,19 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     }
 }
 
-/// Takes all positions but the ends out of a chain, in pseudo-random order. `may_go` decides
-/// whether a position may be taken out, given its neighbors. Returns the order, and for each
-/// position the neighbors that it had.
-fn out_in_random_order(count: usize, may_go: impl Fn(u32, [u32; 2]) -> bool) -> Option<(Vec<u32>, Vec<[u32; 2]>)> {
+/// Takes all positions but the ends out of a chain, in pseudo-random order. `may_be_removed`
+/// decides whether a position may be taken out, given its neighbors. Returns the order, and for
+/// each position the neighbors that it had.
+fn random_removal_order(
+    count: usize,
+    may_be_removed: impl Fn(u32, [u32; 2]) -> bool,
+) -> Option<(Vec<u32>, Vec<[u32; 2]>)> {
     let mut neighbors: Vec<[u32; 2]> = (0..count as u32).map(|u| [u.wrapping_sub(1), u + 1]).collect();
     let mut left: Vec<u32> = (1..count as u32 - 1).collect();
     let mut gone = Vec::with_capacity(left.len());
     let mut dice = Dice::default();
     while !left.is_empty() {
-        let is_good = |&at: &usize| left.len() == 1 || may_go(left[at], neighbors[left[at] as usize]);
+        let is_good = |&at: &usize| left.len() == 1 || may_be_removed(left[at], neighbors[left[at] as usize]);
         let mut tries = (0..16).map(|_| dice.below(left.len()));
         let at = tries.find(is_good).or_else(|| (0..left.len()).find(is_good))?;
         let u = left.swap_remove(at);

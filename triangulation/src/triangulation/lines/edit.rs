@@ -32,7 +32,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         let vertex = self.lines.insert_point(&mut self.inner, p, None);
         let is_new = self.vertex_count() > count;
         self.lines.owned.remove(vertex);
-        if self.give(vertex, p, is_new).is_err() {
+        if self.make_given(vertex, p, is_new).is_err() {
             self.rearrange();
         }
         self.lines.constrain_waiting(&mut self.inner);
@@ -41,7 +41,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
 
     /// Updates the lines for a given vertex, which is new, or may have been added for a crossing
     /// before.
-    fn give(&mut self, vertex: VertexId, p: G::Point, is_new: bool) -> Result<(), NotLocal> {
+    fn make_given(&mut self, vertex: VertexId, p: G::Point, is_new: bool) -> Result<(), NotLocal> {
         let was_added = self.lines.added.remove(vertex);
         if was_added {
             self.lines.touch();
@@ -53,7 +53,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         if self.lines.paths.bent.is_empty() || !(is_new || was_added) {
             return Ok(());
         }
-        Edit::on(&mut self.inner, &mut self.lines)?.give(vertex, was_added)
+        Edit::on(&mut self.inner, &mut self.lines)?.make_given(vertex, was_added)
     }
 
     /// Removes a vertex and returns its point. Constraints that only run through it stay, without
@@ -151,7 +151,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 self.lines.owned.insert(vertex);
             }
             if is_known.is_ok() {
-                is_known = self.give(vertex, p, is_new);
+                is_known = self.make_given(vertex, p, is_new);
             } else if self.lines.added.remove(vertex) {
                 self.replace_point(vertex, p);
             }

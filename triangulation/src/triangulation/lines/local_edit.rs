@@ -7,11 +7,11 @@
 //!   if it is a given point exactly on a bent segment.
 //! - A segment is *bent* if it crosses another one, or meets the pixel of an active site that is
 //!   not its end. It bends to all hot sites whose pixels it meets.
-//! - A hot site is *active* if a bent segment that meets its pixel does not pass exactly through
-//!   it, as through a given point.
+//! - A hot site is *active* if a bent segment bends to it but does not pass exactly through it
+//!   as a given point.
 //!
 //! An insertion applies the rules, starting from what is new. A removal first retracts what may
-//! have depended on the removed: from site to site, the segments there that cross no other. What
+//! have depended on what is removed: from site to site, the segments there that cross no other. What
 //! remains depends on crossings that remain. Then it applies the rules again.
 //!
 //! *Where to search.* A point of a segment is within half a unit of its chain on each axis, and a
@@ -96,7 +96,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.added = Some(segment);
         for end in segment {
             if !self.lines_at(end).into_iter().any(|other| other.contains(&end) || self.has_site(other, end)) {
-                self.heat(end);
+                self.make_hot(end);
             }
         }
         let ends = self.ends(segment);
@@ -112,7 +112,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             crossed.push(segment);
             self.steps.extend(crossed.into_iter().map(Step::Bend));
         }
-        self.follow()?;
+        self.apply_rules()?;
         self.carry_out()
     }
 
@@ -121,22 +121,22 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.removed = Some(segment);
         let sites = self.lines.paths.sites(segment);
         self.retract(sites);
-        self.follow()?;
+        self.apply_rules()?;
         self.carry_out()
     }
 
     /// Makes a vertex a given one. It is new, or was added for a crossing before.
-    pub(super) fn give(mut self, vertex: VertexId, was_added: bool) -> Result<(), NotLocal> {
+    pub(super) fn make_given(mut self, vertex: VertexId, was_added: bool) -> Result<(), NotLocal> {
         if was_added {
             self.retract(vec![vertex]);
         } else {
             let at = position(self.t, vertex);
             let around = self.around(vertex);
             if around.into_iter().any(|segment| self.is_bent(segment) && lies_on(self.ends(segment), at)) {
-                self.heat(vertex);
+                self.make_hot(vertex);
             }
         }
-        self.follow()?;
+        self.apply_rules()?;
         self.carry_out()
     }
 
@@ -148,7 +148,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             self.steps.push(Step::Activate(vertex));
             self.stale.push(vertex);
         }
-        self.follow()?;
+        self.apply_rules()?;
         self.carry_out()
     }
 
@@ -253,7 +253,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             || self.lines_at(site).into_iter().any(|s| self.has_site(s, site) && !self.is_exact(s, site))
     }
 
-    fn heat(&mut self, site: VertexId) {
+    fn make_hot(&mut self, site: VertexId) {
         self.hot.insert(site, true);
         self.steps.push(Step::Attract(site));
     }
@@ -268,9 +268,9 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let site = self.lines.insert_point(self.t, p, near);
         if self.t.vertex_count() > count {
             self.lines.added.insert(site);
-            self.heat(site);
+            self.make_hot(site);
         } else if !self.is_hot(site) {
-            self.heat(site);
+            self.make_hot(site);
         }
         Ok(())
     }
@@ -285,7 +285,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     }
 
     /// Applies the rules until nothing changes.
-    fn follow(&mut self) -> Result<(), NotLocal> {
+    fn apply_rules(&mut self) -> Result<(), NotLocal> {
         while let Some(step) = self.steps.pop() {
             match step {
                 Step::Attract(site) => {
@@ -334,7 +334,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                     self.steps.push(Step::Activate(v));
                 }
             } else if self.is_given(v) && lies_on(ends, position(self.t, v)) {
-                self.heat(v);
+                self.make_hot(v);
             }
         }
         self.chains.insert(segment, Some(sites));

@@ -75,16 +75,16 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
             here.retain(|cell| levels[cell.index()] == UNKNOWN);
             here.iter().for_each(|cell| levels[cell.index()] = level);
             while let Some(cell) = here.pop() {
-                for (i, &beside) in tds.cell_neighbors(cell).iter().enumerate() {
-                    if levels[beside.index()] != UNKNOWN {
+                for (i, &neighbor) in tds.cell_neighbors(cell).iter().enumerate() {
+                    if levels[neighbor.index()] != UNKNOWN {
                         continue;
                     }
                     // A cell beyond several constraints may also be reached around them.
                     if is_constrained(cell, i) {
-                        beyond.push(beside);
+                        beyond.push(neighbor);
                     } else {
-                        levels[beside.index()] = level;
-                        here.push(beside);
+                        levels[neighbor.index()] = level;
+                        here.push(neighbor);
                     }
                 }
             }

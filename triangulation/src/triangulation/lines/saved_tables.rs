@@ -24,7 +24,7 @@ pub(in super::super) struct SavedTables {
 
 impl Lines {
     /// Returns a copy of the content.
-    pub(in super::super) fn parts(&self) -> SavedTables {
+    pub(in super::super) fn saved_tables(&self) -> SavedTables {
         let segments = self.paths.segments();
         let mut splits: Vec<[VertexId; 3]> =
             self.paths.splits.iter().map(|(&[a, b], &between)| [a, b, between]).collect();
@@ -46,33 +46,33 @@ impl Lines {
     ///
     /// # Errors
     /// If the content does not fit into the tables; the error says why.
-    pub(in super::super) fn from_parts(parts: SavedTables) -> Result<Self, &'static str> {
-        if parts.given.len() >= LineId::LIMIT {
+    pub(in super::super) fn from_saved_tables(tables: SavedTables) -> Result<Self, &'static str> {
+        if tables.given.len() >= LineId::LIMIT {
             return Err("there are too many lines");
         }
-        let given = parts.given.into_iter().map(|line| line.map(|vertices| vertices[..].into()));
+        let given = tables.given.into_iter().map(|line| line.map(|vertices| vertices[..].into()));
         let mut paths = Paths { given: given.collect(), ..Paths::default() };
-        for chain in parts.bent {
+        for chain in tables.bent {
             let is_new = match chain[..] {
                 [a, ref between @ .., b] => a < b && paths.bent.insert([a, b], between.into()).is_none(),
                 _ => false,
             };
             is_new.then_some(()).ok_or("a segment has two chains, or is turned around")?;
         }
-        for [a, b, between] in parts.splits {
+        for [a, b, between] in tables.splits {
             let is_new = a < b && paths.splits.insert([a, b], between).is_none();
             is_new.then_some(()).ok_or("an edge is split twice, or is turned around")?;
         }
-        if parts.waiting.iter().any(|[a, b]| a == b) {
+        if tables.waiting.iter().any(|[a, b]| a == b) {
             return Err("a constraint has one end");
         }
         Ok(Lines {
             paths,
-            waiting: parts.waiting,
-            added: parts.added.into_iter().collect(),
-            owned: parts.owned.into_iter().collect(),
-            rounding: parts.rounding,
-            recrossed: parts.recrossed,
+            waiting: tables.waiting,
+            added: tables.added.into_iter().collect(),
+            owned: tables.owned.into_iter().collect(),
+            rounding: tables.rounding,
+            recrossed: tables.recrossed,
             ..Lines::default()
         })
     }

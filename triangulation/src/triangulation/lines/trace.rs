@@ -241,10 +241,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
     ) {
         for &cell in corridor.iter() {
-            *self.tds.cell_data_mut(cell) = ConstrainedEdges::taken_out();
+            *self.tds.cell_data_mut(cell) = ConstrainedEdges::being_replaced();
         }
         for edge in left.edges.iter_mut().chain(&mut right.edges) {
-            edge.is_spike = self.tds.cell_data(edge.cell).is_taken_out();
+            edge.is_spike = self.tds.cell_data(edge.cell).is_being_replaced();
         }
         // On the left, the polygon runs from the start along the chain to the end, so the base,
         // from start to end, has it on its left. On the right, it is reversed.

@@ -84,7 +84,7 @@ impl<P, V, C: Copy + Default> WithLines<Owned<P, V, ConstrainedEdges<C>>> {
             rounding: self.rounding,
             recrossed: self.recrossed,
         };
-        let lines = Lines::from_parts(parts).map_err(Damage::Shape)?;
+        let lines = Lines::from_saved_tables(parts).map_err(Damage::Shape)?;
         first(lines.check(&inner))?;
         Ok(ConstrainedDelaunay { inner, lines })
     }
@@ -95,7 +95,7 @@ impl<G: Crossing<Point: Serialize>, V: Serialize, C: Serialize + Copy + Default>
 {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let numbers = |vertices: &[VertexId]| vertices.iter().map(number).collect::<Vec<u32>>();
-        let parts = self.lines.parts();
+        let parts = self.lines.saved_tables();
         let saved = WithLines {
             triangulation: self.save(),
             lines: parts.given.iter().map(|line| line.as_deref().map(numbers)).collect(),
