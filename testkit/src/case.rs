@@ -1,10 +1,10 @@
-//! Points and lines as a test input, and as a file that people can read: Triangle's `.poly`.
+//! Points and lines as a test input, and as a readable file: Triangle's `.poly`.
 
 use std::fmt::Write;
 
 pub type Point = [f64; 2];
 
-/// Points, and lines as positions in them.
+/// Points, and lines as positions in the list of points.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Case {
     pub points: Vec<Point>,
@@ -12,26 +12,26 @@ pub struct Case {
 }
 
 impl Case {
-    /// The points, and each segment as a line with two points of its own.
+    /// Returns a case of these points, and of each segment as a line with two points of its own.
     pub fn of_segments(points: &[Point], segments: &[[Point; 2]]) -> Case {
         let mut case = Case { points: points.to_vec(), lines: Vec::new() };
         segments.iter().for_each(|segment| case.draw(segment));
         case
     }
 
-    /// One more line, through points of its own.
+    /// Adds a line through points of its own.
     pub fn draw(&mut self, line: &[Point]) {
         let first = self.points.len() as u32;
         self.points.extend(line);
         self.lines.push((first..self.points.len() as u32).collect());
     }
 
-    /// Number of segments, those without length included.
+    /// The number of segments, including those of zero length.
     pub fn segment_count(&self) -> usize {
         self.lines.iter().map(|line| line.len().saturating_sub(1)).sum()
     }
 
-    /// The same in Triangle's format; the marker of a segment is the number of its line.
+    /// Returns the case in Triangle's format; the marker of a segment is the number of its line.
     pub fn to_poly(&self) -> String {
         let mut text = format!("{} 2 0 0\n", self.points.len());
         for (i, [x, y]) in self.points.iter().enumerate() {
@@ -45,7 +45,8 @@ impl Case {
         text + "0\n"
     }
 
-    /// Reads what [`Case::to_poly`] writes: numbers from 0, neighbors with one marker are a line.
+    /// Parses what [`Case::to_poly`] writes: numbers from 0, and consecutive segments with one
+    /// marker are a line.
     pub fn from_poly(text: &str) -> Case {
         let content = text.lines().map(|line| line.split('#').next().unwrap());
         let mut rows = content.map(|line| line.split_whitespace().collect::<Vec<_>>()).filter(|row| !row.is_empty());

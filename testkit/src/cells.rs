@@ -1,4 +1,4 @@
-//! Triangulations by their cells, whatever numbers these, or the vertices, too, have.
+//! Triangulations as sets of cells, independent of the numbers of cells or vertices.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use breakline_triangulation::Triangulation;
 use breakline_triangulation::geometry::{Coordinates, Geometry};
 use breakline_triangulation::tds::{CellId, VertexId};
 
-/// The finite cells of any dimension, each as the sorted keys of its corners' coordinates.
+/// Returns the finite cells, in any dimension, each as the sorted keys of its corners' coordinates.
 pub fn cells<G, const N: usize, V, C, K>(
     t: &Triangulation<G, N, V, C>,
     key: impl Fn(G::Coordinates) -> K,
@@ -26,12 +26,12 @@ where
         .collect()
 }
 
-/// All cells of the plane, the infinite ones included, by the numbers of their vertices.
+/// Returns all cells of the plane, the infinite ones included, by the numbers of their vertices.
 pub fn by_vertices<G: Geometry<3>, V, C: Copy + Default>(t: &Triangulation<G, 3, V, C>) -> BTreeSet<Vec<VertexId>> {
     t.tds().cells().map(|cell| vertices(t, cell)).collect()
 }
 
-/// The vertices of a cell from the smallest on, so that the turn shows.
+/// Returns the vertices of a cell, starting with the smallest, so that the orientation is kept.
 pub fn vertices<G: Geometry<3>, V, C: Copy + Default>(t: &Triangulation<G, 3, V, C>, cell: CellId) -> Vec<VertexId> {
     let mut vertices = t.tds().cell_vertices(cell).to_vec();
     let smallest = (0..vertices.len()).min_by_key(|&i| vertices[i]).unwrap_or(0);

@@ -9,10 +9,10 @@ pub mod subject;
 
 use std::path::{Path, PathBuf};
 
-/// A file of the shared data folder, beside the repository.
+/// Returns the path of a file in the shared data folder, next to the repository.
 ///
-/// Tests that ask for one are marked, so that they are counted as ignored where the folder is absent (`build.rs` looks):
-/// `#[cfg_attr(not(has_shared), ignore = "needs ../shared")]`.
+/// Tests that need one are marked, so that they are counted as ignored where the folder is absent
+/// (`build.rs` checks): `#[cfg_attr(not(has_shared), ignore = "needs ../shared")]`.
 #[track_caller]
 pub fn shared(path: &str) -> PathBuf {
     let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(path);

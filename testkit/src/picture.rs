@@ -1,8 +1,8 @@
-//! A picture of what a test was about when it failed.
+//! Pictures of the input of a failed test.
 
-/// Draws and says where, if the test fails while this is there.
+/// Draws a picture and prints its path, if the test fails while this is alive.
 pub struct OnFailure<F: Fn() -> String> {
-    /// Of the file.
+    /// The name of the file.
     pub name: &'static str,
     pub svg: F,
 }

@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same in every run: splitmix64 (Steele, Lea and Flood 2014).
+//! Pseudo-random numbers, the same in every run: splitmix64 (Steele, Lea and Flood 2014).
 
 /// A generator; the number within is its seed.
 pub struct Random(pub u64);
@@ -12,27 +12,27 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// From 0 up to, but not, `end`.
+    /// Returns a number from 0 up to, but not including, `end`.
     pub fn below(&mut self, end: u64) -> u64 {
         self.bits() % end
     }
 
-    /// The same, for positions.
+    /// Returns a position from 0 up to, but not including, `end`.
     pub fn index(&mut self, end: usize) -> usize {
         self.below(end as u64) as usize
     }
 
-    /// From `-n` to `n`.
+    /// Returns a number from `-n` to `n`.
     pub fn around(&mut self, n: i64) -> i64 {
         self.below(2 * n as u64 + 1) as i64 - n
     }
 
-    /// From 0 up to, but not, 1; with all the bits that there are.
+    /// Returns a number from 0 up to, but not including, 1, with all 53 bits.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Any of the items.
+    /// Returns any of the items.
     pub fn pick<T: Copy>(&mut self, items: &[T]) -> T {
         items[self.index(items.len())]
     }
@@ -44,7 +44,7 @@ impl Random {
     }
 }
 
-/// The `n`-th double after `x`, or before it.
+/// Returns the `n`-th double after `x`, or before it if `n` is negative.
 pub fn ulps(x: f64, n: i64) -> f64 {
     (0..n.abs()).fold(x, |x, _| if n > 0 { x.next_up() } else { x.next_down() })
 }

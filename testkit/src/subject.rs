@@ -1,4 +1,4 @@
-//! The one place where the tests of lines meet the program that they test.
+//! The only module in which the tests of lines call the crate that they test.
 
 use breakline_triangulation::geometry::Plane;
 use breakline_triangulation::kernel::{Adaptive, Exact, Filter, Filtered, Kernel, Predicate, RANGE, Range};
@@ -25,11 +25,11 @@ impl Filter for WithinRange {
 
 pub type Subject = ConstrainedDelaunay<Plane<AnyFinite>>;
 
-/// A triangulation, and what it says of its input.
+/// A triangulation, and what it reports about its input.
 #[derive(Debug)]
 pub struct Built {
     pub triangulation: Subject,
-    /// The vertex of each point of the input.
+    /// The vertex of each input point.
     pub vertices: Vec<VertexId>,
     /// The vertices of each line, in order.
     pub chains: Vec<Vec<VertexId>>,

@@ -1,4 +1,5 @@
-//! Drawn segments that cross have a vertex in common where they do, and what was added was added for that.
+//! Checks that given segments that cross have a common vertex there, and that vertices were added
+//! for no other reason.
 
 use breakline_triangulation::geometry::{Geometry, Plane};
 use breakline_triangulation::num::Sign;
@@ -9,14 +10,14 @@ use super::{Verdict, lines};
 use crate::case::Case;
 use crate::subject::AnyFinite;
 
-/// A place as numerators over one positive denominator.
+/// A position as numerators over one positive denominator.
 struct Fraction {
     numerators: [IBig; 2],
     denominator: IBig,
 }
 
 impl Fraction {
-    /// Where two segments cross in their interiors.
+    /// Returns where two segments cross; `None` unless they cross in their interiors.
     fn crossing(scene: &Scene<IBig>, [a, b]: [usize; 2], [c, d]: [usize; 2]) -> Option<Fraction> {
         let zero = IBig::from(0);
         let sides = [scene.turn(a, b, c) * scene.turn(a, b, d), scene.turn(c, d, a) * scene.turn(c, d, b)];
@@ -61,7 +62,7 @@ pub(crate) fn judge(scene: &Scene<IBig>) -> Verdict {
             unexplained.retain(|&v| !crossing.is_near(&scene.sites[v], &scene.bound));
         }
     }
-    // Off the grid, bent pieces may cross where the drawn lines do not, and have a vertex there.
+    // Off the grid, bent parts may cross where the given segments do not, and have a vertex there.
     let is_on_grid = scene.back.iter().all(|back| *back == IBig::from(0));
     match unexplained.first() {
         Some(&v) if is_on_grid => Err(format!("needless: {} is near no crossing", scene.name(v))),
@@ -69,7 +70,8 @@ pub(crate) fn judge(scene: &Scene<IBig>) -> Verdict {
     }
 }
 
-/// How many pairs of drawn segments cross in their interiors; by the crate's predicates, for statistics only.
+/// Returns how many pairs of given segments cross in their interiors; by the crate's predicates,
+/// for statistics only.
 pub(crate) fn count(case: &Case) -> usize {
     let geometry = Plane::<AnyFinite>::default();
     let ends = |s: &[u32]| [&case.points[s[0] as usize], &case.points[s[1] as usize]];

@@ -1,4 +1,4 @@
-//! Who is who: the triangulation knows which vertices it added and which lines run along an edge.
+//! Checks that the triangulation knows which vertices it added and which lines run along an edge.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -11,7 +11,7 @@ pub(crate) fn judge(built: &Built) -> Verdict {
     let t = &built.triangulation;
     let given: HashSet<VertexId> = built.vertices.iter().copied().collect();
     if let Some(v) = t.tds().vertices().find(|v| t.is_added(*v) == given.contains(v)) {
-        return Err(format!("identity: whether vertex {} was added is told wrong", v.index()));
+        return Err(format!("identity: whether vertex {} was added is reported wrongly", v.index()));
     }
     let mut lines: HashMap<[VertexId; 2], BTreeSet<usize>> = HashMap::new();
     for (line, chain) in built.chains.iter().enumerate() {

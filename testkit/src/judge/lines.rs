@@ -1,14 +1,16 @@
-//! The constrained edges are the chains of the lines, and the chains are the lines.
+//! Checks that the constrained edges are the chains of the lines, and the chains follow the lines.
 
 use std::collections::HashSet;
 
 use super::Verdict;
 use super::scene::{Number, Scene, magnitude};
 
+/// Returns an error unless:
+///
 /// - A chain visits the points of its line, in order, and its steps are constrained edges.
-/// - Between two of those, its vertices lie within the bound of the drawn segment: the segment meets the box
-///   around each. It goes one way on each axis.
-/// - It visits all points of the input that lie on the segment exactly.
+/// - Between two of those, its vertices lie within the bound of the given segment: the segment
+///   meets the box around each. It is monotone on each axis.
+/// - It visits all input points that lie exactly on the segment.
 /// - All constrained edges are steps of chains.
 pub(crate) fn judge<N: Number>(scene: &Scene<N>) -> Verdict {
     let mut by_x: Vec<usize> = scene.vertices.clone();
@@ -33,8 +35,8 @@ pub(crate) fn judge<N: Number>(scene: &Scene<N>) -> Verdict {
     Ok(())
 }
 
-/// The parts of a chain between the vertices of the line; the chain must consist of them. A vertex that follows
-/// itself is one.
+/// Returns the parts of a chain between the vertices of its line. The chain must consist of them. A
+/// vertex that is repeated counts once.
 #[expect(clippy::type_complexity)]
 pub(crate) fn parts<'a, N: Number>(scene: &'a Scene<N>, line: usize) -> Result<Vec<([usize; 2], &'a [usize])>, String> {
     let chain = &scene.chains[line][..];
@@ -95,8 +97,8 @@ fn judge_part<N: Number>(scene: &Scene<N>, [a, b]: [usize; 2], part: &[usize], b
     Ok(())
 }
 
-/// Whether the closed box around the vertex meets the segment: separated they are along an axis or along the
-/// segment's normal, or not at all.
+/// Returns true if the closed box around the vertex meets the segment: if they are disjoint, they
+/// are separated along an axis or along the segment's normal.
 fn is_beside<N: Number>(scene: &Scene<N>, v: usize, [a, b]: [usize; 2]) -> bool {
     let [dx, dy] = scene.difference(a, b).map(magnitude);
     let [bx, by] = scene.bound.clone();

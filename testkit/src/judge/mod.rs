@@ -1,14 +1,15 @@
-//! What a constrained Delaunay triangulation of points and lines must be, told from the definition and checked
-//! the slow way, in whole numbers of any size: no predicate of the crate is asked, except for its own check.
+//! What a constrained Delaunay triangulation of points and lines must be, derived from the
+//! definition and checked the slow way, in whole numbers of any size. No predicate of the crate is
+//! used, except in its own check.
 //!
 //! | | every | some |
 //! |---|---|---|
 //! | the crate's check finds nothing | x | |
 //! | the constrained edges are the chains of the lines, as `lines` says | x | |
-//! | added vertices and the lines of an edge are told right | | x |
-//! | drawn segments that cross meet near by, and no vertex is there without a reason: `crossings` | | x |
+//! | added vertices and the lines of an edge are reported correctly: `identity` | | x |
+//! | given segments that cross meet near by, and no vertex is there without a reason: `crossings` | | x |
 //! | the triangles tile the hull and obey the law: `plane` | | x |
-//! | in another order it is the same: `order` | | x |
+//! | in another order the result is the same: `order` | | x |
 
 mod crossings;
 mod identity;
@@ -25,15 +26,15 @@ use super::random::Random;
 use super::subject::{Built, build};
 use scene::Scene;
 
-/// What is wrong: the law that is broken, and where.
+/// An error says what is wrong: the law that is broken, and where.
 pub type Verdict = Result<(), String>;
 
-/// How many pairs of drawn segments cross in their interiors.
+/// Returns how many pairs of given segments cross in their interiors.
 pub fn crossing_count(case: &Case) -> usize {
     crossings::count(case)
 }
 
-/// What can be asked of every input of a long run.
+/// Checks what can be checked for every input of a long run.
 pub fn judge(case: &Case, built: &Built) -> Verdict {
     let flaws = built.triangulation.check(Level::Law);
     if let Some(flaw) = flaws.first() {
@@ -48,7 +49,7 @@ pub fn judge(case: &Case, built: &Built) -> Verdict {
     verdict.map_err(|what| if is_off_grid { format!("off the grid: {what}") } else { what })
 }
 
-/// What takes longer than to build the triangulation.
+/// Checks what takes longer than building the triangulation.
 pub fn judge_slowly(case: &Case, built: &Built) -> Verdict {
     let scene = Scene::<IBig>::new(case, built).expect("these have no limit");
     crossings::judge(&scene)?;
@@ -56,12 +57,12 @@ pub fn judge_slowly(case: &Case, built: &Built) -> Verdict {
     plane::judge(built)
 }
 
-/// The same set drawn in other orders: the same triangulation.
+/// Checks that the same set in another order gives the same triangulation.
 pub fn judge_order(case: &Case, built: &Built, random: &mut Random) -> Verdict {
     order::judge(case, built, random)
 }
 
-/// Builds and judges by everything.
+/// Builds a case and runs all checks.
 pub fn pass(case: &Case) -> Verdict {
     let built = build(case).map_err(|refused| format!("refused: {refused}"))?;
     judge(case, &built)?;

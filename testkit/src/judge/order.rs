@@ -1,4 +1,4 @@
-//! One answer: the same set in another order, some lines backwards.
+//! Checks that the same set in another order, some lines backwards, gives the same triangulation.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use crate::case::{Case, Point};
 use crate::random::Random;
 use crate::subject::{Built, build};
 
-/// A place that can be compared: zero has one sign.
+/// A position as a key that can be compared: zeros have one sign.
 type Key = [u64; 2];
 
 fn key(p: &Point) -> Key {
@@ -35,7 +35,8 @@ fn chain(built: &Built, line: usize) -> Vec<Key> {
     built.chains[line].iter().map(|&v| key(built.triangulation.point(v))).collect()
 }
 
-/// The case in another order, the place in it of each of its lines, and which of them run backwards.
+/// Returns the case in another order, the old number of each of its lines, and for each old line
+/// whether it runs backwards.
 fn shuffled(case: &Case, random: &mut Random) -> (Case, Vec<usize>, Vec<bool>) {
     let mut points: Vec<usize> = (0..case.points.len()).collect();
     let mut lines: Vec<usize> = (0..case.lines.len()).collect();

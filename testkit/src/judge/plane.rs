@@ -1,4 +1,5 @@
-//! The triangles tile the convex hull, and no vertex lies in the circle of a triangle that it sees.
+//! Checks that the triangles tile the convex hull, and that no vertex lies in the circle of a
+//! triangle that it sees.
 
 use std::collections::HashMap;
 
@@ -13,7 +14,7 @@ fn turn([ax, ay]: &Site, [bx, by]: &Site, [cx, cy]: &Site) -> RBig {
     (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 }
 
-/// Positive if `q` lies inside of the circle through a counter-clockwise triangle.
+/// Returns a positive number if `q` lies inside the circle through a counter-clockwise triangle.
 fn in_circle(triangle: [&Site; 3], q: &Site) -> RBig {
     let [a, b, c] = triangle.map(|p| {
         let [x, y] = [&p[0] - &q[0], &p[1] - &q[1]];
@@ -24,7 +25,7 @@ fn in_circle(triangle: [&Site; 3], q: &Site) -> RBig {
     minor(&b, &c) * &a[2] - minor(&a, &c) * &b[2] + minor(&a, &b) * &c[2]
 }
 
-/// Twice the area of the hull, by Andrew's chains (1979).
+/// Returns twice the area of the hull, by Andrew's chains (1979).
 fn hull_area(sites: &[Site]) -> RBig {
     let mut sorted: Vec<&Site> = sites.iter().collect();
     sorted.sort();

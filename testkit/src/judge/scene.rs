@@ -9,11 +9,12 @@ use super::Verdict;
 use crate::case::{Case, Point};
 use crate::subject::Built;
 
-/// Whole numbers that know no rounding.
+/// Whole numbers without rounding.
 pub(crate) trait Number:
     Clone + Ord + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + From<i8>
 {
-    /// `mantissa * 2^shift`, if it can be counted: `judge` multiplies two differences of such and adds two of those.
+    /// Returns `mantissa * 2^shift`; `None` if it is too large. `judge` multiplies two differences
+    /// of such numbers and adds two of the products.
     fn shifted(mantissa: i64, shift: u32) -> Option<Self>;
 }
 
@@ -34,7 +35,7 @@ pub(crate) fn magnitude<N: Number>(x: N) -> N {
     if x < N::from(0) { -x } else { x }
 }
 
-/// `mantissa * 2^exponent` with an odd mantissa, or `None` for zero.
+/// Returns `x` as `mantissa * 2^exponent` with an odd mantissa, or `None` for zero.
 fn parts(x: f64) -> Option<(i64, i32)> {
     let bits = x.to_bits();
     let (biased, fraction) = ((bits >> 52 & 0x7FF) as i32, (bits & ((1 << 52) - 1)) as i64);
@@ -43,8 +44,9 @@ fn parts(x: f64) -> Option<(i64, i32)> {
     (mantissa != 0).then(|| ((mantissa >> zeros) * if x < 0.0 { -1 } else { 1 }, exponent + zeros as i32))
 }
 
-/// The unit in the last place of the largest magnitude on each axis among the points of lines, and whether all
-/// points are multiples of it. (Of the others those count that lie on lines.)
+/// Returns the unit in the last place of the largest magnitude on each axis among the points of
+/// lines, and whether all points are multiples of it. (Of the other points, only those on lines
+/// would matter.)
 fn grid(case: &Case) -> ([f64; 2], bool) {
     let drawn = || case.lines.iter().flatten().map(|&i| case.points[i as usize]);
     let unit = [0, 1].map(|axis| {
@@ -55,7 +57,8 @@ fn grid(case: &Case) -> ([f64; 2], bool) {
     (unit, case.points.iter().all(|p| is_multiple(p[0], unit[0]) && is_multiple(p[1], unit[1])))
 }
 
-/// The program's grid is no coarser, and it takes the points for what they are.
+/// Checks that the program's grid is no coarser than this one, and that it knows if all points are
+/// on it.
 pub(crate) fn judge_grid(case: &Case, built: &Built) -> Verdict {
     let Some(rounding) = built.rounding else { return Ok(()) };
     let (unit, on_grid) = grid(case);
@@ -66,30 +69,31 @@ pub(crate) fn judge_grid(case: &Case, built: &Built) -> Verdict {
     Ok(())
 }
 
-/// A triangulation and its input on a grid so fine that all of it is whole; the axes have each their own.
+/// A triangulation and its input on a grid so fine that all coordinates are whole numbers. Each
+/// axis has its own grid.
 pub(crate) struct Scene<'a, N> {
     pub(crate) case: &'a Case,
-    /// The places of the triangulation's vertices.
+    /// The sites of the triangulation's vertices.
     pub(crate) sites: Vec<[N; 2]>,
-    /// The vertex of each point of the input.
+    /// The vertex of each input point.
     pub(crate) vertices: Vec<usize>,
     pub(crate) chains: Vec<Vec<usize>>,
-    /// Whether there are no triangles.
+    /// True if there are no triangles.
     pub(crate) is_collinear: bool,
     /// The constrained edges, the smaller vertex first.
     pub(crate) constrained: HashSet<[usize; 2]>,
-    /// How far from the drawn segment a vertex of its chain may lie, on each axis.
+    /// How far from the given segment a vertex of its chain may lie, on each axis.
     pub(crate) bound: [N; 2],
-    /// How far back the chain may go.
+    /// How far the chain may go back, on each axis.
     pub(crate) back: [N; 2],
 }
 
-/// Where points of lines lie between the places that crossings are rounded to, a chain may be off by as many halves
-/// of that unit.
+/// Where points of lines are not on the grid to which crossings are rounded, a chain may be off by
+/// this many halves of its unit.
 const HALVES_OFF_GRID: i8 = 4;
 
 impl<'a, N: Number> Scene<'a, N> {
-    /// `None` if the numbers are too small to count in.
+    /// Returns `None` if the number type cannot hold the coordinates.
     pub(crate) fn new(case: &'a Case, built: &Built) -> Option<Self> {
         let t = &built.triangulation;
         let unit = |axis: usize| built.rounding.and_then(|rounding| parts(rounding.unit[axis]));
@@ -106,7 +110,7 @@ impl<'a, N: Number> Scene<'a, N> {
         let site = |&[x, y]: &Point| Some([whole(x, 0)?, whole(y, 1)?]);
         let zero = [N::from(0), N::from(0)];
         let (bound, back) = match built.rounding {
-            // Nothing moves a line that crosses none.
+            // A line that crosses nothing is not moved.
             None => (zero.clone(), zero),
             Some(rounding) => {
                 let half = [0, 1].map(|axis| N::shifted(1, half[axis].abs_diff(lowest[axis])));
@@ -132,12 +136,13 @@ impl<'a, N: Number> Scene<'a, N> {
         [0, 1].map(|axis| self.sites[b][axis].clone() - self.sites[a][axis].clone())
     }
 
-    /// Twice the area of a triangle, positive if counter-clockwise.
+    /// Returns twice the area of a triangle, positive if counter-clockwise.
     pub(crate) fn turn(&self, a: usize, b: usize, c: usize) -> N {
         cross(self.difference(a, b), self.difference(a, c))
     }
 
-    /// Whether the vertex lies between the two on both axes, or no further outside than told.
+    /// Returns true if the vertex lies between the two on both axes, or outside by at most the
+    /// bound.
     pub(crate) fn is_within(&self, v: usize, [a, b]: [usize; 2], bound: &[N; 2]) -> bool {
         (0..2).all(|axis| {
             let [p, a, b] = [v, a, b].map(|v| &self.sites[v][axis]);
@@ -146,7 +151,7 @@ impl<'a, N: Number> Scene<'a, N> {
         })
     }
 
-    /// Where a vertex is, for people.
+    /// Returns a readable name of a vertex and its position.
     pub(crate) fn name(&self, built: usize) -> String {
         match self.vertices.iter().position(|&v| v == built) {
             Some(point) => format!("point {point} {:?}", self.case.points[point]),
