@@ -126,11 +126,11 @@ const DAMAGED: &[(&str, Outcome)] = &[
     ("broken/extentnan.shp", Full(0, 0, &[])),
     (
         "broken/mixed_shape_type_non_conformant.shp",
-        Full(6, 21, &["the header says PolyLine, the records are 1 Point, 2 PolyLine, 2 Polygon, 1 MultiPoint"]),
+        Full(6, 21, &["the header states PolyLine, the records are 1 Point, 2 PolyLine, 2 Polygon, 1 MultiPoint"]),
     ),
     // Two outer rings that are one another's neighbors; nobody asks here which is inside which.
     ("broken/multipolygon_as_invalid_polygon.shp", Full(2, 16, &[])),
-    ("broken_mut/brklinz__filelen_wrong.shp", Full(122, 1736, &["its header says 101096 bytes, the file has 50548"])),
+    ("broken_mut/brklinz__filelen_wrong.shp", Full(122, 1736, &["its header states 101096 bytes, the file has 50548"])),
     ("broken_mut/brklinz__inf_x.shp", Refused(&["record 1 (byte 100): x of vertex 2 is inf"])),
     ("broken_mut/brklinz__nan_z.shp", Full(122, 1736, &["1 points have no height"])),
     ("broken_mut/brklinz__no_dbf.shp", Full(122, 1736, &[])),
@@ -148,7 +148,7 @@ const DAMAGED: &[(&str, Outcome)] = &[
             69,
             1179,
             &[
-                "its header says 50548 bytes, the file has 33698",
+                "its header states 50548 bytes, the file has 33698",
                 "record 70 (byte 33364): content of 784 bytes passes the end of the file",
                 ".dbf: 122 rows for 69 records",
             ],
@@ -156,7 +156,7 @@ const DAMAGED: &[(&str, Outcome)] = &[
     ),
     (
         "broken_mut/brklinz__shx_truncated.shp",
-        Full(122, 1736, &[".shx not used: its header says 1076 bytes, the file has 588"]),
+        Full(122, 1736, &[".shx not used: its header states 1076 bytes, the file has 588"]),
     ),
 ];
 
@@ -344,7 +344,7 @@ fn the_first_damaged_records_are_told_the_rest_counted() {
     let layer = shapefile::read_layer(&path, None).unwrap();
     assert_eq!((layer.shapes.len(), layer.warnings.len()), (1, 11));
     assert_eq!(layer.warnings[0], "record 2 (byte 128): shape type 99 is not one of the format's");
-    assert_eq!(layer.warnings[10], "and 4 more places that could not be read");
+    assert_eq!(layer.warnings[10], "and 4 more parts that could not be read");
 }
 
 #[test]
@@ -387,7 +387,7 @@ fn a_table_is_needed_for_heights_only() {
     );
     std::fs::remove_file(path.with_extension("dbf")).unwrap();
     assert_eq!(shapefile::read_layer(&path, None).unwrap().warnings, [] as [&str; 0]);
-    assert!(shapefile::read_layer(&path, Some("H")).unwrap_err().to_string().contains("no .dbf beside it"));
+    assert!(shapefile::read_layer(&path, Some("H")).unwrap_err().to_string().contains("no .dbf next to it"));
 }
 
 #[test]

@@ -349,11 +349,11 @@ fn errors_name_the_value_and_the_place() {
     let square = "0 0 0 1 0 0 1 1 0 0 1 0 ";
     for (file, expected) in [
         (ply("4", "1", &format!("{square} 3 0 1 4")), "face 0: a face names vertex 4, but there are 4 vertices"),
-        (ply("4", "1", &format!("{square} 3 0 1 -1")), "face 0: -1 is no number of a vertex"),
-        (ply("4", "1", &format!("{square} 3 0 1 1.5")), "face 0: 1.5 is no number of a vertex"),
+        (ply("4", "1", &format!("{square} 3 0 1 -1")), "face 0: -1 is not the number of a vertex"),
+        (ply("4", "1", &format!("{square} 3 0 1 1.5")), "face 0: 1.5 is not the number of a vertex"),
         (ply("4", "1", &format!("{square} 2 0 1 1")), "face 0: a face has 2 corners, expected 3 or more"),
         (ply("4", "1", &format!("{square} 99 0 1 1")), "face 0: a list of 99 values, with 6 bytes left"),
-        (ply("4", "1", &format!("{square} 3 0 nul 1")), "face 0: 'nul' is no number"),
+        (ply("4", "1", &format!("{square} 3 0 nul 1")), "face 0: 'nul' is not a number"),
         (ply("4", "1", &format!("{square} 3 0 0 1")), "face 0 names one vertex twice: 0 0 1"),
         (ply("4", "1", "0 0 0 1 0 0 nan 1 0 0 1 0 3 0 1 2"), "vertex 2 is at NaN 1 0, expected finite coordinates"),
         (
@@ -368,9 +368,9 @@ fn errors_name_the_value_and_the_place() {
         (ply("4", "0", square), "there are no faces: the file is a point cloud"),
         (
             ply("9999999999999", "1", square),
-            "the header says 9999999999999 of 'vertex', but there is room for 4 in the 24 bytes left",
+            "the header states 9999999999999 of 'vertex', but there is room for 4 in the 24 bytes left",
         ),
-        (ply("18446744073709551616", "1", square), "line 3: '18446744073709551616' is no count"),
+        (ply("18446744073709551616", "1", square), "line 3: '18446744073709551616' is not a count"),
         (
             ply("4", "1", &format!("{square} 3 0 1 2 7 0 0 0")).replace(
                 "end_header",
@@ -380,11 +380,11 @@ fn errors_name_the_value_and_the_place() {
         ),
         ("solid x\n".into(), "the file does not begin with 'ply'"),
         ("ply\nformat ascii 1.0\n".into(), "the header has no end"),
-        ("ply\nformat ascii 2.0\nend_header\n".into(), "line 2: 'format ascii 2.0' is no line of a PLY 1.0 header"),
+        ("ply\nformat ascii 2.0\nend_header\n".into(), "line 2: 'format ascii 2.0' is not a line of a PLY 1.0 header"),
         ("ply\nproperty float x\n".into(), "line 2: a property before any element"),
         (
             "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n".into(),
-            "line 4: 'half' is no type of a property",
+            "line 4: 'half' is not a type of a property",
         ),
         (
             "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n".into(),
@@ -394,7 +394,7 @@ fn errors_name_the_value_and_the_place() {
         assert_eq!(message("odd.ply", file.as_bytes()), expected);
     }
     assert_eq!(message("odd.obj", b"v 0 0\n"), "line 1: a vertex without z");
-    assert_eq!(message("odd.obj", b"v 0 0 z\n"), "line 1: 'z' is no number for z");
+    assert_eq!(message("odd.obj", b"v 0 0 z\n"), "line 1: 'z' is not a number for z");
     assert_eq!(message("odd.obj", b"v 0 0 0\n"), "there are no faces ('f a b c' lines)");
     assert_eq!(
         message("odd.obj", b"v 0 0 0\nv 1 0 0\nv 1 1e999 0\nv 0 1 0\nf 1 2 3 4\n"),
@@ -408,15 +408,12 @@ fn errors_name_the_value_and_the_place() {
     assert_eq!(off("0 1 0\n99999999999 0 1\n"), "line 6: there is no vertex number");
     assert_eq!(off("0 1 inf\n"), "line 5: the z coordinate is inf, expected a finite number");
     assert_eq!(off("0 1 0\n"), "line 5: the file ends where face 0 of 1 is expected");
-    assert_eq!(
-        off("0 1 0\n3 0 1 2\n3 0 1 2\n"),
-        "line 7: '3' stands behind the last face, expected the end of the file"
-    );
+    assert_eq!(off("0 1 0\n3 0 1 2\n3 0 1 2\n"), "line 7: '3' follows the last face, expected the end of the file");
     assert_eq!(
         message("odd.off", b"OFF\n99999999999999 1 0\n0 0 0\n"),
         "line 3: the file ends where vertex 1 of 99999999999999 is expected"
     );
-    assert_eq!(message("odd.off", b"4OFF\n"), "line 1: '4OFF' is a kind of OFF file that is not read");
+    assert_eq!(message("odd.off", b"4OFF\n"), "line 1: '4OFF' is a variant of OFF that is not supported");
     assert_eq!(message("odd.off", b"solid\n"), "line 1: the file begins with 'solid', not with 'OFF'");
     assert_eq!(message("odd.stl", b""), "STL meshes are not read: they have no exact coordinates");
     assert_eq!(message("odd.dxf", b""), "the file's extension names no mesh format");

@@ -218,7 +218,7 @@ const BROKEN: &[(&str, Fate)] = &[
     ("malformed_extrabytes.las", Full(10)),
     ("mut_Topography__truncated_half.laz", Cut(37_110, "the file ends within its compressed points: 37110 of 73403")),
     ("mut_point-time-color__bad_signature.las", Refused(Kind::Format, "begins with \"LASX\", expected \"LASF\"")),
-    ("mut_point-time-color__bbox_inverted.las", Warned(1065, "extent in the header is no box")),
+    ("mut_point-time-color__bbox_inverted.las", Warned(1065, "extent in the header is not a box")),
     ("mut_point-time-color__chunktable_ptr_garbage.laz", Warned(1065, "lies beyond the end of the file at byte 17546")),
     ("mut_point-time-color__chunktable_ptr_minus1.laz", Warned(1065, "decoded one after the other")),
     ("mut_point-time-color__count_max.las", Cut(1065, "states 4294967295 points, but the file holds 1065")),

@@ -541,7 +541,7 @@ pub static FORMATS: &[Format] = &[
             }),
             ..NOT_WRITTEN
         },
-        help: "points, one a line; read under any other name, too",
+        help: "points, one per line; also read under any other name",
         ..ROW
     },
     Format {

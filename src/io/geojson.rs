@@ -100,7 +100,7 @@ impl Reader {
                 self.layer.shapes.push(Shape::Null);
                 Ok(())
             }
-            Some(_) => Err(Error::format("its geometry is no object")),
+            Some(_) => Err(Error::format("its geometry is not an object")),
         }
     }
 
@@ -129,7 +129,7 @@ impl Reader {
         if kind == "GeometryCollection" {
             for member in array(geometry, "geometries")? {
                 let Value::Object(member) = member else {
-                    return Err(Error::format("a GeometryCollection holds no object"));
+                    return Err(Error::format("a member of a GeometryCollection is not an object"));
                 };
                 self.geometry(member, height)?;
             }
@@ -152,7 +152,7 @@ impl Reader {
                 let polygons = coordinates()?.iter().map(|polygon| rings(list(polygon)?));
                 Shape::Polygon(polygons.collect::<Result<Vec<_>>>()?.concat())
             }
-            other => return Err(Error::format(format!("type {other} is none of GeoJSON's"))),
+            other => return Err(Error::format(format!("type {other} is not a GeoJSON type"))),
         };
         if let Some(z) = height {
             shape.set_height(z);
@@ -191,7 +191,7 @@ impl Reader {
             }
             None => {
                 layer.warnings.push(
-                    "no crs member, and its coordinates are not longitude and latitude (--a-srs says what they are in)"
+                    "no crs member, and its coordinates are not longitude and latitude (state their system with --a-srs)"
                         .to_owned(),
                 );
                 None
@@ -228,7 +228,7 @@ fn array<'a>(object: &'a Object, name: &str) -> Result<&'a [Value]> {
 }
 
 fn list(value: &Value) -> Result<&[Value]> {
-    value.as_array().map(Vec::as_slice).ok_or_else(|| Error::format(format!("{value} where an array should be")))
+    value.as_array().map(Vec::as_slice).ok_or_else(|| Error::format(format!("{value} instead of an array")))
 }
 
 fn vertex(position: &[Value]) -> Result<[f64; 3]> {
@@ -425,12 +425,12 @@ mod tests {
             ("", "not JSON: EOF while parsing a value at line 1 column 0"),
             ("[]", "not GeoJSON: no object with a type"),
             ("{}", "not GeoJSON: an object without a type"),
-            (r#"{"type":"Topology"}"#, "type Topology is none of GeoJSON's"),
+            (r#"{"type":"Topology"}"#, "type Topology is not a GeoJSON type"),
             (r#"{"type":"FeatureCollection"}"#, "no array features"),
             (&features(&[LINE, r#"{"type":"Point","coordinates":[1]}"#]), "feature 2: a position of 1 numbers"),
             (&features(&[r#"{"type":"Point","coordinates":[1,"a"]}"#]), "feature 1: coordinate \"a\""),
-            (&features(&[r#"{"type":"LineString","coordinates":[1,2]}"#]), "feature 1: 1 where an array should be"),
-            (&features(&["7"]), "feature 1: its geometry is no object"),
+            (&features(&[r#"{"type":"LineString","coordinates":[1,2]}"#]), "feature 1: 1 instead of an array"),
+            (&features(&["7"]), "feature 1: its geometry is not an object"),
         ] {
             assert_eq!(read(text).unwrap_err().to_string(), message);
         }

@@ -18,11 +18,11 @@ use crate::error::{Error, Result};
 pub fn read(spec: &str) -> Result<Layer> {
     let (path, field) = split(spec);
     if field == Some("") {
-        return Err(Error::usage(format!("{spec}: no field behind the colon")).cure("write FILE or FILE:FIELD"));
+        return Err(Error::usage(format!("{spec}: no field after the colon")).cure("write FILE or FILE:FIELD"));
     }
     if let Some((whole, part)) = formats::whole_of(&path) {
         let whole_path = path.with_extension(whole.extensions[0]);
-        return Err(Error::usage(format!("a .{part} is a part of {}", whole.noun)).in_file(&path).cure(format!(
+        return Err(Error::usage(format!("a .{part} is part of {}", whole.noun)).in_file(&path).cure(format!(
             "name its .{}: {}",
             whole.extensions[0],
             whole_path.display()

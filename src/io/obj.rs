@@ -84,7 +84,8 @@ fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     let mut p = [0.0; 3];
     for (value, axis) in p.iter_mut().zip(["x", "y", "z"]) {
         let word = words.next().ok_or_else(|| Error::format(format!("a vertex without {axis}")))?;
-        *value = word.parse().map_err(|_| Error::format(format!("'{}' is no number for {axis}", shortened(word))))?;
+        *value =
+            word.parse().map_err(|_| Error::format(format!("'{}' is not a number for {axis}", shortened(word))))?;
     }
     Ok(p)
 }

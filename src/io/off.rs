@@ -74,7 +74,7 @@ fn read_header(rows: &mut Rows) -> Result<[usize; 2]> {
         b"OFF" | b"COFF" | b"NOFF" | b"CNOFF" | b"STOFF" => {}
         _ if keyword.ends_with(b"OFF") => {
             let kind = shown(keyword);
-            return Err(Error::unsupported(format!("'{kind}' is a kind of OFF file that is not read"))
+            return Err(Error::unsupported(format!("'{kind}' is a variant of OFF that is not supported"))
                 .at(format!("line {}", row.line))
                 .cure("save it as plain OFF"));
         }

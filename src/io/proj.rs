@@ -71,13 +71,13 @@ mod with_proj {
     pub fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
         for crs in [from, to] {
             if crs.kind == CrsKind::Local {
-                return Err(Error::usage(format!("{crs} is a local system: nothing says where on earth it is"))
+                return Err(Error::usage(format!("{crs} is a local system: its position on the earth is unknown"))
                     .cure("state the system with --a-srs"));
             }
         }
         if to.kind == CrsKind::Geocentric && !from.is_same(to) {
             return Err(Error::unsupported(format!("reprojecting to {to}, which is geocentric"))
-                .cure("choose a projected system, as EPSG:25832"));
+                .cure("choose a projected system, such as EPSG:25832"));
         }
         let (geocentric, base) = match from.kind {
             CrsKind::Geocentric => {
@@ -126,7 +126,7 @@ mod with_proj {
         let (Some(source), target) = (&from.vertical_unit, &to.vertical_unit) else {
             let nothing = to.vertical_epsg.map(|code| {
                 format!(
-                    "heights are left as they are: {from} does not say what they are, EPSG:{code} is taken for granted"
+                    "heights are left as they are: {from} does not state their vertical system, EPSG:{code} is assumed"
                 )
             });
             return (1.0, nothing);
@@ -135,8 +135,8 @@ mod with_proj {
             let unit = target.as_ref().map_or(1.0, |unit| unit.factor);
             let warning = to
                 .vertical_epsg
-                .map(|code| format!("heights are left over the ellipsoid: they are not those of EPSG:{code}"));
-            return (1.0 / unit, warning.or_else(|| Some("heights are those over the ellipsoid".to_owned())));
+                .map(|code| format!("heights are kept above the ellipsoid: they are not those of EPSG:{code}"));
+            return (1.0 / unit, warning.or_else(|| Some("heights are above the ellipsoid".to_owned())));
         }
         let factor = target.as_ref().map_or(1.0, |target| source.factor / target.factor);
         let same = match (from.vertical_epsg, to.vertical_epsg) {
@@ -145,7 +145,7 @@ mod with_proj {
             _ => false,
         };
         let name =
-            |code: Option<u32>| code.map_or("heights over the ellipsoid".to_owned(), |code| format!("EPSG:{code}"));
+            |code: Option<u32>| code.map_or("heights above the ellipsoid".to_owned(), |code| format!("EPSG:{code}"));
         let warning = match target {
             None => from.vertical_epsg.map(|code| {
                 format!(
@@ -155,7 +155,7 @@ mod with_proj {
             }),
             Some(_) if same => None,
             Some(target) => Some(format!(
-                "heights are left on their datum{}: no transformation from {} to {} is made",
+                "heights keep their datum{}: they are not transformed from {} to {}",
                 if (factor - 1.0).abs() > 1e-12 { format!(" (in {})", target.name) } else { String::new() },
                 name(from.vertical_epsg),
                 name(to.vertical_epsg),
@@ -178,7 +178,7 @@ mod with_proj {
             }
             let (from, to) = &self.definitions;
             let object = Proj::new_known_crs(from, to, None).map_err(|error| {
-                Error::unsupported(format!("PROJ knows no way from {} to {}: {error}", self.from, self.to))
+                Error::unsupported(format!("PROJ has no operation from {} to {}: {error}", self.from, self.to))
                     .cure("name other systems with --a-srs (of the input) or --t-srs")
             })?;
             let object = Rc::new(object);
@@ -200,9 +200,9 @@ mod with_proj {
             }
             let (from, to) = (&self.from, &self.to);
             let warning = if info.accuracy < 0.0 {
-                format!("the accuracy of the way from {from} to {to} is unknown ({name})")
+                format!("the accuracy of the operation from {from} to {to} is unknown ({name})")
             } else if info.accuracy > REPORTED {
-                format!("the way from {from} to {to} is accurate to {} m ({name})", info.accuracy)
+                format!("the operation from {from} to {to} is accurate to {} m ({name})", info.accuracy)
             } else {
                 return;
             };
@@ -219,7 +219,7 @@ mod with_proj {
             if x.is_finite() && y.is_finite() {
                 Ok([x, y, start[2] * self.height])
             } else {
-                Err("it lies outside of what the operation covers".to_owned())
+                Err("it is outside of the area of the operation".to_owned())
             }
         }
     }
@@ -231,7 +231,7 @@ mod with_proj {
                 *point = self.one(&object, *point).map_err(|reason| {
                     let [x, y, _] = point;
                     Error::format(format!(
-                        "point ({x}, {y}) cannot be taken from {} to {}: {reason}",
+                        "point ({x}, {y}) cannot be transformed from {} to {}: {reason}",
                         self.from, self.to
                     ))
                     .cure("check that the file's coordinate system is what it says (--a-srs overrides it)")

@@ -40,7 +40,7 @@ fn refusal(head: &[u8], path: &Path) -> Error {
     match named.filter(|format| format.content == Content::Picture || matches!(format.reader, Reader::Gdal)) {
         Some(Format { name, .. }) => Error::unsupported(format!("{name} needs GDAL"))
             .cure("build with the `gdal` feature, or convert with gdal_translate to GeoTIFF"),
-        None => Error::unsupported("is no GeoTIFF, nor any raster format that is known by its first bytes")
+        None => Error::unsupported("not a GeoTIFF, nor any raster format that its first bytes identify")
             .cure("build with the `gdal` feature for other raster formats"),
     }
 }
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(refused(b"UHL1080000", "n43.dt0"), "DTED needs GDAL");
         assert_eq!(refused(b"NCOLS 4\nNROWS 5", "a.txt"), "Esri ASCII grid needs GDAL");
         assert_eq!(refused(&[0; 100], "N50E012.HGT"), "SRTM height file (HGT) needs GDAL");
-        assert!(refused(b"hello", "a.txt").starts_with("is no GeoTIFF"));
-        assert!(refused(b"hello", "a.tif").starts_with("is no GeoTIFF"));
+        assert!(refused(b"hello", "a.txt").starts_with("not a GeoTIFF"));
+        assert!(refused(b"hello", "a.tif").starts_with("not a GeoTIFF"));
     }
 }

@@ -37,7 +37,7 @@ impl<'a> Rows<'a> {
         self.next(pattern).ok_or_else(|| {
             Error::format(format!("the file ends where {} is expected", what()))
                 .at(format!("line {}", self.line.max(1)))
-                .cure(format!("get the whole file, or correct the count; the line is to read '{pattern}'"))
+                .cure(format!("get the whole file, or correct the count; the line should be '{pattern}'"))
         })
     }
 
@@ -69,9 +69,9 @@ impl<'a> Rows<'a> {
             None => Ok(()),
             Some(mut row) => {
                 let word = row.word().map(shown).unwrap_or_default();
-                Err(Error::format(format!("'{word}' stands behind {last}, expected the end of the file"))
+                Err(Error::format(format!("'{word}' follows {last}, expected the end of the file"))
                     .at(format!("line {}", row.line))
-                    .cure("correct the count in the line before that list, or remove what is behind it"))
+                    .cure("correct the count in the line before that list, or remove what follows it"))
             }
         }
     }
@@ -107,7 +107,8 @@ impl<'a> Row<'a> {
             return Ok(number);
         }
         let whole = parse::<f64>(word).filter(|number| number.fract() == 0.0 && number.abs() < 1e15);
-        let number = whole.ok_or_else(|| self.wrong(format!("'{}' is no whole number for the {what}", shown(word))))?;
+        let number =
+            whole.ok_or_else(|| self.wrong(format!("'{}' is not a whole number for the {what}", shown(word))))?;
         Ok(number as i64)
     }
 
@@ -136,7 +137,7 @@ impl<'a> Row<'a> {
     pub(super) fn finite(&mut self, what: &str) -> Result<f64> {
         let word = self.some(what)?;
         let number: f64 =
-            parse(word).ok_or_else(|| self.wrong(format!("'{}' is no number for the {what}", shown(word))))?;
+            parse(word).ok_or_else(|| self.wrong(format!("'{}' is not a number for the {what}", shown(word))))?;
         if !number.is_finite() {
             return Err(self.wrong(format!("the {what} is {}, expected a finite number", shown(word))));
         }
@@ -150,7 +151,7 @@ impl<'a> Row<'a> {
     /// Returns an error in this line, with the expected pattern as the cure.
     #[cold]
     pub(super) fn wrong(&self, message: String) -> Error {
-        let cure = format!("correct the line; it is to read '{}'", self.pattern);
+        let cure = format!("correct the line; it should be '{}'", self.pattern);
         Error::format(message).at(format!("line {}", self.line)).cure(cure)
     }
 }
@@ -179,8 +180,8 @@ mod tests {
         let mut row = rows.next("N X").unwrap();
         assert_eq!((row.line, row.within::<u32>("n").unwrap()), (6, 3));
         let error = row.finite("x").unwrap_err();
-        assert_eq!(error.to_string(), "line 6: 'x' is no number for the x");
-        assert_eq!(error.cure_text(), Some("correct the line; it is to read 'N X'"));
+        assert_eq!(error.to_string(), "line 6: 'x' is not a number for the x");
+        assert_eq!(error.cure_text(), Some("correct the line; it should be 'N X'"));
         assert_eq!(
             rows.expect(|| "vertex 2".into(), "N").err().unwrap().to_string(),
             "line 6: the file ends where vertex 2 is expected"
@@ -196,7 +197,7 @@ mod tests {
             (whole, row.finite("n").map_err(|e| e.to_string()))
         };
         assert_eq!(read("7"), (Ok(7), Ok(7.0)));
-        assert_eq!(read("1.5").0, Err("line 1: '1.5' is no whole number for the n".into()));
+        assert_eq!(read("1.5").0, Err("line 1: '1.5' is not a whole number for the n".into()));
         assert_eq!(read("-1").0, Err("line 1: -1 is out of range for the n".into()));
         assert_eq!(read("4294967296").0, Err("line 1: 4294967296 is out of range for the n".into()));
         for odd in ["nan", "inf", "-Infinity", "1e999"] {

@@ -15,7 +15,7 @@ use crate::io::{Destination, Output};
 /// resolution of a millimeter over 8 km; with map coordinates, it would lose the meter.
 pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], PathBuf)> {
     let count = u32::try_from(mesh.face_count)
-        .map_err(|_| Error::limit(format!("{} triangles; an STL file counts to {}", mesh.face_count, u32::MAX)))?;
+        .map_err(|_| Error::limit(format!("{} triangles; an STL file supports up to {}", mesh.face_count, u32::MAX)))?;
     let mut bounds = Bounds::default();
     mesh.vertices().for_each(|p| bounds.add(p));
     let origin = if bounds.is_empty() { [0.0; 3] } else { bounds.min.map(f64::floor) };

@@ -89,7 +89,7 @@ fn choose(dataset: &Dataset, name: Option<&str>) -> Result<(String, Option<Strin
     let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
     let is_layer = |name: &str| layers.iter().any(|layer| layer == name);
     let several = |message: String| {
-        Error::usage(message).cure(format!("name one behind a colon, as FILE:LAYER: {}", layers.join(", ")))
+        Error::usage(message).cure(format!("name one after a colon, as FILE:LAYER: {}", layers.join(", ")))
     };
     let [only] = layers.as_slice() else {
         let Some(name) = name else {

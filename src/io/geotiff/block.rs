@@ -52,7 +52,7 @@ pub(super) fn values(
         Ok(())
     };
     contain(decode_and_pick)
-        .unwrap_or_else(|| Err(Error::format("the decoder gave up")))
+        .unwrap_or_else(|| Err(Error::format("the decoder failed")))
         .map_err(|e| in_block(in_compression(e, layout.compression)))
 }
 

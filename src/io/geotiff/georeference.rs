@@ -50,8 +50,8 @@ impl ModelTags {
         let fit = fit(tiepoints);
         if fit.is_none() {
             warnings.push(format!(
-                "unsupported georeferencing: {count} ground control points (tiepoints without a pixel scale) that no \
-                 one affine transform meets"
+                "unsupported georeferencing: {count} ground control points (tiepoints without a pixel scale) that do \
+                 not lie on one affine transform"
             ));
         }
         fit

@@ -142,14 +142,14 @@ impl Layout {
         };
         if row_bytes.saturating_mul(span_height) > MAX_BLOCK_BYTES {
             return Err(cure(Error::limit(format!(
-                "a block of {block_width} x {span_height} cells of {interleaved} x {sample} passes the limit of \
+                "a block of {block_width} x {span_height} cells of {interleaved} x {sample} exceeds the limit of \
                  {MAX_BLOCK_BYTES} bytes for one block"
             ))));
         }
         let across = width.div_ceil(block_width);
         let blocks = across.saturating_mul(height.div_ceil(block_height));
         if blocks > MAX_BLOCKS {
-            return Err(cure(Error::limit(format!("{blocks} blocks pass the limit of {MAX_BLOCKS} blocks"))));
+            return Err(cure(Error::limit(format!("{blocks} blocks exceed the limit of {MAX_BLOCKS} blocks"))));
         }
         let (offsets_tag, counts_tag) = if is_tiled {
             (tags::TILE_OFFSETS, tags::TILE_BYTE_COUNTS)

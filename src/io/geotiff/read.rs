@@ -152,7 +152,7 @@ fn read_header(path: &Path) -> Result<GeoTiffReader> {
     let nodata = match nodata_text.as_deref().map(|text| (text, Nodata::parse(text))) {
         Some((_, Some(nodata))) => nodata,
         Some((text, None)) if !text.trim().is_empty() => {
-            warnings.push(format!("the nodata value {text:?} is no number and is ignored"));
+            warnings.push(format!("the nodata value {text:?} is not a number and is ignored"));
             Nodata::default()
         }
         _ => Nodata::default(),
@@ -233,7 +233,7 @@ fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) 
             break;
         };
         if !seen.insert(offset) || seen.len() > MOST {
-            warnings.push("the list of images in the file runs in a circle, or is longer than any use".into());
+            warnings.push("the list of images in the file is circular or unreasonably long".into());
             break;
         }
         let number = |tag| directory.number(bytes, tag).ok().flatten().unwrap_or(0);
@@ -331,14 +331,14 @@ impl GeoTiffReader {
         let fits = |start: usize, length: usize, end| start.checked_add(length).is_some_and(|stop| stop <= end);
         if !fits(column, width, self.info.width) || !fits(row, height, self.info.height) {
             return Err(Error::usage(format!(
-                "{width} x {height} cells from column {column}, row {row} leave the raster of {} x {}",
+                "{width} x {height} cells from column {column}, row {row} exceed the raster of {} x {}",
                 self.info.width, self.info.height
             )));
         }
         let cells = width.saturating_mul(height);
         if cells > MAX_CELLS {
             return Err(Error::limit(format!(
-                "{width} x {height} cells pass the limit of {MAX_CELLS} cells that are read at once"
+                "{width} x {height} cells exceed the limit of {MAX_CELLS} cells that are read at once"
             ))
             .cure("use a part of the raster (gdal_translate -projwin) or a coarser one (gdal_translate -tr)"));
         }

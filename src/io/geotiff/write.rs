@@ -80,7 +80,7 @@ impl Tiling {
         let count = across.saturating_mul(height.div_ceil(SIDE));
         if count as u64 > MAX_BLOCKS || u32::try_from(width.max(height)).is_err() {
             return Err(Error::limit(format!(
-                "a raster of {width} x {height} cells passes the limit of {MAX_BLOCKS} tiles of {SIDE} x {SIDE} cells"
+                "a raster of {width} x {height} cells exceeds the limit of {MAX_BLOCKS} tiles of {SIDE} x {SIDE} cells"
             ))
             .cure("choose a coarser resolution or a smaller part"));
         }

@@ -43,7 +43,7 @@ pub(super) fn read(input: &mut Input, header: &Header) -> Result<LasHead> {
             };
             if is_kept(&raw) {
                 left = left.checked_sub(raw.length).ok_or_else(|| {
-                    Error::limit(format!("the records of the file pass the limit of {LARGEST} bytes together"))
+                    Error::limit(format!("the records of the file exceed the limit of {LARGEST} bytes together"))
                         .at(format!("byte {position}"))
                 })?;
                 records.push([head, input.bytes(payload, raw.length as usize)?].concat());

@@ -277,7 +277,7 @@ fn check_bounds(raw: &RawHeader, count: u64, warnings: &mut Vec<String>) -> Opti
     let is_box =
         (0..3).all(|axis| raw.min[axis].is_finite() && raw.max[axis].is_finite() && raw.min[axis] <= raw.max[axis]);
     if !is_box && count > 0 {
-        warnings.push("the extent in the header is no box (a minimum exceeds its maximum) and is ignored".into());
+        warnings.push("the extent in the header is not a box (a minimum exceeds its maximum) and is ignored".into());
     }
     is_box.then_some(bounds)
 }

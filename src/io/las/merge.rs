@@ -64,7 +64,7 @@ impl Step {
     pub(super) fn apply(&self, steps: [i32; 3], into: &Lattice) -> Result<[i32; 3]> {
         let far = |point: [f64; 3]| {
             let [x, y, z] = point;
-            Error::limit(format!("the point at {x} {y} {z} is out of reach of the scale and offset of the output"))
+            Error::limit(format!("the point at {x} {y} {z} cannot be stored with the scale and offset of the output"))
                 .cure("write the files one by one")
         };
         match self {
@@ -93,7 +93,7 @@ impl Step {
 pub(super) fn heads(sources: &[&PointInfo], rounding: Rounding) -> Result<(LasHead, Lattice)> {
     let all = sources.iter().map(|info| info.head.as_ref().zip(info.lattice).ok_or_else(not_las));
     let all: Vec<(&LasHead, Lattice)> = all.collect::<Result<_>>()?;
-    let [(first, _), others @ ..] = all.as_slice() else { return Err(Error::usage("there is no source of points")) };
+    let [(first, _), others @ ..] = all.as_slice() else { return Err(Error::usage("no source of points")) };
     for (head, _) in &all {
         check(head)?;
     }
@@ -149,7 +149,7 @@ fn check(head: &LasHead) -> Result<()> {
             "point format {} refers to waveforms, which are not copied",
             head.point_format
         ))
-        .cure("save it in point format 1, 3, 6 or 8 with a program that knows waveforms"));
+        .cure("save it in point format 1, 3, 6 or 8 with a program that supports waveforms"));
     }
     Ok(())
 }
@@ -158,7 +158,7 @@ fn check(head: &LasHead) -> Result<()> {
 fn agree(first: &LasHead, other: &LasHead) -> Result<()> {
     let differ = |what: &str, one: String, two: String| {
         Err(Error::usage(format!("the points of the inputs have different {what}: {one} and {two}"))
-            .cure("write the files one by one, or make them alike first: nothing is converted with a loss"))
+            .cure("write the files one by one, or convert them first: no lossy conversion is made"))
     };
     if first.point_format != other.point_format {
         return differ("point formats", first.point_format.to_string(), other.point_format.to_string());
@@ -200,10 +200,8 @@ fn lattice(all: &[(&LasHead, Lattice)], rounding: Rounding) -> Result<Lattice> {
 
 #[cold]
 fn not_las() -> Error {
-    Error::unsupported(
-        "points are written as LAS or LAZ only if they come from LAS or LAZ, with all that they have there",
-    )
-    .cure("give LAS or LAZ files, or write text: .xyz, .txt or .csv")
+    Error::unsupported("points are written as LAS or LAZ only if they come from LAS or LAZ, with all their attributes")
+        .cure("give LAS or LAZ files, or write text: .xyz, .txt or .csv")
 }
 
 #[cold]

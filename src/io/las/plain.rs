@@ -48,8 +48,8 @@ impl Plain {
             cut.refuse_or_warn(text, header.layout.points_end, warnings)?;
         } else if header.count == 0 && room > 0 {
             warnings.push(format!(
-                "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file was perhaps never \
-                 finished; nothing is read"
+                "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file may be \
+                 unfinished; nothing is read"
             ));
         }
         input.file.seek(SeekFrom::Start(start))?;

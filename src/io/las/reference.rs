@@ -39,7 +39,7 @@ fn from_wkt(bytes: &[u8], warnings: &mut Vec<String>) -> Option<Crs> {
     match Crs::from_wkt(text) {
         Ok(crs) => Some(crs),
         Err(error) => {
-            warnings.push(format!("the coordinate system in WKT is not understood and ignored: {error}"));
+            warnings.push(format!("the coordinate system in WKT is not understood and is ignored: {error}"));
             None
         }
     }
@@ -57,7 +57,8 @@ fn from_keys(directory: &[u8], payloads: &Payloads, warnings: &mut Vec<String>) 
     match keys.crs() {
         Ok(crs) => crs,
         Err(error) => {
-            warnings.push(format!("the GeoTIFF keys of the coordinate system are not understood and ignored: {error}"));
+            warnings
+                .push(format!("the GeoTIFF keys of the coordinate system are not understood and are ignored: {error}"));
             None
         }
     }

@@ -201,7 +201,7 @@ fn table_of(bytes: &[u8]) -> (usize, usize) {
 
 #[test]
 fn without_a_chunk_table_points_are_found_all_the_same() {
-    for (format, word) in [(3, "one after the other"), (8, "found by their own heads")] {
+    for (format, word) in [(3, "one after the other"), (8, "found by their own headers")] {
         let whole = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), format) }.write();
         let (pointer, table) = table_of(&whole);
         let mut lost = whole.clone();

@@ -105,7 +105,7 @@ pub fn create<'a>(
         record_count += 1;
     }
     let points_start = u32::try_from(head.header.len() + records.len())
-        .map_err(|_| Error::limit("the records before the points pass 4 GB"))?;
+        .map_err(|_| Error::limit("the records before the points exceed 4 GB"))?;
 
     let mut output = Output::create_seekable(target.path())?;
     let write = |output: &mut Output| -> std::io::Result<()> {
@@ -166,7 +166,7 @@ impl LasWriter<'_> {
             Body::Done => Some(Ok(())),
         };
         self.waiting.clear();
-        let written = written.ok_or_else(|| Error::format("the compressor of points failed"))?;
+        let written = written.ok_or_else(|| Error::format("compressing the points failed"))?;
         written.map_err(|e| Error::from(e).in_file(self.target.path()))
     }
 
@@ -211,7 +211,7 @@ impl LasWriter<'_> {
         // not know.
         let old = u32::try_from(self.count).ok().filter(|_| minor < 4 || self.head.point_format < 6);
         if minor < 4 && old.is_none() {
-            return Err(Error::limit(format!("{} points; LAS 1.{minor} counts to {}", self.count, u32::MAX))
+            return Err(Error::limit(format!("{} points; LAS 1.{minor} supports up to {}", self.count, u32::MAX))
                 .in_file(self.target.path())
                 .cure("write several files"));
         }
@@ -251,7 +251,7 @@ impl PointSink for LasWriter<'_> {
     fn write(&mut self, batch: &PointBatch) -> Result<()> {
         let stride = usize::from(self.head.record_length);
         if batch.records.len() != batch.len() * stride {
-            return Err(Error::usage(format!("the points come without their records of {stride} bytes")));
+            return Err(Error::usage(format!("the points lack their records of {stride} bytes")));
         }
         for record in batch.records.chunks_exact(stride) {
             let at = self.waiting.len();
@@ -273,10 +273,10 @@ impl PointSink for LasWriter<'_> {
             Body::Plain(output) => end(output),
             Body::Compressed(mut compressor) => {
                 let done =
-                    contain(|| compressor.done()).ok_or_else(|| Error::format("the compressor of points failed"))?;
+                    contain(|| compressor.done()).ok_or_else(|| Error::format("compressing the points failed"))?;
                 done.map_err(failed).and_then(|()| end(compressor.into_inner()))
             }
-            Body::Done => Err(Error::usage("the points are written already")),
+            Body::Done => Err(Error::usage("the points have already been written")),
         }
         .map_err(|e| e.in_file(self.target.path()))?;
         let header = self.header(late_start)?;

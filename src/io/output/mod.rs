@@ -23,7 +23,7 @@ pub use temporary::{Abandoned, abandon_outputs};
 /// A file that exists at the target is replaced; its mode is kept, and a symbolic link is followed.
 /// A pipe or a device cannot be renamed to, so bytes are written to it directly.
 #[derive(Debug)]
-#[must_use = "nothing is at the target before `commit`"]
+#[must_use = "nothing appears at the target before `commit`"]
 pub struct Output {
     file: BufWriter<File>,
     target: PathBuf,

@@ -26,7 +26,7 @@ use crate::error::{Error, Result};
 /// # }
 /// ```
 #[derive(Debug, Default)]
-#[must_use = "nothing is at the targets before `commit`"]
+#[must_use = "nothing appears at the targets before `commit`"]
 pub struct OutputSet {
     staged: RefCell<Staged>,
 }

@@ -33,7 +33,7 @@ impl TargetKind {
                 Ok(_) => return Ok(TargetKind::Stream),
             }
         }
-        Err(Error::usage("symbolic links lead in a circle"))
+        Err(Error::usage("symbolic links form a cycle"))
     }
 }
 

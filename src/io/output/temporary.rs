@@ -74,7 +74,7 @@ impl Drop for Temporary {
 
 /// A guard: while it exists, no output can be created or renamed.
 #[derive(Debug)]
-#[must_use = "outputs that are still written may appear once it is dropped"]
+#[must_use = "outputs that are still being written may appear once it is dropped"]
 pub struct Abandoned {
     _all: MutexGuard<'static, Vec<PathBuf>>,
 }

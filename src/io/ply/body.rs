@@ -24,7 +24,7 @@ impl<'a> Body<'a> {
         if least.checked_mul(element.count).is_none_or(|needed| needed > left) {
             let Element { name, count, .. } = element;
             return Err(Error::format(format!(
-                "the header says {count} of '{name}', but there is room for {} in the {} bytes left",
+                "the header states {count} of '{name}', but there is room for {} in the {} bytes left",
                 left / least.max(1),
                 self.rest.len()
             ))
@@ -111,7 +111,7 @@ impl<'a> Body<'a> {
         }
         std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).ok_or_else(|| {
             let word: String = String::from_utf8_lossy(word).chars().take(40).collect();
-            Error::format(format!("'{word}' is no number"))
+            Error::format(format!("'{word}' is not a number"))
         })
     }
 }

@@ -33,7 +33,7 @@ impl Scalar {
             "uint" | "uint32" => Scalar::U32,
             "float" | "float32" => Scalar::F32,
             "double" | "float64" => Scalar::F64,
-            _ => return Err(Error::format(format!("'{name}' is no type of a property"))),
+            _ => return Err(Error::format(format!("'{name}' is not a type of a property"))),
         })
     }
 
@@ -101,7 +101,8 @@ impl Header {
             match words[..] {
                 ["format", name, "1.0"] => encoding = Some(named_encoding(name).map_err(at_line)?),
                 ["element", name, count] => {
-                    let count = count.parse().map_err(|_| at_line(Error::format(format!("'{count}' is no count"))))?;
+                    let count =
+                        count.parse().map_err(|_| at_line(Error::format(format!("'{count}' is not a count"))))?;
                     elements.push(Element { name: name.into(), count, properties: Vec::new() });
                 }
                 ["property", ..] => {
@@ -118,7 +119,7 @@ impl Header {
                 ["end_header"] => break,
                 _ => {
                     let line: String = line.chars().take(80).collect();
-                    return Err(at_line(Error::format(format!("'{line}' is no line of a PLY 1.0 header"))));
+                    return Err(at_line(Error::format(format!("'{line}' is not a line of a PLY 1.0 header"))));
                 }
             }
         }
@@ -141,7 +142,7 @@ fn named_encoding(name: &str) -> Result<Encoding> {
         "ascii" => Ok(Encoding::Ascii),
         "binary_little_endian" => Ok(Encoding::LittleEndian),
         "binary_big_endian" => Ok(Encoding::BigEndian),
-        _ => Err(Error::format(format!("'{name}' is no PLY encoding"))),
+        _ => Err(Error::format(format!("'{name}' is not a PLY encoding"))),
     }
 }
 
@@ -152,6 +153,6 @@ fn property(words: &[&str]) -> Result<Property> {
             Ok(Property { name: name.into(), kind: Scalar::named(kind)?, length: Some(length) })
         }
         [_, kind, name] => Ok(Property { name: name.into(), kind: Scalar::named(kind)?, length: None }),
-        _ => Err(Error::format(format!("'{}' describes no property", words.join(" ")))),
+        _ => Err(Error::format(format!("'{}' does not describe a property", words.join(" ")))),
     }
 }

@@ -218,5 +218,5 @@ fn vertex_number(number: f64) -> Result<u32> {
     if number >= 0.0 && number < f64::from(u32::MAX) && number.fract() == 0.0 {
         return Ok(number as u32);
     }
-    Err(Error::format(format!("{number} is no number of a vertex")))
+    Err(Error::format(format!("{number} is not the number of a vertex")))
 }

@@ -31,7 +31,7 @@ impl Index {
         }
         let stated = u64::from(word(24).unwrap_or_default()) * 2;
         if stated != bytes.len() as u64 {
-            return Err(Error::format(format!("its header says {stated} bytes, the file has {}", bytes.len())));
+            return Err(Error::format(format!("its header states {stated} bytes, the file has {}", bytes.len())));
         }
         let entries: Vec<_> = bytes[HEADER..]
             .as_chunks::<8>()

@@ -105,7 +105,7 @@ fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
     }
     warnings.extend(damage.reported);
     if damage.more > 0 {
-        warnings.push(format!("and {} more places that could not be read", damage.more));
+        warnings.push(format!("and {} more parts that could not be read", damage.more));
     }
     warn_of_types(&mut warnings, header_type.code, &types);
     if z_field.is_some() {
@@ -149,7 +149,7 @@ fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
     let mut warnings = Vec::new();
     // If a file is longer than it states, its records show it, if it matters.
     if stated > size {
-        warnings.push(format!("its header says {stated} bytes, the file has {size}"));
+        warnings.push(format!("its header states {stated} bytes, the file has {size}"));
     }
     Ok(Header { code: i32::from_le_bytes(word(32)), warnings })
 }
@@ -198,7 +198,7 @@ fn read_table(
     let Some(dbf) = sibling(path, "dbf") else {
         return match z_field {
             None => Ok(Rows::default()),
-            Some(name) => Err(Error::usage(format!("there is no .dbf beside it to take field {name} from"))),
+            Some(name) => Err(Error::usage(format!("there is no .dbf next to it with the field {name}"))),
         };
     };
     let code_page = sibling(path, "cpg").and_then(|path| std::fs::read_to_string(path).ok());
@@ -215,7 +215,7 @@ fn read_table(
     let room = table.room()?;
     let rows = table.rows(field.as_ref(), records.saturating_add(1)).map_err(|e| e.in_file(&dbf))?;
     if table.stated > room {
-        warnings.push(format!(".dbf: its header says {} rows, it has {room}", table.stated));
+        warnings.push(format!(".dbf: its header states {} rows, it has {room}", table.stated));
     }
     // One row more than there are records was requested, to detect surplus rows.
     match rows.deleted.len() {
@@ -289,7 +289,7 @@ fn warn_of_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, 
     }
     let name = |code: i32| type_name(code).map_or_else(|| format!("type {code}"), str::to_owned);
     let list: Vec<String> = types.iter().map(|(&code, count)| format!("{count} {}", name(code))).collect();
-    warnings.push(format!("the header says {}, the records are {}", name(header), list.join(", ")));
+    warnings.push(format!("the header states {}, the records are {}", name(header), list.join(", ")));
 }
 
 fn warn_of_oddities(warnings: &mut Vec<String>, odd: &record::Oddities) {

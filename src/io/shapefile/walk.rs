@@ -99,7 +99,7 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>)
             Err(Flaw::NotFinite { vertex, axis, value }) => {
                 return Err(Error::format(format!("{axis} of vertex {vertex} is {value}"))
                     .at(location())
-                    .cure("repair the record or take it out, then try again"));
+                    .cure("repair or remove the record, then try again"));
             }
         };
         walk.records.push(Record { offset: at, number: Some(id), shape });
@@ -119,7 +119,7 @@ fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u
     let length = 2 * i64::from(i32::from_be_bytes([e, f, g, h]));
     Ok(match u64::try_from(length) {
         Ok(length) if length > left - 8 => {
-            Err(format!("content of {length} bytes passes the end of the file, which has {} more", left - 8))
+            Err(format!("content of {length} bytes extends beyond the end of the file, which has {} more", left - 8))
         }
         Ok(length) if length >= 4 => Ok((i32::from_be_bytes([a, b, c, d]), length)),
         _ => Err(format!("content of {length} bytes")),

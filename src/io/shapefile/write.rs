@@ -14,7 +14,7 @@ use crate::io::{Destination, Output};
 const MAX_BYTES: u64 = i32::MAX as u64;
 
 /// The cure if a shapefile would be too large.
-const TOO_LARGE: &str = "write GeoJSON, or less: a larger interval, a part of the area";
+const TOO_LARGE: &str = "write GeoJSON, or less data: a larger interval or a part of the area";
 
 /// The stored value for a missing height; below [`record::NO_DATA`](super::record::NO_DATA).
 const NO_HEIGHT: f64 = -1e40;
@@ -247,7 +247,7 @@ fn real(value: f64) -> String {
 /// Returns a field descriptor of the `.dbf`.
 fn field(name: &str, width: u8, decimals: u8) -> Result<[u8; 32]> {
     if name.is_empty() || name.len() > 10 || !name.is_ascii() {
-        return Err(Error::usage(format!("field name '{name}': 1 to 10 ASCII characters are possible")));
+        return Err(Error::usage(format!("field name '{name}': expected 1 to 10 ASCII characters")));
     }
     let mut bytes = [0; 32];
     bytes[..name.len()].copy_from_slice(name.as_bytes());
@@ -307,7 +307,7 @@ impl FileSet {
         let dbf_bytes = self.dbf_bytes + row as u64;
         for (bytes, output) in [(shp_bytes, &self.shp), (dbf_bytes, &self.dbf)] {
             if bytes > MAX_BYTES {
-                return Err(Error::limit(format!("record {} would take it over 2 GiB", self.records + 1))
+                return Err(Error::limit(format!("record {} would make it larger than 2 GiB", self.records + 1))
                     .in_file(output.target())
                     .cure(TOO_LARGE));
             }
@@ -485,7 +485,7 @@ mod tests {
         assert!(set.write(&[0; 40], std::iter::empty(), &[id(1)]).is_ok());
         let error = set.write(&[0; 60], std::iter::empty(), &[id(2)]).unwrap_err();
         assert_eq!(error.kind(), crate::error::Kind::Limit);
-        assert!(error.to_string().ends_with("x.shp: record 2 would take it over 2 GiB"), "{error}");
+        assert!(error.to_string().ends_with("x.shp: record 2 would make it larger than 2 GiB"), "{error}");
         set.dbf_bytes = MAX_BYTES;
         assert!(set.write(&[0; 4], std::iter::empty(), &[id(2)]).unwrap_err().to_string().contains("x.dbf"));
         drop(set);

@@ -276,7 +276,7 @@ impl Lines {
                 "a line of more than {LONGEST_LINE} bytes, which begins {}",
                 quote(&self.line)
             ))
-            .cure("this is perhaps not a text file"));
+            .cure("this may not be a text file"));
         }
         if self.number == 1 {
             if self.line.starts_with(b"\xff\xfe") || self.line.starts_with(b"\xfe\xff") {

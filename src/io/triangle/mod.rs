@@ -206,7 +206,7 @@ pub fn write(targets: &[Destination], triangulated: &Triangulated) -> Result<()>
 
 #[cold]
 fn unknown(path: &Path, cure: &str) -> Error {
-    Error::usage("the file's extension names no file of Triangle").in_file(path).cure(cure)
+    Error::usage("the file's extension is not that of a file of Triangle").in_file(path).cure(cure)
 }
 
 fn extension(path: &Path) -> String {

@@ -39,7 +39,7 @@ pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
 pub(super) fn read_beside(path: &Path) -> Result<LineGraph> {
     read_file(&path.with_extension("node")).map_err(|e| match e.cure_text() {
         Some(_) => e,
-        None => e.cure(format!("{} needs its vertices beside it", path.display())),
+        None => e.cure(format!("{} needs its vertices next to it", path.display())),
     })
 }
 

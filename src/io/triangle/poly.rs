@@ -60,7 +60,7 @@ fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -
     if marker_count > 1 || header.has_more() {
         // A vertex that the list before does not count leads here.
         return Err(
-            header.wrong("this is no line that counts segments: expected two numbers, the second 0 or 1".into())
+            header.wrong("this is not a line that counts segments: expected two numbers, the second 0 or 1".into())
         );
     }
     listed(rows, count, "segment", SEGMENT, |row, number| {
@@ -75,7 +75,7 @@ fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -
 fn count_alone(mut header: Row, items: &str) -> Result<usize> {
     let count = header.within(&format!("number of {items}"))?;
     if header.has_more() {
-        return Err(header.wrong(format!("this is no line that counts {items}: expected one number")));
+        return Err(header.wrong(format!("this is not a line that counts {items}: expected one number")));
     }
     Ok(count)
 }

@@ -74,7 +74,7 @@ impl Laz {
             _ if header.count == 0 => Vec::new(),
             Err(reason) if matches!(compression.order, Order::Layered(_)) => {
                 let chunks = table::walk(&mut input, &compression, header)?;
-                warnings.push(format!("{reason}; the chunks are found by their own heads"));
+                warnings.push(format!("{reason}; the chunks are found by their own headers"));
                 chunks
             }
             Err(reason) if compression.chunks == ChunkSize::Variable => {
@@ -137,7 +137,7 @@ fn check_count(header: &Header) -> Result<()> {
         header.count
     ))
     .at(format!("byte {}", header.layout.points_start))
-    .cure("the header is damaged, or the file was made to keep programs busy: get it again from its producer"))
+    .cure("the header is damaged, or the file was made to overload programs: get it again from its producer"))
 }
 
 /// Decodes several chunks ahead, and returns them one by one.

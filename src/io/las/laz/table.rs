@@ -60,7 +60,7 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
         };
         let number = chunks.len() + 1;
         if bytes > table - start {
-            return Err(damaged(format!("has chunk {number} of {bytes} bytes reach into it")));
+            return Err(damaged(format!("states {bytes} bytes for chunk {number}, which would overlap the table")));
         }
         if points == 0 {
             break;
@@ -69,7 +69,7 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
         let is_last = first + points == header.count;
         let largest = 2 * points * compression.stride as u64 + 4096;
         if bytes < compression.stride as u64 || (bytes > largest && !is_last) {
-            return Err(damaged(format!("has chunk {number} take {bytes} bytes for {points} points")));
+            return Err(damaged(format!("states {bytes} bytes for the {points} points of chunk {number}")));
         }
         chunks.push(Chunk { start, bytes, first, points });
         start += bytes;
