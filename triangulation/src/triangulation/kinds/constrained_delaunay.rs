@@ -66,10 +66,10 @@ impl<C: Default> ConstrainedEdges<C> {
 /// edges, and no vertex lies inside of a triangle's circumscribed circle unless a constraint
 /// separates them (Lee and Lin 1986; Chew 1989).
 ///
-/// Constraints come as *lines*: rows of points, which may touch, overlap, repeat, cross and close.
-/// Each line keeps an [id](crate::LineId), which gives its [chain](Self::chain) of vertices. A line
-/// that passes through a vertex is split there. Where two lines cross, a vertex is added at the
-/// crossing, rounded; [`Crossing`] makes its point. Lines bend no further than the
+/// Constraints come as *lines*: sequences of points, which may touch, overlap, repeat, cross and
+/// close. Each line keeps an [id](crate::LineId), which gives its [chain](Self::chain) of vertices.
+/// A line that passes through a vertex is split there. Where two lines cross, a vertex is added at
+/// the crossing, rounded; [`Crossing`] makes its point. Lines bend no further than the
 /// [rounding](Rounding) requires: the [arrangement](crate::arrangement) describes how, and what is
 /// proven.
 ///

@@ -271,7 +271,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
             _ => None,
         };
         if let Some(cell) = host {
-            // Of an infinite cell and its neighbor, the finite one.
+            // The finite one of an infinite cell and its neighbor.
             let infinite = self.tds().index_of(cell, VertexId::INFINITE);
             let cell = infinite.map_or(cell, |i| self.tds().neighbor(cell, i));
             self.inner.tds.detach(vertex);

@@ -11,8 +11,8 @@
 //!   as a given point.
 //!
 //! An insertion applies the rules, starting from what is new. A removal first retracts what may
-//! have depended on what is removed: from site to site, the segments there that cross no other. What
-//! remains depends on crossings that remain. Then it applies the rules again.
+//! have depended on what is removed: from site to site, the segments there that cross no other.
+//! What remains depends on crossings that remain. Then it applies the rules again.
 //!
 //! *Where to search.* A point of a segment is within half a unit of its chain on each axis, and a
 //! point of the chain within half a unit of the segment. So a segment that meets a pixel passes

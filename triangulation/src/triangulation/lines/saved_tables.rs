@@ -16,7 +16,7 @@ pub(in super::super) struct SavedTables {
     pub(in super::super) splits: Vec<[VertexId; 3]>,
     pub(in super::super) waiting: Vec<[VertexId; 2]>,
     pub(in super::super) added: Vec<VertexId>,
-    /// In order.
+    /// The owned vertices, in order.
     pub(in super::super) owned: Vec<VertexId>,
     pub(in super::super) rounding: Option<Rounding>,
     pub(in super::super) recrossed: bool,
