@@ -73,8 +73,8 @@ fn bundle(shape: &str, count: usize) -> Option<Vec<Line>> {
             let length = 2.0 / (count as f64).sqrt();
             let segment = |_| {
                 let at = [random.next(), random.next()];
-                let way = around(random.next() * std::f64::consts::TAU, length);
-                vec![at, [at[0] + way[0], at[1] + way[1]]]
+                let offset = around(random.next() * std::f64::consts::TAU, length);
+                vec![at, [at[0] + offset[0], at[1] + offset[1]]]
             };
             (0..count).map(segment).collect()
         }
@@ -124,8 +124,8 @@ fn main() -> ExitCode {
         eprintln!("usage: bench_bundles [--shape parallel|varied|fan|rings|crossed|random] [--check] [COUNT...]");
         return ExitCode::FAILURE;
     }
-    let roads: [(&str, Build); 2] = [("from_lines", from_lines), ("insert_lines", insert_lines)];
-    for (road, build) in roads {
+    let builders: [(&str, Build); 2] = [("from_lines", from_lines), ("insert_lines", insert_lines)];
+    for (builder, build) in builders {
         for is_shuffled in [false, true] {
             let mut times = Vec::new();
             for &count in &counts {
@@ -137,11 +137,11 @@ fn main() -> ExitCode {
                 let built = black_box(build(&lines));
                 times.push((count, start.elapsed().as_secs_f64()));
                 if is_checked {
-                    assert!(built.check(Level::Law).is_empty(), "{shape} {road} {count}");
+                    assert!(built.check(Level::Law).is_empty(), "{shape} {builder} {count}");
                 }
             }
             let order = if is_shuffled { "shuffled" } else { "sorted" };
-            print!("{shape} {road} {order}:");
+            print!("{shape} {builder} {order}:");
             times.iter().for_each(|(count, seconds)| print!(" {count} {seconds:.3} s"));
             match times[..] {
                 [(few, short), .., (many, long)] => {

@@ -148,7 +148,7 @@ fn time<T, E: std::fmt::Display>(
 }
 
 /// What the check of a triangulation says, and how many questions each stage was asked while it was built.
-fn tell(asked: [u64; 4], flaws: usize) -> Result<(), String> {
+fn report(asked: [u64; 4], flaws: usize) -> Result<(), String> {
     let [all, lattice, fine, exact] = asked;
     eprintln!(
         "check: {flaws} flaws; asked of the kernel {all}, not certain by the error bound {lattice}, \
@@ -186,7 +186,7 @@ fn run(options: &Options) -> Result<(), String> {
         if options.check {
             let (t, _) = plane::<Counting>(&points, options.one_by_one).map_err(|refused| refused.to_string())?;
             let asked = asked();
-            tell(asked, t.check(Level::Law).len())?;
+            report(asked, t.check(Level::Law).len())?;
         }
         let build = || plane::<Adaptive>(&points, options.one_by_one);
         return time(options, points.len(), build, |(t, _)| t.finite_cells().count());
@@ -197,7 +197,7 @@ fn run(options: &Options) -> Result<(), String> {
             ConstrainedDelaunay::<Plane<Counting>>::from_lines(Plane::default(), &points, &segments, OnCrossing::Split);
         let (t, _) = built.map_err(|refused| refused.to_string())?;
         let asked = asked();
-        tell(asked, t.check(Level::Law).len())?;
+        report(asked, t.check(Level::Law).len())?;
     }
     let build =
         || ConstrainedDelaunay::<Plane<Adaptive>>::from_lines(Plane::default(), &points, &segments, OnCrossing::Split);

@@ -12,8 +12,8 @@ enum Color {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut t = Delaunay::new(Plane::new());
-    for (place, color) in [([1.0, 1.0], Color::Red), ([5.0, 1.0], Color::Green), ([3.0, 5.0], Color::Blue)] {
-        t.insert_with(place, color)?;
+    for (site, color) in [([1.0, 1.0], Color::Red), ([5.0, 1.0], Color::Green), ([3.0, 5.0], Color::Blue)] {
+        t.insert_with(site, color)?;
     }
     let sheet = [[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [0.0, 6.0]];
     let painted = |color| t.tds().vertices().find(|&v| *t.tds().vertex_data(v) == color);

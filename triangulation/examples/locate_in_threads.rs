@@ -4,10 +4,10 @@ use breakline_triangulation::geometry::Plane;
 use breakline_triangulation::{Delaunay, Location};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let places = |n: u32, step: f64| (0..n * n).map(move |k| [k % n, k / n].map(|i| f64::from(i) * step));
-    let corners: Vec<[f64; 2]> = places(100, 1.0).collect();
+    let sites = |n: u32, step: f64| (0..n * n).map(move |k| [k % n, k / n].map(|i| f64::from(i) * step));
+    let corners: Vec<[f64; 2]> = sites(100, 1.0).collect();
     let (t, _) = Delaunay::from_points(Plane::new(), &corners)?;
-    let queries: Vec<[f64; 2]> = places(1000, 0.099).collect();
+    let queries: Vec<[f64; 2]> = sites(1000, 0.099).collect();
     let locate = |some: &[[f64; 2]]| {
         let (mut near, mut inside) = (None, 0);
         for q in some {

@@ -7,7 +7,7 @@ use breakline_triangulation::geometry::{Plane, Weighted};
 use breakline_triangulation::tds::{CellId, VertexId};
 use breakline_triangulation::{ConstrainedDelaunay, Delaunay, InputError, Mark, OnCrossing, Passage, Regular};
 
-type Place = [f64; 2];
+type Site = [f64; 2];
 
 /// To the text of an SVG file.
 type Draw = fn() -> Result<String, Box<dyn std::error::Error>>;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Points spread evenly over a square of side 100, in an order of the R2 sequence (Roberts 2018): no two are near.
-fn spread(count: u32) -> Vec<Place> {
+fn spread(count: u32) -> Vec<Site> {
     let at = |k: u32, step: f64| (f64::from(k) * step).fract() * 100.0;
     (1..=count).map(|k| [at(k, 0.754_877_666), at(k, 0.569_840_291)].map(f64::round)).collect()
 }
@@ -59,25 +59,24 @@ fn voronoi_cell() -> Result<String, Box<dyn std::error::Error>> {
     let sheet = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]];
     let middle = t.nearest(&[50.0, 50.0], None).expect("there are vertices");
     let around = t.tds().vertices_around(middle).filter(|&v| v != VertexId::INFINITE);
-    let cells: Vec<Vec<Place>> =
-        [middle].into_iter().chain(around).map(|v| t.voronoi_cell(v, &sheet).corners).collect();
-    let outlines: Vec<Vec<Place>> = cells[1..].iter().map(|cell| closed(cell)).collect();
+    let cells: Vec<Vec<Site>> = [middle].into_iter().chain(around).map(|v| t.voronoi_cell(v, &sheet).corners).collect();
+    let outlines: Vec<Vec<Site>> = cells[1..].iter().map(|cell| closed(cell)).collect();
     let lines = outlines.iter().map(|outline| Mark::Line(outline));
     Ok(t.svg(&[Mark::Polygon(&cells[0])].into_iter().chain(lines).collect::<Vec<_>>()))
 }
 
-fn closed(ring: &[Place]) -> Vec<Place> {
+fn closed(ring: &[Site]) -> Vec<Site> {
     ring.iter().chain(ring.first()).copied().collect()
 }
 
 /// Weighted points; the hidden ones as dots without edges, in the triangles that hide them.
 fn regular() -> Result<String, Box<dyn std::error::Error>> {
-    let weighted = |(k, [x, y]): (usize, Place)| [x, y, if k % 5 == 2 { 1200.0 } else { 0.0 }];
+    let weighted = |(k, [x, y]): (usize, Site)| [x, y, if k % 5 == 2 { 1200.0 } else { 0.0 }];
     let points: Vec<[f64; 3]> = spread(28).into_iter().enumerate().map(weighted).collect();
     let (t, _) = Regular::<Weighted>::from_points(Weighted::default(), &points)?;
     let hosts: Vec<CellId> = t.finite_cells().filter(|&cell| !t.hidden_under(cell).is_empty()).collect();
-    let hidden: Vec<[Place; 1]> = t.hidden().map(|v| [[t.point(v)[0], t.point(v)[1]]]).collect();
-    let dots = hidden.iter().map(|place| Mark::Line(place));
+    let hidden: Vec<[Site; 1]> = t.hidden().map(|v| [[t.point(v)[0], t.point(v)[1]]]).collect();
+    let dots = hidden.iter().map(|site| Mark::Line(site));
     Ok(t.svg(&[Mark::Cells(&hosts)].into_iter().chain(dots).collect::<Vec<_>>()))
 }
 

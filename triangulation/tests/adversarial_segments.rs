@@ -174,7 +174,7 @@ fn stars_through_a_point() {
 
 /// A long line through dust, with short walls that stick into its corridor.
 #[test]
-fn spikes_along_the_way() {
+fn spikes_along_a_line() {
     fuzz(6, 500, |random, [x, y]| {
         let point = |random: &mut Random| {
             let width = random.pick(&[1e-9, 1e-3, 0.1, 1.0, 4.0]);
@@ -239,8 +239,8 @@ fn drawn_again_they_change_nothing() {
 /// Beyond 256 crossings, the rest of a segment was once left out.
 #[test]
 fn one_segment_crosses_a_thousand() {
-    let walls: Vec<Segment> = (1..=1000).map(|i| [[f64::from(i), -1.0], [f64::from(i), 2.0]]).collect();
-    let mut t = built(&[], &walls);
+    let posts: Vec<Segment> = (1..=1000).map(|i| [[f64::from(i), -1.0], [f64::from(i), 2.0]]).collect();
+    let mut t = built(&[], &posts);
     let level = [[0.0, 0.0], [1001.0, 0.0]];
     t.insert_lines(&[level]).unwrap();
     assert_eq!(t.crossings().len(), 1000);
@@ -295,7 +295,7 @@ fn crossings_stay_in_the_range() {
         let (a, b) = (end(-1.0), end(1.0));
         let (mut c, mut d) = (end(-1.0), end(1.0));
         (c[0], d[0]) = (-c[0], -d[0]);
-        let place = geometry.crossing([&a, &b], [&c, &d]);
-        assert!(geometry.admits(&place), "{place:?}");
+        let site = geometry.crossing([&a, &b], [&c, &d]);
+        assert!(geometry.admits(&site), "{site:?}");
     }
 }

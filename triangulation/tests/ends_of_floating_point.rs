@@ -83,10 +83,10 @@ fn crossings_near_the_smallest_numbers_that_are_admitted() {
     let smallest = 2f64.powi(-160);
     let mut crossings = 0;
     for round in 0..400 {
-        let last_place = [0.0, f64::EPSILON, 0.125][round % 3];
+        let ulp = [0.0, f64::EPSILON, 0.125][round % 3];
         let mut coordinate = || {
             let x = random.around(3) as f64;
-            x * smallest * (1.0 + last_place * random.below(4) as f64)
+            x * smallest * (1.0 + ulp * random.below(4) as f64)
         };
         let points: Vec<[f64; 2]> = (0..12).map(|_| [coordinate(), coordinate()]).collect();
         let lines: Vec<[u32; 2]> = (0..6).map(|i| [2 * i, 2 * i + 1]).collect();

@@ -20,9 +20,9 @@ fn bits(p: &Point) -> Bits {
 fn seen(t: &Constrained, lines: &[LineId]) -> (Places, Places, Vec<Vec<Bits>>) {
     let at = |v: &VertexId| bits(t.point(*v));
     let sorted = |vertices: &[VertexId]| {
-        let mut places: Vec<Bits> = vertices.iter().map(at).collect();
-        places.sort_unstable();
-        places
+        let mut sites: Vec<Bits> = vertices.iter().map(at).collect();
+        sites.sort_unstable();
+        sites
     };
     let triangles = t.finite_cells().map(|cell| sorted(t.tds().cell_vertices(cell))).collect();
     let edges = t.constrained_edges().map(|edge| sorted(&edge)).collect();
@@ -45,17 +45,17 @@ fn built(points: &[Point], lines: &[Vec<Point>]) -> (Constrained, Vec<LineId>) {
 }
 
 /// Adds and removes lines and points at random, and compares with what is built at once.
-fn edits(seed: u64, rounds: usize, place: impl Fn(&mut Random) -> Point) {
+fn edits(seed: u64, rounds: usize, site: impl Fn(&mut Random) -> Point) {
     let mut random = Random(seed);
     for round in 0..rounds {
-        let mut points: Vec<Point> = (0..3 + random.index(6)).map(|_| place(&mut random)).collect();
+        let mut points: Vec<Point> = (0..3 + random.index(6)).map(|_| site(&mut random)).collect();
         let mut t = Constrained::from_points(Plane::default(), &points).unwrap().0;
         let mut lines: Vec<(LineId, Vec<Point>)> = Vec::new();
         for step in 0..12 {
             match random.below(5) {
                 0 | 1 => {
                     let count = 1 + random.index(2);
-                    let line = |random: &mut Random| (0..2 + random.index(3)).map(|_| place(random)).collect();
+                    let line = |random: &mut Random| (0..2 + random.index(3)).map(|_| site(random)).collect();
                     let new: Vec<Vec<Point>> = (0..count).map(|_| line(&mut random)).collect();
                     let ids = t.insert_lines(&new).unwrap();
                     lines.extend(ids.into_iter().zip(new));
@@ -82,7 +82,7 @@ fn edits(seed: u64, rounds: usize, place: impl Fn(&mut Random) -> Point) {
                     }
                 }
                 _ => {
-                    let p = place(&mut random);
+                    let p = site(&mut random);
                     points.push(p);
                     t.insert(p).unwrap();
                 }
@@ -134,9 +134,9 @@ fn a_hundred_orders_give_one_triangulation() {
     let utm = |random: &mut Random| [500_000.0 + random.unit() * 50.0, 4_649_000.0 + random.unit() * 50.0];
     let grid = |random: &mut Random| [random.below(9) as f64, random.below(9) as f64];
     let near_zero = |random: &mut Random| [random.unit() - 0.5, ulps(0.5, random.around(20)) - 0.5 * random.unit()];
-    for place in [utm as fn(&mut Random) -> Point, grid, near_zero] {
-        let points: Vec<Point> = (0..30).map(|_| place(&mut random)).collect();
-        let mut lines: Vec<Vec<Point>> = (0..40).map(|_| (0..3).map(|_| place(&mut random)).collect()).collect();
+    for site in [utm as fn(&mut Random) -> Point, grid, near_zero] {
+        let points: Vec<Point> = (0..30).map(|_| site(&mut random)).collect();
+        let mut lines: Vec<Vec<Point>> = (0..40).map(|_| (0..3).map(|_| site(&mut random)).collect()).collect();
         let (first, _) = built(&points, &lines);
         assert!(first.crossings().len() > 100 || first.constrained_edges().count() > 100);
         let expected = seen(&first, &[]);
@@ -171,9 +171,9 @@ fn a_crossing_is_rejected_by_name() {
     let points = [[0.0, 0.0], [4.0, 4.0], [9.0, 9.0], [0.0, 4.0], [4.0, 0.0]];
     let lines: [&[u32]; 2] = [&[3, 4], &[2, 1, 0]];
     let refused = Constrained::from_lines(Plane::default(), &points, &lines, OnCrossing::Reject).unwrap_err();
-    let InputError::Crossing { mut segments, at: place } = refused else { panic!("{refused}") };
+    let InputError::Crossing { mut segments, at: site } = refused else { panic!("{refused}") };
     segments.sort_unstable();
-    assert_eq!((segments, place), ([(0, 0), (1, 1)], [2.0, 2.0]));
+    assert_eq!((segments, site), ([(0, 0), (1, 1)], [2.0, 2.0]));
     let out = Constrained::from_lines(Plane::default(), &points, &[[0, 9]], OnCrossing::Split).unwrap_err();
     assert_eq!(out, InputError::Index { line: 0, index: 9 });
     // Touching is not crossing, and where there is a point already nothing is split that would not be anyway.

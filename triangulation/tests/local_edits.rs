@@ -52,9 +52,9 @@ impl Coordinates for Terrain {
 fn seen<G: Coordinates>(t: &ConstrainedDelaunay<G>, lines: &[LineId]) -> Seen {
     let at = |v: &VertexId| G::bits(t.point(*v));
     let sorted = |vertices: &[VertexId]| {
-        let mut places: Vec<Bits> = vertices.iter().map(at).collect();
-        places.sort_unstable();
-        places
+        let mut sites: Vec<Bits> = vertices.iter().map(at).collect();
+        sites.sort_unstable();
+        sites
     };
     Seen {
         points: t.tds().vertices().map(|v| at(&v)).collect(),
@@ -86,9 +86,9 @@ impl<G: Coordinates> Model<G> {
     }
 
     /// One random edit of both; returns its name.
-    fn edit(&mut self, t: &mut ConstrainedDelaunay<G>, random: &mut Random, place: &Place, most: usize) -> String {
+    fn edit(&mut self, t: &mut ConstrainedDelaunay<G>, random: &mut Random, site: &Site, most: usize) -> String {
         let draw = |random: &mut Random| {
-            let at = place(random);
+            let at = site(random);
             G::point(random, at)
         };
         let kind = if self.lines.len() > most { 3 + random.below(2) } else { random.below(12) };
@@ -164,41 +164,41 @@ impl<G: Coordinates> Model<G> {
     }
 }
 
-type Place = dyn Fn(&mut Random) -> [f64; 2];
+type Site = dyn Fn(&mut Random) -> [f64; 2];
 
 /// Returns how many of the edits arranged all lines anew, in percent.
-fn compare<G: Coordinates>(seed: u64, few: usize, most: usize, place: &Place) -> usize {
+fn compare<G: Coordinates>(seed: u64, few: usize, most: usize, site: &Site) -> usize {
     let count = std::env::var("BREAKLINE_EDITS").ok().and_then(|count| count.parse().ok()).unwrap_or(few);
     let mut random = Random(seed);
     let (mut done, mut anew) = (0, 0);
     while done < count {
-        let points = (0..3 + random.index(8)).map(|_| place(&mut random)).collect::<Vec<_>>();
+        let points = (0..3 + random.index(8)).map(|_| site(&mut random)).collect::<Vec<_>>();
         let points: Vec<G::Point> = points.into_iter().map(|at| G::point(&mut random, at)).collect();
         let mut t: ConstrainedDelaunay<G> = ConstrainedDelaunay::from_points(G::default(), &points).unwrap().0;
         let mut model = Model { points, lines: Vec::new() };
         let mut names = Vec::new();
         for _ in 0..60 {
             let before = format!("{:?} {:?}", model.points, model.lines.iter().map(|(_, l)| l).collect::<Vec<_>>());
-            names.push(model.edit(&mut t, &mut random, place, most));
+            names.push(model.edit(&mut t, &mut random, site, most));
             done += 1;
             let (fresh, fresh_ids) = model.built();
-            let told = || format!("seed {seed}, edit {done}: {before}: {}", names[names.len() - 1]);
-            assert_eq!(t.check(Level::Law), [], "{}", told());
+            let history = || format!("seed {seed}, edit {done}: {before}: {}", names[names.len() - 1]);
+            assert_eq!(t.check(Level::Law), [], "{}", history());
             if fresh.dimension() == 2 {
                 let ids: Vec<LineId> = model.lines.iter().map(|(line, _)| *line).collect();
                 let (there, anew) = (seen(&t, &ids), seen(&fresh, &fresh_ids));
-                assert_eq!(there.rounding, anew.rounding, "{}", told());
-                assert_eq!(there.points, anew.points, "{}", told());
-                assert_eq!(there.crossings, anew.crossings, "{}", told());
-                assert_eq!(there.chains, anew.chains, "{}", told());
+                assert_eq!(there.rounding, anew.rounding, "{}", history());
+                assert_eq!(there.points, anew.points, "{}", history());
+                assert_eq!(there.crossings, anew.crossings, "{}", history());
+                assert_eq!(there.chains, anew.chains, "{}", history());
                 let only = |p: &Places, q: &Places| -> Vec<Vec<Vec<f64>>> {
                     p.difference(q)
                         .map(|c| c.iter().map(|b| b.iter().map(|&x| f64::from_bits(x)).collect()).collect())
                         .collect()
                 };
                 let apart = [only(&there.constraints, &anew.constraints), only(&anew.constraints, &there.constraints)];
-                assert!(apart.iter().all(Vec::is_empty), "{apart:?} {}", told());
-                assert!(there == anew, "{}", told());
+                assert!(apart.iter().all(Vec::is_empty), "{apart:?} {}", history());
+                assert!(there == anew, "{}", history());
             }
         }
         anew += t.rearrangements();

@@ -532,11 +532,11 @@ fn weighted_points() {
             [x, y, weight(&mut random)]
         }));
         // Along a line that is not upright, or is.
-        let way = if round % 3 == 0 { [0, 1] } else { [1 + random.below(2) as i64, random.around(3)] };
+        let direction = if round % 3 == 0 { [0, 1] } else { [1 + random.below(2) as i64, random.around(3)] };
         let mut steps = [(); 3].map(|()| random.around(side));
         (steps[0], steps[1]) = (steps[0].min(steps[1]), steps[0].max(steps[1]) + 1);
         line.ask::<PowerOnLine, 3, 3>(steps.map(|step| {
-            let [x, y] = way.map(|w| unit * (origin + (step * w) as f64));
+            let [x, y] = direction.map(|w| unit * (origin + (step * w) as f64));
             [x, y, weight(&mut random)]
         }));
     }
@@ -671,15 +671,15 @@ fn crossings_lie_within_a_rounding_of_both_segments() {
     let mut at_an_end = 0;
     for pair in crossing_pairs(3000) {
         let [a, b, c, d] = pair;
-        let place = plane.crossing([&a, &b], [&c, &d]);
-        at_an_end += usize::from(pair.contains(&place));
-        assert!(plane.admits(&place));
+        let site = plane.crossing([&a, &b], [&c, &d]);
+        at_an_end += usize::from(pair.contains(&site));
+        assert!(plane.admits(&site));
         for (other, why) in [
             (plane.crossing([&b, &a], [&c, &d]), "the first turned around"),
             (plane.crossing([&c, &d], [&a, &b]), "exchanged"),
             (plane.crossing([&d, &c], [&b, &a]), "both"),
         ] {
-            assert_eq!(other, place, "{pair:?} {why}");
+            assert_eq!(other, site, "{pair:?} {why}");
         }
         // A box around the place, a few units in the last place of the largest coordinate wide, touches both lines.
         let reach: [f64; 2] =
@@ -687,7 +687,7 @@ fn crossings_lie_within_a_rounding_of_both_segments() {
         for [p, q] in [[a, b], [c, d]] {
             let [dx, dy] = [0, 1].map(|k| positive(rational(q[k]) - rational(p[k])));
             let touches = dx * rational(reach[1]) + dy * rational(reach[0]);
-            assert!(positive(exact_area(p, q, place)) <= touches, "{pair:?} {place:?}");
+            assert!(positive(exact_area(p, q, site)) <= touches, "{pair:?} {site:?}");
         }
     }
     assert!(at_an_end > 100 && at_an_end < 2500, "{at_an_end} of 3000 are at an end");

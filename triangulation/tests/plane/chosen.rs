@@ -93,7 +93,7 @@ impl Crossing for Chosen<2> {
         self.step
     }
 
-    fn meet(&self, place: [f64; 2], _: &[[&[f64; 2]; 2]]) -> [f64; 2] {
-        place
+    fn meet(&self, site: [f64; 2], _: &[[&[f64; 2]; 2]]) -> [f64; 2] {
+        site
     }
 }

@@ -1,6 +1,6 @@
 //! The compact triangulation: the answers of the one that was written, and errors for whatever is damaged.
 
-use crate::grid::{Free, Point, build, place, points};
+use crate::grid::{Free, Point, build, points, site};
 use breakline_triangulation::geometry::{Plane, Terrain};
 use breakline_triangulation::tds::{CellId, Complex, VertexId};
 use breakline_triangulation::{
@@ -9,7 +9,7 @@ use breakline_triangulation::{
 };
 use testkit::random::Random;
 
-type Forced = ConstrainedDelaunay<Plane>;
+type Lined = ConstrainedDelaunay<Plane>;
 type Opened<'a> = Compact<Plane, &'a [u8]>;
 
 const HEADER: usize = 48;
@@ -96,7 +96,7 @@ fn answers_are_those_of_the_triangulation_that_was_written() {
         assert_eq!((compact.dimension(), compact.vertex_count()), (t.dimension(), t.vertex_count()));
         dimensions[(t.dimension() + 1) as usize] += 1;
         assert_eq!(compact.check(Level::Law), Ok(()));
-        let [p, q] = [place(&mut dice), place(&mut dice)];
+        let [p, q] = [site(&mut dice), site(&mut dice)];
         judge(&t, &compact, [p, q]);
         assert_eq!(all(compact.nearest_first(&p, None)), Ok(t.nearest_first(&p, None).collect()));
         let vertices: Vec<VertexId> = t.tds().vertices().chain([VertexId::INFINITE]).collect();
@@ -139,12 +139,12 @@ fn constraints_are_there() {
         points.push([1.0, 1.0]);
         let lines: Vec<Vec<u32>> = (0..4).map(|_| vec![dice.index(points.len()) as u32; 2]).collect();
         let lines: Vec<Vec<u32>> = lines.iter().map(|l| vec![l[0], dice.index(points.len()) as u32]).collect();
-        let t = Forced::from_lines(Plane::default(), &points, &lines, OnCrossing::Split).unwrap().0;
+        let t = Lined::from_lines(Plane::default(), &points, &lines, OnCrossing::Split).unwrap().0;
         let mut bytes = Vec::new();
         t.write_compact(&mut bytes).unwrap();
         let compact = open(&bytes).unwrap();
         assert_eq!((compact.law(), compact.check(Level::Law)), (Law::ConstrainedDelaunay, Ok(())));
-        let [p, q] = [place(&mut dice), place(&mut dice)];
+        let [p, q] = [site(&mut dice), site(&mut dice)];
         judge_lawless(&t, &compact, [p, q]);
         let dense = Dense(&t);
         let [near, near_there] = dense.near();
@@ -164,15 +164,19 @@ fn constraints_are_there() {
 fn all_kinds_and_geometries() {
     let square = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
     let mut bytes = Vec::new();
-    let mut forced: Constrained<Plane> = Constrained::new(Plane::default());
-    let v = square.map(|p| forced.insert(p).unwrap());
-    forced.constrain(v[0], v[2]).unwrap();
-    forced.write_compact(&mut bytes).unwrap();
+    let mut constrained: Constrained<Plane> = Constrained::new(Plane::default());
+    let v = square.map(|p| constrained.insert(p).unwrap());
+    constrained.constrain(v[0], v[2]).unwrap();
+    constrained.write_compact(&mut bytes).unwrap();
     let compact = open(&bytes).unwrap();
     assert_eq!((compact.law(), compact.check(Level::Law)), (Law::Constrained, Ok(())));
-    let is_wall = |cell: CellId, i| compact.is_constrained(cell, i).unwrap();
+    let is_constrained = |cell: CellId, i| compact.is_constrained(cell, i).unwrap();
     assert_eq!(
-        (0..6).map(CellId::new).flat_map(|c| (0..3).map(move |i| (c, i))).filter(|&(c, i)| is_wall(c, i)).count(),
+        (0..6)
+            .map(CellId::new)
+            .flat_map(|c| (0..3).map(move |i| (c, i)))
+            .filter(|&(c, i)| is_constrained(c, i))
+            .count(),
         2
     );
     assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(Damaged::Unanswerable(Law::Constrained)));
@@ -238,23 +242,23 @@ fn the_format() {
     assert_eq!(bytes[44..48], [0; 4]);
     let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
     let infinite_cell = number(40) as usize;
-    assert!((0..3).any(|place| number(112 + 24 * infinite_cell + 4 * place) == u32::MAX));
+    assert!((0..3).any(|slot| number(112 + 24 * infinite_cell + 4 * slot) == u32::MAX));
     assert_eq!(f64::from_le_bytes(bytes[48..56].try_into().unwrap()), t.point(VertexId::new(0))[0]);
     for vertex in 0..3 {
         let cell = number(96 + 4 * vertex) as usize;
-        assert!((0..3).any(|place| number(112 + 24 * cell + 4 * place) == vertex as u32));
+        assert!((0..3).any(|slot| number(112 + 24 * cell + 4 * slot) == vertex as u32));
     }
 }
 
 /// Every question, at places in and around a small triangulation: whether there was any error.
-fn ask_everything(compact: &Opened<'_>, places: &[Point]) -> bool {
+fn ask_everything(compact: &Opened<'_>, sites: &[Point]) -> bool {
     let mut is_damaged = compact.check(Level::Law).is_err();
     let mut note = |failed: bool| is_damaged |= failed;
     for cell in (0..compact.cell_slots() + 2).map(CellId::new) {
         note(compact.is_constrained(cell, 1).is_err());
     }
-    for (k, p) in places.iter().enumerate() {
-        let q = &places[(k + 1) % places.len()];
+    for (k, p) in sites.iter().enumerate() {
+        let q = &sites[(k + 1) % sites.len()];
         let near = (k > 0).then(|| CellId::new(k));
         if let Ok(Location::Cell { cell, .. }) = compact.locate(p, near) {
             assert!(compact.is_used(cell));
@@ -284,7 +288,7 @@ fn samples() -> Vec<Free> {
         .into()
 }
 
-const PLACES: [Point; 6] = [[0.5, 0.5], [1.0, 1.0], [-1.0, -1.0], [0.25, 1.0], [1.5, 1.25], [9.0, 1.0]];
+const SITES: [Point; 6] = [[0.5, 0.5], [1.0, 1.0], [-1.0, -1.0], [0.25, 1.0], [1.5, 1.25], [9.0, 1.0]];
 
 #[test]
 fn no_truncation_is_opened() {
@@ -308,7 +312,7 @@ fn every_damaged_byte_is_an_error_or_an_answer() {
                 let mut damaged = sound.clone();
                 damaged[at] = value;
                 let Ok(compact) = open(&damaged) else { continue };
-                let is_damaged = ask_everything(&compact, &PLACES);
+                let is_damaged = ask_everything(&compact, &SITES);
                 // Unused places below dimension 2 say nothing.
                 if at >= cells && value != sound[at] && t.dimension() == 2 {
                     assert!(compact.check(Level::Manifold).is_err(), "byte {at} as {value}");
@@ -322,7 +326,7 @@ fn every_damaged_byte_is_an_error_or_an_answer() {
 
 /// Numbers that exist, in wrong places: what only the links themselves can tell.
 #[test]
-fn links_that_lead_astray() {
+fn wrong_links() {
     let mut dice = Random(5);
     let mut errors = 0;
     for round in 0..6000 {
@@ -331,16 +335,16 @@ fn links_that_lead_astray() {
         let mut bytes = bytes(&t);
         let start = bytes.len() - 24 * cells;
         for _ in 0..1 + dice.below(12) {
-            let place = dice.index(6);
-            let number = dice.index(if place < 3 { vertices } else { cells }.max(1)) as u32;
-            let number = if place < 3 && dice.below(5) == 0 { u32::MAX } else { number };
+            let slot = dice.index(6);
+            let number = dice.index(if slot < 3 { vertices } else { cells }.max(1)) as u32;
+            let number = if slot < 3 && dice.below(5) == 0 { u32::MAX } else { number };
             if cells > 0 {
-                let at = start + 24 * dice.index(cells) + 4 * place;
+                let at = start + 24 * dice.index(cells) + 4 * slot;
                 bytes[at..at + 4].copy_from_slice(&number.to_le_bytes());
             }
         }
-        let places: Vec<Point> = (0..4).map(|_| place(&mut dice)).collect();
-        errors += usize::from(ask_everything(&open(&bytes).unwrap(), &places));
+        let sites: Vec<Point> = (0..4).map(|_| site(&mut dice)).collect();
+        errors += usize::from(ask_everything(&open(&bytes).unwrap(), &sites));
     }
     assert!(errors > 3000, "{errors}");
 }
@@ -354,7 +358,7 @@ fn only_the_header_is_looked_at_when_opened() {
         bytes[HEADER..].fill(garbage);
         let compact = open(&bytes).unwrap();
         assert!(compact.check(Level::Links).is_err());
-        assert!(ask_everything(&compact, &PLACES));
+        assert!(ask_everything(&compact, &SITES));
     }
 }
 

@@ -12,12 +12,12 @@ use testkit::random::{Random, ulps};
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 1 + dice.below(6);
     let count = 1 + dice.below(20);
-    let place = |dice: &mut Random| match round % 3 {
+    let site = |dice: &mut Random| match round % 3 {
         0 => [0, 1].map(|_| dice.unit() * 5.0),
         1 => [dice.below(side) as f64, dice.below(side) as f64],
         _ => [dice.below(side) as f64, 2.0], // on one line
     };
-    (0..count).map(|_| place(dice)).collect()
+    (0..count).map(|_| site(dice)).collect()
 }
 
 /// Asserts that the center is where it must be.
@@ -94,13 +94,13 @@ fn edges_are_nearest_to_both_ends() {
                 continue;
             };
             let along = |p: Point, d: Point, s: f64| [p[0] + s * d[0], p[1] + s * d[1]];
-            let (kind, places) = match edge {
+            let (kind, sites) = match edge {
                 VoronoiEdge::Segment([p, q]) => (0, [0.0, 0.3, 1.0].map(|s| along(p, [q[0] - p[0], q[1] - p[1]], s))),
                 VoronoiEdge::Ray { from, direction } => (1, [0.0, 0.7, 9.0].map(|s| along(from, direction, s))),
                 VoronoiEdge::Line { through, direction } => (2, [-7.0, 0.0, 9.0].map(|s| along(through, direction, s))),
             };
             kinds[kind] += 1;
-            for p in places {
+            for p in sites {
                 let far = |v: VertexId| (t.point(v)[0] - p[0]).hypot(t.point(v)[1] - p[1]);
                 let [a, b] = ends.map(far);
                 assert!((a - b).abs() < 1e-8 * (1.0 + a), "{edge:?}");

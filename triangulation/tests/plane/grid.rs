@@ -27,6 +27,6 @@ pub(crate) fn points(dice: &mut Random, round: usize) -> Vec<Point> {
 }
 
 /// A place on that grid or between, or a bit outside.
-pub(crate) fn place(dice: &mut Random) -> Point {
+pub(crate) fn site(dice: &mut Random) -> Point {
     grid_point(dice, 13).map(|x| x - 2.0)
 }

@@ -104,7 +104,7 @@ fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
 }
 
 /// The vertices on the way from one to another, these included, in order.
-fn way(t: &Triangulation<Plane, 3, (), ConstrainedEdges>, a: VertexId, b: VertexId) -> Vec<VertexId> {
+fn path(t: &Triangulation<Plane, 3, (), ConstrainedEdges>, a: VertexId, b: VertexId) -> Vec<VertexId> {
     let (p, q) = (*t.point(a), *t.point(b));
     if a == b {
         return vec![a];
@@ -115,9 +115,9 @@ fn way(t: &Triangulation<Plane, 3, (), ConstrainedEdges>, a: VertexId, b: Vertex
         let (dot, length) = (u[0] * w[0] + u[1] * w[1], u[0] * u[0] + u[1] * u[1]);
         (u[0] * w[1] == u[1] * w[0] && (0.0..=length).contains(&dot)).then_some(dot as i64)
     };
-    let mut way: Vec<(i64, VertexId)> = t.tds().vertices().filter_map(|v| Some((along(v)?, v))).collect();
-    way.sort_unstable();
-    way.into_iter().map(|(_, v)| v).collect()
+    let mut path: Vec<(i64, VertexId)> = t.tds().vertices().filter_map(|v| Some((along(v)?, v))).collect();
+    path.sort_unstable();
+    path.into_iter().map(|(_, v)| v).collect()
 }
 
 #[test]
@@ -127,17 +127,17 @@ fn constraints_hold() {
         let side = 2 + random.below(6);
         let mut t: Constrained<Plane> = Constrained::new(Plane::default());
         // Constraints by their ends, all their pieces present; released ones are gone.
-        let mut walls: BTreeSet<[VertexId; 2]> = BTreeSet::new();
+        let mut constraints: BTreeSet<[VertexId; 2]> = BTreeSet::new();
         for _ in 0..40 {
             let vertices: Vec<VertexId> = t.tds().vertices().collect();
             if vertices.len() < 3 || random.below(3) == 0 {
                 let p = tiny(&mut random, side);
                 let vertex = t.insert(p).unwrap();
-                let whole: Vec<_> = walls.iter().copied().collect();
+                let whole: Vec<_> = constraints.iter().copied().collect();
                 for [a, b] in whole {
-                    if way(&t, a, b).contains(&vertex) && vertex != a && vertex != b {
-                        walls.remove(&[a, b]);
-                        walls.extend([[a, vertex], [vertex, b]].map(|mut ends| {
+                    if path(&t, a, b).contains(&vertex) && vertex != a && vertex != b {
+                        constraints.remove(&[a, b]);
+                        constraints.extend([[a, vertex], [vertex, b]].map(|mut ends| {
                             ends.sort_unstable();
                             ends
                         }));
@@ -145,22 +145,22 @@ fn constraints_hold() {
                 }
             } else if random.below(6) == 0 {
                 let vertex = random.pick(&vertices);
-                let is_end = walls.iter().flatten().any(|&v| v == vertex);
+                let is_end = constraints.iter().flatten().any(|&v| v == vertex);
                 let removed = t.remove(vertex);
                 assert!(removed.is_err() || !is_end);
-            } else if random.below(8) == 0 && !walls.is_empty() {
-                let ends = walls.pop_first().unwrap();
+            } else if random.below(8) == 0 && !constraints.is_empty() {
+                let ends = constraints.pop_first().unwrap();
                 assert!(t.release(ends[0], ends[1]));
                 assert!(!t.release(ends[0], ends[1]));
             } else {
                 let (a, b) = (random.pick(&vertices), random.pick(&vertices));
                 let crossed = |&[c, d]: &[VertexId; 2]| cross(*t.point(a), *t.point(b), *t.point(c), *t.point(d));
-                let blocks: BTreeSet<[VertexId; 2]> = walls.iter().copied().filter(crossed).collect();
+                let blocks: BTreeSet<[VertexId; 2]> = constraints.iter().copied().filter(crossed).collect();
                 match t.constrain(a, b) {
                     Ok(()) => {
                         assert_eq!(blocks.len(), 0);
-                        for pair in way(&t, a, b).windows(2) {
-                            walls.insert([pair[0].min(pair[1]), pair[0].max(pair[1])]);
+                        for pair in path(&t, a, b).windows(2) {
+                            constraints.insert([pair[0].min(pair[1]), pair[0].max(pair[1])]);
                         }
                     }
                     Err(ConstraintError::Crosses(ends)) => {
@@ -171,7 +171,7 @@ fn constraints_hold() {
             }
             assert_eq!(t.check(Level::Law), []);
             fills_the_hull(&t);
-            assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), walls, "{:?}", t.points());
+            assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), constraints, "{:?}", t.points());
         }
     }
 }

@@ -18,7 +18,7 @@ type Free = Delaunay<Plane, 3>;
 
 /// What a location says, whichever cell it says it by.
 #[derive(Debug, PartialEq, Eq)]
-enum Place {
+enum Position {
     /// Inside of what these vertices span.
     On(BTreeSet<VertexId>),
     Outside,
@@ -26,13 +26,13 @@ enum Place {
 }
 
 /// The place, after a look at whether it is the one.
-fn place<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Location, q: Point) -> Place {
+fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Location, q: Point) -> Position {
     let tds: &Tds<3> = t.tds();
     let plane = Plane::<breakline_triangulation::kernel::Exact>::default();
     match location {
         Location::Vertex(vertex) => {
             assert_eq!(*t.point(vertex), q);
-            Place::On([vertex].into())
+            Position::On([vertex].into())
         }
         Location::Cell { cell, touching } => {
             let corners = tds.cell_vertices(cell);
@@ -43,7 +43,7 @@ fn place<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Locat
                 let expected = if touching >> i & 1 == 1 { Sign::Zero } else { Sign::Positive };
                 assert_eq!(plane.orientation(simplex), expected);
             }
-            Place::On(spanned.collect())
+            Position::On(spanned.collect())
         }
         Location::OutsideHull { cell } => {
             let infinite = tds.index_of(cell, VertexId::INFINITE).unwrap();
@@ -51,16 +51,16 @@ fn place<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Locat
                 let [a, b] = tds.edge_ends(cell, infinite).map(|v| t.point(v));
                 assert_eq!(plane.orientation([a, b, &q]), Sign::Positive, "in sight of the hull edge");
             }
-            Place::Outside
+            Position::Outside
         }
-        Location::OutsideAffineHull => Place::OffTheFlat,
-        Location::Nowhere => panic!("{q:?} is a place"),
+        Location::OutsideAffineHull => Position::OffTheFlat,
+        Location::Nowhere => panic!("{q:?} is a position"),
     }
 }
 
 /// By every strategy, as the default has it.
 fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane>, buckets: &Buckets, start: Option<VertexId>, q: Point) {
-    let expected = place(t, t.locate(&q, None), q);
+    let expected = position(t, t.locate(&q, None), q);
     let near = Near(start.filter(|&v| t.tds().is_vertex(v)).and_then(|v| t.tds().cell_of(v)));
     let found = [
         near.locate(t, &q),
@@ -71,7 +71,7 @@ fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane>, buckets: &Buckets, start:
         buckets.locate(t, &q),
     ];
     for (k, location) in found.into_iter().enumerate() {
-        assert_eq!(place(t, location, q), expected, "strategy {k}, {q:?} in {:?}", t.points());
+        assert_eq!(position(t, location, q), expected, "strategy {k}, {q:?} in {:?}", t.points());
     }
 }
 
@@ -93,8 +93,8 @@ fn tiny_grids_that_grow_and_shrink() {
                 buckets.inserted(t.geometry(), vertex, &p);
             } else if let Location::Vertex(vertex) = t.locate(&p, None) {
                 // Half of the time the hierarchy is not told.
-                let told = random.below(2) == 0;
-                let removed = if told { t.remove_by(&mut hierarchy, vertex) } else { t.remove(vertex) };
+                let is_reported = random.below(2) == 0;
+                let removed = if is_reported { t.remove_by(&mut hierarchy, vertex) } else { t.remove(vertex) };
                 assert_eq!(removed, Ok(p));
             }
             for _ in 0..4 {
@@ -168,9 +168,9 @@ fn buckets_of_any_size() {
 
 /// The plane, with rounded numbers of a test's own for where walks go.
 #[derive(Debug, Clone, Copy)]
-struct Led<F>(F);
+struct RoughSides<F>(F);
 
-impl<F: Fn([&Point; 3], &Point) -> [f64; 3]> Geometry<3> for Led<F> {
+impl<F: Fn([&Point; 3], &Point) -> [f64; 3]> Geometry<3> for RoughSides<F> {
     type Point = Point;
 
     fn admits(&self, p: &Point) -> bool {
@@ -209,13 +209,13 @@ fn rightly(simplex: [&Point; 3], q: &Point) -> [f64; 3] {
 thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
 
 /// Questions for each of some points that are inserted in random order, without a strategy.
-fn asked_one_by_one(place: impl Fn(f64) -> Point) -> usize {
+fn asked_one_by_one(position: impl Fn(f64) -> Point) -> usize {
     const COUNT: usize = 20_000;
     let mut random = Random(31);
-    let mut t = Delaunay::<_, 3>::new(Led(rightly));
+    let mut t = Delaunay::<_, 3>::new(RoughSides(rightly));
     ASKED.set(0);
     for _ in 0..COUNT {
-        t.insert(place(random.unit())).unwrap();
+        t.insert(position(random.unit())).unwrap();
     }
     ASKED.get() / COUNT
 }
@@ -239,7 +239,7 @@ fn walks_along_curves_are_cut_short() {
 fn walks_from_a_curve_look_for_a_way_out() {
     const COUNT: usize = 20_000;
     let mut random = Random(36);
-    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(Led(rightly)), Hierarchy::new(Led(rightly)));
+    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(RoughSides(rightly)), Hierarchy::new(RoughSides(rightly)));
     for _ in 0..COUNT {
         let x = random.unit() - 0.5;
         t.insert_by(&mut hierarchy, [x, x * x], ()).unwrap();
@@ -249,33 +249,33 @@ fn walks_from_a_curve_look_for_a_way_out() {
         hierarchy.locate(&t, &[0, 1].map(|_| 2e6 * (random.unit() - 0.5)));
     }
     let asked = ASKED.get() / 1000;
-    assert!(asked < 200, "{asked} questions for a place far outside of {COUNT} points");
+    assert!(asked < 200, "{asked} questions for a position far outside of {COUNT} points");
 }
 
 /// Wherever rounded numbers lead, or if they lead nowhere, the answer is the same: with the law of Delaunay, and without
 /// any.
-fn same_wherever_led(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
+fn same_for_any_rough_sides(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
     let mut random = Random(33);
     for round in 0..40 {
         let side = 2 + round % 12;
-        let (mut t, mut led) = (Free::new(Plane::default()), Delaunay::<_, 3>::new(Led(sides)));
-        let (mut lazy, mut lazy_led) = (Basic::<Plane, 3>::new(Plane::default()), Basic::new(Led(sides)));
-        let mut hierarchy = Hierarchy::new(Led(sides));
+        let (mut t, mut rough) = (Free::new(Plane::default()), Delaunay::<_, 3>::new(RoughSides(sides)));
+        let (mut lazy, mut lazy_rough) = (Basic::<Plane, 3>::new(Plane::default()), Basic::new(RoughSides(sides)));
+        let mut hierarchy = Hierarchy::new(RoughSides(sides));
         for _ in 0..side * side {
             let p = tiny(&mut random, side);
-            assert_eq!(led.insert_by(&mut hierarchy, p, ()).map(|inserted| inserted.vertex), t.insert(p));
-            assert_eq!(lazy_led.insert(p), lazy.insert(p));
+            assert_eq!(rough.insert_by(&mut hierarchy, p, ()).map(|inserted| inserted.vertex), t.insert(p));
+            assert_eq!(lazy_rough.insert(p), lazy.insert(p));
         }
-        assert_eq!(led.check(Level::Law), []);
+        assert_eq!(rough.check(Level::Law), []);
         for _ in 0..100 {
             let q = tiny(&mut random, 4 * side).map(|x| 0.5 * x - 0.5 * side as f64);
-            let expected = place(&t, t.locate(&q, None), q);
-            let start = random.pick(&led.tds().cells().collect::<Vec<_>>());
-            for location in [led.locate(&q, Some(start)), hierarchy.locate(&led, &q)] {
-                assert_eq!(place(&led, location, q), expected, "{q:?} in {:?}", t.points());
+            let expected = position(&t, t.locate(&q, None), q);
+            let start = random.pick(&rough.tds().cells().collect::<Vec<_>>());
+            for location in [rough.locate(&q, Some(start)), hierarchy.locate(&rough, &q)] {
+                assert_eq!(position(&rough, location, q), expected, "{q:?} in {:?}", t.points());
             }
-            let start = random.pick(&lazy_led.tds().cells().collect::<Vec<_>>());
-            place(&lazy_led, lazy_led.locate(&q, Some(start)), q);
+            let start = random.pick(&lazy_rough.tds().cells().collect::<Vec<_>>());
+            position(&lazy_rough, lazy_rough.locate(&q, Some(start)), q);
         }
     }
 }
@@ -289,11 +289,11 @@ fn rounded_numbers_change_no_answer() {
         dice.set(random.0);
         number
     };
-    same_wherever_led(|_, _| [f64::NAN; 3]);
-    same_wherever_led(|_, _| [1.0; 3]); // always there
-    same_wherever_led(|_, _| [-1.0, 1.0, 1.0]); // always over the same edge
-    same_wherever_led(|simplex, q| rightly(simplex, q).map(|x| -x)); // away
-    same_wherever_led(|_, _| [thrown(), thrown(), thrown()]);
+    same_for_any_rough_sides(|_, _| [f64::NAN; 3]);
+    same_for_any_rough_sides(|_, _| [1.0; 3]); // always there
+    same_for_any_rough_sides(|_, _| [-1.0, 1.0, 1.0]); // always over the same edge
+    same_for_any_rough_sides(|simplex, q| rightly(simplex, q).map(|x| -x)); // away
+    same_for_any_rough_sides(|_, _| [thrown(), thrown(), thrown()]);
 }
 
 /// Of small whole numbers nothing is rounded: the sides are those that the orientations say.

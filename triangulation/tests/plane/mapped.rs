@@ -25,12 +25,12 @@ fn triangles<G: Coordinates<3>, V, C: Copy + Default>(
 }
 
 /// In bulk and one by one, against the plane. Returns how many triangles there are.
-fn same<G>(geometry: G, points: &[G::Point], place: impl Fn(&G::Point) -> [f64; 2]) -> usize
+fn same<G>(geometry: G, points: &[G::Point], site: impl Fn(&G::Point) -> [f64; 2]) -> usize
 where
     G: Coordinates<3> + Metric + Clone,
     G::Point: Debug,
 {
-    let places: Vec<[f64; 2]> = points.iter().map(&place).collect();
+    let sites: Vec<[f64; 2]> = points.iter().map(&site).collect();
     let positions = |vertices: &[breakline_triangulation::tds::VertexId]| {
         let mut first = vec![usize::MAX; vertices.len()];
         for (i, v) in vertices.iter().enumerate().rev() {
@@ -38,7 +38,7 @@ where
         }
         first
     };
-    let (plane, vertices) = Delaunay::from_points(Plane::<Exact>::default(), &places).unwrap();
+    let (plane, vertices) = Delaunay::from_points(Plane::<Exact>::default(), &sites).unwrap();
     let expected = triangles(&plane, &positions(&vertices));
     let (bulk, vertices) = Delaunay::from_points(geometry.clone(), points).unwrap();
     assert_eq!(bulk.check(Level::Law), [], "{points:?}");
@@ -47,7 +47,7 @@ where
     let vertices: Vec<_> = points.iter().map(|&p| one_by_one.insert(p).unwrap()).collect();
     for three in points.windows(3) {
         let [q, a, b] = [0, 1, 2].map(|i| &three[i]);
-        let expected = Plane::<Exact>::default().compare_distance(&place(q), &place(a), &place(b));
+        let expected = Plane::<Exact>::default().compare_distance(&site(q), &site(a), &site(b));
         assert_eq!(one_by_one.geometry().compare_distance(q, a, b), expected, "{three:?}");
     }
     assert_eq!(triangles(&one_by_one, &positions(&vertices)), expected, "{points:?}");
@@ -93,8 +93,8 @@ fn planes_by_their_normals() {
         };
         let direction = normal.map(|x| x / size);
         let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let place = |p: [f64; 3]| seen(&p);
-        assert!(place(direction).iter().all(|x| x.abs() < 1e-14 * length));
+        let site = |p: [f64; 3]| seen(&p);
+        assert!(site(direction).iter().all(|x| x.abs() < 1e-14 * length));
         let (p, q) = ([(); 3].map(|()| random.unit()), [(); 3].map(|()| random.unit()));
         // The area that two vectors span, seen from there, is a determinant.
         let volume: f64 = (0..3)
@@ -103,7 +103,7 @@ fn planes_by_their_normals() {
                 direction[i] * (p[j] * q[k] - p[k] * q[j])
             })
             .sum();
-        let ([px, py], [qx, qy]) = (place(p), place(q));
+        let ([px, py], [qx, qy]) = (site(p), site(q));
         assert!((px * qy - py * qx - volume / length).abs() < 1e-14, "{normal:?}");
         let along: f64 = p.iter().zip(direction).map(|(p, d)| p * d / length).sum();
         let squared: f64 = p.iter().map(|x| x * x).sum();

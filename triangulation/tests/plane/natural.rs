@@ -15,15 +15,15 @@ type Weights = Vec<(VertexId, f64)>;
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 2 + dice.below(5);
     let count = 1 + dice.below(25);
-    let place = |dice: &mut Random| match round % 3 {
+    let site = |dice: &mut Random| match round % 3 {
         0 => [0, 1].map(|_| dice.unit() * 8.0),
         1 => [0, 1].map(|_| 2.0 * dice.below(side) as f64),
         _ => [0, 1].map(|_| dice.below(side) as f64 + dice.unit() / 1e5), // nearly on circles and lines
     };
-    (0..count).map(|_| place(dice)).collect()
+    (0..count).map(|_| site(dice)).collect()
 }
 
-fn place(dice: &mut Random, round: usize) -> Point {
+fn site(dice: &mut Random, round: usize) -> Point {
     match round % 2 {
         0 => [0, 1].map(|_| dice.unit() * 8.0),
         _ => [0, 1].map(|_| dice.below(9) as f64),
@@ -47,7 +47,7 @@ fn weights_are_positive_sum_to_one_and_give_back_the_place() {
     let mut dice = Random(1);
     let mut answers = 0;
     for round in 0..6000 {
-        let (t, q) = (build(&points(&mut dice, round)), place(&mut dice, round));
+        let (t, q) = (build(&points(&mut dice, round)), site(&mut dice, round));
         for weights in both(&t, &q) {
             assert_eq!(weights.is_some(), is_within(&t, &q), "{:?} {q:?}", t.points());
             let Some(weights) = weights else { continue };
@@ -71,7 +71,7 @@ fn sibsons_weights_are_what_cells_lose() {
     let mut dice = Random(2);
     let mut judged = 0;
     for round in 0..3000 {
-        let (t, q) = (build(&points(&mut dice, round)), place(&mut dice, round));
+        let (t, q) = (build(&points(&mut dice, round)), site(&mut dice, round));
         let window = [[-1e3, -1e3], [1e3, -1e3], [1e3, 1e3], [-1e3, 1e3]];
         let mut after = t.clone();
         let new = after.insert(q).unwrap();

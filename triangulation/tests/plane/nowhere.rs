@@ -106,10 +106,10 @@ fn is_ordinary(x: f64) -> bool {
 
 /// Odd places lie nowhere, others somewhere.
 fn is_somewhere<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, q: Point, location: Location) {
-    let is_place = q.iter().all(|&x| is_ordinary(x));
-    assert_eq!(location == Location::Nowhere, !is_place, "{q:?}");
+    let is_site = q.iter().all(|&x| is_ordinary(x));
+    assert_eq!(location == Location::Nowhere, !is_site, "{q:?}");
     let has_cell = location.cell(t).is_some();
-    assert_eq!(has_cell, is_place && location != Location::OutsideAffineHull, "{q:?}");
+    assert_eq!(has_cell, is_site && location != Location::OutsideAffineHull, "{q:?}");
 }
 
 /// Grown, and with vertices taken out of it again.
@@ -148,15 +148,15 @@ fn delaunay_triangulations() {
                 }
             }
             for q in odd_places() {
-                let is_place = q.iter().all(|&x| is_ordinary(x));
-                assert_eq!(t.nearest(&q, None).is_some(), is_place && !points.is_empty(), "{q:?}");
-                assert_eq!(t.nearest_first(&q, None).count(), if is_place { points.len() } else { 0 });
+                let is_site = q.iter().all(|&x| is_ordinary(x));
+                assert_eq!(t.nearest(&q, None).is_some(), is_site && !points.is_empty(), "{q:?}");
+                assert_eq!(t.nearest_first(&q, None).count(), if is_site { points.len() } else { 0 });
                 for rim in [q, [0.5, 0.25], [f64::NAN, 0.0]] {
-                    let is_circle = is_place && rim.iter().all(|&x| is_ordinary(x));
+                    let is_circle = is_site && rim.iter().all(|&x| is_ordinary(x));
                     assert!(is_circle || t.within(&q, &rim).next().is_none() && t.within(&rim, &q).next().is_none());
                 }
-                assert!(is_place || t.conflict_zone(&q, None).is_none());
-                assert!(is_place || t.sibson(&q, None).is_none() && t.laplace(&q, None).is_none());
+                assert!(is_site || t.conflict_zone(&q, None).is_none());
+                assert!(is_site || t.sibson(&q, None).is_none() && t.laplace(&q, None).is_none());
             }
         }
     }
@@ -253,21 +253,21 @@ fn from_as_far_as_numbers_go() {
 fn the_other_kinds() {
     for points in SETS {
         let mut basic: Basic<Plane, 3> = Basic::new(Plane::default());
-        let mut walled: Constrained<Plane> = Constrained::new(Plane::default());
+        let mut constrained: Constrained<Plane> = Constrained::new(Plane::default());
         for &p in points {
             basic.insert(p).unwrap();
-            walled.insert(p).unwrap();
+            constrained.insert(p).unwrap();
         }
         asks_the_complex(&basic);
-        for v in vertex_numbers(&walled) {
-            for w in vertex_numbers(&walled) {
-                let is_there = v != w && walled.tds().is_vertex(v) && walled.tds().is_vertex(w);
-                assert!(walled.constrain(v, w).is_err() || is_there && walled.dimension() == 2 || v == w);
+        for v in vertex_numbers(&constrained) {
+            for w in vertex_numbers(&constrained) {
+                let is_there = v != w && constrained.tds().is_vertex(v) && constrained.tds().is_vertex(w);
+                assert!(constrained.constrain(v, w).is_err() || is_there && constrained.dimension() == 2 || v == w);
             }
-            assert!(walled.tds().is_vertex(v) || walled.constrained_around(v).next().is_none());
-            assert!(!walled.release(v, VertexId::INFINITE) && !walled.release(VertexId::INFINITE, v));
+            assert!(constrained.tds().is_vertex(v) || constrained.constrained_around(v).next().is_none());
+            assert!(!constrained.release(v, VertexId::INFINITE) && !constrained.release(VertexId::INFINITE, v));
         }
-        asks_the_complex(&walled);
+        asks_the_complex(&constrained);
     }
 }
 
@@ -299,8 +299,8 @@ fn lines_and_meshes() {
         assert_eq!(t.nesting().len(), t.tds().cell_slots());
         assert!(t.nesting_of([LineId::new(1), LineId::new(9)]).is_ok());
         for q in odd_places() {
-            let is_place = q.iter().all(|&x| is_ordinary(x));
-            assert!(is_place || t.conflict_zone(&q, None).is_none());
+            let is_site = q.iter().all(|&x| is_ordinary(x));
+            assert!(is_site || t.conflict_zone(&q, None).is_none());
         }
 
         for conformity in [Conformity::Delaunay, Conformity::Gabriel] {
@@ -360,10 +360,10 @@ fn weighted_points() {
         }
         for [x, y] in odd_places() {
             for weight in [0.0, f64::NAN, 1e300] {
-                let is_place = [x, y, weight].into_iter().all(is_ordinary);
+                let is_site = [x, y, weight].into_iter().all(is_ordinary);
                 let q = [x, y, weight];
-                assert_eq!(t.nearest(&q).is_some(), is_place && !points.is_empty(), "{q:?}");
-                assert_eq!(t.locate(&q, None) == Location::Nowhere, !is_place);
+                assert_eq!(t.nearest(&q).is_some(), is_site && !points.is_empty(), "{q:?}");
+                assert_eq!(t.locate(&q, None) == Location::Nowhere, !is_site);
             }
         }
     }
@@ -425,10 +425,10 @@ fn in_space() {
                 .unwrap();
         for [x, y] in odd_places() {
             for z in COORDINATES {
-                let is_place = [x, y, z].into_iter().all(is_ordinary);
+                let is_site = [x, y, z].into_iter().all(is_ordinary);
                 for location in [t.locate(&[x, y, z], None), JumpAndWalk.locate(&t, &[x, y, z])] {
-                    assert_eq!(location == Location::Nowhere, !is_place, "{x} {y} {z}");
-                    assert!(is_place || location.cell(&t).is_none());
+                    assert_eq!(location == Location::Nowhere, !is_site, "{x} {y} {z}");
+                    assert!(is_site || location.cell(&t).is_none());
                 }
             }
         }

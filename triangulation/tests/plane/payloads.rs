@@ -16,7 +16,7 @@ fn seen<G: Geometry<N>, const N: usize, V>(t: &Triangulation<G, N, V, u32>) -> S
     seen_as(t, |cell| *t.tds().cell_data(cell))
 }
 
-fn seen_between_walls<G: Geometry<3>, V>(t: &Triangulation<G, 3, V, ConstrainedEdges<u32>>) -> Seen {
+fn seen_between_constraints<G: Geometry<3>, V>(t: &Triangulation<G, 3, V, ConstrainedEdges<u32>>) -> Seen {
     seen_as(t, |cell| *t.cell_data(cell))
 }
 
@@ -178,32 +178,32 @@ fn constrained_cells_inherit_what_they_replace() {
         let mut vertices = Vec::new();
         for _ in 0..30 {
             t = t.with_cell_data(another);
-            let before = seen_between_walls(&t);
-            let walls: Vec<_> = t.constrained_edges().collect();
+            let before = seen_between_constraints(&t);
+            let constraints: Vec<_> = t.constrained_edges().collect();
             match dice.below(6) {
                 0 if !vertices.is_empty() => {
                     let _ = t.remove(dice.pick(&vertices));
-                    judge_removal(&before, &seen_between_walls(&t));
+                    judge_removal(&before, &seen_between_constraints(&t));
                 }
                 1 | 2 if vertices.len() > 2 => {
                     let is_new = t.constrain(dice.pick(&vertices), dice.pick(&vertices)).is_ok();
-                    judge_removal(&before, &seen_between_walls(&t));
+                    judge_removal(&before, &seen_between_constraints(&t));
                     constraints += usize::from(is_new);
                 }
-                3 if !walls.is_empty() => {
-                    let [a, b] = dice.pick(&walls);
+                3 if !constraints.is_empty() => {
+                    let [a, b] = dice.pick(&constraints);
                     assert!(t.release(a, b));
-                    assert_eq!(seen_between_walls(&t), before);
+                    assert_eq!(seen_between_constraints(&t), before);
                 }
                 _ => {
                     let vertex = t.insert([dice.below(5) as f64, dice.below(5) as f64]).unwrap();
-                    judge_insertion(&before, &seen_between_walls(&t), vertex);
+                    judge_insertion(&before, &seen_between_constraints(&t), vertex);
                     vertices.push(vertex);
                 }
             }
-            let walls: Vec<_> = t.constrained_edges().collect();
+            let constraints: Vec<_> = t.constrained_edges().collect();
             t = t.with_cell_data(another);
-            assert!(t.constrained_edges().eq(walls));
+            assert!(t.constrained_edges().eq(constraints));
             assert_eq!(t.check(Level::Law), []);
         }
     }
@@ -219,7 +219,7 @@ fn cells_between_lines_keep_their_payloads() {
         let mut t = ConstrainedDelaunay::<Plane>::new(Plane::default()).with_cell_data(|_| 0u32);
         for _ in 0..20 {
             t = t.with_cell_data(another);
-            let before = seen_between_walls(&t);
+            let before = seen_between_constraints(&t);
             let lines: Vec<_> = t.lines().collect();
             let mut point = || [dice.below(5) as f64, dice.below(5) as f64];
             match t.lines().count() {
@@ -234,7 +234,7 @@ fn cells_between_lines_keep_their_payloads() {
                     }
                 }
             }
-            let after = seen_between_walls(&t);
+            let after = seen_between_constraints(&t);
             for (cell, &data) in &after.1 {
                 assert!(data == 0 || before.1.values().any(|&old| old == data), "{cell:?} {data}");
             }
@@ -276,6 +276,6 @@ fn payloads_are_saved() {
             .unwrap();
     let t: ConstrainedDelaunay<Plane, (), u32> = t.with_cell_data(another);
     let read: ConstrainedDelaunay<Plane, (), u32> = serde_json::from_str(&serde_json::to_string(&t).unwrap()).unwrap();
-    assert_eq!(seen_between_walls(&t), seen_between_walls(&read));
+    assert_eq!(seen_between_constraints(&t), seen_between_constraints(&read));
     assert!(read.constrained_edges().eq(t.constrained_edges()));
 }

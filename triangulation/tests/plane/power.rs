@@ -13,12 +13,12 @@ type Weights = Regular<Weighted>;
 
 fn build(dice: &mut Random, round: usize) -> Weights {
     let (side, weights) = (1 + dice.below(6), 1 + dice.below(9));
-    let place = |dice: &mut Random| match round % 3 {
+    let site = |dice: &mut Random| match round % 3 {
         0 => [dice.unit() * 5.0, dice.unit() * 5.0, dice.unit() * 4.0],
         1 => [dice.below(side) as f64, dice.below(side) as f64, dice.below(weights) as f64],
         _ => [dice.below(side) as f64, 2.0, dice.below(weights) as f64], // on one line
     };
-    let points: Vec<Point> = (0..1 + dice.below(20)).map(|_| place(dice)).collect();
+    let points: Vec<Point> = (0..1 + dice.below(20)).map(|_| site(dice)).collect();
     Regular::from_points(Weighted::<Adaptive>::default(), &points).unwrap().0
 }
 

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use crate::grid::{Point, build, grid_point, place, points};
+use crate::grid::{Point, build, grid_point, points, site};
 use breakline_triangulation::geometry::{Geometry, Metric, Plane, Steps, Terrain};
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::{CellId, VertexId};
@@ -12,21 +12,21 @@ use testkit::cells::{by_vertices, vertices};
 use testkit::picture::OnFailure;
 use testkit::random::Random;
 
-type Forced = ConstrainedDelaunay<Plane>;
+type Lined = ConstrainedDelaunay<Plane>;
 
 fn plane() -> Plane {
     Plane::default()
 }
 
 /// All pairs of some points as lines, so that they overlap and touch; some cross.
-fn constrained(dice: &mut Random, points: &[Point]) -> Forced {
+fn constrained(dice: &mut Random, points: &[Point]) -> Lined {
     let index = |dice: &mut Random| dice.index(points.len()) as u32;
     let lines: Vec<Vec<u32>> = if points.is_empty() {
         Vec::new()
     } else {
         (0..dice.below(5)).map(|_| vec![index(dice), index(dice)]).collect()
     };
-    Forced::from_lines(Plane::default(), points, &lines, OnCrossing::Split).unwrap().0
+    Lined::from_lines(Plane::default(), points, &lines, OnCrossing::Split).unwrap().0
 }
 
 /// What a conflict zone must be, given the triangulation with the point in.
@@ -58,7 +58,7 @@ fn conflict_zones_are_what_insertion_destroys() {
     let mut dice = Random(1);
     for round in 0..4000 {
         let t = build(&points(&mut dice, round));
-        let q = place(&mut dice);
+        let q = site(&mut dice);
         let mut after = t.clone();
         after.insert(q).unwrap();
         match t.conflict_zone(&q, None) {
@@ -81,7 +81,7 @@ fn constraints_bound_conflict_zones() {
         if !t.crossings().is_empty() {
             continue; // a point may lie on lines that were bent, which are led through it then
         }
-        let q = place(&mut dice);
+        let q = site(&mut dice);
         let mut after = t.clone();
         after.insert(q).unwrap();
         match t.conflict_zone(&q, None) {
@@ -100,7 +100,7 @@ fn nearest_vertices_in_order() {
     let mut dice = Random(3);
     for round in 0..4000 {
         let t = build(&points(&mut dice, round));
-        let (q, rim) = (place(&mut dice), place(&mut dice));
+        let (q, rim) = (site(&mut dice), site(&mut dice));
         let mut expected: Vec<VertexId> = t.tds().vertices().collect();
         let far = |v: VertexId| squared(*t.point(v), q);
         expected.sort_by(|&u, &v| far(u).total_cmp(&far(v)).then_with(|| plane().compare(t.point(u), t.point(v))));
@@ -116,13 +116,13 @@ fn nearest_vertices_in_order() {
 fn metrics_agree() {
     let mut dice = Random(4);
     for _ in 0..1000 {
-        let places: [Point; 3] = [0; 3].map(|_| grid_point(&mut dice, 5));
-        let [q, a, b] = places;
+        let sites: [Point; 3] = [0; 3].map(|_| grid_point(&mut dice, 5));
+        let [q, a, b] = sites;
         let expected = squared(q, a).total_cmp(&squared(q, b));
         assert_eq!(plane().compare_distance(&q, &a, &b), expected);
-        let [q, a, b] = places.map(|[x, y]| [x, y, dice.unit()]);
+        let [q, a, b] = sites.map(|[x, y]| [x, y, dice.unit()]);
         assert_eq!(Terrain::<breakline_triangulation::kernel::Exact>::default().compare_distance(&q, &a, &b), expected);
-        let [q, a, b] = places.map(|[x, y]| [x as i32, y as i32, dice.below(9) as i32]);
+        let [q, a, b] = sites.map(|[x, y]| [x as i32, y as i32, dice.below(9) as i32]);
         assert_eq!(Steps::<breakline_triangulation::kernel::Lattice>::default().compare_distance(&q, &a, &b), expected);
     }
 }
@@ -133,7 +133,7 @@ fn rectangles() {
     for round in 0..4000 {
         let points = points(&mut dice, round);
         let t = constrained(&mut dice, &points);
-        let corners @ [p, q] = [place(&mut dice), place(&mut dice)];
+        let corners @ [p, q] = [site(&mut dice), site(&mut dice)];
         let is_within = |v: &VertexId| {
             (0..2).all(|k| {
                 let x = t.point(*v)[k];
@@ -204,10 +204,10 @@ fn segments_meet_what_they_meet_in_order() {
         let scale = if round % 2 == 0 { 1.0 } else { 0.37 };
         let points: Vec<Point> = points(&mut dice, round).into_iter().map(|p| p.map(|x| x * scale)).collect();
         let t = constrained(&mut dice, &points);
-        let [a, b] = [0; 2].map(|_| place(&mut dice).map(|x| x * scale));
+        let [a, b] = [0; 2].map(|_| site(&mut dice).map(|x| x * scale));
         let _picture = OnFailure { name: "along", svg: || t.svg(&[Mark::Line(&[a, b]), Mark::Line(&[a])]) };
         let met: Vec<Passage> = t.along([&a, &b], None).collect();
-        let told: Vec<Vec<VertexId>> = met.iter().map(|&passage| part(&t, passage)).collect();
+        let returned: Vec<Vec<VertexId>> = met.iter().map(|&passage| part(&t, passage)).collect();
         let mut parts: BTreeSet<Vec<VertexId>> = BTreeSet::new();
         if t.dimension() == 2 {
             parts.extend(t.tds().vertices().map(|v| vec![v]));
@@ -215,15 +215,15 @@ fn segments_meet_what_they_meet_in_order() {
             parts.extend(t.finite_cells().map(|cell| part(&t, Passage::Face(cell))));
         }
         parts.retain(|part| meets(&part.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, b]));
-        assert_eq!(told.iter().cloned().collect::<BTreeSet<_>>(), parts, "{points:?} {a:?} {b:?}");
-        assert_eq!(told.len(), parts.len(), "nothing twice");
+        assert_eq!(returned.iter().cloned().collect::<BTreeSet<_>>(), parts, "{points:?} {a:?} {b:?}");
+        assert_eq!(returned.len(), parts.len(), "nothing twice");
         // Each lies on the border of the one before, or the other way around: with what is met told, this leaves one
         // order and its reverse.
-        for pair in told.windows(2) {
+        for pair in returned.windows(2) {
             let [p, q] = [&pair[0], &pair[1]];
-            assert!(p.iter().all(|v| q.contains(v)) || q.iter().all(|v| p.contains(v)), "{told:?}");
+            assert!(p.iter().all(|v| q.contains(v)) || q.iter().all(|v| p.contains(v)), "{returned:?}");
         }
-        if let [first, .., last] = &told[..] {
+        if let [first, .., last] = &returned[..] {
             let first_from_a = meets(&first.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, a]);
             let last_from_a = meets(&last.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, a]);
             assert!(first_from_a || !last_from_a);
@@ -231,7 +231,7 @@ fn segments_meet_what_they_meet_in_order() {
         // And back: the same the other way around.
         let mut back: Vec<Vec<VertexId>> = t.along([&b, &a], None).map(|passage| part(&t, passage)).collect();
         back.reverse();
-        assert_eq!(back, told, "{points:?} {a:?} {b:?}");
+        assert_eq!(back, returned, "{points:?} {a:?} {b:?}");
         for passage in met {
             match passage {
                 Passage::Face(_) => kinds[0] += 1,
@@ -277,12 +277,12 @@ fn collinear_edges_of_the_hull() {
     ];
     let walk = |a: f64, b: f64| -> Vec<f64> {
         let x = |v: VertexId| t.point(v)[0];
-        let tell = |passage| match passage {
+        let name = |passage| match passage {
             Passage::Vertex(v) => x(v),
             Passage::Along([u, v]) => (x(u) + x(v)) / 2.0,
             other => panic!("{other:?}"),
         };
-        t.along([&[a, 0.0], &[b, 0.0]], None).map(tell).collect()
+        t.along([&[a, 0.0], &[b, 0.0]], None).map(name).collect()
     };
     for (a, b, met) in table {
         assert_eq!(walk(a, b), met, "from {a} to {b}");

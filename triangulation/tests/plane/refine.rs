@@ -447,9 +447,9 @@ fn arithmetics_for_whole_numbers_refine() {
 fn arithmetics_for_whole_numbers_take_any_place_in_a_hole() {
     let ring = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
     let inside = |domain| refined_ring::<Fixed<24>>(&ring, &Quality { domain, ..Quality::default() }).inside().count();
-    let places = vec![[4.5, 6.25]];
-    assert!(inside(Domain::Seeded { seeds: places.clone() }) > 0);
-    assert_eq!(inside(Domain::Enclosed { holes: places }), 0);
+    let sites = vec![[4.5, 6.25]];
+    assert!(inside(Domain::Seeded { seeds: sites.clone() }) > 0);
+    assert_eq!(inside(Domain::Enclosed { holes: sites }), 0);
 }
 
 /// What is thin is told to be so, however large or small.

@@ -186,21 +186,21 @@ fn points_come_and_go() {
 /// The outcome of each of the ways to be on a site, an edge, a face that is taken.
 #[test]
 fn hiding_on_vertex_edge_and_face() {
-    for (place, seen) in [([0, 0], 1), ([2, 0], 3), ([1, 1], 3)] {
+    for (site, seen) in [([0, 0], 1), ([2, 0], 3), ([1, 1], 3)] {
         for weight in -3..6 {
             let mut t: Regular<Grid> = Regular::new(Grid);
             for [x, y] in [[0, 0], [4, 0], [0, 4]] {
                 t.insert([x, y, 0]).unwrap();
             }
-            let p = [place[0], place[1], weight];
+            let p = [site[0], site[1], weight];
             let vertex = t.insert(p).unwrap();
             // On the corner by weight; on the edge below 4 - 4 = 0 by power; in the face likewise below its power.
-            let power = lift([place[0], place[1], 0]) - 4 * (place[0] + place[1]);
-            let is_seen = if place == [0, 0] { weight > 0 } else { power - weight <= 0 };
-            assert_eq!(!t.is_hidden(vertex), is_seen || place == [0, 0] && weight == 0, "{p:?}");
-            let expected = if place == [0, 0] || !is_seen {
+            let power = lift([site[0], site[1], 0]) - 4 * (site[0] + site[1]);
+            let is_seen = if site == [0, 0] { weight > 0 } else { power - weight <= 0 };
+            assert_eq!(!t.is_hidden(vertex), is_seen || site == [0, 0] && weight == 0, "{p:?}");
+            let expected = if site == [0, 0] || !is_seen {
                 1
-            } else if place == [2, 0] {
+            } else if site == [2, 0] {
                 2
             } else {
                 seen

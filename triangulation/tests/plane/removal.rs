@@ -208,33 +208,33 @@ fn vertices_move() {
     let mut random = Random(17);
     for _ in 0..400 {
         let side = 1 + random.below(5);
-        let mut place = || [0, 1].map(|_| random.below(side) as f64);
-        let points: Vec<Point> = (0..9).map(|_| place()).collect();
+        let mut site = || [0, 1].map(|_| random.below(side) as f64);
+        let points: Vec<Point> = (0..9).map(|_| site()).collect();
         let (mut t, vertices) = Delaunay::from_points_with(Plane::<Adaptive>::default(), &points, |i| i).unwrap();
-        let mut places: BTreeMap<VertexId, Point> = vertices.iter().map(|&v| (v, *t.point(v))).collect();
+        let mut sites: BTreeMap<VertexId, Point> = vertices.iter().map(|&v| (v, *t.point(v))).collect();
         let mut payloads: BTreeMap<VertexId, usize> = vertices.iter().map(|&v| (v, *t.tds().vertex_data(v))).collect();
         for &v in &vertices {
             let first = points.iter().position(|p| p == t.point(v));
             assert_eq!(first, Some(payloads[&v]));
         }
         for at in 0..20 {
-            let (v, p) = (vertices[at % 9], place());
-            let there = places.iter().find(|(_, q)| **q == p).map(|(&w, _)| w);
+            let (v, p) = (vertices[at % 9], site());
+            let there = sites.iter().find(|(_, q)| **q == p).map(|(&w, _)| w);
             let moved = t.move_to(v, p);
-            if places.contains_key(&v) {
+            if sites.contains_key(&v) {
                 assert_eq!(moved, Ok(there.unwrap_or(v)));
-                places.remove(&v);
+                sites.remove(&v);
                 if there.is_some_and(|w| w != v) {
                     payloads.remove(&v);
                 }
-                places.entry(moved.unwrap()).or_insert(p);
+                sites.entry(moved.unwrap()).or_insert(p);
             } else {
                 assert_eq!(moved, Err(MoveError::Vertex(RemovalError::NoVertex)));
             }
             assert_eq!(t.check(Level::Law), []);
-            assert_eq!(t.tds().vertices().map(|v| (v, *t.point(v))).collect::<BTreeMap<_, _>>(), places);
+            assert_eq!(t.tds().vertices().map(|v| (v, *t.point(v))).collect::<BTreeMap<_, _>>(), sites);
             assert_eq!(t.tds().vertices().map(|v| (v, *t.tds().vertex_data(v))).collect::<BTreeMap<_, _>>(), payloads);
-            let left: Vec<Point> = places.values().copied().collect();
+            let left: Vec<Point> = sites.values().copied().collect();
             let key = |p: Point| p.map(f64::to_bits);
             assert_eq!(testkit::cells::cells(&t, key), testkit::cells::cells(&fresh(&left), key));
         }

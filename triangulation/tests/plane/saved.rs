@@ -20,11 +20,11 @@ enum Edit {
 }
 
 fn edits() -> impl Strategy<Value = Vec<Edit>> {
-    let insert = ([0i8..5, 0i8..5], 0i8..6).prop_map(|(place, weight)| Edit::Insert(place, weight));
+    let insert = ([0i8..5, 0i8..5], 0i8..6).prop_map(|(site, weight)| Edit::Insert(site, weight));
     prop::collection::vec(prop_oneof![3 => insert, 1 => (0u8..12).prop_map(Edit::Remove)], 0..24)
 }
 
-fn place([x, y]: [i8; 2]) -> [f64; 2] {
+fn site([x, y]: [i8; 2]) -> [f64; 2] {
     [f64::from(x), f64::from(y)]
 }
 
@@ -54,7 +54,7 @@ proptest! {
     #[test]
     fn delaunay_comes_back_and_goes_on_as_before(before in edits(), after in edits()) {
         let edit = |t: &mut Delaunay<Plane, 3, u8>, k: usize, edit| match edit {
-            Edit::Insert(p, _) => drop(t.insert_with(place(p), k as u8).unwrap()),
+            Edit::Insert(p, _) => drop(t.insert_with(site(p), k as u8).unwrap()),
             Edit::Remove(k) => drop(t.remove(VertexId::new(k.into()))),
         };
         goes_on_as_before(Delaunay::new(Plane::default()), &before, &after, edit, |t, read| {
@@ -88,7 +88,7 @@ proptest! {
         pairs in prop::collection::vec([0usize..14, 0..14], 0..8),
     ) {
         let mut t: Constrained<Plane> = Constrained::new(Plane::default());
-        let vertices: Vec<_> = points.into_iter().map(|p| t.insert(place(p)).unwrap()).collect();
+        let vertices: Vec<_> = points.into_iter().map(|p| t.insert(site(p)).unwrap()).collect();
         for [a, b] in pairs {
             if let (Some(&a), Some(&b)) = (vertices.get(a), vertices.get(b)) {
                 let _ = t.constrain(a, b);
@@ -158,7 +158,7 @@ pub(crate) fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t:
     assert!(errors > 0);
 }
 
-pub(crate) const PLACES: [&[[f64; 2]]; 7] = [
+pub(crate) const SITES: [&[[f64; 2]]; 7] = [
     &[],
     &[[1.0, 2.0]],
     &[[0.0, 0.0], [1.0, 1.0]],
@@ -170,14 +170,14 @@ pub(crate) const PLACES: [&[[f64; 2]]; 7] = [
 
 #[test]
 fn damage_to_the_basic_and_delaunay_kinds_is_an_error() {
-    for places in PLACES {
+    for sites in SITES {
         let mut basic: Basic<Plane, 3, u8> = Basic::new(Plane::default());
         let mut delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
-        for &p in places {
+        for &p in sites {
             basic.insert_with(p, 7).unwrap();
             delaunay.insert(p).unwrap();
         }
-        if places.len() > 2 {
+        if sites.len() > 2 {
             let _ = basic.remove(VertexId::new(1));
             let _ = delaunay.remove(VertexId::new(1));
         }
@@ -199,14 +199,14 @@ fn damage_to_the_basic_and_delaunay_kinds_is_an_error() {
 
 #[test]
 fn damage_to_regular_and_constrained_kinds_is_an_error() {
-    for places in PLACES {
+    for sites in SITES {
         let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
         let mut constrained: Constrained<Plane> = Constrained::new(Plane::default());
-        for (k, &[x, y]) in places.iter().enumerate() {
+        for (k, &[x, y]) in sites.iter().enumerate() {
             regular.insert([x, y, if k % 3 == 1 { -4.0 } else { 0.0 }]).unwrap();
             constrained.insert([x, y]).unwrap();
         }
-        let _ = constrained.constrain(VertexId::new(0), VertexId::new(places.len().saturating_sub(1)));
+        let _ = constrained.constrain(VertexId::new(0), VertexId::new(sites.len().saturating_sub(1)));
         read_damaged(&regular, |mut t| {
             let (fresh, _) = Regular::<Weighted>::from_points(Weighted::default(), t.points()).unwrap();
             let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::saved::{PLACES, read_damaged, through};
+use crate::saved::{SITES, read_damaged, through};
 use breakline_triangulation::geometry::Plane;
 use breakline_triangulation::refine::Quality;
 use breakline_triangulation::tds::VertexId;
@@ -14,10 +14,10 @@ use testkit::random::{Random, ulps};
 /// All that can be seen of lines.
 fn lines_of(t: &ConstrainedDelaunay<Plane>) -> impl PartialEq + std::fmt::Debug + use<> {
     let lines: Vec<LineId> = t.lines().collect();
-    let ways: Vec<_> = lines.iter().map(|&line| (t.line_vertices(line).to_vec(), t.chain(line))).collect();
+    let chains: Vec<_> = lines.iter().map(|&line| (t.line_vertices(line).to_vec(), t.chain(line))).collect();
     let edges: BTreeSet<_> = t.constrained_edges().collect();
     let through: Vec<Vec<LineId>> = edges.iter().map(|&[a, b]| t.lines_through(a, b).collect()).collect();
-    (lines, ways, edges, through, t.crossings().to_vec(), t.rounding())
+    (lines, chains, edges, through, t.crossings().to_vec(), t.rounding())
 }
 
 /// What is saved beside the triangulation.
@@ -28,15 +28,15 @@ fn tables_of(t: &ConstrainedDelaunay<Plane>) -> Value {
 }
 
 /// One of all edits that there are.
-fn edit_lines(t: &mut ConstrainedDelaunay<Plane>, dice: &mut Random, place: &mut impl FnMut(&mut Random) -> [f64; 2]) {
+fn edit_lines(t: &mut ConstrainedDelaunay<Plane>, dice: &mut Random, site: &mut impl FnMut(&mut Random) -> [f64; 2]) {
     let line = LineId::new(dice.index(8));
     let vertex = VertexId::new(dice.index(t.points().len() + 2));
     match dice.below(10) {
         0..=2 => {
-            let line: Vec<_> = (0..dice.index(4)).map(|_| place(dice)).collect();
-            t.insert_lines(&[line, vec![place(dice), place(dice)]]).unwrap();
+            let line: Vec<_> = (0..dice.index(4)).map(|_| site(dice)).collect();
+            t.insert_lines(&[line, vec![site(dice), site(dice)]]).unwrap();
         }
-        3 | 4 => drop(t.insert(place(dice)).unwrap()),
+        3 | 4 => drop(t.insert(site(dice)).unwrap()),
         5 => drop(t.remove_line(line)),
         6 => drop(t.split_line(line, dice.index(3))),
         7 => drop(t.join_lines(line, LineId::new(dice.index(8)))),
@@ -49,13 +49,13 @@ fn edit_lines(t: &mut ConstrainedDelaunay<Plane>, dice: &mut Random, place: &mut
 fn comes_back(
     t: &ConstrainedDelaunay<Plane>,
     dice: &mut Random,
-    place: &mut impl FnMut(&mut Random) -> [f64; 2],
+    site: &mut impl FnMut(&mut Random) -> [f64; 2],
 ) -> BTreeSet<String> {
     let (mut original, mut read) = (t.clone(), through(t));
     let seed = dice.below(u64::MAX);
     for t in [&mut original, &mut read] {
         let mut dice = Random(seed);
-        (0..3).for_each(|_| edit_lines(t, &mut dice, place));
+        (0..3).for_each(|_| edit_lines(t, &mut dice, site));
     }
     for (t, read) in [(t, &through(t)), (&original, &read)] {
         assert_eq!(by_vertices(t), by_vertices(read));
@@ -71,15 +71,15 @@ fn comes_back(
 }
 
 /// The same after each of some edits.
-fn lines_come_back(seed: u64, rounds: usize, mut place: impl FnMut(&mut Random) -> [f64; 2]) -> BTreeSet<String> {
+fn lines_come_back(seed: u64, rounds: usize, mut site: impl FnMut(&mut Random) -> [f64; 2]) -> BTreeSet<String> {
     let mut dice = Random(seed);
     let mut used = BTreeSet::new();
     for _ in 0..rounds {
         let mut t: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
         for _ in 0..8 {
-            edit_lines(&mut t, &mut dice, &mut place);
+            edit_lines(&mut t, &mut dice, &mut site);
             assert_eq!(t.check(Level::Law), []);
-            used.extend(comes_back(&t, &mut dice, &mut place));
+            used.extend(comes_back(&t, &mut dice, &mut site));
         }
     }
     used
@@ -145,11 +145,11 @@ fn damage_to_lines_is_an_error() {
     const CROSS: &[[f64; 2]] = &[[0.0, 0.0], [2.0, 2.0], [0.0, 2.0], [2.0, 0.0], [1.0, 0.0]];
     // They cross at a point of no grid that its coordinates have.
     const FAN: &[[f64; 2]] = &[[0.0, 0.0], [3.0, 1.0], [0.0, 1.0], [3.0, 0.0], [1.0, 0.0], [1.0, 2.0]];
-    for places in [CROSS, FAN].into_iter().chain(PLACES) {
-        let pair = |a: usize, b: usize| Some([*places.get(a)?, *places.get(b)?]);
+    for sites in [CROSS, FAN].into_iter().chain(SITES) {
+        let pair = |a: usize, b: usize| Some([*sites.get(a)?, *sites.get(b)?]);
         let lines: Vec<_> = [pair(0, 1), pair(2, 3), pair(0, 3), pair(4, 5)].into_iter().flatten().collect();
         let mut t: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
-        for &p in places {
+        for &p in sites {
             t.insert(p).unwrap();
         }
         t.insert_lines(&lines).unwrap();

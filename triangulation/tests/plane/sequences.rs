@@ -154,7 +154,7 @@ fn constrained(random: &mut Random, geometry: Chosen<2>) {
     let rest: Vec<&Vec<[f64; 2]>> = lines.iter().map(|(line, _)| line).collect();
     fresh.insert_lines(&rest).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{history:#?}");
-    let walls = |t: &ConstrainedDelaunay<Chosen<2>>| {
+    let constraints = |t: &ConstrainedDelaunay<Chosen<2>>| {
         let ends = |[a, b]: [VertexId; 2]| {
             let mut ends = [a, b].map(|v| t.point(v).map(f64::to_bits));
             ends.sort_unstable();
@@ -162,7 +162,7 @@ fn constrained(random: &mut Random, geometry: Chosen<2>) {
         };
         t.constrained_edges().map(ends).collect::<BTreeSet<_>>()
     };
-    assert_eq!(walls(&t), walls(&fresh), "{history:#?}");
+    assert_eq!(constraints(&t), constraints(&fresh), "{history:#?}");
 }
 
 /// Every exact arithmetic.
