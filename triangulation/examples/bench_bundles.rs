@@ -1,17 +1,18 @@
-//! Long lines side by side, timed: how the time grows with their number.
+//! Measures how the time for many long parallel or similar lines grows with their number.
 //!
 //! ```text
 //! bench_bundles [--shape parallel|varied|fan|rings|crossed|random] [--check] [COUNT...]
 //! ```
 //!
-//! For each of the four roads, `from_lines` and `insert_lines` with the lines in order and shuffled, and for each count:
-//! seconds, and the slope of their logarithm over that of the count, between the smallest and the largest. Without
-//! counts: 25000, 50000, 100000. `--check` proves the triangulations right.
+//! For each of the four combinations of `from_lines` and `insert_lines` with the lines in order and
+//! shuffled, prints the seconds for each count, and the slope of their logarithm over that of the
+//! count, between the smallest and the largest. Default counts: 25000, 50000, 100000. `--check`
+//! checks the triangulations.
 //!
 //! | shape | lines |
 //! |---|---|
 //! | `parallel` | from (0.1 i, 0) to (0.1 i + 1000, 1000) |
-//! | `varied` | no two of one direction, none of which cross |
+//! | `varied` | no two in the same direction, none of which cross |
 //! | `fan` | from one point to points around it |
 //! | `rings` | like contours around a peak, of 500 vertices each |
 //! | `crossed` | like `parallel`, with three lines over all of them |
@@ -48,7 +49,7 @@ fn around(angle: f64, radius: f64) -> [f64; 2] {
     [radius * angle.cos(), radius * angle.sin()]
 }
 
-/// About that many segments.
+/// Generates about `count` segments; `None` for an unknown shape.
 fn bundle(shape: &str, count: usize) -> Option<Vec<Line>> {
     let turn = std::f64::consts::TAU / count as f64;
     let from = |i: usize| [0.1 * i as f64, 0.0];

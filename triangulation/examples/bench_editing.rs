@@ -1,13 +1,15 @@
-//! A triangulation built, asked and taken apart one point at a time, with the Delaunay hierarchy: lines in the format
-//! of `bench_triangulation`, to be put beside those of `benches/cgal_editing.cpp`.
+//! Measures building, querying and dismantling a triangulation one point at a time, with the
+//! Delaunay hierarchy. Prints lines in the format of `bench_triangulation`, to compare with those
+//! of `benches/cgal_editing.cpp`.
 //!
 //! ```text
 //! bench_editing FILE.xy
 //! ```
 //!
-//! The points (pairs of 64-bit little-endian floating-point numbers) are inserted in the order of the file; the middles
-//! between two that follow each other are located, and their nearest vertices found; then every second point is
-//! removed. The last number but one of a line is that of triangles, or of places that were found.
+//! The points (pairs of 64-bit little-endian floating-point numbers) are inserted in the order of
+//! the file. The midpoints of consecutive points are located, and their nearest vertices found.
+//! Then every second point is removed. The last number but one of a line counts triangles, or
+//! points that were found.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 

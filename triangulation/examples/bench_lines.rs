@@ -1,12 +1,13 @@
-//! Lines added to and removed from a triangulation of 500 000 points, one by one: microseconds for each, among 4 000
-//! lines and among 400 000.
+//! Measures inserting lines into and removing them from a triangulation of 500 000 points, one by
+//! one: microseconds for each, among 4 000 lines and among 400 000.
 //!
 //! ```text
 //! bench_lines [POINTS [EDITS]]
 //! ```
 //!
-//! The points are spread evenly, one to a square meter, a long way from zero. The lines that are there first are 100 m
-//! and 1.5 m long, so that a new one, of 10 m, crosses about five to eight of them. New lines come in spatial order.
+//! The points are spread evenly, one to a square meter, far from zero. The lines that are there
+//! first are 100 m and 1.5 m long, so that a new one, of 10 m, crosses about five to eight of them.
+//! New lines come in spatial order.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 
@@ -19,7 +20,7 @@ use testkit::random::Random;
 
 type Point = [f64; 2];
 
-/// A segment of a length in a random direction.
+/// Returns a segment of some length in a random direction.
 fn line(random: &mut Random, side: f64, length: f64) -> [Point; 2] {
     let [x, y] = [0; 2].map(|_| random.unit() * (side - 2.0 * length) + length);
     let (sin, cos) = (random.unit() * std::f64::consts::TAU).sin_cos();

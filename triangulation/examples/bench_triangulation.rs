@@ -1,19 +1,21 @@
-//! One construction, timed: a line that can be put beside those of other programs.
+//! Measures one construction, and prints a line that can be compared with those of other programs.
 //!
 //! ```text
 //! bench_triangulation FILE.xy [FILE.seg] [--threads N] [--one-by-one] [--check]
 //! bench_triangulation FILE.xyz [--threads N] [--one-by-one] [--check]
 //! ```
 //!
-//! A file holds coordinates one after the other, little-endian 64-bit floating point: pairs (`.xy`) to be triangulated
-//! in the plane, or triples (`.xyz`) in space. Segments (`.seg`) are pairs of 32-bit numbers of points. What is
-//! printed: program, data, points, threads, seconds, peak memory in MB and what of it was added by the construction,
-//! triangles (or tetrahedra), and processor seconds. The caller's indices are part of the time, reading the file is
-//! not.
+//! A file contains coordinates one after the other, little-endian 64-bit floating point: pairs
+//! (`.xy`) to be triangulated in the plane, or triples (`.xyz`) in space. Segments (`.seg`) are
+//! pairs of 32-bit indices of points.
 //!
-//! `--one-by-one` inserts the points one after the other, in the order of the file. `--check` proves the result right,
-//! and counts the questions that got as far as each stage of the arithmetic; both take time of their own, so that the
-//! line is of a build without.
+//! The line consists of: program, data, points, threads, seconds, peak memory in MB and the part of
+//! it that the construction added, triangles (or tetrahedra), and processor seconds. The time
+//! includes the caller's indices, but not reading the file.
+//!
+//! `--one-by-one` inserts the points one after the other, in the order of the file. `--check`
+//! checks the result, and counts the predicates that reached each stage of the arithmetic; both
+//! take time, so that the line to compare is that of a build without.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 
@@ -30,7 +32,7 @@ use breakline_triangulation::kernel::{
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing};
 
-/// The stages of [`Adaptive`], but for the pairs of doubles, each counting what it is asked.
+/// The stages of [`Adaptive`] except the pairs of doubles; each counts its calls.
 type Counting = Filtered<Counted<0, ErrorBound>, Filtered<Counted<1, OnLattice>, OnFineGrid>>;
 type OnFineGrid = Filtered<Counted<2, OnFineLattice>, Counted<3, Expansions>>;
 
@@ -105,14 +107,15 @@ fn segments(path: &str) -> Result<Vec<[u32; 2]>, String> {
     Ok(numbers.as_chunks::<2>().0.to_vec())
 }
 
-/// A number of kilobytes in the system's account of this process, as MB; zero where there is none.
+/// Returns a number of kilobytes from the system's account of this process, in MB; zero if there is
+/// none.
 fn memory(name: &str) -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix(name));
     line.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
 }
 
-/// Seconds that the threads of this process have run.
+/// Returns the seconds that the threads of this process have run.
 fn processor_seconds() -> f64 {
     let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
     let of_task = |task: std::fs::DirEntry| {
@@ -122,14 +125,14 @@ fn processor_seconds() -> f64 {
     tasks.filter_map(of_task).sum::<f64>() * 1e-9
 }
 
-/// Times a construction; prints its line, given how to count the cells.
+/// Measures a construction and prints its line, given a function that counts the cells.
 fn time<T, E: std::fmt::Display>(
     options: &Options,
     count: usize,
     build: impl FnOnce() -> Result<T, E>,
     cells: impl Fn(&T) -> usize,
 ) -> Result<(), String> {
-    // The peak so far does not count. Where that cannot be told, nothing is lost.
+    // The peak so far does not count. Where it cannot be reset, nothing is lost.
     let _ = std::fs::write("/proc/self/clear_refs", "5");
     let (before, processor, start) = (memory("VmRSS:"), processor_seconds(), Instant::now());
     let built = black_box(build().map_err(|refused| format!("{}: {refused}", options.points))?);
@@ -147,7 +150,7 @@ fn time<T, E: std::fmt::Display>(
     Ok(())
 }
 
-/// What the check of a triangulation says, and how many questions each stage was asked while it was built.
+/// Reports the flaws of a triangulation, and how often each stage was called while it was built.
 fn report(asked: [u64; 4], flaws: usize) -> Result<(), String> {
     let [all, lattice, fine, exact] = asked;
     eprintln!(

@@ -1,4 +1,4 @@
-//! Attach colors to vertices, and read them back through a Voronoi cell.
+//! Attaches colors to vertices, and reads them back through a Voronoi cell.
 
 use breakline_triangulation::Delaunay;
 use breakline_triangulation::geometry::Plane;

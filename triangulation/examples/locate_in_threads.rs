@@ -1,4 +1,4 @@
-//! Locate a million points from four threads.
+//! Locates a million points from four threads.
 
 use breakline_triangulation::geometry::Plane;
 use breakline_triangulation::{Delaunay, Location};

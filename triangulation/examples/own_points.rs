@@ -1,4 +1,4 @@
-//! Triangulate records of one's own, as they are: a name and a place.
+//! Triangulates records of your own, without conversion: a name and coordinates.
 
 use breakline_triangulation::geometry::{Geometry, Plane};
 use breakline_triangulation::{Delaunay, num::Sign};

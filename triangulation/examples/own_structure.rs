@@ -1,12 +1,14 @@
-//! Queries on a structure of one's own: an array of triangles, as meshes come in files. The triangles fill a convex polygon.
+//! Queries on a structure of your own: an array of triangles, as meshes come in files. The
+//! triangles fill a convex polygon.
 //!
-//! Infinite cells are not stored: there is one for each edge of the hull, numbered after the triangles.
+//! Infinite cells are not stored: there is one for each edge of the hull, numbered after the
+//! triangles.
 //!
 //! ```text
 //!        ghost k: (b, a, infinity)
-//!          b <------- a          The hull runs counter-clockwise, from a to b. Across its finite edge lies the triangle;
-//!           \        /           across the edge at a lies ghost k - 1, across the edge at b ghost k + 1.
-//!            \  hull/
+//!          b <------- a          The hull runs counter-clockwise, from a to b. Across the finite edge
+//!           \        /           lies the triangle; across the edge at a lies ghost k - 1, across the
+//!            \  hull/            edge at b ghost k + 1.
 //! ```
 
 use std::collections::HashMap;
@@ -21,9 +23,9 @@ struct Mesh {
     points: Vec<[f64; 2]>,
     /// Indices of points, counter-clockwise.
     triangles: Vec<[u32; 3]>,
-    /// The cell across the edge opposite each corner: a triangle, or a ghost.
+    /// The cell across the edge opposite each corner: a triangle or a ghost.
     across: Vec<[u32; 3]>,
-    /// The edges of the hull in order, each as the triangle and the corner opposite.
+    /// The edges of the hull in order, each as the triangle and its corner opposite the edge.
     hull: Vec<(u32, usize)>,
     /// A triangle of each vertex.
     triangle_of: Vec<u32>,
@@ -34,7 +36,7 @@ impl Mesh {
         let sides =
             || (0u32..).zip(&triangles).flat_map(|(k, t)| (0..3).map(move |i| (k, i, t[(i + 1) % 3], t[(i + 2) % 3])));
         let owner: HashMap<(u32, u32), (u32, usize)> = sides().map(|(k, i, a, b)| ((a, b), (k, i))).collect();
-        // From the start of each edge of the hull to the edge.
+        // Maps the start of each edge of the hull to the edge.
         let next: HashMap<u32, (u32, u32, usize)> =
             sides().filter(|(_, _, a, b)| !owner.contains_key(&(*b, *a))).map(|(k, i, a, b)| (a, (b, k, i))).collect();
         let mut hull = Vec::new();
@@ -59,7 +61,7 @@ impl Mesh {
         Mesh { plane: Plane::new(), points, triangles, across, hull, triangle_of }
     }
 
-    /// The number of a ghost, counted around the hull.
+    /// Returns the number of a ghost, counted around the hull.
     fn ghost(&self, number: usize) -> CellId {
         CellId::new(self.triangles.len() + number % self.hull.len())
     }
@@ -148,7 +150,7 @@ impl Embedded<3> for Mesh {
     }
 }
 
-/// What a segment meets, by vertices in order of their numbers.
+/// Returns what a segment meets, each part by its vertices in order of their numbers.
 fn faces_and_vertices(
     passage: Passage,
     corners: &dyn Fn(CellId) -> Result<[VertexId; 3], Infallible>,
@@ -166,13 +168,14 @@ fn faces_and_vertices(
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A mesh with the points of a Delaunay triangulation, whose answers are those to expect. Many points share a circle.
+    // A mesh with the points of a Delaunay triangulation, whose answers are the expected ones. Many
+    // points share a circle.
     let grid: Vec<[f64; 2]> = (0..400u32).map(|k| [f64::from(k % 20), f64::from(k * 7 % 20 + k / 20)]).collect();
     let (t, _) = Delaunay::from_points(Plane::new(), &grid)?;
     let triangles = t.finite_cells().map(|cell| t.tds().corners(cell).map(|v| v.index() as u32)).collect();
     let mesh = Mesh::new(t.points().to_vec(), triangles);
 
-    // Cells of the two have different numbers, and the same vertices.
+    // Cells of the two have different numbers but the same vertices.
     let ours = |cell: CellId| {
         let Ok(mut corners) = mesh.corners(cell);
         corners.sort_unstable();

@@ -1,4 +1,5 @@
-//! Draws the pictures of the documentation: `cargo run --example pictures -- triangulation/docs/pictures`.
+//! Draws the pictures of the documentation:
+//! `cargo run --example pictures -- triangulation/docs/pictures`.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +10,7 @@ use breakline_triangulation::{ConstrainedDelaunay, Delaunay, InputError, Mark, O
 
 type Site = [f64; 2];
 
-/// To the text of an SVG file.
+/// A function that returns the text of an SVG file.
 type Draw = fn() -> Result<String, Box<dyn std::error::Error>>;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -28,7 +29,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Points spread evenly over a square of side 100, in an order of the R2 sequence (Roberts 2018): no two are near.
+/// Returns points spread evenly over a square of side 100, in an order of the R2 sequence (Roberts
+/// 2018): no two are close.
 fn spread(count: u32) -> Vec<Site> {
     let at = |k: u32, step: f64| (f64::from(k) * step).fract() * 100.0;
     (1..=count).map(|k| [at(k, 0.754_877_666), at(k, 0.569_840_291)].map(f64::round)).collect()
@@ -38,14 +40,14 @@ fn delaunay(count: u32) -> Result<Delaunay<Plane, 3>, InputError> {
     Ok(Delaunay::from_points(Plane::default(), &spread(count))?.0)
 }
 
-/// The triangles that a new point would destroy, and the border of its star.
+/// Draws the triangles that a new point would destroy, and the border of its star.
 fn conflict_zone() -> Result<String, Box<dyn std::error::Error>> {
     let (t, q) = (delaunay(24)?, [40.0, 36.0]);
     let zone = t.conflict_zone(&q, None).expect("it is inside of the hull, and no vertex");
     Ok(t.svg(&[Mark::Cells(&zone.cells), Mark::Edges(&zone.border), Mark::Line(&[q])]))
 }
 
-/// The triangles that a straight line meets.
+/// Draws the triangles that a straight line meets.
 fn walk() -> Result<String, Box<dyn std::error::Error>> {
     let (t, ends) = (delaunay(30)?, [[14.0, 12.0], [88.0, 79.0]]);
     let face = |passage| if let Passage::Face(cell) = passage { Some(cell) } else { None };
@@ -53,7 +55,7 @@ fn walk() -> Result<String, Box<dyn std::error::Error>> {
     Ok(t.svg(&[Mark::Cells(&met), Mark::Line(&ends), Mark::Line(&ends[1..])]))
 }
 
-/// The Voronoi cell of the vertex in the middle, and those of its neighbors.
+/// Draws the Voronoi cell of the vertex in the middle, and those of its neighbors.
 fn voronoi_cell() -> Result<String, Box<dyn std::error::Error>> {
     let t = delaunay(20)?;
     let sheet = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]];
@@ -69,7 +71,7 @@ fn closed(ring: &[Site]) -> Vec<Site> {
     ring.iter().chain(ring.first()).copied().collect()
 }
 
-/// Weighted points; the hidden ones as dots without edges, in the triangles that hide them.
+/// Draws weighted points; the hidden ones as dots without edges, in the triangles that hide them.
 fn regular() -> Result<String, Box<dyn std::error::Error>> {
     let weighted = |(k, [x, y]): (usize, Site)| [x, y, if k % 5 == 2 { 1200.0 } else { 0.0 }];
     let points: Vec<[f64; 3]> = spread(28).into_iter().enumerate().map(weighted).collect();
@@ -80,7 +82,8 @@ fn regular() -> Result<String, Box<dyn std::error::Error>> {
     Ok(t.svg(&[Mark::Cells(&hosts)].into_iter().chain(dots).collect::<Vec<_>>()))
 }
 
-/// A plate with a hole and a crack that crosses its rim: filled is what lies at an odd level.
+/// Draws a plate with a hole and a crack that crosses its rim; areas at odd nesting levels are
+/// filled.
 fn constrained() -> Result<String, Box<dyn std::error::Error>> {
     let mut points = vec![[0.0, 0.0], [100.0, 10.0], [90.0, 100.0], [10.0, 90.0]];
     points.extend([[35.0, 35.0], [65.0, 40.0], [60.0, 70.0], [30.0, 60.0]]);

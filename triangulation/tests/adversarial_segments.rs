@@ -1,5 +1,5 @@
-//! Segments forced into a triangulation by an adversary: bundles a rounding apart, stars, spikes, walls without
-//! number, the same again and backwards.
+//! Segments inserted by an adversary: bundles a rounding apart, stars, spikes, great numbers of
+//! short constraints, repeated and reversed segments.
 
 use std::collections::{HashMap, HashSet};
 
@@ -24,8 +24,8 @@ fn built(points: &[Point], segments: &[Segment]) -> Constrained {
     t
 }
 
-/// Whether constrained edges lead from one end of each segment to the other, none of their vertices further off the
-/// segment than `tolerance`.
+/// Returns true if constrained edges connect the ends of each segment, and none of their vertices
+/// is further off the segment than `tolerance`.
 fn covers<K: Kernel>(t: &Constrained<K>, segments: &[Segment], tolerance: f64) -> bool {
     let mut edges: HashMap<VertexId, Vec<VertexId>> = HashMap::new();
     for [a, b] in t.constrained_edges() {
@@ -52,7 +52,8 @@ fn covers<K: Kernel>(t: &Constrained<K>, segments: &[Segment], tolerance: f64) -
     })
 }
 
-/// Whether each segment is the chain of constrained edges between the vertices that lie on it exactly.
+/// Returns true if each segment is the chain of constrained edges between the vertices that lie on
+/// it exactly.
 fn covers_exactly(t: &Constrained, segments: &[Segment]) -> bool {
     let exact = Plane::<Exact>::default();
     segments.iter().all(|[a, b]| {
@@ -76,7 +77,7 @@ fn any_cross(segments: &[Segment]) -> bool {
     segments.iter().enumerate().any(|(i, s)| segments[..i].iter().any(|other| apart(s, other) && apart(other, s)))
 }
 
-/// Builds in some order, perhaps with every segment a second time, backwards; all laws must hold.
+/// Builds in some order, perhaps with every segment repeated and reversed; all laws must hold.
 fn survives(points: &[Point], segments: &[Segment], random: &mut Random) {
     let mut order = segments.to_vec();
     random.shuffle(&mut order);
@@ -94,12 +95,13 @@ fn survives(points: &[Point], segments: &[Segment], random: &mut Random) {
         assert_eq!(t.crossings(), [], "{points:?} {order:?}");
         assert!(covers_exactly(&t, segments), "{points:?} {order:?}");
     }
-    // Each pair once, and here and there once more because the pieces lie a rounding beside the line.
+    // Each pair once, and some once more because the sub-constraints lie off the line by a
+    // rounding.
     let pairs = segments.len() * segments.len();
     assert!(t.crossings().len() <= pairs, "{} crossings of {order:?}", t.crossings().len());
 }
 
-/// Each family of inputs, some hundred times. Longer runs take another seed and more rounds.
+/// Each family of inputs, some hundred times. Longer runs use another seed and more rounds.
 fn fuzz(seed: u64, rounds: usize, mut input: impl FnMut(&mut Random, Point) -> (Vec<Point>, Vec<Segment>)) {
     let mut random = Random(seed);
     for round in 0..rounds {
@@ -144,7 +146,7 @@ fn nearly_parallel_in_centimetres() {
     });
 }
 
-/// The same border from several sources. Nine of these once made 1.4 million vertices.
+/// The same border from several sources. Nine of these once produced 1.4 million vertices.
 #[test]
 fn bundles_a_rounding_apart() {
     for spread in [1, 3, 10, 1000] {
@@ -172,7 +174,7 @@ fn stars_through_a_point() {
     });
 }
 
-/// A long line through dust, with short walls that stick into its corridor.
+/// A long line through dust, with short constraints that stick into its corridor.
 #[test]
 fn spikes_along_a_line() {
     fuzz(6, 500, |random, [x, y]| {
@@ -203,7 +205,7 @@ fn along_a_hull_that_is_nearly_straight() {
     });
 }
 
-/// Polylines that turn back on themselves. Twenty-four pieces of such once made 1900 vertices.
+/// Polylines that turn back on themselves. Twenty-four such segments once produced 1900 vertices.
 #[test]
 fn scribbles() {
     fuzz(8, 400, |random, [x, y]| {
@@ -263,7 +265,7 @@ fn repeated_vertices_and_spikes_in_a_polyline() {
     assert_eq!(t.crossings(), []);
 }
 
-/// Kernels without a range take crossings of any size, too.
+/// Kernels without a range accept crossings of any size, too.
 #[test]
 fn crossings_at_the_ends_of_floating_point() {
     let crossings = |scale: f64| -> Vec<Point> {
@@ -284,7 +286,7 @@ fn crossings_at_the_ends_of_floating_point() {
     }
 }
 
-/// A crossing may come nearer to zero than the arithmetic admits: it is put on zero.
+/// A crossing may be nearer to zero than the arithmetic admits: then it is moved to zero.
 #[test]
 fn crossings_stay_in_the_range() {
     let tiny = 2f64.powi(-159);

@@ -1,4 +1,5 @@
-//! The shared cases of other triangulation packages, by the counts that their README states and by our own judge.
+//! The shared cases of other triangulation packages, compared with the counts in their README and
+//! with a judge of our own.
 #![allow(clippy::print_stdout)]
 
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -11,11 +12,11 @@ use testkit::judge;
 use testkit::random::Random;
 use testkit::subject::{Built, build};
 
-/// A file of the format that ../shared/data/README.md tells.
+/// A file in the format that ../shared/data/README.md describes.
 struct Stated {
     case: Case,
     facts: HashMap<String, usize>,
-    /// What peers produced, and how many triangles they did.
+    /// The peers' products, and their numbers of triangles.
     peers: Vec<(String, usize)>,
 }
 
@@ -45,8 +46,8 @@ impl Stated {
     }
 }
 
-/// What is compared with the facts: by their names, each with what we have. The counts of an unconstrained
-/// triangulation always hold; those of edges as far as lines split none.
+/// Returns our values for the facts that are compared, by name. The counts of an unconstrained
+/// triangulation always hold; those of edges hold as far as no line is split.
 fn ours(stated: &Stated, built: &Built) -> Vec<(&'static str, usize)> {
     let Stated { case, facts, .. } = stated;
     let (delaunay, _) = Delaunay::from_points(Plane::default(), &case.points).unwrap();
@@ -72,7 +73,7 @@ fn ours(stated: &Stated, built: &Built) -> Vec<(&'static str, usize)> {
     ours
 }
 
-/// Each pair of places joined once.
+/// Returns the case with every pair of points joined at most once.
 fn without_repeats(case: &Case) -> Case {
     let mut seen = HashSet::new();
     let mut lines = case.lines.clone();
@@ -89,7 +90,7 @@ fn is_of_hull(tag: &str, facts: &HashMap<String, usize>) -> bool {
     tag == "triangle" || (tag.ends_with("_super") && facts.get("edge_proper_crossings").is_none_or(|&count| count == 0))
 }
 
-/// What is wrong with a case, and what was compared.
+/// Returns the faults of a case, and counts what was compared.
 fn compare(path: &Path, compared: &mut BTreeMap<String, usize>) -> Result<(), String> {
     let stated = Stated::read(path);
     let built = build(&stated.case).map_err(|refused| refused.to_string())?;

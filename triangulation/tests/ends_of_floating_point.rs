@@ -17,11 +17,11 @@ fn scaled<const D: usize>(points: &[[f64; D]], unit: f64) -> Vec<[f64; D]> {
     points.iter().map(|p| p.map(|x| x * unit)).collect()
 }
 
-/// A power of two changes nothing: neither the order along the curve nor a cell.
+/// Scaling by a power of two changes neither the order along the curve nor any cell.
 #[test]
 fn thousands_of_points_of_one_size() {
     let mut random = Random(1);
-    // Whole numbers, so that subnormal numbers hold them, too.
+    // Whole numbers, so that subnormal numbers can represent them, too.
     for side in [1 << 36, 40] {
         let points: Vec<[f64; 2]> = (0..2000).map(|_| [(); 2].map(|()| random.around(side) as f64)).collect();
         let expected = bulk(&points);
@@ -76,7 +76,8 @@ fn in_space() {
     }
 }
 
-/// Near zero the default kernel has a smallest step: where lines cross between two of these, one of them is the place.
+/// Near zero the default kernel has a smallest step: where lines cross between two steps, the
+/// crossing is one of these.
 #[test]
 fn crossings_near_the_smallest_numbers_that_are_admitted() {
     let mut random = Random(5);

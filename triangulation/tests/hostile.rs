@@ -1,7 +1,9 @@
-//! The hostile sets of ../shared/bench/triangulation/hostile.py, from a generator of our own: valid, every constraint
-//! there, or refused with a reason that names the point.
+//! The hostile sets of ../shared/bench/triangulation/hostile.py, from a generator of our own. The
+//! result is valid and contains every constraint, or the set is refused with a reason that names
+//! the point.
 //!
-//! `HOSTILE=FOLDER cargo test --release --test hostile -- --nocapture` tries those that the script itself wrote.
+//! `HOSTILE=FOLDER cargo test --release --test hostile -- --nocapture` tries the sets that the
+//! script itself wrote.
 #![allow(clippy::print_stdout)]
 
 use std::path::Path;
@@ -12,7 +14,7 @@ use testkit::judge;
 use testkit::random::{Random, ulps};
 use testkit::subject::build;
 
-/// A set by name; `lines` is empty for those of points only.
+/// A set by name; `lines` is empty if it has points only.
 type Named = (&'static str, Case);
 
 fn points_only(points: Vec<Point>) -> Case {
@@ -121,7 +123,7 @@ fn of_lines() -> Vec<Named> {
     ]
 }
 
-/// How the set behaves; `Err` if it is neither sound nor refused for what is wrong with it.
+/// Returns how the set behaves; `Err` if it is neither sound nor refused for its actual fault.
 fn behavior(case: &Case) -> Result<String, String> {
     let bad_point = case.points.iter().position(|p| !p.iter().all(|x| x.is_finite()));
     let bad_line = case.lines.iter().position(|line| line.iter().any(|&i| i as usize >= case.points.len()));
@@ -168,7 +170,7 @@ fn lines() {
     check(&of_lines());
 }
 
-/// Little-endian: pairs of doubles in `NAME.xy`, pairs of positions in `NAME.seg`.
+/// Reads little-endian pairs of doubles from `NAME.xy`, and pairs of positions from `NAME.seg`.
 fn read(folder: &Path, name: &str) -> Case {
     let bytes = std::fs::read(folder.join(name).with_extension("xy")).unwrap();
     let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap());

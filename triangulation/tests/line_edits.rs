@@ -1,4 +1,5 @@
-//! Lines with ids: whatever is added, removed, divided and joined, the triangulation is that of what is left.
+//! Lines with ids: whatever is added, removed, divided and joined, the triangulation is that of
+//! what remains.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +17,8 @@ fn bits(p: &Point) -> Bits {
     p.map(|x| (x + 0.0).to_bits())
 }
 
-/// What can be seen of a triangulation whatever its numbers: triangles, constrained edges, and the lines' chains.
+/// What is observable of a triangulation, independent of its numbering: triangles, constrained
+/// edges, and the lines' chains.
 fn seen(t: &Constrained, lines: &[LineId]) -> (Places, Places, Vec<Vec<Bits>>) {
     let at = |v: &VertexId| bits(t.point(*v));
     let sorted = |vertices: &[VertexId]| {
@@ -44,7 +46,7 @@ fn built(points: &[Point], lines: &[Vec<Point>]) -> (Constrained, Vec<LineId>) {
     (t, ids)
 }
 
-/// Adds and removes lines and points at random, and compares with what is built at once.
+/// Adds and removes pseudo-random lines and points, and compares with bulk construction.
 fn edits(seed: u64, rounds: usize, site: impl Fn(&mut Random) -> Point) {
     let mut random = Random(seed);
     for round in 0..rounds {
@@ -119,7 +121,7 @@ fn edits_a_rounding_apart() {
 
 #[test]
 fn edits_off_the_grid() {
-    // Fine coordinates beside coarse ones.
+    // Fine coordinates among coarse ones.
     edits(4, 300, |random| {
         let fine = |random: &mut Random| ulps(0.5, random.around(3)) * if random.below(4) == 0 { 64.0 } else { 1.0 };
         [fine(random), fine(random)]
@@ -127,7 +129,7 @@ fn edits_off_the_grid() {
     edits(5, 150, |random| [random.unit() - 0.5, random.unit() - 0.5]);
 }
 
-/// The same lines in a hundred random orders, some of them backwards.
+/// The same lines in a hundred pseudo-random orders, some of them reversed.
 #[test]
 fn a_hundred_orders_give_one_triangulation() {
     let mut random = Random(7);
@@ -152,7 +154,7 @@ fn a_hundred_orders_give_one_triangulation() {
 #[test]
 fn lines_know_their_edges_and_edges_their_lines() {
     let points = [[0.0, 0.0], [4.0, 0.0], [2.0, 0.0], [2.0, 3.0], [2.0, -3.0], [0.0, 4.0], [4.0, 4.0]];
-    // Along the axis, again and backwards as far as the middle, and across it.
+    // Along the axis, again and in reverse as far as the middle, and across it.
     let lines: [&[u32]; 3] = [&[0, 1], &[2, 0], &[3, 4]];
     let (t, v) = Constrained::from_lines(Plane::default(), &points, &lines, OnCrossing::Split).unwrap();
     let ids: Vec<LineId> = t.lines().collect();
@@ -176,7 +178,8 @@ fn a_crossing_is_rejected_by_name() {
     assert_eq!((segments, site), ([(0, 0), (1, 1)], [2.0, 2.0]));
     let out = Constrained::from_lines(Plane::default(), &points, &[[0, 9]], OnCrossing::Split).unwrap_err();
     assert_eq!(out, InputError::Index { line: 0, index: 9 });
-    // Touching is not crossing, and where there is a point already nothing is split that would not be anyway.
+    // Touching is not crossing, and at an existing point nothing is split that would not be split
+    // anyway.
     for points in [&points[..], &[[0.0, 0.0], [2.0, 2.0], [9.0, 9.0], [0.0, 4.0], [4.0, 0.0]]] {
         let lines: [&[u32]; 2] = [&[0, 1, 2], &[3, 1]];
         assert!(Constrained::from_lines(Plane::default(), points, &lines, OnCrossing::Reject).is_ok());
@@ -187,7 +190,7 @@ fn a_crossing_is_rejected_by_name() {
     }
 }
 
-/// A zigzag beside an island in one of its bays, and one beside nothing.
+/// A zigzag next to an island in one of its bays, and one next to nothing.
 #[test]
 fn simplified_lines_cross_no_other() {
     let zigzag: Vec<Point> = (0..9).map(|i| [f64::from(i), f64::from(i % 2)]).collect();
@@ -209,8 +212,8 @@ fn simplified_lines_cross_no_other() {
     }
 }
 
-/// Random lines, made simpler one after the other: no two of them cross that did not before, and none is further off
-/// than it may be.
+/// Pseudo-random lines, simplified one after the other: no two of them cross that did not before,
+/// and none is further off than the tolerance.
 #[test]
 fn simplification_keeps_the_topology() {
     let mut random = Random(6);
@@ -256,7 +259,8 @@ fn nesting_counts_the_lines_from_outside() {
     assert!(matches!(t.nesting_of(ids), Err(GapError { ends: [_, _], .. })));
 }
 
-/// Edits leave what building anew would have given, also below the plane, and with a point where lines cross.
+/// Edits give the same result as a new construction, also below dimension 2, and with a point where
+/// lines cross.
 #[test]
 fn edits_at_the_edges() {
     use breakline_triangulation::geometry::{Plane, Terrain};
@@ -283,8 +287,8 @@ fn edits_at_the_edges() {
     assert_eq!((t.point(crossing)[2], t.is_added(crossing)), (9.0, false));
 }
 
-/// Points that are collinear for a while have no triangles that could hold a line; what lay on its way before is
-/// forgotten.
+/// Points that are collinear for a while have no triangles that could hold a line; what lay on its
+/// chain before is forgotten.
 #[test]
 fn lines_between_dimensions() {
     let mut t = Constrained::new(Plane::default());
@@ -297,7 +301,7 @@ fn lines_between_dimensions() {
     t.insert([2.0, 1.0]).unwrap();
     assert_eq!((t.chain(long).len(), t.check(Level::Law)), (2, vec![]));
 
-    // The vertex on its way is one that was given, and goes after the triangles.
+    // The vertex on its chain is one that was given, and is removed after the triangles.
     let mut t = Constrained::new(Plane::default());
     let above = t.insert_lines(&[[[4.0, 4.0], [4.0, 3.0], [2.0, 2.0]]]).unwrap()[0];
     let between = t.insert([2.0, 2.0]).unwrap();

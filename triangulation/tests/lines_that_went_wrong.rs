@@ -1,10 +1,11 @@
-//! Lines that once went wrong, by name: files of `fixtures/constraints`, and what others displaced.
+//! Lines that once failed, by name: files of `fixtures/constraints`, and lines that other packages
+//! displaced.
 
 use testkit::case::{Case, Point};
 use testkit::judge;
 use testkit::subject::build;
 
-/// Every failure that was found and mended stays here, made small.
+/// Every failure that was found and fixed stays here, reduced.
 #[test]
 fn named_cases() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/constraints");
@@ -38,7 +39,7 @@ fn displaced_breakline() {
     assert_eq!(points(1, &there), points(0, &back));
 }
 
-/// What the files of failures are written as is what is read.
+/// The format in which failures are written is the one that is read.
 #[test]
 fn files_keep_points_and_lines() {
     let mut case = Case::of_segments(&[[1e300, -1e-310], [0.1, 4_649_000.12]], &[[[0.0, 1.0], [2.0, 3.0]]]);

@@ -1,6 +1,8 @@
-//! Edits carried out where they are leave what building anew gives: the same points, triangles, constraints and chains.
+//! Local edits give the same result as a new construction: the same points, triangles, constraints
+//! and chains.
 //!
-//! With `BREAKLINE_EDITS=100000` in the environment, so many edits of each kind of coordinates are compared.
+//! With `BREAKLINE_EDITS=100000` in the environment, this many edits of each kind of coordinates
+//! are compared.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +14,7 @@ use testkit::random::{Random, ulps};
 type Bits = Vec<u64>;
 type Places = BTreeSet<Vec<Bits>>;
 
-/// All that can be seen of a triangulation, whatever its numbers.
+/// Everything observable of a triangulation, independent of its numbering.
 #[derive(Debug, PartialEq)]
 struct Seen {
     points: BTreeSet<Bits>,
@@ -38,7 +40,7 @@ impl Coordinates for Plane {
     }
 }
 
-/// The height is a function of the place: points on one site are the same.
+/// The height is a function of the site: points on one site are equal.
 impl Coordinates for Terrain {
     fn bits(p: &[f64; 3]) -> Bits {
         p.iter().map(|x| (x + 0.0).to_bits()).collect()
@@ -85,7 +87,7 @@ impl<G: Coordinates> Model<G> {
         (t, ids)
     }
 
-    /// One random edit of both; returns its name.
+    /// Makes one random edit of both; returns its name.
     fn edit(&mut self, t: &mut ConstrainedDelaunay<G>, random: &mut Random, site: &Site, most: usize) -> String {
         let draw = |random: &mut Random| {
             let at = site(random);
@@ -166,7 +168,7 @@ impl<G: Coordinates> Model<G> {
 
 type Site = dyn Fn(&mut Random) -> [f64; 2];
 
-/// Returns how many of the edits arranged all lines anew, in percent.
+/// Returns the percentage of edits that arranged all lines anew.
 fn compare<G: Coordinates>(seed: u64, few: usize, most: usize, site: &Site) -> usize {
     let count = std::env::var("BREAKLINE_EDITS").ok().and_then(|count| count.parse().ok()).unwrap_or(few);
     let mut random = Random(seed);
@@ -217,7 +219,7 @@ fn around_zero() {
     compare::<Plane>(2, 1200, 8, &|random| [random.below(7) as f64 - 3.0, random.below(7) as f64 - 3.0]);
 }
 
-/// Heights at crossings are those of all lines there.
+/// Heights at crossings come from all lines there.
 #[test]
 fn with_heights() {
     compare::<Terrain>(3, 1200, 12, &|random| [random.below(9) as f64 + 128.0, random.below(9) as f64 + 256.0]);

@@ -1,8 +1,8 @@
-//! Predicates against exact rational numbers: every kernel has the sign of the real number, and a filter that is
-//! certain is right.
+//! Compares predicates with exact rational numbers: every kernel returns the sign of the real
+//! number, and a filter that is certain is right.
 //!
-//! The judge shares nothing with the crate: other numbers (`dashu-ratio`), and other formulas (determinants of
-//! homogeneous coordinates by expansion, circumcenters).
+//! The judge shares nothing with the crate: other numbers (`dashu-ratio`) and other formulas
+//! (determinants of homogeneous coordinates by expansion, circumcenters).
 
 use breakline_triangulation::geometry::{Crossing, Geometry, Plane, Weighted};
 use breakline_triangulation::kernel::{
@@ -22,7 +22,8 @@ fn sign(x: &RBig) -> Sign {
     x.cmp(&RBig::ZERO).into()
 }
 
-/// Coordinates as whole numbers of a common unit: quick to compute with, and no sign depends on the unit.
+/// Coordinates as whole numbers of a common unit: fast to compute with, and no sign depends on the
+/// unit.
 fn whole<const D: usize, const N: usize>(points: [[f64; D]; N]) -> [[RBig; D]; N] {
     let exponent = |x: &f64| (x.to_bits() >> 52 & 0x7ff).max(1) as i32 - 1075;
     let lowest = points.iter().flatten().filter(|x| **x != 0.0).map(exponent).min().unwrap_or(0);
@@ -113,12 +114,12 @@ impl Question<2, 3> for CompareDistance {
     }
 }
 
-/// The height of a weighted point's lift.
+/// Returns the height of a weighted point's lift.
 fn lift(p: &[RBig; 3]) -> RBig {
     &p[0] * &p[0] + &p[1] * &p[1] - &p[2]
 }
 
-/// Weights are areas, so that a unit of the coordinates is none of theirs.
+/// Weights are areas, so that a unit of the coordinates is not one of the weights.
 impl Question<3, 4> for PowerTest2 {
     fn of(points: [[f64; 3]; 4]) -> Self {
         PowerTest2(points)
@@ -134,14 +135,16 @@ impl Question<3, 4> for PowerTest2 {
     }
 }
 
-/// Of points on a line, the first before the second on the axis on which these are further apart.
+/// Orders points on a line: the first comes before the second on the axis on which these are
+/// further apart.
 impl Question<3, 3> for PowerOnLine {
     fn of(points: [[f64; 3]; 3]) -> Self {
         let along = usize::from(points[0][0] == points[1][0]);
         PowerOnLine { points, along }
     }
 
-    /// Whether the lift of the third turns to the right of the way from the first's to the second's.
+    /// Returns true if the lift of the third point is to the right of the line from the lift of the
+    /// first to that of the second.
     fn judge(points: [[f64; 3]; 3]) -> Sign {
         let PowerOnLine { along, .. } = Self::of(points);
         let row = |p: [RBig; 3]| vec![p[along].clone(), lift(&p), RBig::ONE];
@@ -149,7 +152,7 @@ impl Question<3, 3> for PowerOnLine {
     }
 }
 
-/// What the filters made of some questions.
+/// Counts of what the filters returned.
 #[derive(Debug, Default)]
 struct Tally {
     asked: usize,
@@ -170,14 +173,14 @@ fn coordinates<P: Predicate>(predicate: &P) -> impl Iterator<Item = f64> {
     (0..P::AXES).flat_map(|axis| predicate.axis(axis))
 }
 
-/// Right, if the kernel is proven for the coordinates.
+/// Asserts that the result is right, if the kernel is proven for the coordinates.
 fn right<K: Kernel, P: Predicate>(predicate: &P, expected: Sign, context: &impl std::fmt::Debug) -> usize {
     let is_admitted = coordinates(predicate).all(|x| K::RANGE.admits(x));
     assert!(!is_admitted || K::sign(predicate) == expected, "{context:?}: {:?} is wrong", K::default());
     usize::from(is_admitted)
 }
 
-/// Certain, and then right, if the filter is proven for the coordinates.
+/// Asserts that the filter is certain and right, if it is proven for the coordinates.
 fn certain<F: Filter, P: Predicate>(predicate: &P, expected: Sign, context: &impl std::fmt::Debug) -> usize {
     if !coordinates(predicate).all(|x| F::RANGE.admits(x)) {
         return 0;
@@ -188,7 +191,7 @@ fn certain<F: Filter, P: Predicate>(predicate: &P, expected: Sign, context: &imp
 }
 
 impl Tally {
-    /// Asks every kernel and every filter.
+    /// Evaluates every kernel and every filter.
     fn ask<P: Question<D, N>, const D: usize, const N: usize>(&mut self, points: [[f64; D]; N]) {
         let (predicate, expected) = (P::of(points), P::judge(points));
         self.asked += 1;
@@ -216,7 +219,7 @@ impl Tally {
     }
 }
 
-/// Asks all questions, in two dimensions and three, about points from `coordinates`.
+/// Evaluates all predicates, in two dimensions and three, for points from `coordinates`.
 fn ask_all(rounds: usize, mut coordinate: impl FnMut() -> f64) -> [Tally; 5] {
     let mut tallies: [Tally; 5] = Default::default();
     for _ in 0..rounds {
@@ -271,7 +274,8 @@ fn small_whole_numbers_are_decided_on_the_lattice() {
     }
 }
 
-/// At the ends of 24, 31 and 52 bits, and a step beside: ties, near ties, and what is too large.
+/// At the ends of 24, 31 and 52 bits, and one step further: ties, near ties, and numbers that are
+/// too large.
 #[test]
 fn whole_numbers_of_few_bits() {
     for bits in [24, 31, 52] {
@@ -323,7 +327,8 @@ fn grids_that_are_a_rounding_off() {
     assert_eq!(OnLattice::try_sign(&Orientation2([[0.0, 1.0], [2f64.powi(53), 1.0], [-1.0, 0.0]])), None);
 }
 
-/// Points on a line, a circle, a plane or a sphere, moved by one unit in the last place or not at all.
+/// Points on a line, a circle, a plane or a sphere, each exact or off by one unit in the last
+/// place.
 #[test]
 fn a_rounding_off_degenerate() {
     let mut random = Random(10);
@@ -354,14 +359,14 @@ fn a_rounding_off_degenerate() {
         plane.ask::<Orientation3, 3, 4>(on_plane);
         sphere.ask::<InSphere, 3, 5>(on_sphere);
     }
-    // Else they were not near enough to be a trial.
+    // Otherwise they were not near enough to be a test.
     assert!(tallies.iter().all(|tally| 4 * tally.by_error_bound < 3 * tally.asked), "{tallies:?}");
-    // What is no tie, but three roundings from one, twice the digits can tell.
+    // Three roundings off a tie: twice the digits can decide.
     assert!(tallies.iter().all(|tally| 50 * tally.not_by_pairs <= tally.asked), "{tallies:?}");
     assert!(tallies.iter().all(|tally| 2 * tally.by_pairs > tally.asked), "{tallies:?}");
 }
 
-/// From one end of the range to the other, within one question.
+/// From one end of the range to the other, within one predicate.
 #[test]
 fn the_whole_range() {
     let mut random = Random(11);
@@ -399,7 +404,7 @@ fn every_finite_number() {
     ask_all(250, || Some(f64::from_bits(random.bits())).filter(|x| x.is_finite()).unwrap_or(0.0));
 }
 
-/// Exponents for which products underflow, overflow, or nearly do, alone and beside each other.
+/// Exponents for which products underflow, overflow, or nearly do, alone and mixed.
 #[test]
 fn the_edges_of_floating_point() {
     let mut random = Random(16);
@@ -421,7 +426,7 @@ fn the_edges_of_floating_point() {
     }
 }
 
-/// All of one size, anywhere: a power of two brings them where floating point is certain.
+/// All of one size, anywhere: a power of two scales them to where floating point is certain.
 #[test]
 fn one_size_is_scaled() {
     for scale in [1e300, f64::MAX / 2.0, 1e-300] {
@@ -515,7 +520,7 @@ fn circles_in_planes_in_space() {
     assert!(ties > 100, "only {ties} ties");
 }
 
-/// Small grids, where ties are the rule, near ones and far, with weights of either sign.
+/// Small grids, where ties are the rule, near zero and far from it, with weights of either sign.
 #[test]
 fn weighted_points() {
     let mut random = Random(20);
@@ -531,7 +536,7 @@ fn weighted_points() {
             let [x, y] = [(); 2].map(|()| unit * (origin + random.around(side) as f64));
             [x, y, weight(&mut random)]
         }));
-        // Along a line that is not upright, or is.
+        // Along a line that is vertical, or is not.
         let direction = if round % 3 == 0 { [0, 1] } else { [1 + random.below(2) as i64, random.around(3)] };
         let mut steps = [(); 3].map(|()| random.around(side));
         (steps[0], steps[1]) = (steps[0].min(steps[1]), steps[0].max(steps[1]) + 1);
@@ -543,7 +548,7 @@ fn weighted_points() {
     assert!(tallies.iter().all(|tally| tally.ties > 300 && tally.fixed > 1000), "{tallies:?}");
 }
 
-/// Lifts on a common plane, or a rounding above or below.
+/// Lifts on a common plane, or a rounding above or below it.
 #[test]
 fn weights_a_rounding_off() {
     let mut random = Random(21);
@@ -575,7 +580,7 @@ fn weights_of_every_size() {
         let mut any = || random.pick(pool) * random.pick(&[-1.0, 1.0]);
         let [plane, line] = &mut tallies;
         plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| [(); 3].map(|()| any())));
-        // On the diagonal, and upright.
+        // On the diagonal, and vertical.
         let [a, b, x] = [any(), any(), any()];
         for upright in [false, true] {
             line.ask::<PowerOnLine, 3, 3>(
@@ -647,7 +652,8 @@ fn positive(x: RBig) -> RBig {
     if x < RBig::ZERO { -x } else { x }
 }
 
-/// However small the angle: areas to within two units in the last place, their quotient to within three.
+/// At angles of any size: areas to within two units in the last place, their quotient to within
+/// three.
 #[test]
 fn crossings_are_right_to_the_last_bits() {
     let unit = rational(f64::EPSILON / 2.0);
@@ -681,7 +687,8 @@ fn crossings_lie_within_a_rounding_of_both_segments() {
         ] {
             assert_eq!(other, site, "{pair:?} {why}");
         }
-        // A box around the place, a few units in the last place of the largest coordinate wide, touches both lines.
+        // A box around the site, a few units in the last place of the largest coordinate wide,
+        // touches both lines.
         let reach: [f64; 2] =
             std::array::from_fn(|k| 6.0 * f64::EPSILON * pair.iter().map(|p| p[k].abs()).fold(0.0, f64::max));
         for [p, q] in [[a, b], [c, d]] {
@@ -691,7 +698,7 @@ fn crossings_lie_within_a_rounding_of_both_segments() {
         }
     }
     assert!(at_an_end > 100 && at_an_end < 2500, "{at_an_end} of 3000 are at an end");
-    // An exact place stands, however near the ends are.
+    // An exact site is kept, however near the ends are.
     let (low, high) = (1.0 - f64::EPSILON, 1.0 + f64::EPSILON);
     assert_eq!(plane.crossing([&[low, low], &[high, high]], [&[low, high], &[high, low]]), [1.0, 1.0]);
 }

@@ -1,8 +1,8 @@
-//! With and without the feature `parallel`, on any number of threads: the same bits.
+//! With and without the feature `parallel`, on any number of threads, results have the same bits.
 //!
-//! Each build compares digests of its results with those below, so that builds are compared with each other. The digests
-//! include the numbers of cells and vertices: when a change gives these another order, and both builds agree, the new
-//! digests are recorded here.
+//! Each build compares digests of its results with those below, so that builds are compared with
+//! each other. The digests include the numbers of cells and vertices. If a change reorders these
+//! and both builds agree, record the new digests here.
 
 use breakline_triangulation::geometry::Plane;
 use breakline_triangulation::kernel::Wide;
@@ -28,7 +28,7 @@ impl Digest {
     }
 }
 
-/// More points than one thread takes at a time, of several kinds.
+/// More points than one thread processes at a time, of several kinds.
 fn point_sets() -> [(&'static str, Vec<Point>); 4] {
     let mut random = Random(17);
     let uniform = (0..70_000).map(|_| [random.unit(), random.unit()]).collect();
@@ -69,7 +69,8 @@ fn order_and_triangulations_of_points() {
     assert_eq!(found, recorded);
 }
 
-/// Segments whose boxes overlap little, and a fan of which most boxes overlap in vain, which are swept.
+/// Segments whose boxes overlap little, and a fan whose boxes mostly overlap without a crossing;
+/// these are swept.
 #[test]
 fn segments_that_cross() {
     let mut random = Random(18);
@@ -99,8 +100,9 @@ fn a_mesh_that_is_refined() {
     assert_eq!(digest(&mesh), 2062649117566102582);
 }
 
-/// Every cut of the set takes off one point, so that ranges are nested as deep as the exponents of numbers allow, a few
-/// thousand calls. Less stack than a main thread has is enough; optimized builds need less than 2 MiB.
+/// Every cut of the set takes off one point, so that ranges are nested as deep as the exponents of
+/// numbers allow, a few thousand calls. This needs less stack than a main thread has; optimized
+/// builds need less than 2 MiB.
 #[test]
 fn nested_clusters_do_not_exhaust_the_stack() {
     let exponents = (-1074..1024).map(|e| if e < -1022 { f64::from_bits(1 << (e + 1074)) } else { 2f64.powi(e) });

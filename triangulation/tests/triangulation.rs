@@ -120,7 +120,7 @@ fn refused_points_are_named() {
     assert_eq!(t.check(Level::Law), []);
 }
 
-/// Every piece of each segment between vertices that lie on it must be a constrained edge.
+/// Every part of each segment between vertices that lie on it must be a constrained edge.
 fn covers(t: &ConstrainedDelaunay<Plane>, a: [f64; 2], b: [f64; 2]) -> bool {
     let g = Plane::<Exact>::default();
     let between = |p: &[f64; 2]| {
@@ -179,7 +179,7 @@ fn constraints_hold_and_do_not_depend_on_their_order() {
     assert!(crossings > 100, "only {crossings} crossings were tried");
 }
 
-/// Whether the two segments cross at a place that has no exact coordinates in steps of 1/1024.
+/// Returns true if two segments cross at a site that has no exact coordinates in steps of 1/1024.
 fn crossing_is_rounded([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
     let minus = |p: [f64; 2], q: [f64; 2]| [p[0] - q[0], p[1] - q[1]];
@@ -193,7 +193,7 @@ fn crossing_is_rounded([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     if !(0.0..=1.0).contains(&t) || !(0.0..=1.0).contains(&s) {
         return false;
     }
-    // Exact only if the place is a dyadic fraction: multiply up and look.
+    // Exact only if the site is a dyadic fraction: multiply up and compare.
     (0..2).any(|axis| {
         let numerator = cross(minus(c, a), cd) * ab[axis] * 1024.0;
         numerator % area != 0.0
@@ -219,7 +219,7 @@ fn wild_crossings_leave_a_valid_triangulation() {
     }
 }
 
-/// The bulk builder against insertion one by one, on grids, lines, circles and nearly so.
+/// Compares bulk construction with insertion one by one, on grids, lines, circles and nearly so.
 #[test]
 fn bulk_and_one_by_one_agree() {
     let mut random = Random(6);
@@ -260,7 +260,8 @@ fn points_fall_on_constraints() {
         assert_eq!(t.check(Level::Law), []);
     }
     assert_eq!(t.constrained_edges().count(), 5 + 3);
-    // A line at 3 crosses the diagonal, whose own ends are at 1 on the ring, whatever points lie on it.
+    // A line at 3 crosses the diagonal, whose own ends are at 1 on the ring, whatever points lie on
+    // it.
     t.insert_lines(&[[[5.0, 1.0, 3.0], [5.0, 7.0, 3.0]]]).unwrap();
     let crossing = t.crossings();
     assert_eq!(crossing.len(), 1);
@@ -303,8 +304,9 @@ fn a_segment_crosses_the_edges_that_it_crosses() {
     assert!(crossed > 1000);
 }
 
-/// Where coordinates are a few units in the last place apart, every crossing is rounded to a place that may
-/// lie on, beyond or at the end of other lines: pieces cross anew, and it still comes to an end.
+/// Where coordinates are a few units in the last place apart, every crossing is rounded to a site
+/// that may lie on, beyond or at the end of other lines: segments cross anew, and it terminates
+/// nevertheless.
 #[test]
 fn crossings_in_the_last_bits_come_to_an_end() {
     let mut random = Random(5);

@@ -1,4 +1,5 @@
-//! Edits, judged by doing them to lists of cells: an edit succeeds exactly where the list stays a manifold of the same kind.
+//! Edits, compared with the same edits of lists of cells: an edit succeeds exactly if the list
+//! stays a manifold of the same kind.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +11,7 @@ use crate::{shapes, spaces, surfaces};
 
 type Cells = BTreeSet<BTreeSet<usize>>;
 
-/// A number that no vertex has.
+/// The number of no vertex.
 const NEW: usize = usize::MAX;
 
 fn sets(cells: &[Cell]) -> Cells {
@@ -21,12 +22,12 @@ fn lists(cells: &Cells) -> Vec<Cell> {
     cells.iter().map(|cell| cell.iter().copied().collect()).collect()
 }
 
-/// The cells with a face.
+/// Returns the cells that contain a face.
 fn star(cells: &Cells, face: &BTreeSet<usize>) -> Cells {
     cells.iter().filter(|cell| face.is_subset(cell)).cloned().collect()
 }
 
-/// Cells replaced by those that join the facets of their border to a new vertex.
+/// Replaces cells by those that join the facets of their border to a new vertex.
 fn starred(cells: &Cells, hole: &Cells) -> Cells {
     let mut border: BTreeSet<BTreeSet<usize>> = BTreeSet::new();
     for cell in hole {
@@ -45,8 +46,8 @@ fn starred(cells: &Cells, hole: &Cells) -> Cells {
     cells.difference(hole).cloned().chain(new).collect()
 }
 
-/// Of the vertices of the star of a face, those that are not of the face span a face instead; if there are as many
-/// as a flip takes.
+/// Flips a face: the vertices of its star that are not on the face span a face instead, if there
+/// are as many as a flip needs.
 fn flipped(cells: &Cells, face: &BTreeSet<usize>, width: usize) -> Option<Cells> {
     let star = star(cells, face);
     let around: BTreeSet<usize> = star.iter().flatten().copied().collect();
@@ -55,12 +56,12 @@ fn flipped(cells: &Cells, face: &BTreeSet<usize>, width: usize) -> Option<Cells>
     }
     let new = face.iter().map(|a| around.iter().copied().filter(|v| v != a).collect());
     let rest = cells.difference(&star).cloned();
-    // A cell that is there twice is none any more.
+    // A cell that occurs twice cancels out.
     let all: Vec<BTreeSet<usize>> = rest.chain(new).collect();
     (all.iter().collect::<BTreeSet<_>>().len() == all.len()).then(|| all.into_iter().collect())
 }
 
-/// One vertex becomes another; `None` if two cells become one.
+/// Replaces one vertex by another; `None` if two cells become one.
 fn collapsed(cells: &Cells, from: usize, into: usize) -> Option<Cells> {
     let mut all = Vec::new();
     for cell in cells.iter().filter(|cell| !(cell.contains(&from) && cell.contains(&into))) {
@@ -69,7 +70,7 @@ fn collapsed(cells: &Cells, from: usize, into: usize) -> Option<Cells> {
     (all.iter().collect::<BTreeSet<_>>().len() == all.len()).then(|| all.into_iter().collect())
 }
 
-/// Some cells, which hang together or do not.
+/// Returns some cells, connected or not.
 fn region<const N: usize>(random: &mut Random, tds: &Tds<N, usize>, all: &[CellId]) -> Vec<CellId> {
     let mut region = vec![random.pick(all)];
     for _ in 0..random.below(9) {
@@ -82,7 +83,8 @@ fn region<const N: usize>(random: &mut Random, tds: &Tds<N, usize>, all: &[CellI
     region
 }
 
-/// One edit, and what the judge says of it: the new vertex, if there is one, and the cells, if it is allowed.
+/// One edit, and the judge's expectation: the new vertex, if there is one, and the cells, if the
+/// edit is allowed.
 fn edit<const N: usize>(
     random: &mut Random,
     tds: &mut Tds<N, usize>,
@@ -119,7 +121,7 @@ fn edit<const N: usize>(
     }
 }
 
-/// Edits a complex, and counts what was done and what was refused.
+/// Edits a complex, and counts successful and refused edits.
 fn edit_for_a_while<const N: usize>(random: &mut Random, vertices: usize, cells: &[Cell], edits: usize) -> [usize; 2] {
     let mut tds = build::<N>(vertices, cells).unwrap();
     let characteristic = euler(cells);
@@ -171,7 +173,7 @@ fn edits_of_spaces_succeed_exactly_where_the_judge_allows_them() {
     }
 }
 
-/// A surface of genus one keeps its genus where a hole has its handle in it.
+/// A surface of genus one keeps its genus if a hole contains its handle.
 #[test]
 fn a_hole_with_a_handle_is_refused() {
     let (vertices, cells) = shapes::torus(3, 3);
@@ -198,7 +200,7 @@ fn what_does_not_exist_is_refused() {
     assert_eq!(tds.flip_edge(ends), Err(EditError::Edge(ends)));
     assert_eq!(tds.split_edge([ends[0]; 2], 0), Err(EditError::Edge([ends[0]; 2])));
     assert_eq!(Tds::<3>::new().split_cell(no_cell, ()), Err(EditError::NotFull));
-    // Of a tetrahedron, all edges are there, and no vertex is too many.
+    // In a tetrahedron every edge exists, and no vertex can be removed.
     let (vertices, cells) = shapes::simplex(4);
     let mut tds = build::<3>(vertices, &cells).unwrap();
     let [a, b] = [0, 1].map(VertexId::new);

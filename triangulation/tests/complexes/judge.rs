@@ -6,7 +6,7 @@ use breakline_triangulation::tds::{Tds, VertexId};
 
 pub(crate) type Cell = Vec<usize>;
 
-/// All faces with so many vertices.
+/// Returns all faces with this many vertices.
 pub(crate) fn faces(cells: &[Cell], size: usize) -> BTreeSet<Cell> {
     let mut faces = BTreeSet::new();
     for cell in cells {
@@ -26,13 +26,13 @@ pub(crate) fn euler(cells: &[Cell]) -> i64 {
     (1..=width).map(|size| if size % 2 == 1 { 1 } else { -1 } * faces(cells, size).len() as i64).sum()
 }
 
-/// What is left of the cells with a vertex.
+/// Returns the link of a vertex: what remains of its cells.
 pub(crate) fn link(cells: &[Cell], vertex: usize) -> Vec<Cell> {
     let with = cells.iter().filter(|cell| cell.contains(&vertex));
     with.map(|cell| cell.iter().copied().filter(|&v| v != vertex).collect()).collect()
 }
 
-/// Whether cells cannot be divided into two groups without a common vertex.
+/// Returns true if cells cannot be divided into two groups without a common vertex.
 fn is_connected(cells: &[Cell]) -> bool {
     let mut reached = BTreeSet::from_iter(cells.first().into_iter().flatten().copied());
     for _ in cells {
@@ -45,7 +45,7 @@ fn is_connected(cells: &[Cell]) -> bool {
     cells.iter().all(|cell| cell.iter().any(|v| reached.contains(v)))
 }
 
-/// Whether each facet is in two cells, and each link is a sphere, of dimension up to 2.
+/// Returns true if each facet is in two cells and each link is a sphere, in dimensions up to 2.
 pub(crate) fn is_manifold(cells: &[Cell]) -> bool {
     let width = cells.first().map_or(0, Vec::len);
     let distinct: BTreeSet<Cell> =
@@ -61,7 +61,7 @@ pub(crate) fn is_manifold(cells: &[Cell]) -> bool {
     facets.iter().all(on_two) && faces(cells, 1).iter().all(|v| is_sphere(&link(cells, v[0])))
 }
 
-/// Whether cells form a sphere, of dimension up to 2.
+/// Returns true if cells form a sphere, of dimension up to 2.
 pub(crate) fn is_sphere(cells: &[Cell]) -> bool {
     match cells.first().map_or(0, Vec::len) {
         1 => cells.len() == 2 && cells[0] != cells[1],
@@ -71,7 +71,7 @@ pub(crate) fn is_sphere(cells: &[Cell]) -> bool {
     }
 }
 
-/// Whether each facet appears once in either orientation.
+/// Returns true if each facet appears once in either orientation.
 pub(crate) fn is_oriented(cells: &[Cell]) -> bool {
     let mut turns: BTreeMap<Cell, Vec<bool>> = BTreeMap::new();
     for cell in cells {
@@ -90,13 +90,13 @@ pub(crate) fn is_oriented(cells: &[Cell]) -> bool {
     turns.values().all(|turns| turns.len() == 2 && turns[0] != turns[1])
 }
 
-/// What the constructor has to take.
+/// Returns true if the constructor has to accept the cells.
 pub(crate) fn is_sound(vertices: usize, cells: &[Cell]) -> bool {
     let used: BTreeSet<usize> = cells.iter().flatten().copied().collect();
     used.len() == vertices && used.iter().all(|&v| v < vertices) && is_manifold(cells) && is_oriented(cells)
 }
 
-/// The cells of a complex, each by the numbers of its vertices.
+/// Returns the cells of a complex, each by the numbers of its vertices.
 pub(crate) fn cells_of<const N: usize, V, C: Copy + Default>(tds: &Tds<N, V, C>) -> Vec<Cell> {
     tds.cells().map(|cell| tds.cell_vertices(cell).iter().map(|v| v.index()).collect()).collect()
 }

@@ -1,4 +1,5 @@
-//! Complexes that stand alone, of any genus: built from cells, and edited. Each result is judged by counting faces.
+//! Standalone complexes of any genus, built from cells and edited. Each result is judged by
+//! counting faces.
 
 mod edits;
 mod judge;
@@ -99,7 +100,7 @@ fn no_cells_are_a_complex() {
     assert!(Tds::<4>::from_cells(vec![()], &[]).is_err());
 }
 
-/// The kinds ask for one sphere.
+/// The kinds require a single sphere.
 #[test]
 fn only_spheres_pass_the_check_of_the_kinds() {
     let close = |(vertices, cells): (usize, Vec<Cell>)| {
@@ -127,7 +128,7 @@ fn damage(random: &mut Random, vertices: usize, cells: &mut Vec<Cell>) {
         2 => cells[k].swap(i, 0),
         3 => cells[k].rotate_left(1),
         4 => {
-            // One vertex becomes another one everywhere.
+            // One vertex is replaced by another one everywhere.
             let [from, to] = [(); 2].map(|()| random.index(vertices));
             cells.iter_mut().flatten().filter(|v| **v == from).for_each(|v| *v = to);
         }

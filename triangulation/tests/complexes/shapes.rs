@@ -1,10 +1,10 @@
-//! Surfaces and 3-manifolds, as cells that are oriented alike.
+//! Surfaces and 3-manifolds, as consistently oriented cells.
 
 use std::collections::BTreeMap;
 
 use crate::judge::Cell;
 
-/// The cells with the vertices numbered in the order in which they come.
+/// Returns the cells with their vertices renumbered in order of appearance.
 fn renumbered(cells: &[Cell]) -> (usize, Vec<Cell>) {
     let mut numbers = BTreeMap::new();
     let cells = cells.iter().map(|cell| {
@@ -19,7 +19,7 @@ fn renumbered(cells: &[Cell]) -> (usize, Vec<Cell>) {
     (numbers.len(), cells)
 }
 
-/// The border of a simplex with so many vertices.
+/// Returns the border of a simplex with this many vertices.
 pub(crate) fn simplex(vertices: usize) -> (usize, Vec<Cell>) {
     let facet = |i: usize| {
         let mut cell: Cell = (0..vertices).filter(|&k| k != i).collect();
@@ -31,7 +31,7 @@ pub(crate) fn simplex(vertices: usize) -> (usize, Vec<Cell>) {
     (vertices, (0..vertices).map(facet).collect())
 }
 
-/// Cells joined to two more vertices.
+/// Joins cells to two more vertices.
 pub(crate) fn suspension((vertices, cells): (usize, Vec<Cell>)) -> (usize, Vec<Cell>) {
     let above = cells.iter().map(|cell| [&cell[..], &[vertices]].concat());
     let below = cells.iter().map(|cell| [&[cell[1], cell[0]], &cell[2..], &[vertices + 1]].concat());
@@ -43,7 +43,7 @@ pub(crate) fn octahedron() -> (usize, Vec<Cell>) {
     suspension((4, (0..4).map(|k| vec![k, (k + 1) % 4]).collect()))
 }
 
-/// A grid of squares, its sides glued; `glue` says which vertex a row's end is.
+/// Returns a grid of squares with its sides glued; `glue` returns the vertex at a row's end.
 fn glued(width: usize, height: usize, glue: impl Fn(usize, usize) -> usize) -> (usize, Vec<Cell>) {
     let mut cells = Vec::new();
     for y in 0..height {
@@ -59,7 +59,7 @@ pub(crate) fn torus(width: usize, height: usize) -> (usize, Vec<Cell>) {
     glued(width, height, |x, y| x % width + width * (y % height))
 }
 
-/// The right side is glued to the left one upside down.
+/// Glues the right side to the left one upside down.
 pub(crate) fn klein_bottle(width: usize, height: usize) -> (usize, Vec<Cell>) {
     glued(width, height, |x, y| {
         let y = if x == width { 2 * height - y } else { y };
@@ -67,7 +67,7 @@ pub(crate) fn klein_bottle(width: usize, height: usize) -> (usize, Vec<Cell>) {
     })
 }
 
-/// Without the first cell of both, whose vertices become one.
+/// Removes the first cell of both shapes and identifies its vertices.
 pub(crate) fn connected_sum((m, a): (usize, Vec<Cell>), (_, b): (usize, Vec<Cell>)) -> (usize, Vec<Cell>) {
     let (left, right) = (a[0].clone(), b[0].clone());
     // The second is seen from behind: its vertices 1 and 2 are exchanged in the match.
@@ -78,7 +78,7 @@ pub(crate) fn connected_sum((m, a): (usize, Vec<Cell>), (_, b): (usize, Vec<Cell
     renumbered(&a[1..].iter().cloned().chain(rest).collect::<Vec<_>>())
 }
 
-/// A grid of cubes, six tetrahedra each, opposite sides glued.
+/// Returns a grid of cubes of six tetrahedra each, opposite sides glued.
 pub(crate) fn three_torus(side: usize) -> (usize, Vec<Cell>) {
     let number = |p: [usize; 3]| p.iter().fold(0, |n, x| n * side + x % side);
     let mut cells = Vec::new();
@@ -103,7 +103,7 @@ pub(crate) fn three_torus(side: usize) -> (usize, Vec<Cell>) {
     (side.pow(3), cells)
 }
 
-/// Two shapes beside each other.
+/// Returns the disjoint union of two shapes.
 pub(crate) fn both((m, a): (usize, Vec<Cell>), (n, b): (usize, Vec<Cell>)) -> (usize, Vec<Cell>) {
     let moved = b.into_iter().map(|cell| cell.into_iter().map(|v| v + m).collect());
     (m + n, a.into_iter().chain(moved).collect())

@@ -1,4 +1,5 @@
-//! What is around what in the plane, in every dimension, against sets made from the faces alone.
+//! Neighborhoods in the plane, in every dimension, compared with sets computed from the faces
+//! alone.
 
 use std::collections::BTreeSet;
 
@@ -8,8 +9,8 @@ use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::{Tds, VertexId};
 use testkit::random::Random;
 
-/// Points of a tiny grid; every third time on one line, and with some taken out again, so that there are holes in the
-/// numbers.
+/// Returns points of a tiny grid; every third time on one line, and with some removed again, so
+/// that numbers have gaps.
 fn random(random: &mut Random, round: usize) -> Free {
     let side = 1 + random.below(5);
     let points: Vec<[f64; 2]> = (0..random.below(20))
@@ -29,7 +30,7 @@ fn with_infinite(tds: &Tds<3>) -> impl Iterator<Item = VertexId> + '_ {
     tds.vertices().chain(infinite)
 }
 
-/// The edges as sorted pairs, from the cells.
+/// Returns the edges as sorted pairs, from the cells.
 fn naive_edges(tds: &Tds<3>) -> BTreeSet<[VertexId; 2]> {
     let mut edges = BTreeSet::new();
     for cell in tds.cells().filter(|_| tds.dimension() > 0) {
@@ -87,7 +88,7 @@ fn around_a_vertex_in_both_directions() {
             let ends: Vec<[VertexId; 2]> = tds.edges_around(v).map(|(cell, i)| tds.edge_ends(cell, i)).collect();
             if tds.dimension() == 2 {
                 assert!(ends.iter().copied().eq(around.iter().map(|&u| [v, u])));
-                // One after the other: a face lies between.
+                // Consecutive ones: a face lies between.
                 for (k, cell) in tds.around(v).enumerate() {
                     assert_eq!(tds.face([around[k], v, around[(k + 1) % around.len()]]), Some(cell));
                 }
@@ -145,7 +146,8 @@ fn the_hull_is_a_ring_of_all_vertices_on_it() {
                 for (k, &a) in hull.iter().enumerate() {
                     let b = hull[(k + 1) % hull.len()];
                     for v in tds.vertices().filter(|&v| v != a && v != b) {
-                        // Everything lies to the left of the side; what is on its line, not between its ends.
+                        // Everything lies to the left of the side; what is on its line does not lie
+                        // between its ends.
                         let between = g.side_of_sphere_in_flat(&[t.point(a), t.point(b)], t.point(v));
                         let side = turn(a, b, v);
                         assert!(side == Sign::Positive || side == Sign::Zero && between == Sign::Negative);

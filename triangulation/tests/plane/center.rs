@@ -6,8 +6,8 @@ fn exact(x: f64) -> RBig {
     RBig::try_from(x).unwrap()
 }
 
-/// Asserts that a center, told relative to the first of three weighted corners, is where it must be, to within 2^-40 of
-/// its distance; flat triangles have none.
+/// Asserts that a center, relative to the first of three weighted corners, is correct to within
+/// 2^-40 of its distance; flat triangles have none.
 pub(crate) fn judge(corners: [[f64; 3]; 3], center: [f64; 2]) {
     let [a, b, c] = corners.map(|p| p.map(exact));
     let [u, v] = [&b, &c].map(|p| [&p[0] - &a[0], &p[1] - &a[1]]);

@@ -1,5 +1,5 @@
-//! Geometries whose arithmetic is chosen when the program runs, so that triangulations are compiled once for all
-//! kernels.
+//! Geometries whose arithmetic is chosen at run time, so that triangulations are compiled once for
+//! all kernels.
 
 use std::cmp::Ordering;
 
@@ -7,7 +7,7 @@ use breakline_triangulation::geometry::{Coordinates, Crossing, Geometry, Plane, 
 use breakline_triangulation::kernel::{Adaptive, Kernel};
 use breakline_triangulation::num::Sign;
 
-/// The answers of a geometry of points with `D` coordinates, by its functions.
+/// The functions of a geometry of points with `D` coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Chosen<const D: usize> {
     admits: fn(&[f64; D]) -> bool,
@@ -18,7 +18,7 @@ pub(crate) struct Chosen<const D: usize> {
     step: f64,
 }
 
-/// A geometry that sees points as this one does, and tells nothing of places.
+/// Returns a geometry with the functions of another one, but without exact plans.
 fn of<G: Geometry<3, Point = [f64; D]> + Default, const D: usize>() -> Chosen<D> {
     Chosen {
         admits: |p| G::default().admits(p),
@@ -30,7 +30,7 @@ fn of<G: Geometry<3, Point = [f64; D]> + Default, const D: usize>() -> Chosen<D>
     }
 }
 
-/// The plane with this kernel.
+/// Returns the plane with this kernel.
 pub(crate) fn plane<K: Kernel>() -> Chosen<2> {
     Chosen {
         exact_plan: |p| Plane::<K>::default().exact_plan(p),
@@ -39,7 +39,7 @@ pub(crate) fn plane<K: Kernel>() -> Chosen<2> {
     }
 }
 
-/// The weighted plane with this kernel.
+/// Returns the weighted plane with this kernel.
 pub(crate) fn weighted<K: Kernel>() -> Chosen<3> {
     of::<Weighted<K>, 3>()
 }

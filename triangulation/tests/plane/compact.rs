@@ -1,4 +1,5 @@
-//! The compact triangulation: the answers of the one that was written, and errors for whatever is damaged.
+//! The compact triangulation: the answers of the one that was written, and errors for whatever is
+//! damaged.
 
 use crate::grid::{Free, Point, build, points, site};
 use breakline_triangulation::geometry::{Plane, Terrain};
@@ -28,7 +29,7 @@ fn all<T>(answers: Result<impl Iterator<Item = Result<T, Damaged>>, Damaged>) ->
     answers?.collect()
 }
 
-/// What a triangulation answers, with its cells numbered as in the file: without gaps.
+/// The answers of a triangulation, with its cells numbered as in the file: without gaps.
 struct Dense<'a, V, C>(&'a Triangulation<Plane, 3, V, C>);
 
 impl<V, C: Copy + Default> Dense<'_, V, C> {
@@ -59,14 +60,14 @@ impl<V, C: Copy + Default> Dense<'_, V, C> {
         })
     }
 
-    /// Where walks begin in the triangulation, and in the file.
+    /// Where walks start in the triangulation, and in the file.
     fn near(&self) -> [Option<CellId>; 2] {
         let first = self.0.tds().cells().next();
         [first, first.map(|_| CellId::new(0))]
     }
 }
 
-/// The questions that every kind answers.
+/// Queries that every kind answers.
 fn judge_lawless<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, compact: &Opened<'_>, [p, q]: [Point; 2]) {
     let dense = Dense(t);
     let [near, near_there] = dense.near();
@@ -181,7 +182,7 @@ fn all_kinds_and_geometries() {
     );
     assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(Damaged::Unanswerable(Law::Constrained)));
 
-    // A hidden vertex has no place in it.
+    // A hidden vertex is not written.
     let mut regular: Regular<breakline_triangulation::geometry::Weighted> = Regular::new(Default::default());
     for (k, [x, y]) in square.into_iter().chain([[2.0, 2.0]]).enumerate() {
         regular.insert([x, y, if k == 4 { -100.0 } else { 0.0 }]).unwrap();
@@ -226,7 +227,7 @@ fn gaps_close() {
     }
 }
 
-/// What the page on formats says, byte by byte.
+/// Compares the bytes with the page on formats.
 #[test]
 fn the_format() {
     let t = build(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
@@ -250,7 +251,8 @@ fn the_format() {
     }
 }
 
-/// Every question, at places in and around a small triangulation: whether there was any error.
+/// Makes every query, at sites in and around a small triangulation; returns true if there was any
+/// error.
 fn ask_everything(compact: &Opened<'_>, sites: &[Point]) -> bool {
     let mut is_damaged = compact.check(Level::Law).is_err();
     let mut note = |failed: bool| is_damaged |= failed;
@@ -313,7 +315,7 @@ fn every_damaged_byte_is_an_error_or_an_answer() {
                 damaged[at] = value;
                 let Ok(compact) = open(&damaged) else { continue };
                 let is_damaged = ask_everything(&compact, &SITES);
-                // Unused places below dimension 2 say nothing.
+                // Unused slots below dimension 2 have no meaning.
                 if at >= cells && value != sound[at] && t.dimension() == 2 {
                     assert!(compact.check(Level::Manifold).is_err(), "byte {at} as {value}");
                     assert!(is_damaged);
@@ -324,7 +326,7 @@ fn every_damaged_byte_is_an_error_or_an_answer() {
     }
 }
 
-/// Numbers that exist, in wrong places: what only the links themselves can tell.
+/// Numbers that exist, in the wrong slots: only the links themselves can reveal this.
 #[test]
 fn wrong_links() {
     let mut dice = Random(5);
@@ -349,7 +351,7 @@ fn wrong_links() {
     assert!(errors > 3000, "{errors}");
 }
 
-/// Opening looks at the header alone: whatever comes after it may be anything.
+/// Opening reads the header alone: whatever comes after it may be anything.
 #[test]
 fn only_the_header_is_looked_at_when_opened() {
     let t = build(&[[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]]);
@@ -362,7 +364,7 @@ fn only_the_header_is_looked_at_when_opened() {
     }
 }
 
-/// Many threads may ask at once.
+/// Many threads may query at once.
 #[test]
 fn shared_between_threads() {
     let mut dice = Random(6);

@@ -1,4 +1,5 @@
-//! Voronoi diagrams: against exact centers, clipping by all bisectors, and the law that cells tile.
+//! Voronoi diagrams: compared with exact centers and with clipping by all bisectors, and tested for
+//! tiling.
 
 use crate::center;
 use crate::grid::{Free, Point, build};
@@ -20,7 +21,7 @@ fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     (0..count).map(|_| site(dice)).collect()
 }
 
-/// Asserts that the center is where it must be.
+/// Asserts that the center is correct.
 fn judge_center(corners: [Point; 3]) {
     center::judge(corners.map(|[x, y]| [x, y, 0.0]), circumcenter(corners));
 }
@@ -31,7 +32,7 @@ fn centers_are_right_however_flat_the_triangle() {
     for round in 0..3000 {
         let mut corners: [Point; 3] = [0; 3].map(|_| [0, 1].map(|_| dice.unit() * 100.0 + 5e5));
         if round % 2 == 0 {
-            // On a line but for some last bits.
+            // On a line, except for some last bits.
             let along = dice.unit() * 3.0 - 1.0;
             corners[2] = [0, 1].map(|k| ulps(corners[0][k] + along * (corners[1][k] - corners[0][k]), dice.around(3)));
         }
@@ -44,7 +45,7 @@ fn centers_are_right_however_flat_the_triangle() {
     judge_center([[1.0, 0.0], [2.0, 0.0], [0.0, 1e-290]]);
 }
 
-/// A convex polygon around nearly all, some or none of the points.
+/// Returns a convex polygon around nearly all, some or none of the points.
 fn window(dice: &mut Random) -> Vec<Point> {
     let [x, y] = [0, 1].map(|_| dice.around(3) as f64);
     let [w, h] = [0, 1].map(|_| 1.0 + dice.below(9) as f64);
@@ -131,7 +132,7 @@ fn magnitudes_without_room_do_no_harm() {
     assert_eq!(t.tds().edges().filter_map(|(cell, i)| t.voronoi_edge(cell, i)).count(), t.tds().finite_edges().count());
 }
 
-/// Numbers that stand for no vertex have no cell.
+/// Numbers of no vertex have no cell.
 #[test]
 fn no_vertex_no_cell() {
     let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];

@@ -15,7 +15,7 @@ pub(crate) fn grid_point(dice: &mut Random, side: u64) -> Point {
     [0, 1].map(|_| dice.below(side) as f64)
 }
 
-/// Even places of a grid, so that odd ones lie between; every fourth time on one line.
+/// Returns even sites of a grid, so that odd ones lie between; every fourth time on one line.
 pub(crate) fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 1 + dice.below(5);
     let count = dice.below(20);
@@ -26,7 +26,7 @@ pub(crate) fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     points
 }
 
-/// A place on that grid or between, or a bit outside.
+/// Returns a site on that grid or between, or a bit outside.
 pub(crate) fn site(dice: &mut Random) -> Point {
     grid_point(dice, 13).map(|x| x - 2.0)
 }

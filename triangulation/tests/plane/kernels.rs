@@ -1,4 +1,5 @@
-//! Every kind of triangulation with every kernel: the triangles of exact arithmetic, by changing one type.
+//! Every kind of triangulation with every kernel: changing one type gives the triangles of exact
+//! arithmetic.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +19,8 @@ where
     testkit::cells::cells(t, |p| p.as_ref().iter().map(|x| *x as i64).collect())
 }
 
-/// Points in space, and lines between them that may cross in plan, and then at points of the grid.
+/// Returns points in space, and lines between them that may cross in plan, and then at points of
+/// the grid.
 struct Case {
     points: Vec<[f64; 3]>,
     lines: Vec<[u32; 2]>,
@@ -39,7 +41,7 @@ fn case(random: &mut Random) -> Case {
     Case { points, lines }
 }
 
-/// What each kind makes of the case.
+/// The result of each kind for the case.
 fn build<K: Kernel>(Case { points, lines }: &Case) -> [Cells; 4] {
     let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
     let (in_bulk, _) = Delaunay::from_points(plane::<K>(), &plan).unwrap();
@@ -77,7 +79,8 @@ fn one_answer() {
     }
 }
 
-/// Points whose weights are their heights: the same are hidden, and the others have the same triangles.
+/// Points whose weights are their heights: the same points are hidden, and the others have the same
+/// triangles.
 #[test]
 fn one_regular_triangulation() {
     fn build<K: Kernel>(points: &[[f64; 3]]) -> (Cells, Vec<usize>) {
@@ -112,7 +115,7 @@ fn one_regular_triangulation() {
     assert!(triangles > 1000 && hidden > 500, "{triangles} {hidden}");
 }
 
-/// Where lines cross, each kernel has its own places for it: multiples of its step.
+/// Where lines cross, each kernel has sites of its own: multiples of its step.
 #[test]
 fn crossings() {
     fn check<K: Kernel>(Case { points, .. }: &Case) -> usize {

@@ -1,4 +1,5 @@
-//! The kinds without an empty circle: basic and constrained triangulations, on tiny grids.
+//! The kinds without the empty circle property: basic and constrained triangulations, on tiny
+//! grids.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +18,7 @@ fn tiny<const D: usize>(random: &mut Random, side: u64) -> [f64; D] {
     std::array::from_fn(|_| random.below(side) as f64)
 }
 
-/// As many triangles as there must be: the same points, the same hull.
+/// Asserts that there are as many triangles as in the Delaunay triangulation of the same points.
 fn fills_the_hull<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
     let points: Vec<Point> = t.tds().vertices().map(|v| *t.point(v)).collect();
     let (delaunay, _) = Delaunay::from_points(Plane::<Adaptive>::default(), &points).unwrap();
@@ -103,7 +104,7 @@ fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
 }
 
-/// The vertices on the way from one to another, these included, in order.
+/// Returns the vertices on the segment from one vertex to another, both included, in order.
 fn path(t: &Triangulation<Plane, 3, (), ConstrainedEdges>, a: VertexId, b: VertexId) -> Vec<VertexId> {
     let (p, q) = (*t.point(a), *t.point(b));
     if a == b {
@@ -126,7 +127,8 @@ fn constraints_hold() {
     for _ in 0..600 {
         let side = 2 + random.below(6);
         let mut t: Constrained<Plane> = Constrained::new(Plane::default());
-        // Constraints by their ends, all their pieces present; released ones are gone.
+        // Constraints by their ends; all their sub-constraints are present, and released ones are
+        // gone.
         let mut constraints: BTreeSet<[VertexId; 2]> = BTreeSet::new();
         for _ in 0..40 {
             let vertices: Vec<VertexId> = t.tds().vertices().collect();
@@ -198,7 +200,8 @@ fn a_grid_of_twenty() {
     assert_eq!((basic.check(Level::Law), delaunay.check(Level::Law), regular.check(Level::Law)), Default::default());
 }
 
-/// Constraints know no law: of weighted points, too, what is crossed is filled by whatever fits.
+/// Constraints need no law: with weighted points, too, any triangulation fills the hole of a
+/// crossed region.
 #[test]
 fn constraints_among_weighted_points() {
     let mut random = Random(36);
@@ -228,7 +231,8 @@ fn what_is_not_there_is_answered() {
     assert_eq!(ConstraintError::NoTriangles.to_string(), "there are no triangles to hold a constraint");
 }
 
-/// Inserts, inserts again at the same site, moves, and moves onto another site, alike in all kinds.
+/// Inserts, inserts again at the same site, moves, and moves onto another site, with the same
+/// result in all kinds.
 macro_rules! judge_insertions {
     ($new:expr, $at:expr) => {{
         let (mut t, at) = ($new, $at);
@@ -263,7 +267,7 @@ fn insertion_gives_back_a_payload_that_it_does_not_use() {
     judge_insertions!(Constrained::<Plane, usize>::new(Plane::default()), plane);
 }
 
-/// A vertex that moves onto a constraint splits it; one on a constraint stays.
+/// A vertex that moves onto a constraint splits it; a vertex that was on a constraint stays.
 #[test]
 fn a_vertex_moves_onto_a_constraint() {
     let points = [[0.0, 0.0], [8.0, 0.0], [4.0, 6.0], [4.0, -6.0], [6.0, 2.0]];
@@ -278,7 +282,7 @@ fn a_vertex_moves_onto_a_constraint() {
     assert!((0..5).all(|k| *t.tds().vertex_data(v[k]) == k));
 }
 
-/// Each message says its own part; the rest of the chain is told by the source.
+/// Each message states its own part; the sources state the rest of the chain.
 #[test]
 fn errors_do_not_repeat_their_source() {
     let error = MoveError::from(RemovalError::Constraint);
@@ -288,7 +292,7 @@ fn errors_do_not_repeat_their_source() {
     assert_eq!(PointError::TooMany.to_string(), "more than 2147483646 points");
 }
 
-/// Points of cells and edges, of numbers that stand for none, too.
+/// The points of cells and edges, also for numbers of nothing.
 #[test]
 fn cells_and_edges_have_points() {
     let (t, v) = Delaunay::from_points(Plane::new(), &[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]).unwrap();

@@ -1,4 +1,5 @@
-//! Strategies of point location: the same answer by each, on grids where points lie on vertices, edges and lines.
+//! Strategies of point location: the same answer by each, on grids where points lie on vertices,
+//! edges and lines.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
@@ -16,16 +17,16 @@ use testkit::random::Random;
 type Point = [f64; 2];
 type Free = Delaunay<Plane, 3>;
 
-/// What a location says, whichever cell it says it by.
+/// A location independent of the cell that expresses it.
 #[derive(Debug, PartialEq, Eq)]
 enum Position {
-    /// Inside of what these vertices span.
+    /// In the interior of what these vertices span.
     On(BTreeSet<VertexId>),
     Outside,
     OffTheFlat,
 }
 
-/// The place, after a look at whether it is the one.
+/// Returns the position, and asserts that it is correct.
 fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Location, q: Point) -> Position {
     let tds: &Tds<3> = t.tds();
     let plane = Plane::<breakline_triangulation::kernel::Exact>::default();
@@ -58,7 +59,7 @@ fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Lo
     }
 }
 
-/// By every strategy, as the default has it.
+/// Asserts that every strategy agrees with the default one.
 fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane>, buckets: &Buckets, start: Option<VertexId>, q: Point) {
     let expected = position(t, t.locate(&q, None), q);
     let near = Near(start.filter(|&v| t.tds().is_vertex(v)).and_then(|v| t.tds().cell_of(v)));
@@ -92,7 +93,7 @@ fn tiny_grids_that_grow_and_shrink() {
                 let vertex = t.insert_by(&mut hierarchy, p, ()).unwrap().vertex;
                 buckets.inserted(t.geometry(), vertex, &p);
             } else if let Location::Vertex(vertex) = t.locate(&p, None) {
-                // Half of the time the hierarchy is not told.
+                // Half of the time the hierarchy is not notified.
                 let is_reported = random.below(2) == 0;
                 let removed = if is_reported { t.remove_by(&mut hierarchy, vertex) } else { t.remove(vertex) };
                 assert_eq!(removed, Ok(p));
@@ -132,7 +133,7 @@ fn thousands_of_points() {
     }
 }
 
-/// The samples of the hierarchy follow the vertices: what is taken out again leaves nothing behind.
+/// The samples of the hierarchy follow the vertices: removed vertices leave nothing behind.
 #[test]
 fn numbers_used_again() {
     let mut random = Random(13);
@@ -152,7 +153,7 @@ fn numbers_used_again() {
     }
 }
 
-/// A grid over next to nothing has no more squares than any other.
+/// A grid over a tiny box has no more squares than any other.
 #[test]
 fn buckets_of_any_size() {
     for size in [0.0, 1e-300, 1e-170, 1.0, 1e200] {
@@ -166,7 +167,7 @@ fn buckets_of_any_size() {
     }
 }
 
-/// The plane, with rounded numbers of a test's own for where walks go.
+/// The plane, with rounded sides of a test's own that direct walks.
 #[derive(Debug, Clone, Copy)]
 struct RoughSides<F>(F);
 
@@ -201,14 +202,15 @@ impl<F: Fn([&Point; 3], &Point) -> [f64; 3]> Geometry<3> for RoughSides<F> {
     }
 }
 
-/// Where the plane leads.
+/// Returns the rounded sides of the plane.
 fn rightly(simplex: [&Point; 3], q: &Point) -> [f64; 3] {
     Plane::<Adaptive>::default().rough_sides(simplex, q)
 }
 
 thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
 
-/// Questions for each of some points that are inserted in random order, without a strategy.
+/// Returns the number of predicates for each of some points that are inserted in pseudo-random
+/// order, without a strategy.
 fn asked_one_by_one(position: impl Fn(f64) -> Point) -> usize {
     const COUNT: usize = 20_000;
     let mut random = Random(31);
@@ -220,7 +222,7 @@ fn asked_one_by_one(position: impl Fn(f64) -> Point) -> usize {
     ASKED.get() / COUNT
 }
 
-/// A walk along a curve has to come by all vertices in between.
+/// A walk along a curve has to pass all vertices in between.
 #[test]
 fn walks_along_curves_are_cut_short() {
     let other = std::cell::RefCell::new(Random(32));
@@ -233,8 +235,8 @@ fn walks_along_curves_are_cut_short() {
     }
 }
 
-/// Rounded numbers lead over long edges first, and from far outside of a curve all long ones lead along it: a walk that
-/// did not look for a way out would come by all vertices.
+/// Rounded numbers lead across long edges first, and from far outside of a curve all long edges
+/// lead along it: a walk that did not look for an exit from the hull would pass all vertices.
 #[test]
 fn walks_from_a_curve_look_for_a_way_out() {
     const COUNT: usize = 20_000;
@@ -252,8 +254,7 @@ fn walks_from_a_curve_look_for_a_way_out() {
     assert!(asked < 200, "{asked} questions for a position far outside of {COUNT} points");
 }
 
-/// Wherever rounded numbers lead, or if they lead nowhere, the answer is the same: with the law of Delaunay, and without
-/// any.
+/// Whatever rounded numbers say, the answer is the same: with the Delaunay law, and without any.
 fn same_for_any_rough_sides(sides: impl Fn([&Point; 3], &Point) -> [f64; 3] + Copy) {
     let mut random = Random(33);
     for round in 0..40 {
@@ -296,7 +297,7 @@ fn rounded_numbers_change_no_answer() {
     same_for_any_rough_sides(|_, _| [thrown(), thrown(), thrown()]);
 }
 
-/// Of small whole numbers nothing is rounded: the sides are those that the orientations say.
+/// Small whole numbers are not rounded: the signs of the sides are those of the orientations.
 fn sides_are_right<G: Geometry<N>, const N: usize>(geometry: &G, mut point: impl FnMut() -> G::Point) {
     for _ in 0..2000 {
         let simplex: [G::Point; N] = std::array::from_fn(|_| point());

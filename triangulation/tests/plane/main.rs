@@ -1,5 +1,5 @@
-//! The package of the plane: kinds, location, edits, queries, meshes, files. One program, so that the triangulations
-//! that all of these tests make are compiled once.
+//! Tests of the plane: kinds, location, edits, queries, meshes, files. A single program, so that
+//! the triangulations that all of these tests use are compiled once.
 
 mod around;
 mod center;

@@ -1,4 +1,5 @@
-//! Points by their places: the triangles are those of the places in the plane, whatever a point is.
+//! Points that are mapped to sites: the triangles are those of the sites in the plane, whatever a
+//! point is.
 
 use std::fmt::Debug;
 
@@ -7,7 +8,8 @@ use breakline_triangulation::kernel::{Exact, Fixed};
 use breakline_triangulation::{Delaunay, Level, Triangulation};
 use testkit::random::Random;
 
-/// The triangles by the positions of their points, from the smallest on: orientation counts.
+/// Returns the triangles by the positions of their points, each from its smallest corner on:
+/// orientation counts.
 fn triangles<G: Coordinates<3>, V, C: Copy + Default>(
     t: &Triangulation<G, 3, V, C>,
     positions: &[usize],
@@ -24,7 +26,7 @@ fn triangles<G: Coordinates<3>, V, C: Copy + Default>(
     triangles
 }
 
-/// In bulk and one by one, against the plane. Returns how many triangles there are.
+/// Compares bulk and one-by-one construction with the plane. Returns the number of triangles.
 fn same<G>(geometry: G, points: &[G::Point], site: impl Fn(&G::Point) -> [f64; 2]) -> usize
 where
     G: Coordinates<3> + Metric + Clone,
@@ -80,7 +82,8 @@ fn triangles_are_those_of_the_places() {
     assert!(count > 10_000, "{count}");
 }
 
-/// Every direction: the place of the normal is the origin, lengths and angles across it stay, and so does the turn.
+/// Every direction: the normal is mapped to the origin, lengths and angles perpendicular to it are
+/// kept, and so is orientation.
 #[test]
 fn planes_by_their_normals() {
     let mut random = Random(2);

@@ -1,4 +1,4 @@
-//! Natural neighbor coordinates: their laws, and Sibson's against insertion.
+//! Natural neighbor coordinates: their laws, and Sibson's compared with insertion.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use testkit::random::Random;
 
 type Weights = Vec<(VertexId, f64)>;
 
-/// On a tiny grid, or anywhere.
+/// Returns points on a tiny grid, or anywhere.
 fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 2 + dice.below(5);
     let count = 1 + dice.below(25);
@@ -65,7 +65,7 @@ fn weights_are_positive_sum_to_one_and_give_back_the_place() {
     assert!(answers > 3000, "{answers}");
 }
 
-/// The areas that cells lose to that of a new vertex.
+/// Returns the areas that cells lose to that of a new vertex.
 #[test]
 fn sibsons_weights_are_what_cells_lose() {
     let mut dice = Random(2);
@@ -125,7 +125,8 @@ fn vertices_edges_of_the_hull_and_outside() {
     assert_eq!(both(&build(&[]), &[1.0, 2.0]), [None, None]);
 }
 
-/// Near a vertex its weight is nearly 1; near an edge of the hull the weights are nearly those on it.
+/// Near a vertex its weight is nearly 1; near an edge of the hull the weights are nearly those on
+/// it.
 #[test]
 fn weights_are_continuous_at_vertices_and_the_hull() {
     let mut dice = Random(3);
@@ -160,7 +161,7 @@ fn weights_are_continuous_at_vertices_and_the_hull() {
     }
 }
 
-/// Where squares of distances are no numbers, there are no weights.
+/// Where squares of distances overflow or underflow, there are no weights.
 #[test]
 fn beyond_squares_there_are_none() {
     for scale in [1e160, 1e-170] {

@@ -1,5 +1,5 @@
-//! Questions that have no answer: at places that are none, of numbers that are nothing's, below dimension 2. None of
-//! them panics or runs on; where there is an answer after all, it is the naive one.
+//! Queries without an answer: at sites that do not exist, for numbers of nothing, below dimension
+//! 2. None of them panics or runs forever; if there is an answer after all, it is the naive one.
 
 use std::cmp::Ordering;
 
@@ -15,7 +15,7 @@ use breakline_triangulation::{
 
 const SQUARE: [Point; 4] = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]];
 
-/// Sets of each dimension, and two with triangles.
+/// Point sets of each dimension, and two with triangles.
 const SETS: [&[Point]; 7] = [
     &[],
     &[[1.0, 2.0]],
@@ -26,7 +26,7 @@ const SETS: [&[Point]; 7] = [
     &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [2.0, 2.0], [2.0, 0.0]],
 ];
 
-/// Coordinates that are none, that the default kernel does not reach, and ordinary ones.
+/// Coordinates that are not numbers, that the default kernel does not reach, and ordinary ones.
 const COORDINATES: [f64; 11] =
     [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e200, -1e200, f64::MAX, 1e-200, 5e-324, 0.0, 1.5, 2.0];
 
@@ -34,7 +34,7 @@ fn odd_places() -> impl Iterator<Item = Point> {
     COORDINATES.iter().flat_map(|&x| COORDINATES.iter().map(move |&y| [x, y]))
 }
 
-/// Numbers of vertices that are there, were there, never were, and stand for something else.
+/// Numbers of vertices that exist, that existed, that never did, and that stand for something else.
 fn vertex_numbers<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) -> Vec<VertexId> {
     let unused_places = t.tds().cells().flat_map(|cell| *t.tds().corners(cell));
     let numbers = (0..t.tds().vertex_slots() + 3).map(VertexId::new);
@@ -45,13 +45,13 @@ fn vertex_numbers<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) -> Ve
     numbers
 }
 
-/// The same of cells.
+/// Numbers of cells of the same sorts.
 fn cell_numbers<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) -> Vec<CellId> {
     let numbers = (0..t.tds().cell_slots() + 3).map(CellId::new);
     numbers.chain([CellId::new(CellId::LIMIT - 1)]).collect()
 }
 
-/// What all kinds are asked.
+/// Makes the queries of all kinds.
 fn asks_the_complex<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
     let (tds, vertices, cells) = (t.tds(), vertex_numbers(t), cell_numbers(t));
     for &v in &vertices {
@@ -104,7 +104,7 @@ fn is_ordinary(x: f64) -> bool {
     <breakline_triangulation::kernel::Adaptive as Kernel>::RANGE.admits(x)
 }
 
-/// Odd places lie nowhere, others somewhere.
+/// Points with special coordinates lie nowhere, others somewhere.
 fn is_somewhere<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, q: Point, location: Location) {
     let is_site = q.iter().all(|&x| is_ordinary(x));
     assert_eq!(location == Location::Nowhere, !is_site, "{q:?}");
@@ -112,7 +112,7 @@ fn is_somewhere<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, q: Poin
     assert_eq!(has_cell, is_site && location != Location::OutsideAffineHull, "{q:?}");
 }
 
-/// Grown, and with vertices taken out of it again.
+/// Built, and with vertices removed again.
 fn free(points: &[Point]) -> [Free; 2] {
     let mut shrunk = build(&[points, &[[7.0, 8.0], [-3.0, 8.0], [5.0, -6.0]]].concat());
     let extra: Vec<VertexId> = shrunk.tds().vertices().filter(|&v| !points.contains(shrunk.point(v))).collect();
@@ -162,7 +162,7 @@ fn delaunay_triangulations() {
     }
 }
 
-/// On a line the border of a zone is vertices, which are no edges: the picture shows the others.
+/// On a line the border of a zone is vertices, which are not edges: the picture shows the others.
 #[test]
 fn a_picture_of_a_zone_on_a_line() {
     let t = build(&[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]);
@@ -201,7 +201,7 @@ fn strategies() {
     }
 }
 
-/// With a kernel for all finite numbers, answers are right however far away the place is.
+/// With a kernel for all finite numbers, answers are correct however far away the site is.
 #[test]
 fn from_as_far_as_numbers_go() {
     let grid: Vec<Point> = (0..25).map(|k| [f64::from(k % 5), f64::from(k / 5)]).collect();

@@ -1,4 +1,4 @@
-//! Payloads of cells: whose a new cell inherits, by looking at all cells before and after.
+//! Payloads of cells: which payload a new cell inherits, by comparing all cells before and after.
 
 use std::collections::BTreeMap;
 
@@ -32,8 +32,9 @@ fn seen_as<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
     (t.dimension(), t.tds().cells().map(sorted).collect())
 }
 
-/// Cells that stay keep their payload; a new one has that of the cell that is gone and had the facet opposite the new
-/// vertex. With another dimension all have the default one.
+/// Asserts that cells that stay keep their payload, and that a new one has the payload of the
+/// removed cell that had the facet opposite the new vertex. If the dimension changes, all have the
+/// default one.
 fn judge_insertion((dimension, before): &Seen, (now, after): &Seen, vertex: VertexId) {
     for (cell, &data) in after {
         let facet: Vec<VertexId> = cell.iter().copied().filter(|&v| v != vertex).collect();
@@ -47,7 +48,7 @@ fn judge_insertion((dimension, before): &Seen, (now, after): &Seen, vertex: Vert
     }
 }
 
-/// Cells that stay keep their payload; others have the default one.
+/// Asserts that cells that stay keep their payload, and that others have the default one.
 fn judge_removal((dimension, before): &Seen, (now, after): &Seen) {
     for (cell, data) in after {
         let old = before.get(cell).filter(|_| dimension == now);
@@ -55,7 +56,7 @@ fn judge_removal((dimension, before): &Seen, (now, after): &Seen) {
     }
 }
 
-/// Another payload for each cell, none of them the default one.
+/// Gives each cell a payload of its own, never the default one.
 fn another(cell: CellId) -> u32 {
     cell.index() as u32 + 1
 }
@@ -87,7 +88,7 @@ fn delaunay_cells_inherit_what_they_replace() {
     }
 }
 
-/// Vertices with many neighbors are taken out another way.
+/// Vertices with many neighbors are removed by another algorithm.
 #[test]
 fn delaunay_cells_around_a_hub() {
     let rim = (0..40).map(|k| f64::from(k) * 0.157).map(|turn| [turn.cos(), turn.sin()]);
@@ -129,7 +130,7 @@ fn regular_cells_inherit_what_they_replace() {
                     let vertex = t.insert([0; 3].map(|_| dice.below(4) as f64)).unwrap();
                     judge_insertion(&before, &seen(&t), vertex);
                 }
-                // What comes to light is inserted again.
+                // Points that become visible are inserted again.
                 Some(vertex) => {
                     let _ = t.remove(vertex);
                     if t.hidden().len() == hidden {
@@ -179,7 +180,7 @@ fn constrained_cells_inherit_what_they_replace() {
         for _ in 0..30 {
             t = t.with_cell_data(another);
             let before = seen_between_constraints(&t);
-            let constraints: Vec<_> = t.constrained_edges().collect();
+            let constrained: Vec<_> = t.constrained_edges().collect();
             match dice.below(6) {
                 0 if !vertices.is_empty() => {
                     let _ = t.remove(dice.pick(&vertices));
@@ -190,8 +191,8 @@ fn constrained_cells_inherit_what_they_replace() {
                     judge_removal(&before, &seen_between_constraints(&t));
                     constraints += usize::from(is_new);
                 }
-                3 if !constraints.is_empty() => {
-                    let [a, b] = dice.pick(&constraints);
+                3 if !constrained.is_empty() => {
+                    let [a, b] = dice.pick(&constrained);
                     assert!(t.release(a, b));
                     assert_eq!(seen_between_constraints(&t), before);
                 }
@@ -201,17 +202,17 @@ fn constrained_cells_inherit_what_they_replace() {
                     vertices.push(vertex);
                 }
             }
-            let constraints: Vec<_> = t.constrained_edges().collect();
+            let constrained: Vec<_> = t.constrained_edges().collect();
             t = t.with_cell_data(another);
-            assert!(t.constrained_edges().eq(constraints));
+            assert!(t.constrained_edges().eq(constrained));
             assert_eq!(t.check(Level::Law), []);
         }
     }
     assert!(constraints > 100, "{constraints}");
 }
 
-/// Lines are arranged anew with each edit: what stays keeps its payload, and what is new has one that was there, or the
-/// default one.
+/// Each edit arranges lines anew: what stays keeps its payload, and what is new has one that was
+/// there, or the default one.
 #[test]
 fn cells_between_lines_keep_their_payloads() {
     let mut dice = Random(6);
@@ -243,7 +244,7 @@ fn cells_between_lines_keep_their_payloads() {
     }
 }
 
-/// A point put into an area between constraints.
+/// Inserts a point into an area between constraints.
 #[test]
 fn areas_between_constraints_are_marked() {
     let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];

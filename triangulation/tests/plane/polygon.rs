@@ -1,14 +1,14 @@
-//! Convex polygons, to judge the cells of diagrams by.
+//! Convex polygons, for judging the cells of diagrams.
 
 use crate::grid::Point;
 
-/// Positive if counter-clockwise.
+/// Returns the area, positive if counter-clockwise.
 pub(crate) fn area(polygon: &[Point]) -> f64 {
     let pairs = (0..polygon.len()).map(|k| (polygon[k], polygon[(k + 1) % polygon.len()]));
     pairs.map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0).sum()
 }
 
-/// The part in which a function, linear in the coordinates, is not positive.
+/// Returns the part in which a function, linear in the coordinates, is not positive.
 pub(crate) fn part(polygon: &[Point], far: impl Fn(Point) -> f64) -> Vec<Point> {
     let mut left = Vec::new();
     for k in 0..polygon.len() {

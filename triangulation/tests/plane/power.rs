@@ -1,4 +1,5 @@
-//! Power diagrams: against all bisectors, and the law that cells tile; nearest points by power against all points.
+//! Power diagrams: compared with clipping by all bisectors, and tested for tiling; nearest points
+//! by power compared with all points.
 
 use crate::center;
 use crate::polygon::{area, part};
@@ -72,7 +73,7 @@ fn centers_are_right_however_flat_the_triangle() {
         let weight = |dice: &mut Random| dice.around(9) as f64 * [1.0, 1e-9, 1e9][round % 3];
         let mut corners = [0; 3].map(|_| [dice.unit() * 100.0 + 5e5, dice.unit() * 100.0 + 4e6, weight(&mut dice)]);
         if round % 2 == 0 {
-            // On a line but for some last bits.
+            // On a line, except for some last bits.
             let along = dice.unit() * 3.0 - 1.0;
             let at = |k: usize| corners[0][k] + along * (corners[1][k] - corners[0][k]);
             corners[2] = [ulps(at(0), dice.around(3)), ulps(at(1), dice.around(3)), corners[2][2]];
@@ -82,7 +83,7 @@ fn centers_are_right_however_flat_the_triangle() {
         }
         center::judge(corners, power_center(corners));
     }
-    // The place is the first corner.
+    // The site is the first corner.
     assert_eq!(power_center([[1.0, 1.0, 0.0], [3.0, 1.0, 4.0], [1.0, 4.0, 9.0]]), [0.0, 0.0]);
 }
 
@@ -108,7 +109,7 @@ fn centers_have_the_least_power_with_their_corners() {
     assert!(weighted > 1000, "{weighted}");
 }
 
-/// The ends of an edge of the diagram; where it has none, a place far along it.
+/// Returns the ends of an edge of the diagram; where it has none, a point far along it.
 fn ends(edge: VoronoiEdge) -> [[f64; 2]; 2] {
     let along = |[x, y]: [f64; 2], [dx, dy]: [f64; 2], s: f64| [x + s * dx, y + s * dy];
     match edge {
@@ -146,7 +147,7 @@ fn edges_bound_the_cells() {
             let cell = t.power_cell(v, &window).corners;
             let edges = &edges[v.index()];
             let sides = (0..cell.len()).map(|k| [cell[k], cell[(k + 1) % cell.len()]]);
-            // Every side that is none of the window's lies on an edge, ...
+            // Every side that is not one of the window's lies on an edge, ...
             for [p, q] in sides.clone() {
                 let middle = [0, 1].map(|k| (p[k] + q[k]) / 2.0);
                 let is_on = |edge: &[[f64; 2]; 2]| distance_to_segment(middle, *edge) < 1e-7;

@@ -1,4 +1,5 @@
-//! Questions to triangulations of the plane against naive answers, on tiny grids where ties are the rule.
+//! Queries of triangulations of the plane compared with naive answers, on tiny grids where ties are
+//! the rule.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -18,7 +19,7 @@ fn plane() -> Plane {
     Plane::default()
 }
 
-/// All pairs of some points as lines, so that they overlap and touch; some cross.
+/// Inserts all pairs of some points as lines, so that they overlap and touch; some cross.
 fn constrained(dice: &mut Random, points: &[Point]) -> Lined {
     let index = |dice: &mut Random| dice.index(points.len()) as u32;
     let lines: Vec<Vec<u32>> = if points.is_empty() {
@@ -29,7 +30,7 @@ fn constrained(dice: &mut Random, points: &[Point]) -> Lined {
     Lined::from_lines(Plane::default(), points, &lines, OnCrossing::Split).unwrap().0
 }
 
-/// What a conflict zone must be, given the triangulation with the point in.
+/// Returns the expected conflict zone, given the triangulation with the point inserted.
 fn judge_zone<V, C: Copy + Default>(
     before: &Triangulation<Plane, 3, V, C>,
     after: &Triangulation<Plane, 3, V, C>,
@@ -145,7 +146,8 @@ fn rectangles() {
     }
 }
 
-/// Whether the segment meets a part: the face, edge or vertex with these corners, without its border.
+/// Returns true if the segment meets the face, edge or vertex with these corners, without its
+/// border.
 fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
     let turn = |p: &Point, q: &Point, r: &Point| plane().orientation([p, q, r]);
     let holds = |p: &Point| match part {
@@ -170,7 +172,8 @@ fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
             let overlaps = is_along && plane().compare(&s[0], &t[1]).is_lt() && plane().compare(&t[0], &s[1]).is_lt();
             crosses(&a, &b, u, v) && crosses(u, v, &a, &b) || overlaps
         }
-        // Ends outside: it goes through two of the six parts of the border, which are not on one closed side.
+        // Ends outside: it goes through two of the six parts of the border, which are not on one
+        // closed side.
         [u, v, w] => {
             let sides = [[u, v], [v, w], [w, u]];
             let on = |s: &[&Point; 2], p: &Point| turn(s[0], s[1], p) == Sign::Zero;
@@ -183,7 +186,7 @@ fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
     }
 }
 
-/// The corners of a part, sorted.
+/// Returns the corners of a face, edge or vertex, sorted.
 fn part<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, passage: Passage) -> Vec<VertexId> {
     let mut corners = match passage {
         Passage::Face(cell) => t.tds().corners(cell).to_vec(),
@@ -200,7 +203,7 @@ fn segments_meet_what_they_meet_in_order() {
     let mut dice = Random(6);
     let mut kinds = [0; 4];
     for round in 0..6000 {
-        // Every other time nearly on lines, for most: the judge is exact.
+        // Every other time, most are nearly on lines: the judge is exact.
         let scale = if round % 2 == 0 { 1.0 } else { 0.37 };
         let points: Vec<Point> = points(&mut dice, round).into_iter().map(|p| p.map(|x| x * scale)).collect();
         let t = constrained(&mut dice, &points);
@@ -217,8 +220,8 @@ fn segments_meet_what_they_meet_in_order() {
         parts.retain(|part| meets(&part.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, b]));
         assert_eq!(returned.iter().cloned().collect::<BTreeSet<_>>(), parts, "{points:?} {a:?} {b:?}");
         assert_eq!(returned.len(), parts.len(), "nothing twice");
-        // Each lies on the border of the one before, or the other way around: with what is met told, this leaves one
-        // order and its reverse.
+        // Each lies on the border of the one before, or vice versa: together with the set that is
+        // met, this leaves one order and its reverse.
         for pair in returned.windows(2) {
             let [p, q] = [&pair[0], &pair[1]];
             assert!(p.iter().all(|v| q.contains(v)) || q.iter().all(|v| p.contains(v)), "{returned:?}");
@@ -228,7 +231,7 @@ fn segments_meet_what_they_meet_in_order() {
             let last_from_a = meets(&last.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, a]);
             assert!(first_from_a || !last_from_a);
         }
-        // And back: the same the other way around.
+        // In the opposite direction: the same in reverse order.
         let mut back: Vec<Vec<VertexId>> = t.along([&b, &a], None).map(|passage| part(&t, passage)).collect();
         back.reverse();
         assert_eq!(back, returned, "{points:?} {a:?} {b:?}");
@@ -237,7 +240,7 @@ fn segments_meet_what_they_meet_in_order() {
                 Passage::Face(_) => kinds[0] += 1,
                 Passage::Edge(cell, i) => {
                     kinds[1] += 1;
-                    // From the cell outwards.
+                    // From the cell outward.
                     let [u, v] = t.tds().edge_ends(cell, i).map(|v| *t.point(v));
                     assert_ne!(plane().orientation([&u, &v, &b]), Sign::Positive);
                     assert_ne!(plane().orientation([&u, &v, &a]), Sign::Negative);
@@ -255,8 +258,8 @@ fn segments_meet_what_they_meet_in_order() {
     assert!(kinds.iter().all(|&count| count > 50), "{kinds:?}");
 }
 
-/// Along the lower side of a square, (0, 0) to (4, 0), with a vertex in its middle, and on its line beyond both ends:
-/// from where to where, and what is met. Each is walked in both directions.
+/// Along the lower side of a square, (0, 0) to (4, 0), with a vertex in its middle, and on its line
+/// beyond both ends: start, end, and what is met. Each segment is followed in both directions.
 #[test]
 fn collinear_edges_of_the_hull() {
     let t = build(&[[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]]);
@@ -290,7 +293,7 @@ fn collinear_edges_of_the_hull() {
     }
 }
 
-/// A walk across a grid of squares, each with a diagonal: through vertices all the way, or past them.
+/// A walk across a grid of squares, each with a diagonal: through vertices only, or past them.
 #[test]
 fn walks_across_a_grid() {
     let points: Vec<Point> = (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)]).collect();

@@ -1,4 +1,4 @@
-//! Quality meshes: the figures of other packages, and the laws, told by naive judges.
+//! Quality meshes: the figures of other packages, and the laws, checked by naive judges.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use testkit::random::Random;
 
 type Point = [f64; 2];
 
-/// Points, segments and places in holes.
+/// Points, segments and sites in holes.
 #[derive(Debug, Clone, Default)]
 struct Pslg {
     points: Vec<Point>,
@@ -21,7 +21,7 @@ struct Pslg {
 }
 
 impl Pslg {
-    /// A file of the format that ../shared/data/README.md tells.
+    /// Reads a file in the format that ../shared/data/README.md describes.
     fn shared(path: &str) -> Pslg {
         let text = std::fs::read_to_string(testkit::shared(&format!("tri2d/{path}.tri"))).unwrap();
         let mut rows = text.lines().map(|row| row.split_whitespace().collect::<Vec<_>>());
@@ -54,7 +54,7 @@ impl Pslg {
         self.segments.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
     }
 
-    /// On a small grid, where segments cross, overlap and repeat.
+    /// Generates an input on a small grid, where segments cross, overlap and repeat.
     fn random(random: &mut Random) -> Pslg {
         let side = 2 + random.below(8);
         let count = 3 + random.index(10);
@@ -76,7 +76,7 @@ fn corners<V: Default>(t: &Refined<Plane, V>, cell: CellId) -> [Point; 3] {
     t.tds().corners(cell).map(|v| *t.point(v))
 }
 
-/// Each corner's angle in degrees.
+/// Returns each corner's angle in degrees.
 fn angles(corners: [Point; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
         let [a, b, c] = [k, (k + 1) % 3, (k + 2) % 3].map(|k| corners[k]);
@@ -93,7 +93,7 @@ fn smallest_angle(t: &Refined<Plane>) -> f64 {
     t.inside().flat_map(|cell| angles(corners(t, cell))).fold(180.0, f64::min)
 }
 
-/// All that a refined triangulation promises of structure and lines.
+/// Asserts all that a refined triangulation promises of structure and lines.
 fn is_sound(before: &ConstrainedDelaunay<Plane>, after: &Refined<Plane>) {
     assert_eq!(after.check(Level::Law), []);
     assert_eq!(after.added().len(), after.vertex_count() - before.vertex_count());
@@ -113,7 +113,8 @@ fn is_sound(before: &ConstrainedDelaunay<Plane>, after: &Refined<Plane>) {
     }
 }
 
-/// Every triangle keeps its promises, or is named for one that the judge sees the reason of.
+/// Asserts that every triangle keeps its promises, or is named with a reason that the judge
+/// confirms.
 fn keeps_to(t: &Refined<Plane>, quality: &Quality<'_>) {
     let named: BTreeSet<CellId> = t.shortfall().iter().map(|&(cell, _)| cell).collect();
     for cell in t.inside().filter(|cell| !named.contains(cell)) {
@@ -124,11 +125,11 @@ fn keeps_to(t: &Refined<Plane>, quality: &Quality<'_>) {
     }
 }
 
-/// Neither are triangles missed, nor named that are as they should be, where numbers of vertices and triangles come to
-/// others: constraints that are split take out vertices beside them, and on coarse grids splits come to nothing.
+/// Triangles are neither missed nor named wrongly when numbers of vertices and triangles are
+/// reused: splitting constraints removes vertices near them, and on coarse grids splits fail.
 #[test]
 fn just_what_falls_short_is_named() {
-    // The last ones are where this, or the refinement itself, went wrong at some time.
+    // The last ones are cases in which this test, or the refinement itself, once failed.
     for seed in (0..300).chain([1236, 1818, 5954, 6534, 11_259]) {
         let random = &mut Random(seed);
         match seed % 4 {
@@ -177,7 +178,7 @@ fn a_star_is_left_as_it_is() {
     }
 }
 
-/// What CGAL's conformer makes of its own data: vertices before, conforming Delaunay, conforming Gabriel.
+/// CGAL's conformer on its own data: vertices before, conforming Delaunay, conforming Gabriel.
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn conforming_takes_as_many_vertices_as_in_cgal() {
@@ -229,7 +230,8 @@ fn conforming_triangulations_are_what_they_say() {
     }
 }
 
-/// Vertices that Triangle 1.6 ends with on its own samples, under `-pq20.7`; and how many of ours span a small angle.
+/// Vertices in the results of Triangle 1.6 on its own samples, with `-pq20.7`; and how many of our
+/// triangles span a small angle.
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn refinement_takes_as_many_vertices_as_triangle() {
@@ -265,7 +267,7 @@ fn random_drawings_are_refined_to_the_end() {
     }
 }
 
-/// A fan of segments, a few degrees or thousandths of one apart, in a box.
+/// A fan of segments, a few degrees or thousandths of a degree apart, in a box.
 #[test]
 fn small_angles_come_to_an_end() {
     for (spokes, spread) in [(2, 1.0), (5, 20.0), (9, 0.5), (3, 0.05)] {
@@ -348,11 +350,11 @@ fn a_limit_is_kept_and_told() {
         assert!(too_large.into_iter().all(|cell| named.contains(&cell)));
         assert!(t.shortfall().iter().all(|&(_, why)| why == Shortfall::Limit) && !named.is_empty());
     }
-    // None, below no angle: slivers are left.
+    // No bound on angles: slivers remain.
     let sliver = Pslg::ring(&[[0.0, 0.0], [1e9, 0.0], [5e8, 1e-9]]);
     let t = sliver.refined(&Quality { min_angle: 0.0, ..Quality::default() });
     assert_eq!((t.added(), t.shortfall()), (&[][..], &[][..]));
-    // More than can be had: it ends all the same.
+    // More than is possible: it terminates all the same.
     let t = square.refined(&Quality { min_angle: 60.0, max_added: 3000, ..Quality::default() });
     assert_eq!(t.check(Level::Law), []);
     assert!(!t.shortfall().is_empty());
@@ -382,7 +384,7 @@ fn what_spans_no_plane_stays_as_it_is() {
     }
 }
 
-/// At magnitudes whose squares are none.
+/// At magnitudes whose squares overflow or underflow.
 #[test]
 fn extreme_magnitudes_come_to_an_end() {
     for scale in [1e-300, 1e-150, 1e150, 1e300] {
@@ -419,7 +421,7 @@ fn refined_ring<K: Kernel>(ring: &[Point], quality: &Quality<'_>) -> Refined<Pla
     built.unwrap().0.refined(quality)
 }
 
-/// A center that comes to lie in the middle of a constraint, but for a rounding, splits it.
+/// A center that lies in the middle of a constraint, except for a rounding, splits it.
 #[test]
 fn bounds_on_areas_alone_make_no_slivers() {
     let rings = [[[0.1, 0.3], [1.1, 1.3], [0.1, 1.3]], [[0.1, 0.3], [0.30000000000000004, 0.7], [0.1, 0.7]]];
@@ -442,7 +444,7 @@ fn arithmetics_for_whole_numbers_refine() {
     assert_eq!(refined_ring::<Lattice>(&ring, &quality).shortfall(), []);
 }
 
-/// Places between whole numbers are rounded to these.
+/// Sites between whole numbers are rounded to these.
 #[test]
 fn arithmetics_for_whole_numbers_take_any_place_in_a_hole() {
     let ring = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
@@ -452,7 +454,7 @@ fn arithmetics_for_whole_numbers_take_any_place_in_a_hole() {
     assert_eq!(inside(Domain::Enclosed { holes: sites }), 0);
 }
 
-/// What is thin is told to be so, however large or small.
+/// Thin triangles are recognized, however large or small.
 #[test]
 fn thin_triangles_are_known_at_any_magnitude() {
     for scale in [1e-160, 1e-100, 1e-85, 1e80, 1e100] {

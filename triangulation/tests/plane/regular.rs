@@ -1,4 +1,5 @@
-//! Regular triangulations of tiny grids, where weights, sites and powers tie all the time, against the lower hull.
+//! Regular triangulations of tiny grids, where weights, sites and powers tie all the time, compared
+//! with the lower hull.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -14,7 +15,7 @@ use testkit::random::Random;
 /// x, y and weight.
 type Point = [i64; 3];
 
-/// A user's own geometry: whole numbers.
+/// A user's own geometry, in whole numbers.
 #[derive(Default, Clone, Copy, Debug)]
 struct Grid;
 
@@ -61,10 +62,11 @@ impl Geometry<3> for Grid {
     }
 }
 
-/// The faces of the lower hull of the lifted points, ties decided by raising the lifts by powers of a small number, the
-/// largest point most.
+/// Returns the faces of the lower hull of the lifted points. Ties are broken by raising the lifts
+/// by powers of a small number, the largest point most.
 fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 3]> {
-    // In order of site and weight, the heaviest of a site last; raised by whole numbers far below a step of the lift.
+    // In order of site and weight, the heaviest of a site last; raised by whole numbers far below a
+    // step of the lift.
     let sites: Vec<Point> = {
         let sorted: Vec<Point> = points.iter().copied().collect();
         let heaviest = |k: &usize| sorted.get(k + 1).is_none_or(|next| next[..2] != sorted[*k][..2]);
@@ -116,7 +118,7 @@ fn is_lower_hull(t: &Regular<Grid>, points: &BTreeSet<Point>) {
     }
 }
 
-/// The same by floating point, whose sums are exact here.
+/// Like the test above, in floating point, whose sums are exact here.
 #[test]
 fn the_weighted_plane_is_the_same() {
     let mut random = Random(22);
@@ -183,7 +185,7 @@ fn points_come_and_go() {
     }
 }
 
-/// The outcome of each of the ways to be on a site, an edge, a face that is taken.
+/// The outcome of each kind of insertion: on a site, on an edge, in a face.
 #[test]
 fn hiding_on_vertex_edge_and_face() {
     for (site, seen) in [([0, 0], 1), ([2, 0], 3), ([1, 1], 3)] {
@@ -194,7 +196,8 @@ fn hiding_on_vertex_edge_and_face() {
             }
             let p = [site[0], site[1], weight];
             let vertex = t.insert(p).unwrap();
-            // On the corner by weight; on the edge below 4 - 4 = 0 by power; in the face likewise below its power.
+            // On the corner by weight; on the edge below 4 - 4 = 0 by power; in the face likewise
+            // below its power.
             let power = lift([site[0], site[1], 0]) - 4 * (site[0] + site[1]);
             let is_seen = if site == [0, 0] { weight > 0 } else { power - weight <= 0 };
             assert_eq!(!t.is_hidden(vertex), is_seen || site == [0, 0] && weight == 0, "{p:?}");
@@ -212,7 +215,8 @@ fn hiding_on_vertex_edge_and_face() {
     }
 }
 
-/// Heavier and heavier points in one place hide each other, on each dimension, and come back.
+/// Heavier and heavier points on one site hide each other, in each dimension, and become visible
+/// again.
 #[test]
 fn one_site_on_another() {
     for others in
@@ -234,7 +238,7 @@ fn one_site_on_another() {
     }
 }
 
-/// Of points on a line, of which one kind hides the lightest and the other none.
+/// Points on a line: one kind hides the lightest, the other hides none.
 #[test]
 fn a_check_finds_points_that_ought_to_be_hidden() {
     let mut regular: Regular<Weighted> = Regular::new(Weighted::default());

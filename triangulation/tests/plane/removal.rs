@@ -1,4 +1,4 @@
-//! Vertices taken out again: what is left is the triangulation of the rest, cell for cell.
+//! Removal of vertices: what remains is the triangulation of the other points, cell for cell.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ type Free = Delaunay<Plane, 3>;
 
 /// The finite cells as sorted points.
 fn cells(t: &Free) -> BTreeSet<Vec<[u64; 2]>> {
-    // Bits order negative numbers wrongly, which does no harm here.
+    // Bits order negative numbers wrongly, which is harmless here.
     testkit::cells::cells(t, |p| p.map(f64::to_bits))
 }
 
@@ -21,7 +21,7 @@ fn fresh(points: &[Point]) -> Free {
     Delaunay::from_points(Plane::default(), points).unwrap().0
 }
 
-/// Numbers, holes and counts fit each other and the points that are left.
+/// Numbers, holes and counts match each other and the remaining points.
 fn same_as_fresh(t: &Free, left: &[Point]) {
     assert_eq!(t.check(Level::Law), [], "{left:?}");
     let expected = fresh(left);
@@ -30,7 +30,8 @@ fn same_as_fresh(t: &Free, left: &[Point]) {
     assert_eq!(cells(t), cells(&expected), "{left:?}");
 }
 
-/// Takes the points out in this order, down to nothing, and puts them in again; each state is compared.
+/// Removes the points in this order, down to nothing, and inserts them again; each state is
+/// compared.
 fn empties_and_fills(points: &[Point], order: &[usize]) {
     let (mut t, vertices): (Free, _) = Delaunay::from_points(Plane::default(), points).unwrap();
     let slots = t.tds().vertex_slots();
@@ -68,8 +69,9 @@ fn every_vertex_of_every_subset_of_a_tiny_grid() {
     }
 }
 
-/// All orders of removal of the points of a 3 x 3 grid: each state is a subset, known from the test above to be
-/// right one step from a fresh one; here it is what is left of a long history.
+/// Removes the points of a 3 x 3 grid in all orders. Each state is a subset, which the test above
+/// has compared with a new construction after one step; here it is what remains after a long
+/// history.
 #[test]
 fn a_tiny_grid_in_all_orders() {
     fn descend(t: &Free, expected: &[BTreeSet<Vec<[u64; 2]>>], subset: usize) -> usize {
@@ -156,7 +158,7 @@ fn collinear_points_and_one_beside() {
     }
 }
 
-/// Vertices with hundreds of neighbors: inside of a circle or a line's ends, and at the hull.
+/// Vertices with hundreds of neighbors: inside of a circle or at a line's ends, and on the hull.
 #[test]
 fn fans() {
     let circle = |k: i32| {
@@ -202,7 +204,8 @@ fn what_is_not_there_cannot_be_removed() {
     assert_eq!((t.vertex_count(), t.tds().vertex_slots(), t.tds().vertices().count()), (2, 3, 2));
 }
 
-/// Vertices that wander: each state is that of the places where they are, and numbers and payloads go along.
+/// Vertices that move: each state is that of their current sites, and numbers and payloads move
+/// with them.
 #[test]
 fn vertices_move() {
     let mut random = Random(17);

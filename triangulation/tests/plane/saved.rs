@@ -28,8 +28,8 @@ fn site([x, y]: [i8; 2]) -> [f64; 2] {
     [f64::from(x), f64::from(y)]
 }
 
-/// Edits a triangulation, reads it again from what is saved, and asks for what is the same on both, at once and after
-/// more edits.
+/// Edits a triangulation, saves and reads it, and requires the same answers of both, at once and
+/// after more edits.
 fn goes_on_as_before<T: serde::Serialize + serde::de::DeserializeOwned>(
     mut t: T,
     before: &[Edit],
@@ -101,7 +101,8 @@ proptest! {
     }
 }
 
-/// Everything that differs from a value in one place: a number, an item that is missing, twice, or elsewhere.
+/// Returns everything that differs from a value in one entry: a number changed, an item missing,
+/// duplicated, or moved.
 fn damaged(value: &Value) -> Vec<Value> {
     let mut all = Vec::new();
     match value {
@@ -145,7 +146,8 @@ fn damaged(value: &Value) -> Vec<Value> {
     all
 }
 
-/// Reads everything that is damaged in one place; what is taken for sound must be, and stand edits.
+/// Reads everything that is damaged in one entry; whatever is accepted must be sound, and survive
+/// edits.
 pub(crate) fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sound: impl Fn(T) -> bool) {
     let saved = serde_json::to_value(t).unwrap();
     let mut errors = 0;
@@ -223,7 +225,8 @@ fn damage_to_regular_and_constrained_kinds_is_an_error() {
     }
 }
 
-/// The bits of payloads are told for each cell: here those of the edge from a vertex to infinity, on both sides.
+/// Bits of payloads are checked for each cell: here those of the edge from a vertex to infinity, on
+/// both sides.
 #[test]
 fn a_constraint_to_infinity_is_an_error() {
     let mut t: Constrained<Plane> = Constrained::new(Plane::default());

@@ -1,4 +1,4 @@
-//! Lines through serde: what is read goes on as before, and damage is an error.
+//! Lines through serde: what is read behaves as before, and damage is an error.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use serde_json::Value;
 use testkit::cells::by_vertices;
 use testkit::random::{Random, ulps};
 
-/// All that can be seen of lines.
+/// Everything observable of lines.
 fn lines_of(t: &ConstrainedDelaunay<Plane>) -> impl PartialEq + std::fmt::Debug + use<> {
     let lines: Vec<LineId> = t.lines().collect();
     let chains: Vec<_> = lines.iter().map(|&line| (t.line_vertices(line).to_vec(), t.chain(line))).collect();
@@ -20,14 +20,14 @@ fn lines_of(t: &ConstrainedDelaunay<Plane>) -> impl PartialEq + std::fmt::Debug 
     (lines, chains, edges, through, t.crossings().to_vec(), t.rounding())
 }
 
-/// What is saved beside the triangulation.
+/// What is saved in addition to the triangulation.
 fn tables_of(t: &ConstrainedDelaunay<Plane>) -> Value {
     let mut saved = serde_json::to_value(t).unwrap();
     saved["triangulation"].take();
     saved
 }
 
-/// One of all edits that there are.
+/// Makes one of all possible edits.
 fn edit_lines(t: &mut ConstrainedDelaunay<Plane>, dice: &mut Random, site: &mut impl FnMut(&mut Random) -> [f64; 2]) {
     let line = LineId::new(dice.index(8));
     let vertex = VertexId::new(dice.index(t.points().len() + 2));
@@ -45,7 +45,8 @@ fn edit_lines(t: &mut ConstrainedDelaunay<Plane>, dice: &mut Random, site: &mut 
     }
 }
 
-/// Saves and reads again: both are equal, and stay equal under three edits. Returns which tables have anything in them.
+/// Saves and reads again: both are equal, and stay equal under three edits. Returns the names of
+/// the tables that are not empty.
 fn comes_back(
     t: &ConstrainedDelaunay<Plane>,
     dice: &mut Random,
@@ -70,7 +71,7 @@ fn comes_back(
     used.map(|(name, _)| name.clone()).collect()
 }
 
-/// The same after each of some edits.
+/// Calls [`comes_back`] after each of some edits.
 fn lines_come_back(seed: u64, rounds: usize, mut site: impl FnMut(&mut Random) -> [f64; 2]) -> BTreeSet<String> {
     let mut dice = Random(seed);
     let mut used = BTreeSet::new();
@@ -122,7 +123,7 @@ fn lines_come_back_that_tangle() {
     }
 }
 
-/// Vertices that refinement has put on constraints may lie beside them by a rounding.
+/// Vertices that refinement has added on constraints may lie off them by a rounding.
 #[test]
 fn quality_meshes_come_back() {
     let mut dice = Random(5);
@@ -165,7 +166,7 @@ fn damage_to_lines_is_an_error() {
             }
             is_sound
         });
-        // A field that is missing.
+        // A missing field.
         let serde_json::Value::Object(fields) = serde_json::to_value(&t).unwrap() else { panic!() };
         for name in fields.keys() {
             let mut fewer = fields.clone();

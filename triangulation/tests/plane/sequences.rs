@@ -1,7 +1,7 @@
-//! Insert-remove identity: whatever was put in and taken out, what is left is the triangulation of the rest; for
-//! Delaunay, regular and constrained Delaunay, with every exact arithmetic, on tiny grids.
+//! Sequences of insertions and removals: what remains is the triangulation of the remaining points;
+//! for Delaunay, regular and constrained Delaunay, with every exact arithmetic, on tiny grids.
 //!
-//! Takes the number of sequences of each kind and arithmetic from the environment:
+//! The environment sets the number of sequences of each kind and arithmetic:
 //!
 //! ```text
 //! BREAKLINE_SEQUENCES=50000 cargo test --release -p breakline-triangulation --test plane sequences
@@ -28,7 +28,7 @@ fn with_each<G: Copy>(seed: u64, geometries: &[G], sequence: fn(&mut Random, G))
     }
 }
 
-/// The dimension, the finite cells as sorted places, and the places of vertices.
+/// The dimension, the finite cells as sorted sites, and the sites of vertices.
 type Shape = (i32, BTreeSet<Vec<[i64; 2]>>, BTreeSet<[i64; 2]>);
 
 fn shape<G, V, C>(t: &Triangulation<G, 3, V, C>) -> Shape
@@ -36,7 +36,7 @@ where
     G: Coordinates<3>,
     C: Copy + Default,
 {
-    // Of crossings, too.
+    // Crossings included.
     let whole = |c: G::Coordinates| [0, 1].map(|k| (c.as_ref()[k] * 1e6) as i64);
     let seen = t.tds().vertices().map(|v| whole(t.geometry().coordinates(t.point(v)))).collect();
     (t.dimension(), testkit::cells::cells(t, whole), seen)
@@ -99,7 +99,7 @@ fn constrained(random: &mut Random, geometry: Chosen<2>) {
     let side = 2 + random.below(4);
     let mut t: ConstrainedDelaunay<Chosen<2>> = ConstrainedDelaunay::new(geometry);
     let mut lines: Vec<(Vec<[f64; 2]>, LineId)> = Vec::new();
-    // Those that were given as points.
+    // Vertices that were given as points.
     let mut points: BTreeSet<[u64; 2]> = BTreeSet::new();
     let mut history = Vec::new();
     let key = |p: [f64; 2]| p.map(f64::to_bits);

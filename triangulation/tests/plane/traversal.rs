@@ -1,4 +1,4 @@
-//! Faces told without a mark on those that have been: each comes exactly once, from whichever vertex.
+//! Traversal of faces without marking them: each is returned exactly once, from whichever vertex.
 
 use breakline_triangulation::geometry::{Coordinates, Mapped, Plane, Steps, Terrain};
 use breakline_triangulation::kernel::{DotProduct, Exact, Kernel, Wide};
@@ -36,7 +36,8 @@ fn tiny_grids_from_each_vertex() {
     }
 }
 
-/// Triangles of any shape: what lies before what, as a vertex sees it, may go around in circles there.
+/// Triangles of any shape: the order in which they hide each other, seen from a vertex, may be
+/// cyclic.
 #[test]
 fn without_a_law() {
     let mut dice = Random(2);
@@ -45,7 +46,7 @@ fn without_a_law() {
         for _ in 0..dice.below(40) {
             basic.insert([0; 2].map(|_| dice.below(12) as f64)).unwrap();
         }
-        // Edges exchanged at random, which makes pinwheels.
+        // Flip pseudo-random edges, which makes pinwheels.
         for _ in 0..60 * usize::from(basic.dimension() == 2) {
             let cell = CellId::new(dice.index(basic.tds().cell_slots()));
             basic.flip(cell, dice.index(3));
@@ -54,7 +55,8 @@ fn without_a_law() {
     }
 }
 
-/// A face between three others, each of which hides the next one from the middle: no order from front to back.
+/// A face between three others, each of which hides the next one from the middle: no order from
+/// front to back.
 #[test]
 fn a_pinwheel() {
     let turned = |radius: f64, turn: f64| {
@@ -98,7 +100,7 @@ fn grids_circles_clusters_and_scans() {
         center.map(|x| x + size * dice.unit())
     };
     judge_some(plane, &(0..5000).map(|_| cluster(&mut dice)).collect::<Vec<Point>>());
-    // Scan lines in centimetres, of which some stand on others.
+    // Scan lines in centimeters, some of which stand on others.
     let scan = |dice: &mut Random, k: i32| [k % 200 * 25 + dice.below(5) as i32, k / 200 * 70, dice.below(3000) as i32];
     let steps: Vec<[i32; 3]> = (0..20_000).map(|k| scan(&mut dice, k)).collect();
     judge_some(Steps::<breakline_triangulation::kernel::Lattice>::default(), &steps);
