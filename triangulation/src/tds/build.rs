@@ -1,18 +1,21 @@
-//! A complex from the vertices of its cells alone: neighbors follow from common facets.
+//! Building a complex from the vertices of its cells: neighbors follow from common facets.
 
 use rustc_hash::FxHashMap;
 
 use super::{CellId, Links, Tds, TdsError, VertexId};
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Creates a complex from the vertices of its cells: a surface of triangles (`N` = 3), or a 3-manifold of tetrahedra
-    /// (`N` = 4). Vertex `k` gets payload `k`; cell `k` gets number `k` and the default payload, see
+    /// Returns the complex with these cells: a surface of triangles (`N` = 3), or a 3-manifold of
+    /// tetrahedra (`N` = 4).
+    ///
+    /// Vertex `k` gets payload `k`; cell `k` gets number `k` and the default payload, see
     /// [`with_cell_data`](Self::with_cell_data).
     ///
-    /// The complex may have any genus and any number of components, but it is closed: each facet is in exactly two cells,
-    /// which are oriented alike. So a Klein bottle is refused, however its cells are given. The link of each
-    /// vertex is a circle (`N` = 3) or a sphere (`N` = 4). No two cells have the same vertices. A surface whose border is
-    /// one circle is closed by joining each of its edges to [`VertexId::INFINITE`], as the kinds of triangulations do.
+    /// The complex may have any genus and any number of components, but it is closed: each facet is
+    /// in exactly two cells, which are oriented alike. So a Klein bottle is refused, however its
+    /// cells are given. The link of each vertex is a circle (`N` = 3) or a sphere (`N` = 4). No two
+    /// cells have the same vertices. A surface whose border is one circle can be closed by joining
+    /// each of its edges to [`VertexId::INFINITE`], as the kinds of triangulations do.
     ///
     /// ```text
     ///        a---------b       edge b c is in (a, c, b) and in (d, b, c): once from b to c, and once
@@ -23,7 +26,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// ```
     ///
     /// # Errors
-    /// The first fault, with the cell, and the facet or vertex, that it was found at.
+    /// The first fault that is found, with the cell, and the facet or vertex, where it is.
     ///
     /// # Complexity
     /// Expected linear time.
@@ -52,7 +55,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         faults.into_iter().flatten().next().map_or(Ok(tds), Err)
     }
 
-    /// A complex whose cells do not know their neighbors yet; all numbers of vertices have a payload.
+    /// Returns a complex whose cells are not linked yet. There is a payload for each number of a
+    /// vertex.
     pub(super) fn unlinked(
         dimension: i32,
         cell_data: Vec<C>,
@@ -76,10 +80,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         Ok(tds)
     }
 
-    /// Makes cells neighbors across each facet that they share, which have to be two.
+    /// Makes cells neighbors across each facet that they share. Each facet must be shared by
+    /// exactly two.
     pub(super) fn link_by_facets(&mut self) -> Result<(), TdsError> {
         let width = (self.dimension + 1) as usize;
-        // A facet by its vertices in order; once it has both cells, nothing is left of the first.
+        // The facets by their sorted vertices; `None` once both cells are known.
         let mut open: FxHashMap<[VertexId; N], Option<(CellId, usize)>> = FxHashMap::default();
         let mut waiting = 0;
         for cell in (0..self.links.len()).map(CellId::new) {

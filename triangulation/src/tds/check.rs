@@ -1,13 +1,15 @@
-//! Checks of a complex, each in a text of its own: nothing here is used to build one.
+//! Checks of a complex, written independently: nothing here is used to build one.
 
 use std::collections::HashSet;
 
 use super::{CellId, Tds, TdsError, VertexId};
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Returns the faults of links: level 1. In a sound complex each cell has distinct, existing vertices and neighbors,
-    /// neighbors know each other and share their facet with opposite orientation, and vertices know a cell that has
-    /// them.
+    /// Returns the faults of links: level 1.
+    ///
+    /// In a sound complex each cell has distinct, existing vertices and neighbors; neighbors are
+    /// mutual and share their facet with opposite orientation; and each vertex refers to a cell
+    /// that has it.
     ///
     /// # Complexity
     /// Expected linear time.
@@ -62,8 +64,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         faults
     }
 
-    /// Whether the facet is the same on both sides, and if so, whether the orientations fit: that of
-    /// the neighbor, with its opposite vertex put in place of ours, is the odd permutation.
+    /// Returns `None` unless both cells have the same facet there; else, true if they are oriented
+    /// alike.
+    ///
+    /// They are if the neighbor's vertices, with its opposite vertex replaced by ours, are an odd
+    /// permutation of ours.
     fn shared_facet(&self, cell: CellId, i: usize, beside: CellId) -> Option<bool> {
         let width = self.cell_vertices(cell).len();
         let j = (0..width).find(|&j| {
@@ -86,9 +91,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         Some(swaps % 2 == 1 || width == 1)
     }
 
-    /// Returns the vertices whose links are not spheres: level 2. Without any, and without faults of
-    /// [links](Self::check_links), which are assumed to be sound, the complex is a closed manifold. Links are recognized
-    /// up to dimension 2.
+    /// Returns the vertices whose links are not spheres: level 2.
+    ///
+    /// If there are none, and no faults of [links](Self::check_links), which are assumed to be
+    /// sound, the complex is a closed manifold. Links are recognized up to dimension 2.
     ///
     /// # Complexity
     /// Expected linear time.
@@ -122,8 +128,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             }
             let mut is_sphere = reached.len() as u32 == degree[slot(vertex)];
             if width == 4 && !reached.is_empty() {
-                // A connected surface, of as many triangles as there are cells: a sphere by its Euler characteristic,
-                // which is smaller for others, and where vertices of the surface are one.
+                // The link is a connected surface with as many triangles as there are cells. It is
+                // a sphere if it has the Euler characteristic of one: that of others is smaller,
+                // also if vertices of the surface coincide.
                 link.clear();
                 link.extend(reached.iter().flat_map(|&cell| self.cell_vertices(cell)));
                 is_sphere &= 2 * (link.len() - 1) == reached.len() + 4;
@@ -135,10 +142,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         faults
     }
 
-    /// Returns what keeps the complex from being a sphere with the infinite vertex in it, as the kinds of triangulations
-    /// need it: the faults of a [manifold](Self::check_manifold); and if there are none, a component beside the first, or
-    /// an Euler characteristic that is not that of a sphere. That of a 3-manifold is 0 always: there, nothing is shown
-    /// by it.
+    /// Returns the reasons why the complex is not a sphere that contains the infinite vertex, as
+    /// the kinds of triangulations need it.
+    ///
+    /// These are the faults of a [manifold](Self::check_manifold); and if there are none, a second
+    /// component, or an Euler characteristic that is not that of a sphere. That of a closed
+    /// 3-manifold is always 0 and shows nothing.
     ///
     /// # Complexity
     /// Expected linear time.
@@ -166,7 +175,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         faults
     }
 
-    /// Returns the number of vertices, less that of edges, plus that of triangles, and so on; the infinite ones included.
+    /// Returns the Euler characteristic: the number of vertices, less that of edges, plus that of
+    /// triangles, and so on; the infinite ones included.
+    ///
     /// A connected surface of genus `g` has `2 - 2 g`; a closed 3-manifold has 0. Assumes sound
     /// [links](Self::check_links).
     ///
@@ -194,7 +205,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 }
 
-/// Of faces of a dimension in the Euler characteristic.
+/// Returns the sign with which faces of a dimension count in the Euler characteristic.
 fn sign(dimension: usize) -> i64 {
     if dimension.is_multiple_of(2) { 1 } else { -1 }
 }

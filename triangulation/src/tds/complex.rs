@@ -2,21 +2,24 @@ use std::convert::Infallible;
 
 use super::{CellId, Tds, VertexId};
 
-/// Read access to cells and their neighbors, wherever they are kept: what [`Tds`], the
-/// [compact triangulation](crate::triangulation::Compact) and a structure of the user's own have in common.
+/// Read access to cells and their neighbors, for any storage: what [`Tds`], the [compact
+/// triangulation](crate::triangulation::Compact) and structures of your own have in common.
 ///
-/// The conventions are those of the [module](super). A structure that can be damaged, as one in a file, answers with an
-/// error; where [`Error`](Self::Error) is [`Infallible`], nothing is left of that in the machine code. So each algorithm is
-/// written once over this trait: those of the plane are in [`plane`](super::plane), those that need points in
-/// [`query`](crate::query).
+/// The conventions are those of the [module](super). A structure that may be damaged, such as one
+/// in a file, returns errors. Where [`Error`](Self::Error) is [`Infallible`], the compiler removes
+/// all error handling. So each algorithm is written once over this trait: those of the plane are in
+/// [`plane`](super::plane), those that need points in [`query`](crate::query).
 ///
-/// A structure of one's own may keep finite cells only, if it can answer for the infinite ones: `examples/own_structure.rs`
-/// has one, an array of triangles.
+/// A structure of your own may store finite cells only, if it can answer for the infinite ones:
+/// `examples/own_structure.rs` has one, an array of triangles.
 ///
 /// # Laws
-/// - Vertices are numbered below [`vertex_slots`](Self::vertex_slots), cells below [`cell_slots`](Self::cell_slots).
-/// - An answer that is not an error is a number that exists: a vertex, or [`INFINITE`](VertexId::INFINITE); a cell.
-/// - Nothing panics, but a complex that cannot be damaged may if asked for what does not exist.
+/// - Vertices are numbered below [`vertex_slots`](Self::vertex_slots), cells below
+///   [`cell_slots`](Self::cell_slots).
+/// - A result that is not an error is a number that exists: a vertex, or
+///   [`INFINITE`](VertexId::INFINITE); a cell.
+/// - Nothing panics, except that a complex that cannot be damaged may, for numbers that do not
+///   exist.
 ///
 /// # Models
 /// [`Tds`], [`Compact`](crate::triangulation::Compact).
@@ -24,7 +27,7 @@ use super::{CellId, Tds, VertexId};
 /// ```
 /// use breakline_triangulation::tds::{CellId, Complex};
 ///
-/// /// The vertices opposite a triangle, each seen over one of its edges, as numbers.
+/// /// Returns the vertices opposite to a triangle, one for each of its edges, as numbers.
 /// fn opposite<T: Complex<3>>(complex: &T, cell: CellId) -> Result<Vec<usize>, T::Error> {
 ///     (0..3).map(|i| {
 ///         let beside = complex.neighbor(cell, i)?;
@@ -33,23 +36,25 @@ use super::{CellId, Tds, VertexId};
 /// }
 /// ```
 pub trait Complex<const N: usize> {
-    /// The answer where a link does not hold; [`Infallible`] if that cannot be.
+    /// The error for a link that does not hold; [`Infallible`] if that cannot happen.
     type Error;
 
-    /// Returns the dimension of the complex: -1 without a vertex, `N - 1` when full.
+    /// The dimension of the complex: -1 without a vertex, `N - 1` when full.
     fn dimension(&self) -> i32;
 
-    /// Returns one more than the largest number of a vertex; there may be gaps.
+    /// One more than the largest number of a vertex; there may be gaps.
     fn vertex_slots(&self) -> usize;
 
-    /// Returns one more than the largest number of a cell; there may be gaps.
+    /// One more than the largest number of a cell; there may be gaps.
     fn cell_slots(&self) -> usize;
 
-    /// Returns whether the number stands for a cell.
+    /// Returns true if this is the number of a cell.
     fn is_used(&self, cell: CellId) -> bool;
 
-    /// Returns the vertices of a cell, `dimension + 1` of them. What the rest of the array holds below full dimension is never
-    /// looked at, but for that it is not [`VertexId::INFINITE`].
+    /// Returns the vertices of a cell, `dimension + 1` of them.
+    ///
+    /// Below full dimension, the rest of the array is not used, except that it must not contain
+    /// [`VertexId::INFINITE`].
     ///
     /// # Errors
     /// If the cell or a vertex of it does not exist.
@@ -61,30 +66,33 @@ pub trait Complex<const N: usize> {
     /// If there is none.
     fn neighbor(&self, cell: CellId, i: usize) -> Result<CellId, Self::Error>;
 
-    /// Returns a cell that has this vertex; `None` for the infinite vertex of an empty complex, and for a gap.
+    /// Returns a cell that has this vertex; `None` for the infinite vertex of an empty complex, and
+    /// for an unused number.
     ///
     /// # Errors
     /// If the vertex, or the cell, does not exist.
     fn cell_of(&self, vertex: VertexId) -> Result<Option<CellId>, Self::Error>;
 
-    /// Returns an error that names the cell unless the links agree, asked where an algorithm relies on it. A complex that
-    /// cannot be damaged does not look, and returns `Ok(())`.
+    /// Returns an error that names the cell `at` unless `holds` returns true.
+    ///
+    /// Algorithms call it where they rely on links that agree. A complex that cannot be damaged
+    /// does not call `holds`, and returns `Ok(())`.
     ///
     /// # Errors
-    /// If they do not agree.
+    /// If the links do not agree.
     fn ensure(&self, at: CellId, holds: impl FnOnce() -> bool) -> Result<(), Self::Error>;
 
     /// Prefetches the neighbors of a cell: a hint that may do nothing.
     #[inline(always)]
     fn fetch_neighbors(&self, _: CellId) {}
 
-    /// Returns the number of vertices of a cell: `dimension + 1`.
+    /// The number of vertices of a cell: `dimension + 1`.
     #[inline(always)]
     fn width(&self) -> usize {
         (self.dimension() + 1) as usize
     }
 
-    /// Returns one vertex of a cell.
+    /// Returns vertex `i` of a cell.
     ///
     /// # Errors
     /// See [`corners`](Self::corners).
@@ -93,17 +101,17 @@ pub trait Complex<const N: usize> {
         Ok(self.corners(cell)?[i])
     }
 
-    /// Returns the index of a vertex in a cell.
+    /// Returns the index of a vertex in a cell, or `None` if the cell does not have it.
     ///
     /// # Errors
     /// See [`corners`](Self::corners).
     #[inline(always)]
     fn index_of(&self, cell: CellId, vertex: VertexId) -> Result<Option<usize>, Self::Error> {
-        // Asked mostly for infinity, which is nearly never there: branches are cheaper here.
+        // Mostly called for the infinite vertex, which is rarely found: branches are cheaper here.
         Ok(self.corners(cell)?.iter().position(|&v| v == vertex))
     }
 
-    /// Returns whether the infinite vertex is a corner.
+    /// Returns true if the infinite vertex is a corner of the cell.
     ///
     /// # Errors
     /// See [`corners`](Self::corners).
@@ -129,10 +137,11 @@ pub trait Complex<const N: usize> {
         Ok(found.unwrap_or(0))
     }
 
-    /// Returns the finite cell across the finite facet of an infinite one, and a finite cell itself.
+    /// Returns the finite cell across the finite facet of an infinite cell, or the cell itself if
+    /// it is finite.
     ///
     /// # Errors
-    /// If that is infinite, too, or a link does not hold.
+    /// If that cell is infinite, too, or a link does not hold.
     #[inline(always)]
     fn inner(&self, cell: CellId) -> Result<CellId, Self::Error> {
         let Some(infinite) = self.index_of(cell, VertexId::INFINITE)? else {
@@ -182,7 +191,7 @@ impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {
         Ok(self.cell_of(vertex))
     }
 
-    /// A read whose result nobody waits for.
+    /// A read whose result is not used.
     #[inline(always)]
     fn fetch_neighbors(&self, cell: CellId) {
         for neighbor in self.links[cell.index()].neighbors {

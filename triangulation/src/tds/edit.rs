@@ -1,21 +1,23 @@
 //! Edits of a complex that stands alone: splits, flips, stars of holes, collapses.
 //!
-//! Each checks first that the complex stays a closed manifold of the same topological type, and returns an [`EditError`] with
-//! nothing changed if not. They look at the cells around a few vertices; no cost depends on the size of the complex.
-//! Coordinates play no part: whether the result can be drawn with straight edges is for the caller to see.
+//! Each edit first checks that the complex remains a closed manifold of the same topological type.
+//! If not, it returns an [`EditError`] and changes nothing. Edits look at the cells around a few
+//! vertices; no cost depends on the size of the complex. Coordinates play no part: the caller
+//! decides if the result can be drawn with straight edges.
 //!
-//! Where a cell is split, or a hole filled, each new cell has the payload of the old one that had the facet opposite the
-//! new vertex. Cells that a flip makes have the default payload. Those that a collapse leaves keep theirs.
+//! Where a cell is split or a hole is filled, each new cell gets the payload of the old one that
+//! had the facet opposite the new vertex. Cells that a flip creates get the default payload. Those
+//! that remain after a collapse keep theirs.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{CellId, EditError, Links, Tds, VertexId};
 
-/// A facet of a cell, or another face of it: its vertices in order, and `NONE` in the rest.
+/// A facet of a cell, or another face of it: its vertices in order, then `NONE`.
 type Face<const N: usize> = [VertexId; N];
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Splits a cell into `N`, around a new vertex in it, and returns the vertex.
+    /// Splits a cell into `N` around a new vertex in it, and returns the vertex.
     ///
     /// ```text
     ///          c                    c
@@ -37,8 +39,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.fill(&[cell], data)
     }
 
-    /// Splits the facet opposite vertex `i` of a cell, and with it the cells on both sides, around a new vertex on it;
-    /// returns the vertex. In a surface the facet is an edge.
+    /// Splits the facet opposite vertex `i` of a cell around a new vertex on it, and returns the
+    /// vertex. The cells on both sides are split with it. In a surface the facet is an edge.
     ///
     /// ```text
     ///          c                    c
@@ -61,7 +63,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.fill(&[cell, beside], data)
     }
 
-    /// Splits the edge between two vertices, and with it all cells around it, at a new vertex on it; returns the vertex.
+    /// Splits the edge between two vertices at a new vertex on it, and returns the vertex. All
+    /// cells around the edge are split with it.
     ///
     /// ```text
     ///      cells around a b, in space, seen along the edge; each becomes two, one from a to v and one from v to b
@@ -84,8 +87,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.fill(&star, data)
     }
 
-    /// Replaces the cells of a hole by the star of a new vertex, one cell for each facet of the hole's border; returns the
-    /// vertex. Vertices in the hole that are not on its border are removed.
+    /// Replaces the cells of a hole by the star of a new vertex, one cell for each facet of the
+    /// hole's border, and returns the vertex. Vertices in the hole that are not on its border are
+    /// removed.
     ///
     /// ```text
     ///      c-------d                c-------d
@@ -97,11 +101,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     ///      a-----f                  a-------f
     /// ```
     ///
-    /// The hole is connected across facets. In a surface it is a disc. Among tetrahedra its border is a sphere; whether it is
-    /// a ball is not examined: what else it holds is lost.
+    /// The hole is connected across facets. In a surface it is a disc. Among tetrahedra its border
+    /// is a sphere. That the hole is a ball is not checked: any other topology within it is lost.
     ///
     /// # Errors
-    /// If a cell does not exist or is given twice, if the hole is not such a one, or numbers are used up.
+    /// If a cell does not exist or is given twice, if the hole is of another shape, or numbers are
+    /// used up.
     ///
     /// # Complexity
     /// Expected time linear in the number of cells of the hole.
@@ -117,7 +122,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let border = self.border(cells);
         let facets = border.iter().map(|&(cell, i)| self.facet(cell, i)).collect::<Vec<_>>();
         let vertices: FxHashSet<VertexId> = cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
-        // Of a disc, by Euler's relation.
+        // Euler's relation for a disc.
         let is_disc = || vertices.len() * 2 == cells.len() + border.len() + 2;
         if reached.len() != cells.len() || !is_sphere(&facets) || N == 3 && !is_disc() {
             return Err(EditError::Hole);
@@ -125,8 +130,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.fill(cells, data)
     }
 
-    /// Replaces the facet opposite vertex `i` of a cell by the edge between the vertices on both sides: two triangles become
-    /// two others, two tetrahedra three. Returns the new cells.
+    /// Replaces the facet opposite vertex `i` of a cell by the edge between the vertices on both
+    /// sides, and returns the new cells: two triangles become two others, two tetrahedra three.
     ///
     /// ```text
     ///          c                    c
@@ -140,10 +145,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// ```
     ///
     /// # Errors
-    /// If there is no such facet, if there is an edge between these vertices already, or numbers are used up.
+    /// If there is no such facet, if these vertices are joined by an edge already, or numbers are
+    /// used up.
     ///
     /// # Complexity
-    /// Linear in the degree of vertex `i`, to see whether there is such an edge.
+    /// Linear in the degree of vertex `i`, to search for such an edge.
     pub fn flip(&mut self, cell: CellId, i: usize) -> Result<Vec<CellId>, EditError> {
         let beside = self.across(cell, i)?;
         let far = self.vertex(beside, self.index_of_neighbor(beside, cell));
@@ -151,8 +157,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.exchange(&inner, &[(cell, far), (beside, self.vertex(cell, i))])
     }
 
-    /// Replaces an edge by the face that its cells have around it: two triangles become two others, as by
-    /// [`flip`](Self::flip), and three tetrahedra two, which is the inverse. Returns the new cells.
+    /// Replaces an edge by the face that the vertices around it span, and returns the new cells: two
+    /// triangles become two others, as by [`flip`](Self::flip); three tetrahedra become two, the
+    /// inverse of `flip`.
     ///
     /// ```text
     ///      three tetrahedra, seen along their edge a b; then two, on both sides of the facet c d e
@@ -166,17 +173,18 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// ```
     ///
     /// # Errors
-    /// If there is no such edge, if it has more cells than that, if the new face exists already, or numbers are used up.
+    /// If there is no such edge, if more cells have it, if the new face exists already, or numbers
+    /// are used up.
     ///
     /// # Complexity
-    /// Linear in the degrees of the first vertex and of one beside the edge.
+    /// Linear in the degrees of the first vertex and of one next to the edge.
     pub fn flip_edge(&mut self, ends: [VertexId; 2]) -> Result<Vec<CellId>, EditError> {
         let star = self.star_of_edge(ends)?;
         self.exchange_star(&ends, star)
     }
 
-    /// Removes a vertex that only `N` cells have, which become one: the inverse of [`split_cell`](Self::split_cell). Returns
-    /// the cell.
+    /// Removes a vertex that exactly `N` cells have, and returns the one cell that these become:
+    /// the inverse of [`split_cell`](Self::split_cell).
     ///
     /// ```text
     ///          c                    c
@@ -189,16 +197,17 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// ```
     ///
     /// # Errors
-    /// If there is no such vertex, if it has more cells, or if the new cell exists already.
+    /// If there is no such vertex, if more cells have it, or if the new cell exists already.
     ///
     /// # Complexity
-    /// Linear in the degrees of the vertex and of one beside it.
+    /// Linear in the degrees of the vertex and of one next to it.
     pub fn unsplit_cell(&mut self, vertex: VertexId) -> Result<CellId, EditError> {
         let star = self.star_of(vertex)?;
         Ok(self.exchange_star(&[vertex], star)?[0])
     }
 
-    /// Collapses the edge between two vertices: the first becomes the second, and the cells at the edge vanish.
+    /// Collapses the edge between two vertices: `from` is replaced by `into`, and the cells at the
+    /// edge vanish.
     ///
     /// ```text
     ///       d-------c              d-------c
@@ -210,11 +219,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     ///       f-------g              f-------g
     /// ```
     ///
-    /// The complex keeps its topological type: the edge is collapsed if the links of its ends have nothing in
-    /// common but the link of the edge (Dey, Edelsbrunner, Guha and Nekhayev 1999).
+    /// The complex keeps its topological type: the edge is collapsed only if the links of its ends
+    /// have nothing in common but the link of the edge (Dey, Edelsbrunner, Guha and Nekhayev 1999).
     ///
     /// # Errors
-    /// If there is no such edge, or the links have more in common.
+    /// If there is no such edge, or if the links have more in common.
     ///
     /// # Complexity
     /// Expected time linear in the degrees of both vertices.
@@ -232,7 +241,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             corners.iter_mut().filter(|v| **v == from).for_each(|v| *v = into);
         }
         for &cell in &vanishing {
-            // Beyond the facets without `from`, and without `into`: these facets become one.
+            // The facets without `from` and without `into` become one; these are the cells beyond
+            // them.
             let beyond = [from, into].map(|v| {
                 let outside = self.neighbor(cell, self.index_of(cell, v).unwrap_or(0));
                 (outside, self.index_of_neighbor(outside, cell))
@@ -254,13 +264,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         if self.is_used(cell) { Ok(()) } else { Err(EditError::Cell(cell)) }
     }
 
-    /// The cell across a facet.
+    /// Returns the cell across a facet.
     fn across(&self, cell: CellId, i: usize) -> Result<CellId, EditError> {
         self.ensure_cell(cell)?;
         if i < N { Ok(self.neighbor(cell, i)) } else { Err(EditError::Facet { cell, facet: i }) }
     }
 
-    /// The cells with a vertex.
+    /// Returns the cells with a vertex.
     fn star_of(&self, vertex: VertexId) -> Result<Vec<CellId>, EditError> {
         let first = self.cell_of(vertex).ok_or(EditError::Vertex(vertex))?;
         self.ensure_cell(first)?;
@@ -275,14 +285,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         Ok(star)
     }
 
-    /// The cells with an edge.
+    /// Returns the cells with an edge.
     fn star_of_edge(&self, [a, b]: [VertexId; 2]) -> Result<Vec<CellId>, EditError> {
         let mut star = self.star_of(a)?;
         star.retain(|&cell| a != b && self.corners(cell).contains(&b));
         if star.is_empty() { Err(EditError::Edge([a, b])) } else { Ok(star) }
     }
 
-    /// All faces of cells that have none of these vertices.
+    /// Returns all faces of some cells that have none of these vertices.
     fn faces_without(&self, cells: &[CellId], vertices: &[VertexId]) -> FxHashSet<Face<N>> {
         let mut faces = FxHashSet::default();
         for &cell in cells {
@@ -299,7 +309,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         faces
     }
 
-    /// The facets of cells beyond which there is none of them.
+    /// Returns the facets of some cells that they do not share with each other.
     fn border(&self, cells: &[CellId]) -> Vec<(CellId, usize)> {
         let hole: FxHashSet<CellId> = cells.iter().copied().collect();
         let facets = cells.iter().flat_map(|&cell| (0..N).map(move |i| (cell, i)));
@@ -313,21 +323,21 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         facet
     }
 
-    /// Returns an error unless so many new cells, and one vertex, can be numbered.
+    /// Returns an error unless this many new cells, and one vertex, can be numbered.
     fn ensure_numbers(&self, cells: usize) -> Result<(), EditError> {
         let new_slots = cells.saturating_sub(self.unused.len());
         let has_vertex = !self.unused_vertices.is_empty() || self.vertex_cell.len() < VertexId::LIMIT;
         if has_vertex && self.links.len() + new_slots <= CellId::LIMIT { Ok(()) } else { Err(EditError::TooMany) }
     }
 
-    /// Replaces cells that form a ball by the star of a new vertex.
+    /// Replaces cells that form a ball by the star of a new vertex, and returns the vertex.
     fn fill(&mut self, cells: &[CellId], data: V) -> Result<VertexId, EditError> {
         let border = self.border(cells);
         self.ensure_numbers(border.len())?;
         let apex = self.add_vertex(data);
-        // Those in the hole that no cell will have.
+        // The vertices in the hole that no cell will have.
         let mut inner: FxHashSet<VertexId> = cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
-        // New cells meet in a facet for each ridge of the border; the first of both waits.
+        // New cells share a facet for each ridge of the border; the first of the two waits here.
         let mut waiting: FxHashMap<Face<N>, (CellId, usize)> = FxHashMap::default();
         let new_cells: Vec<(Links<N>, C, usize)> = border
             .iter()
@@ -355,7 +365,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         Ok(apex)
     }
 
-    /// Flips the face of these vertices, whose star is given.
+    /// Flips the face of these vertices, given its star, and returns the new cells.
     fn exchange_star(&mut self, inner: &[VertexId], star: Vec<CellId>) -> Result<Vec<CellId>, EditError> {
         if star.len() != N + 1 - inner.len() {
             return Err(EditError::Star { cells: star.len() });
@@ -366,10 +376,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.exchange(inner, &star)
     }
 
-    /// A bistellar flip (Pachner 1991): of `N + 1` vertices, the `inner` ones span a face, whose star is cells that
-    /// lack one of the others each. What comes instead is the cells that lack one of the inner vertices each.
+    /// Performs a bistellar flip (Pachner 1991), and returns the new cells.
     ///
-    /// The new cell without `a` has the facets of the old ones that lay opposite `a`, and facets with all other new ones.
+    /// Of `N + 1` vertices, the `inner` ones span a face. Its star consists of the cells that lack
+    /// one of the other vertices each. They are replaced by the cells that lack one of the inner
+    /// vertices each.
+    ///
+    /// The new cell without `a` has the facets of the old ones that lay opposite `a`, and shares a
+    /// facet with each of the other new ones.
     fn exchange(&mut self, inner: &[VertexId], star: &[(CellId, VertexId)]) -> Result<Vec<CellId>, EditError> {
         let outer: Vec<VertexId> = star.iter().map(|&(_, missing)| missing).collect();
         let around = self.star_of(outer[0])?;
@@ -379,7 +393,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.ensure_numbers(inner.len())?;
         let (base, gained) = (*self.corners(star[0].0), star[0].1);
         let slot = |vertex: VertexId| base.iter().position(|&v| v == vertex).unwrap_or(0);
-        // What lies beyond the facet opposite `a` of each cell of the star, which has no number of its own yet.
+        // The cells beyond the facet opposite `a` of each cell of the star, and the index of the
+        // facet in them.
         let beyond = |tds: &Self, a: VertexId| -> Vec<(CellId, usize)> {
             let facet = |cell| tds.neighbor(cell, tds.index_of(cell, a).unwrap_or(0));
             star.iter().map(|&(cell, _)| (facet(cell), tds.index_of_neighbor(facet(cell), cell))).collect()
@@ -416,8 +431,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 }
 
-/// Whether facets form a circle or a sphere: each ridge is in two of them, all hang together across ridges, and a
-/// surface has the Euler characteristic of a sphere.
+/// Returns true if facets form a circle or a sphere: each ridge is in two of them, all are
+/// connected across ridges, and a surface has the Euler characteristic of a sphere.
 fn is_sphere<const N: usize>(facets: &[Face<N>]) -> bool {
     let mut on: FxHashMap<Face<N>, Vec<usize>> = FxHashMap::default();
     let ridges = |facet: &Face<N>| {
@@ -442,6 +457,6 @@ fn is_sphere<const N: usize>(facets: &[Face<N>]) -> bool {
     }
     let vertices: FxHashSet<VertexId> =
         facets.as_flattened().iter().copied().filter(|&v| v != VertexId::NONE).collect();
-    // A surface has three edges to two triangles.
+    // A surface has three edges for two triangles.
     reached.len() == facets.len() && (N != 4 || 2 * vertices.len() == facets.len() + 4)
 }

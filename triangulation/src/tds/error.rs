@@ -3,43 +3,46 @@ use std::fmt;
 
 use super::{CellId, VertexId};
 
-/// What is wrong with a complex of cells.
+/// A fault of a complex of cells.
 ///
 /// A facet is given by a cell that has it and the index of the vertex opposite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TdsError {
-    /// There are more vertices or cells than 32-bit numbers can count: the limit is [`Id::LIMIT`](super::Id::LIMIT).
+    /// There are more vertices or cells than 32-bit numbers can count: the limit is
+    /// [`Id::LIMIT`](super::Id::LIMIT).
     TooMany,
-    /// A cell names a vertex that does not exist, or names one twice.
+    /// A cell refers to a vertex that does not exist, or twice to one.
     Vertex {
         /// The cell.
         cell: CellId,
         /// The vertex.
         vertex: VertexId,
     },
-    /// A cell names a neighbor that does not exist, or names one twice: then both have the same vertices.
+    /// A cell refers to a neighbor that does not exist, or twice to one. The two then have the same
+    /// vertices.
     Neighbor {
         /// The cell.
         cell: CellId,
         /// The index of the neighbor.
         facet: usize,
     },
-    /// Only one cell has this facet; in a closed complex it is two.
+    /// Only one cell has this facet; in a closed complex, two do.
     OneCell {
         /// The cell.
         cell: CellId,
         /// The index of the facet in it.
         facet: usize,
     },
-    /// Three or more cells have this facet; in a manifold it is two.
+    /// Three or more cells have this facet; in a manifold, two do.
     ThreeCells {
         /// The third of the cells.
         cell: CellId,
         /// The index of the facet in it.
         facet: usize,
     },
-    /// The neighbor across a facet does not know this cell, or has another facet there.
+    /// The neighbor across a facet does not have this cell as a neighbor, or shares another facet
+    /// with it.
     NotMutual {
         /// The cell.
         cell: CellId,
@@ -53,15 +56,17 @@ pub enum TdsError {
         /// The index of the facet in it.
         facet: usize,
     },
-    /// The cell that a vertex names does not have it.
+    /// The cell that a vertex refers to does not have it.
     CellOfVertex(VertexId),
     /// A vertex is in no cell.
     Isolated(VertexId),
-    /// The link of a vertex is not a circle (where cells are triangles) or not a sphere (where they are tetrahedra).
+    /// The link of a vertex is not a circle (where cells are triangles) or not a sphere (where they
+    /// are tetrahedra).
     Link(VertexId),
-    /// The complex is in several components, of which this cell is in another than the first.
+    /// The complex is not connected; this cell is not in the first component.
     NotConnected(CellId),
-    /// The numbers of vertices, edges and so on are not those of a sphere; the Euler characteristic is given.
+    /// The numbers of vertices, edges and so on are not those of a sphere; this is the Euler
+    /// characteristic.
     Euler(i64),
 }
 
@@ -94,13 +99,14 @@ impl fmt::Display for TdsError {
 
 impl Error for TdsError {}
 
-/// Why a complex was not edited. Nothing has changed then.
+/// The reason why a complex was not edited. It is unchanged then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EditError {
     /// The complex is not of full dimension `N - 1`.
     NotFull,
-    /// More vertices or cells than 32-bit numbers can count: the limit is [`Id::LIMIT`](super::Id::LIMIT).
+    /// More vertices or cells than 32-bit numbers can count: the limit is
+    /// [`Id::LIMIT`](super::Id::LIMIT).
     TooMany,
     /// There is no such cell.
     Cell(CellId),
@@ -108,21 +114,21 @@ pub enum EditError {
     Facet {
         /// The cell.
         cell: CellId,
-        /// Not the index of a vertex of it.
+        /// An index that none of its vertices has.
         facet: usize,
     },
     /// There is no such vertex.
     Vertex(VertexId),
     /// There is no edge between these vertices.
     Edge([VertexId; 2]),
-    /// A face has more cells around it than a flip takes.
+    /// More cells have the face than a flip allows.
     Star {
-        /// How many there are.
+        /// The number of these cells.
         cells: usize,
     },
     /// The face that a flip would create is in the complex already.
     Exists,
-    /// Cells do not form a hole that a star can fill.
+    /// The cells do not form a hole that a star can fill.
     Hole,
     /// The links of these vertices have more in common than the link of the edge between them.
     Links([VertexId; 2]),

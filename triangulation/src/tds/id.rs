@@ -3,28 +3,29 @@ use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 use std::num::NonZeroU32;
 
-/// A 32-bit number that knows what it numbers. `Option<Id<T>>` takes no more room.
+/// A 32-bit number with a type that says what it numbers. `Option<Id<T>>` has the same size.
 pub struct Id<T>(NonZeroU32, PhantomData<fn() -> T>);
 
-/// Marks numbers of vertices.
+/// The tag of vertex numbers.
 #[derive(Debug)]
 pub enum VertexTag {}
 
-/// Marks numbers of cells.
+/// The tag of cell numbers.
 #[derive(Debug)]
 pub enum CellTag {}
 
 /// The number of a vertex.
 pub type VertexId = Id<VertexTag>;
 
-/// The number of a cell: a triangle in the plane, a tetrahedron in space; the infinite ones included.
+/// The number of a cell: a triangle in the plane, a tetrahedron in space; the infinite ones
+/// included.
 pub type CellId = Id<CellTag>;
 
 impl<T> Id<T> {
-    /// Stands in slots that the dimension does not use.
+    /// The value of slots that the dimension does not use.
     pub(crate) const NONE: Self = Self::reserved(u32::MAX - 1);
 
-    /// Numbers below this are ordinary.
+    /// The limit of ordinary numbers: all are below it.
     pub const LIMIT: usize = (u32::MAX - 2) as usize;
 
     const fn reserved(stored: u32) -> Self {
@@ -34,10 +35,10 @@ impl<T> Id<T> {
         }
     }
 
-    /// The id for a position in an array.
+    /// Returns the id for a position in an array.
     ///
     /// # Panics
-    /// At [`LIMIT`](Self::LIMIT) or above.
+    /// If the position is [`LIMIT`](Self::LIMIT) or above.
     #[inline(always)]
     pub fn new(index: usize) -> Self {
         assert!(index < Self::LIMIT, "more than 2^32 - 3 vertices or cells");
@@ -47,13 +48,14 @@ impl<T> Id<T> {
         }
     }
 
-    /// For what else is kept where ids are while a complex is built.
+    /// Returns an id with these bits; used while a complex is built, to store other data where ids
+    /// are.
     #[inline(always)]
     pub(crate) fn from_stored(stored: NonZeroU32) -> Self {
         Id(stored, PhantomData)
     }
 
-    /// See [`from_stored`](Self::from_stored).
+    /// Returns the bits of an id, see [`from_stored`](Self::from_stored).
     #[inline(always)]
     pub(crate) fn stored(self) -> NonZeroU32 {
         self.0
@@ -71,7 +73,7 @@ impl VertexId {
     pub const INFINITE: Self = Self::reserved(u32::MAX);
 }
 
-// Derived implementations would ask the same of `T`.
+// Derived implementations would require the same of `T`.
 impl<T> Clone for Id<T> {
     #[inline(always)]
     fn clone(&self) -> Self {

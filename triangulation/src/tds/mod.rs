@@ -1,39 +1,43 @@
 //! Combinatorics: vertices, cells and their neighbors, without coordinates.
 //!
-//! The conventions that everything relies on:
-//! - A triangulation is kept as a *sphere*: beside the finite vertices there is one
-//!   [`INFINITE`](VertexId::INFINITE) vertex, joined to the hull. So every cell has all its neighbors,
-//!   and the hull needs no special case. Any other closed manifold does without it.
-//! - A full cell has `N` vertices: 3 for triangles, 4 for tetrahedra. Neighbor `i` lies opposite
-//!   vertex `i`.
-//! - All cells are oriented alike: counter-clockwise, for those without the infinite vertex, as the
-//!   geometry sees them.
+//! These conventions hold everywhere:
+//! - A triangulation is stored as a *sphere*: besides the finite vertices there is one
+//!   [`INFINITE`](VertexId::INFINITE) vertex, joined to the hull. So every cell has all its
+//!   neighbors, and the hull needs no special case. Other closed manifolds need no infinite vertex.
+//! - A full-dimensional cell has `N` vertices: 3 for triangles, 4 for tetrahedra. Neighbor `i` lies
+//!   opposite vertex `i`.
+//! - All cells are oriented alike: as the geometry sees them, those without the infinite vertex are
+//!   counter-clockwise.
 //! - Before the points span the space, the complex has a lower [dimension](Tds::dimension): -1 (no
-//!   point), 0 (one), 1 (collinear), 2 (coplanar). Its cells then have `dimension + 1` vertices, in the
-//!   low slots of the same arrays.
+//!   point), 0 (one), 1 (collinear), 2 (coplanar). Its cells then have `dimension + 1` vertices, in
+//!   the low slots of the same arrays.
 //!
-//! | to ask for | use |
+//! | to find | use |
 //! |---|---|
 //! | the corners and neighbors of a cell | [`Tds::cell_vertices`], [`Tds::cell_neighbors`] |
 //! | one of them | [`Tds::vertex`], [`Tds::neighbor`] |
-//! | the same cell as its neighbor sees it | [`Tds::index_of_neighbor`] |
+//! | the index of a cell in its neighbor | [`Tds::index_of_neighbor`] |
 //! | all vertices | [`Tds::vertices`] |
 //! | all cells, with or without the infinite ones | [`Tds::cells`], [`Tds::is_infinite`] |
 //! | the triangles, edges, vertices around a vertex | [`Tds::around`], [`Tds::edges_around`], [`Tds::vertices_around`] |
 //! | all edges, or one by its ends | [`Tds::edges`], [`Tds::finite_edges`], [`Tds::edge`] |
 //! | the convex hull | [`Tds::hull`] |
-//! | what does not depend on where links are kept | [`Complex`]; in the plane, [`plane`] |
-//! | a complex of one's own | [`Tds::from_cells`] |
+//! | what works for any storage of links | [`Complex`]; in the plane, [`plane`] |
+//!
+//! | to build or edit | use |
+//! |---|---|
+//! | a complex of your own | [`Tds::from_cells`] |
 //! | a split, and its inverse | [`Tds::split_cell`], [`Tds::split_facet`], [`Tds::split_edge`]; [`Tds::unsplit_cell`] |
 //! | a flip of a facet or edge, a collapse, the star of a hole | [`Tds::flip`], [`Tds::flip_edge`], [`Tds::collapse`], [`Tds::star_hole`] |
-//! | whether it is a manifold, or a sphere | [`Tds::check_links`], [`Tds::check_manifold`], [`Tds::check_sphere`] |
+//! | a check that it is a manifold, or a sphere | [`Tds::check_links`], [`Tds::check_manifold`], [`Tds::check_sphere`] |
 //!
-//! Removed cells and vertices leave holes in the numbers, which the next ones fill: an array indexed by
-//! vertex has [`Tds::vertex_slots`] entries, one by cell [`Tds::cell_slots`]. Numbers stay within 32 bits:
-//! there are at most 2^32 - 3 cells. Asking for what does not exist panics, like an index.
+//! Removing cells and vertices leaves gaps in the numbers, which the next ones fill: an array
+//! indexed by vertex has [`Tds::vertex_slots`] entries, one indexed by cell [`Tds::cell_slots`].
+//! Numbers fit 32 bits: there are at most 2^32 - 3 cells. Passing the number of a vertex or cell
+//! that does not exist panics, like an index out of bounds.
 //!
 //! A complex that stands alone is any closed manifold, built and edited by calls that check. The
-//! [kinds of triangulations](crate#reexports) have one that is a sphere, and only read access to it.
+//! [kinds of triangulations](crate#reexports) contain one that is a sphere, with read access only.
 
 mod around;
 mod build;
@@ -66,27 +70,27 @@ pub(crate) struct Links<const N: usize> {
 impl<const N: usize> Links<N> {
     pub(crate) const UNUSED: Self = Links::alone([VertexId::NONE; N]);
 
-    /// Of a cell without neighbors.
+    /// Returns the links of a cell without neighbors.
     const fn alone(vertices: [VertexId; N]) -> Self {
         Links { vertices, neighbors: [CellId::NONE; N] }
     }
 }
 
-/// A closed manifold of cells with up to `N` vertices each, with payload `V` at each vertex and `C` at each
-/// cell (free when `()`).
+/// A closed manifold of cells with up to `N` vertices each, with payload `V` at each vertex and `C`
+/// at each cell (`()` takes no memory).
 #[derive(Debug, Clone)]
 pub struct Tds<const N: usize, V = (), C = ()> {
     dimension: i32,
     links: Vec<Links<N>>,
     cell_data: Vec<C>,
-    /// Numbers of removed cells, reused from the end.
+    /// The numbers of removed cells, reused from the end.
     unused: Vec<CellId>,
-    /// A cell of each finite vertex; `NONE` where the number is a hole.
+    /// A cell of each finite vertex; `NONE` where the number is unused.
     vertex_cell: Vec<CellId>,
     vertex_data: Vec<V>,
-    /// Numbers of removed vertices, reused from the end.
+    /// The numbers of removed vertices, reused from the end.
     unused_vertices: Vec<VertexId>,
-    /// How many vertices keep their number and are in no cell.
+    /// The number of vertices that keep their number but are in no cell.
     detached: usize,
     infinite_cell: CellId,
 }
@@ -98,7 +102,7 @@ impl<const N: usize, V, C: Copy + Default> Default for Tds<N, V, C> {
 }
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Creates a complex of the infinite vertex alone: dimension -1.
+    /// Returns the complex of the infinite vertex alone, of dimension -1.
     pub fn new() -> Self {
         Tds {
             dimension: -1,
@@ -113,8 +117,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// A full-dimensional complex, given as its cells and a cell of each vertex; the vertices are numbered from 0 and
-    /// all in use.
+    /// Returns a full-dimensional complex, given its cells and a cell of each vertex. Vertices are
+    /// numbered from 0, and all numbers are used.
     pub(crate) fn from_links(links: Vec<Links<N>>, vertex_cell: Vec<CellId>, infinite_cell: CellId) -> Self
     where
         V: Default,
@@ -134,7 +138,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// The same complex with these payloads, of all vertices in order of their numbers.
+    /// Returns the same complex with these vertex payloads, in order of the vertices' numbers.
     pub(crate) fn with_vertex_data<W>(self, vertex_data: Vec<W>) -> Tds<N, W, C> {
         assert_eq!(vertex_data.len(), self.vertex_cell.len());
         Tds {
@@ -150,12 +154,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// Returns the same complex with these payloads of cells, asked for in order of their numbers. Linear time.
+    /// Returns the same complex with new cell payloads: calls `data` for each cell, in order of
+    /// their numbers. Linear time.
     pub fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Tds<N, V, D> {
         self.map_cell_data(|cell, _| data(cell))
     }
 
-    /// The same complex with other payloads, of all cells in order of their numbers, given those that they had.
+    /// Returns the same complex with new cell payloads: calls `data` with each cell and its old
+    /// payload, in order of the cells' numbers.
     pub(crate) fn map_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId, &C) -> D) -> Tds<N, V, D> {
         let mut cell_data = vec![D::default(); self.links.len()];
         for cell in self.cells() {
@@ -174,9 +180,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// Reserves memory for that many more vertices and the cells that come with them.
+    /// Reserves memory for this many more vertices and the cells that come with them.
     pub fn reserve(&mut self, vertices: usize) {
-        // In the plane there are two triangles to a vertex; in space about 6.7 tetrahedra.
+        // In the plane there are two triangles per vertex; in space about 6.7 tetrahedra.
         let cells = if N == 3 { 2 * vertices } else { 7 * vertices };
         self.links.reserve_exact(cells);
         self.cell_data.reserve_exact(cells);
@@ -195,8 +201,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.vertex_cell.len() - self.unused_vertices.len() - self.detached
     }
 
-    /// One more than the largest number that a vertex has had: vertices are numbered below this, with gaps
-    /// once some have been removed.
+    /// One more than the largest number of a vertex so far: an upper bound for indices. There are
+    /// gaps once vertices have been removed.
     #[inline]
     pub fn vertex_slots(&self) -> usize {
         self.vertex_cell.len()
@@ -207,7 +213,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.links.len() - self.unused.len()
     }
 
-    /// One more than the largest cell number: cells are numbered below this, with gaps.
+    /// One more than the largest number of a cell so far: an upper bound for indices. There may be
+    /// gaps.
     #[inline]
     pub fn cell_slots(&self) -> usize {
         self.links.len()
@@ -219,7 +226,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         around::counted(vertices, self.vertex_count())
     }
 
-    /// Returns whether the number stands for a finite vertex. Any number may be asked for.
+    /// Returns true if this is the number of a finite vertex. Accepts any number.
     #[inline]
     pub fn is_vertex(&self, vertex: VertexId) -> bool {
         self.vertex_cell.get(vertex.index()).is_some_and(|&cell| cell != CellId::NONE)
@@ -231,7 +238,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         around::counted(cells, self.cell_count())
     }
 
-    /// Returns whether the number stands for a cell.
+    /// Returns true if this is the number of a cell. Accepts any number.
     #[inline]
     pub fn is_used(&self, cell: CellId) -> bool {
         self.links.get(cell.index()).is_some_and(|links| links.vertices[0] != VertexId::NONE)
@@ -249,46 +256,49 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         &self.links[cell.index()].neighbors[..(self.dimension + 1) as usize]
     }
 
-    /// All `N` vertices of a cell of a full-dimensional complex.
+    /// The `N` vertices of a cell of a full-dimensional complex.
     #[inline(always)]
     pub fn corners(&self, cell: CellId) -> &[VertexId; N] {
         &self.links[cell.index()].vertices
     }
 
-    /// One vertex of a cell.
+    /// Returns vertex `i` of a cell.
     #[inline(always)]
     pub fn vertex(&self, cell: CellId, i: usize) -> VertexId {
         self.links[cell.index()].vertices[i]
     }
 
-    /// The cell opposite vertex `i`.
+    /// Returns the neighbor opposite vertex `i` of a cell.
     #[inline(always)]
     pub fn neighbor(&self, cell: CellId, i: usize) -> CellId {
         self.links[cell.index()].neighbors[i]
     }
 
-    /// The index of a vertex in a cell.
+    /// Returns the index of a vertex in a cell, or `None` if the cell does not have it.
     #[inline(always)]
     pub fn index_of(&self, cell: CellId, vertex: VertexId) -> Option<usize> {
         let i = first_of(&self.links[cell.index()].vertices, vertex);
         (i < N).then_some(i)
     }
 
-    /// The index of the facet that `cell` shares with its neighbor `other`. In a triangulation two cells
-    /// share one facet at most. For cells that share none, the answer means nothing.
+    /// Returns the index of the facet that `cell` shares with its neighbor `other`.
+    ///
+    /// In a triangulation two cells share at most one facet. For cells that share none, the result
+    /// is a valid index without meaning.
     #[inline(always)]
     pub fn index_of_neighbor(&self, cell: CellId, other: CellId) -> usize {
-        // An index into a cell whatever is asked, so that none has to be checked later.
+        // Always a valid index, so that it need not be checked later.
         first_of(&self.links[cell.index()].neighbors, other).min(N - 1)
     }
 
-    /// Returns whether the infinite vertex is a corner.
+    /// Returns true if the infinite vertex is a corner of the cell.
     #[inline(always)]
     pub fn is_infinite(&self, cell: CellId) -> bool {
         self.links[cell.index()].vertices.contains(&VertexId::INFINITE)
     }
 
-    /// A cell that has this vertex; `None` for the infinite vertex of an empty complex, and for a hole.
+    /// Returns a cell that has this vertex; `None` for the infinite vertex of an empty complex, and
+    /// for an unused number.
     #[inline]
     pub fn cell_of(&self, vertex: VertexId) -> Option<CellId> {
         let cell =
@@ -302,7 +312,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         &self.cell_data[cell.index()]
     }
 
-    /// The payload of a cell, to change.
+    /// The payload of a cell, for changing it.
     #[inline(always)]
     pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
         &mut self.cell_data[cell.index()]
@@ -313,12 +323,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         &self.vertex_data[vertex.index()]
     }
 
-    /// The payload of a finite vertex, to change.
+    /// The payload of a finite vertex, for changing it.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         &mut self.vertex_data[vertex.index()]
     }
 
-    /// Adds a vertex that no cell has yet.
+    /// Adds a vertex that is in no cell yet, and returns it.
     pub(crate) fn add_vertex(&mut self, data: V) -> VertexId {
         if let Some(vertex) = self.unused_vertices.pop() {
             self.vertex_data[vertex.index()] = data;
@@ -335,12 +345,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.detached += 1;
     }
 
-    /// Records that a detached vertex is about to get cells; or, if it is to be removed, that it was detached.
+    /// Records that a detached vertex is about to get cells, or that it is about to be removed.
     pub(crate) fn attach(&mut self) {
         self.detached -= 1;
     }
 
-    /// Adds a cell, which its neighbors do not know yet.
+    /// Adds a cell and returns it. Its neighbors are not linked to it yet.
     #[inline(always)]
     fn add_cell(&mut self, links: Links<N>, data: C) -> CellId {
         match self.unused.pop() {
@@ -357,7 +367,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// Frees the number of a cell that no other has as a neighbor any more.
+    /// Frees the number of a cell that is no neighbor of another one any more.
     #[inline]
     pub(crate) fn remove_cell(&mut self, cell: CellId) {
         self.links[cell.index()] = Links::UNUSED;
@@ -394,7 +404,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// The new sphere is the suspension of the old one: every cell joined to the new vertex, and
     /// every finite cell joined to the infinite one. All cells are replaced.
     ///
-    /// Time proportional to the number of cells; happens at most `N` times.
+    /// Linear in the number of cells; happens at most `N` times.
     pub(crate) fn raise_dimension(&mut self, apex: VertexId) {
         assert!(self.dimension + 1 < N as i32, "the complex is full-dimensional");
         let old_dimension = self.dimension;
@@ -453,13 +463,15 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                         if is_finite(beside) { to_infinity[beside.index()] } else { beside };
                 }
             } else {
-                // Facet without the apex: that of the finite cell beside it, joined to infinity.
+                // The facet without the apex is that of the neighboring finite cell, joined to
+                // infinity.
                 let at_infinity = links.vertices.iter().position(|&v| v == VertexId::INFINITE).unwrap_or(0);
                 self.links[index].neighbors[slot] = to_infinity[links.neighbors[at_infinity].index()];
             }
         }
         if old_dimension == 0 {
-            // The two points of a sphere of dimension 0 are opposites, which one vertex cannot show.
+            // The two points of a sphere of dimension 0 are opposite, but one vertex has no
+            // orientation to show it.
             (0..old.len()).map(CellId::new).filter(|&c| !is_finite(c)).for_each(|c| self.mirror(c));
         }
         // The two halves of the suspension are mirror images.
@@ -476,14 +488,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// Turns the orientation of one cell around.
+    /// Reverses the orientation of a cell.
     fn mirror(&mut self, cell: CellId) {
         let links = &mut self.links[cell.index()];
         links.vertices.swap(0, 1);
         links.neighbors.swap(0, 1);
     }
 
-    /// Turns the orientation of every cell around. From dimension 1 on.
+    /// Reverses the orientation of every cell, from dimension 1 on.
     pub(crate) fn mirror_all(&mut self) {
         for index in 0..self.links.len() {
             self.mirror(CellId::new(index));
@@ -491,15 +503,15 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 }
 
-/// The position of an item in a list, `N` if it is not there.
+/// Returns the position of an item in a list, or `N` if it is not in the list.
 ///
-/// `PERF:` without branches, which nobody could predict.
+/// `PERF:` without branches, which would be unpredictable.
 #[inline(always)]
 fn first_of<T: PartialEq, const N: usize>(list: &[T; N], item: T) -> usize {
     (0..N).rev().fold(N, |found, i| if list[i] == item { i } else { found })
 }
 
-/// The next corner of a triangle, counter-clockwise.
+/// Returns the next corner of a triangle, counter-clockwise.
 ///
 /// `PERF:` a remainder takes twice as many instructions.
 #[inline(always)]
@@ -507,7 +519,7 @@ pub const fn ccw(i: usize) -> usize {
     if i < 2 { i + 1 } else { 0 }
 }
 
-/// The next corner of a triangle, clockwise.
+/// Returns the next corner of a triangle, clockwise.
 #[inline(always)]
 pub const fn cw(i: usize) -> usize {
     let before = i.wrapping_sub(1);

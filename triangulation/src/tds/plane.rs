@@ -1,7 +1,8 @@
-//! What is around what in the plane, over any [`Complex`]: the same functions as the methods of [`Tds`](super::Tds), for
-//! every structure.
+//! Queries around vertices in the plane, for any [`Complex`]: the functions correspond to the
+//! methods of [`Tds`](super::Tds).
 //!
-//! Each ends with an error at the first link that does not hold. Nothing runs in circles, whatever the links are.
+//! Each returns an error at the first link that does not hold. All terminate, whatever the links
+//! are.
 //!
 //! ```
 //! use breakline_triangulation::tds::{Complex, VertexId, plane};
@@ -20,7 +21,8 @@ use std::iter::FusedIterator;
 
 use super::{CellId, Complex, VertexId, ccw, cw};
 
-/// Returns the ends of the edge opposite vertex `i` of a triangle, which has it on its left from the first to the second.
+/// Returns the ends of the edge opposite vertex `i` of a triangle. From the first to the second,
+/// the triangle is on the left.
 ///
 /// # Errors
 /// If there is no such triangle.
@@ -30,28 +32,29 @@ pub fn edge_ends<T: Complex<3>>(complex: &T, cell: CellId, i: usize) -> Result<[
     Ok([corners[ccw(i)], corners[cw(i)]])
 }
 
-/// The cells that have a vertex, from one of them counter-clockwise, each with the index of the vertex in it.
+/// The cells that have a vertex, counter-clockwise, each with the index of the vertex in it.
 ///
-/// Each step across a link is taken only if the link leads back: so no two steps lead to one cell, and the iteration cannot
-/// run into a ring that it did not start from. It ends after each cell that has the vertex once, whatever the links say.
+/// A step across a link is taken only if the link is mutual. So no two steps enter one cell, and
+/// the iteration cannot run into a ring that does not contain its start. It ends at the latest
+/// after each cell that has the vertex once, whatever the links say.
 pub(crate) struct Star<'a, T> {
     complex: &'a T,
     vertex: VertexId,
     front: CellId,
-    /// The same as `front` at the start, when all are left, and when none is.
+    /// Equal to `front` at the start, when all cells are left, and at the end, when none is.
     end: CellId,
     is_over: bool,
 }
 
 impl<'a, T: Complex<3>> Star<'a, T> {
-    /// Of a vertex in a complex of dimension 1 or 2; below the `lowest` of them there are none.
+    /// Returns the star of a vertex; empty if the dimension is below `lowest`, which is 1 or 2.
     pub(crate) fn new(complex: &'a T, vertex: VertexId, lowest: i32) -> Result<Self, T::Error> {
         let start = if complex.dimension() >= lowest { complex.cell_of(vertex)? } else { None };
         let at = start.unwrap_or(CellId::NONE);
         Ok(Star { complex, vertex, front: at, end: at, is_over: start.is_none() })
     }
 
-    /// The index of the vertex in a cell.
+    /// Returns the index of the vertex in a cell.
     #[inline(always)]
     fn index(&self, cell: CellId) -> Result<usize, T::Error> {
         let index = super::first_of(&self.complex.corners(cell)?, self.vertex);
@@ -59,7 +62,8 @@ impl<'a, T: Complex<3>> Star<'a, T> {
         Ok(index.min(2)) // an index into a cell whatever the links say
     }
 
-    /// The next cell across the side that `turn` gives for the index of the vertex in a face.
+    /// Returns the next cell: across the side that `turn` computes from the index of the vertex in
+    /// a cell.
     #[inline(always)]
     fn beside(
         &self,
@@ -108,14 +112,16 @@ impl<T: Complex<3>> DoubleEndedIterator for Star<'_, T> {
 
 impl<T: Complex<3>> FusedIterator for Star<'_, T> {}
 
-/// The index in a cell that a turn leads to from another one; on a line both turns lead to the only other.
+/// Returns the index in a cell that a turn computes from another one; on a line, both turns return
+/// the only other index.
 #[inline(always)]
 fn turned<T: Complex<3>>(complex: &T, i: usize, turn: impl Fn(usize) -> usize) -> usize {
     if complex.dimension() == 1 { 1 - i.min(1) } else { turn(i) }
 }
 
-/// Returns the vertices that a vertex has an edge to, counter-clockwise, the infinite one included; of the infinite
-/// vertex, those on the hull, clockwise. Empty below dimension 1.
+/// Returns the vertices that a vertex is joined to by an edge, counter-clockwise, the infinite one
+/// included. For the infinite vertex these are the vertices on the hull, clockwise. Empty below
+/// dimension 1.
 ///
 /// # Errors
 /// If there is no such vertex. The iterator ends at the first error.
@@ -129,8 +135,9 @@ pub fn vertices_around<T: Complex<3>>(
     }))
 }
 
-/// Returns the edges that start at a vertex, counter-clockwise, each as the cell on its left and the index of the vertex
-/// opposite. On a line the cell is the edge, and the index is 2, of no vertex.
+/// Returns the edges that start at a vertex, counter-clockwise, each as the cell on its left and
+/// the index of the vertex opposite. On a line the cell is the edge, and the index is 2, which is
+/// no vertex of it.
 ///
 /// # Errors
 /// If there is no such vertex. The iterator ends at the first error.
@@ -150,8 +157,8 @@ pub fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Result<Verte
     numbers.filter_map(|vertex| complex.cell_of(vertex).map(|cell| cell.map(|_| vertex)).transpose())
 }
 
-/// Returns the cell to the left of the directed edge `a b` and the index of the edge in it (that of the vertex opposite),
-/// if there is such an edge and dimension 2.
+/// Returns the cell to the left of the directed edge `a b` and the index of the edge in it (that of
+/// the vertex opposite), or `None` if there is no such edge or the dimension is not 2.
 ///
 /// # Errors
 /// If a link around the vertices does not hold.
@@ -182,7 +189,8 @@ pub fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<Opti
 /// Beyond this, the degree of a vertex is compared with that of another one.
 const HIGH_DEGREE: usize = 64;
 
-/// Returns whether the degree of a vertex is high, and higher than that of another one. Time proportional to the smaller degree.
+/// Returns true if the degree of `a` is high, and higher than that of `b`. Time proportional to the
+/// smaller degree.
 pub(crate) fn is_busier<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<bool, T::Error> {
     let mut around_a = Star::new(complex, a, 2)?;
     if around_a.by_ref().take(HIGH_DEGREE).count() < HIGH_DEGREE {

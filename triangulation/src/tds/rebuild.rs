@@ -1,46 +1,49 @@
-//! A complex that was saved: its cells without their numbers and neighbors, and the numbers of vertices.
+//! Restoring a saved complex: its cells without numbers and neighbors, and the numbers of its
+//! vertices.
 
 use rustc_hash::FxHashSet;
 
 use super::{Tds, TdsError, VertexId};
 
-/// What a complex is, but for the numbers of its cells.
+/// A complex without the numbers of its cells.
 pub(crate) struct Parts<V, C> {
     pub(crate) dimension: i32,
-    /// `dimension + 1` for each cell, one cell after the other.
+    /// `dimension + 1` vertices for each cell, one cell after the other.
     pub(crate) cells: Vec<VertexId>,
-    /// Of each cell.
+    /// The payload of each cell.
     pub(crate) cell_data: Vec<C>,
-    /// Of each number of a vertex, those without one included.
+    /// A payload for each number of a vertex, unused ones included.
     pub(crate) vertex_data: Vec<V>,
-    /// Numbers without a vertex, the next to be used last.
+    /// The unused numbers of vertices; the last is used next.
     pub(crate) free: Vec<VertexId>,
 }
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// The payloads of all numbers of vertices.
+    /// The payloads of all numbers of vertices, unused ones included.
     pub(crate) fn payloads(&self) -> &[V] {
         &self.vertex_data
     }
 
-    /// Numbers without a vertex, the next to be used last.
+    /// The unused numbers of vertices; the last is used next.
     pub(crate) fn free_vertices(&self) -> &[VertexId] {
         &self.unused_vertices
     }
 
-    /// Vertices that keep their number and are in no cell.
+    /// Returns the vertices that keep their number but are in no cell.
     pub(crate) fn detached_vertices(&self) -> Vec<VertexId> {
         let free: FxHashSet<VertexId> = self.unused_vertices.iter().copied().collect();
         let numbers = (0..self.vertex_slots()).map(VertexId::new);
         numbers.filter(|v| !self.is_vertex(*v) && !free.contains(v)).collect()
     }
 
-    /// The complex, of which then the [links](Tds::check_links) are sound. What is in no cell and is not free counts as
-    /// detached. The length of `cells` has to be that of `cell_data` times the width of a cell.
+    /// Returns the complex of these parts, with sound [links](Tds::check_links).
+    ///
+    /// A vertex that is in no cell and whose number is not free counts as detached. The length of
+    /// `cells` must be that of `cell_data` times the width of a cell.
     ///
     /// # Errors
-    /// A cell with a vertex that is not there or is there twice, or with a facet that is not in two cells; a free
-    /// number that is not free, or given twice.
+    /// If a cell has a vertex that does not exist, or twice the same one; if a facet is not in two
+    /// cells; or if a free number is in use, or given twice.
     ///
     /// # Complexity
     /// Linear.

@@ -1,21 +1,22 @@
-//! Removal of vertices, and complexes that shrink to a line, a point, nothing.
+//! Removal of vertices, and complexes that shrink to a line, to a point, or to nothing.
 
 use super::{CellId, Links, Tds, VertexId};
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Frees the number of a vertex that no cell has any more. Its payload stays until the number is used again.
+    /// Frees the number of a vertex that is in no cell any more. Its payload stays until the number
+    /// is reused.
     pub(crate) fn remove_vertex(&mut self, vertex: VertexId) {
         self.vertex_cell[vertex.index()] = CellId::NONE;
         self.unused_vertices.push(vertex);
     }
 
-    /// Reuses the number that was freed last, with its payload.
+    /// Reuses the number that was freed last, with its payload, and returns it.
     pub(crate) fn restore_vertex(&mut self) -> Option<VertexId> {
         self.unused_vertices.pop()
     }
 
-    /// Makes the complex that of vertices along a line, in this order: of dimension 1, or 0 for one and -1
-    /// for none. All cells are replaced.
+    /// Replaces the complex by that of vertices along a line, in this order: of dimension 1, or 0
+    /// for one vertex, and -1 for none. All cells are replaced.
     pub(crate) fn set_line(&mut self, line: &[VertexId]) {
         self.links.clear();
         self.cell_data.clear();
@@ -25,7 +26,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         if line.is_empty() {
             return;
         }
-        // The line is closed at infinity: a ring, each cell of which goes from one vertex to the next.
+        // The line is closed at infinity: a ring whose cells join each vertex to the next.
         let ring: Vec<VertexId> = line.iter().copied().chain([VertexId::INFINITE]).collect();
         for (k, &from) in ring.iter().enumerate() {
             let mut vertices = [VertexId::NONE; N];
@@ -46,7 +47,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// Joins the two cells at a vertex of a complex of dimension 1, which at least two other vertices are in.
+    /// Replaces the two cells at a vertex by one, in a complex of dimension 1 that has at least two
+    /// other vertices.
     pub(crate) fn skip(&mut self, vertex: VertexId) {
         let Some(cell) = self.cell_of(vertex) else { return };
         let (before, after) = match self.index_of(cell, vertex) {

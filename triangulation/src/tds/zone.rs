@@ -2,37 +2,40 @@ use rustc_hash::FxHashSet;
 
 use super::{CellId, Tds, VertexId, ccw, cw};
 
-/// A set of cells that is to be replaced by the star of one vertex, and the facets around it.
+/// A set of cells that is to be replaced by the star of one vertex, and the facets around it: a
+/// conflict zone or a hole.
 ///
-/// Kept by its owner from one insertion to the next, so that no insertion allocates.
+/// The owner keeps it from one insertion to the next, so that no insertion allocates.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Zone {
-    /// The cells.
+    /// The cells of the zone.
     pub(crate) cells: Vec<CellId>,
-    /// The facets on its border: the cell within, and the index of the facet in it. In dimension 2 they come
-    /// counter-clockwise, each where the one before ends; infinity may be between.
+    /// The facets on the border: the cell within, and the index of the facet in it. In dimension 2
+    /// they are in counter-clockwise order, each starting where the previous one ends; the infinite
+    /// vertex may be among their ends.
     pub(crate) border: Vec<(CellId, u8)>,
-    /// For each cell number, whether it is in `cells`; all false between uses.
+    /// For each cell number, true if the cell is in `cells`; all false between uses.
     marked: Vec<bool>,
-    /// The facets that are still to be looked across.
+    /// The facets that the search has not crossed yet.
     open: Vec<(CellId, u8)>,
-    /// The cells of the last star, in the order of what was the border.
+    /// The cells of the last star, in the order of the former border.
     pub(crate) star: Vec<CellId>,
 }
 
 impl Zone {
-    /// The cells in the zone.
+    /// The cells of the zone.
     pub(crate) fn cells(&self) -> &[CellId] {
         &self.cells
     }
 
-    /// The facets around the zone: a cell within, and the index of the facet in it. In dimension 2 they come
-    /// counter-clockwise, each where the one before ends; infinity may be between.
+    /// The facets on the border: a cell within, and the index of the facet in it. In dimension 2
+    /// they are in counter-clockwise order, each starting where the previous one ends; the infinite
+    /// vertex may be among their ends.
     pub(crate) fn border(&self) -> impl ExactSizeIterator<Item = (CellId, usize)> + '_ {
         self.border.iter().map(|&(cell, i)| (cell, i as usize))
     }
 
-    /// The finite vertices that are on no facet of the border: no cell will be left to them.
+    /// Returns the finite vertices that are on no facet of the border: no cell will have them.
     pub(crate) fn inner_vertices<const N: usize, V, C: Copy + Default>(&self, tds: &Tds<N, V, C>) -> Vec<VertexId> {
         if tds.dimension() == 2 && self.border.len() == self.cells.len() + 2 {
             return Vec::new(); // by Euler's relation
@@ -68,9 +71,11 @@ impl Zone {
         self.border.clear();
     }
 
-    /// Grows the zone from a cell over every facet that `takes` accepts (asked with a cell of the zone, the index of the
-    /// facet, and the cell beyond), and collects the border. A zone that is only asked for grows in the same way, in
-    /// `triangulation::query`, over any [`Complex`](super::Complex).
+    /// Grows the zone from a cell over every facet that `takes` accepts, and collects the border.
+    ///
+    /// `takes` is called with a cell of the zone, the index of the facet, and the cell beyond. A
+    /// zone that is only queried is grown in the same order in `triangulation::query`, over any
+    /// [`Complex`](super::Complex).
     pub(crate) fn grow<const N: usize, V, C: Copy + Default>(
         &mut self,
         tds: &Tds<N, V, C>,
@@ -84,8 +89,8 @@ impl Zone {
         let width = tds.dimension() as u8 + 1;
         self.add(start);
         self.open.extend((1..width).rev().map(|i| (start, i)));
-        // Depth first, over the facets of each cell counter-clockwise from where it was entered: in the plane the
-        // border comes in order.
+        // Depth first, over the facets of each cell counter-clockwise from the one through which it
+        // was entered: in the plane, the border is then in order.
         let mut next = Some((start, 0));
         while let Some((cell, i)) = next {
             let beyond = tds.neighbor(cell, i as usize);
@@ -102,8 +107,9 @@ impl Zone {
                 self.open.pop()
             };
         }
-        // A cell refused across one facet may have been taken across another. In a ball of triangles
-        // there are two facets more on the border than cells, in any other case it is worth a look.
+        // A cell refused across one facet may have been accepted across another. In a ball of
+        // triangles, the border has two facets more than there are cells; in any other case the
+        // border has to be filtered.
         if width != 3 || self.border.len() != self.cells.len() + 2 {
             let marked = &self.marked;
             self.border.retain(|&(cell, i)| !marked[tds.neighbor(cell, i as usize).index()]);
@@ -112,12 +118,14 @@ impl Zone {
 }
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// Replaces the cells of a zone by the star of `apex`: one cell for each facet of the border. `data`
-    /// says what payload that cell gets, from that of the cell that had the facet and its index. The
-    /// new vertex stands in the new cell where the vertex opposite the facet stood in the old one, so
-    /// that the orientation is kept.
+    /// Replaces the cells of a zone by the star of `apex`, one cell for each facet of the border,
+    /// and returns the new cells in the order of the border.
     ///
-    /// The zone must be a ball; it is empty afterwards. Returns the cells of the star, in the order of the border.
+    /// `data` returns the payload of a new cell, given that of the cell that had the facet, and its
+    /// index. In the new cell, the apex takes the index of the vertex opposite the facet in the old
+    /// cell, so that the orientation is kept.
+    ///
+    /// The zone must be a ball; it is empty afterwards.
     pub(crate) fn star<'a>(
         &mut self,
         zone: &'a mut Zone,
@@ -150,10 +158,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         &zone.star
     }
 
-    /// Links the triangles of a star, each to the next one, and makes them those of their vertices.
+    /// Links each triangle of a star to the next one, and makes each the cell of its vertices.
     ///
-    /// `PERF:` without turning through the zone, insertion one by one takes 8 % fewer instructions (10 000 uniform
-    /// points, callgrind of `bench_editing`).
+    /// `PERF:` without turning through the zone, insertion one by one takes 8 % fewer instructions
+    /// (10 000 uniform points, callgrind of `bench_editing`).
     fn link_around(&mut self, zone: &Zone, apex: VertexId) {
         let around = zone.border.iter().zip(&zone.star).map(|(&(_, i), &new)| (new, i as usize));
         let Some((mut before, mut i)) = around.clone().next_back() else { return };
@@ -167,11 +175,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
     }
 
-    /// The same in any dimension: one turns around each ridge of the border within the zone, from one facet of the
-    /// border to the next.
+    /// Links the cells of a star in any dimension: turns around each ridge of the border within the
+    /// zone, from one facet of the border to the next.
     fn link_by_turning(&mut self, zone: &mut Zone) {
         let width = (self.dimension() + 1) as usize;
-        // The new cells are found again from within the zone, and are none of its.
+        // The new cells are reached again from within the zone, but are not marked as part of it.
         for (&(old, i), &new) in zone.border.iter().zip(&zone.star) {
             self.links[old.index()].neighbors[i as usize] = new;
         }
@@ -184,12 +192,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 if ridge == i || self.links[new.index()].neighbors[ridge] != CellId::NONE {
                     continue;
                 }
-                // `cell` has the ridge and two more vertices; go on across the facet that drops `drop`.
+                // `cell` has the ridge and two more vertices; go on across the facet that lacks
+                // `drop`.
                 let (mut cell, mut gain, mut drop) = (old, i, ridge);
                 loop {
                     let beyond = self.links[cell.index()].neighbors[drop];
                     if !zone.holds(beyond) {
-                        // The border: `beyond` is the new cell there, which has the apex where `drop` was.
+                        // The border: `beyond` is the new cell there, which has the apex in the
+                        // slot where `drop` was.
                         self.link(new, ridge, beyond, gain);
                         break;
                     }
