@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use breakline::io::gdal::{IS_HERE, open_raster, read_layer};
+use breakline::io::gdal::{IS_AVAILABLE, open_raster, read_layer};
 
 #[test]
 fn a_build_without_gdal_says_how_to_get_it() {
-    if IS_HERE {
+    if IS_AVAILABLE {
         return;
     }
     for error in [read_layer(Path::new("a.gpkg"), Some("roads")).unwrap_err(), open_raster("a.asc").unwrap_err()] {

@@ -12,10 +12,10 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// If the file would be too large; the message states the minimum size.
-pub fn foresee<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
+pub fn check_size<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
     let target = target.into();
-    let foresee = formats::of_name(&target.format_path()).and_then(|format| format.writers.foresee);
-    foresee.map_or(Ok(()), |foresee| foresee(vertices).map_err(|e| e.in_file(target.path())))
+    let check_size = formats::of_name(&target.format_path()).and_then(|format| format.writers.check_size);
+    check_size.map_or(Ok(()), |check_size| check_size(vertices).map_err(|e| e.in_file(target.path())))
 }
 
 /// Writes contours in the format that the extension of `target` names, see

@@ -138,7 +138,7 @@ pub(super) enum Reader {
     /// Read by GDAL, in a build with the feature `gdal`.
     Gdal,
     /// Not read at all.
-    Nobody,
+    Unread,
 }
 
 /// A local origin: what was subtracted from all coordinates, and the file that states it.
@@ -167,7 +167,7 @@ pub(super) struct Writers {
     pub(super) surface: Option<WriteSurface>,
     pub(super) contours: Option<WriteContours>,
     /// Returns an error if contours with this many vertices are too large for the format.
-    pub(super) foresee: Option<fn(u64) -> Result<()>>,
+    pub(super) check_size: Option<fn(u64) -> Result<()>>,
     pub(super) heights: Option<WriteHeights>,
     pub(super) shades: Option<WriteShades>,
     /// Writes several files together, see [`triangle::write`].
@@ -224,7 +224,7 @@ impl Format {
 
     /// Returns true if the format is read without GDAL.
     pub fn is_read(&self) -> bool {
-        !matches!(self.reader, Reader::Gdal | Reader::Nobody)
+        !matches!(self.reader, Reader::Gdal | Reader::Unread)
     }
 
     fn has_extension(&self, path: &Path) -> bool {
@@ -299,7 +299,7 @@ pub(super) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
 
 /// Returns the format of the layer that a file is only part of, and the extension that shows it,
 /// such as `.dbf`.
-pub(super) fn whole_of(path: &Path) -> Option<(&'static Format, &'static str)> {
+pub(super) fn format_of_part(path: &Path) -> Option<(&'static Format, &'static str)> {
     let extension = path.extension()?;
     FORMATS.iter().filter(|format| matches!(format.reader, Reader::Layer(_))).find_map(|format| {
         let part = format.parts.iter().find(|part| extension.eq_ignore_ascii_case(part))?;
@@ -371,7 +371,7 @@ impl Reader {
             Reader::Own => "points and segments",
             Reader::Solid(_) | Reader::InfoOnly => "by `info` only",
             Reader::Gdal => "with `gdal`",
-            Reader::Nobody => "",
+            Reader::Unread => "",
         }
     }
 }
@@ -402,7 +402,7 @@ pub fn markdown() -> String {
 }
 
 const NOT_WRITTEN: Writers =
-    Writers { points: None, surface: None, contours: None, foresee: None, heights: None, shades: None, plane: None };
+    Writers { points: None, surface: None, contours: None, check_size: None, heights: None, shades: None, plane: None };
 
 pub(super) const WITH_GDAL: &str = "build with the feature `gdal` to read it: cargo build --release --features gdal";
 const AS_RASTER: &str = "this is a raster: points are expected here";
@@ -569,7 +569,7 @@ pub static FORMATS: &[Format] = &[
         reader: Reader::Layer(shapefile::read_layer),
         writers: Writers {
             contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
-            foresee: Some(shapefile::foresee),
+            check_size: Some(shapefile::check_size),
             ..NOT_WRITTEN
         },
         help: "lines, polygons and points; contours",
@@ -759,7 +759,7 @@ pub static FORMATS: &[Format] = &[
         name: "E57",
         noun: "an E57 scan",
         magic: &[Magic::At(0, b"ASTM-E57")],
-        reader: Reader::Nobody,
+        reader: Reader::Unread,
         cure: "save it as LAS or LAZ",
         ..ROW
     },
@@ -767,7 +767,7 @@ pub static FORMATS: &[Format] = &[
         name: "ZIP",
         noun: "a ZIP archive",
         magic: &[Magic::At(0, b"PK\x03\x04")],
-        reader: Reader::Nobody,
+        reader: Reader::Unread,
         cure: UNPACK,
         ..ROW
     },
@@ -775,7 +775,7 @@ pub static FORMATS: &[Format] = &[
         name: "gzip",
         noun: "a gzip archive",
         magic: &[Magic::At(0, b"\x1f\x8b")],
-        reader: Reader::Nobody,
+        reader: Reader::Unread,
         cure: UNPACK,
         ..ROW
     },

@@ -20,7 +20,7 @@ pub fn read(spec: &str) -> Result<Layer> {
     if field == Some("") {
         return Err(Error::usage(format!("{spec}: no field after the colon")).cure("write FILE or FILE:FIELD"));
     }
-    if let Some((whole, part)) = formats::whole_of(&path) {
+    if let Some((whole, part)) = formats::format_of_part(&path) {
         let whole_path = path.with_extension(whole.extensions[0]);
         return Err(Error::usage(format!("a .{part} is part of {}", whole.noun)).in_file(&path).cure(format!(
             "name its .{}: {}",

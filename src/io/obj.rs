@@ -46,7 +46,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
                 }
                 polygons.push((number, first..corners.len()));
             }
-            Some("#") => crs.push_str(line.strip_prefix("# ").and_then(crs_text::said).unwrap_or_default()),
+            Some("#") => crs.push_str(line.strip_prefix("# ").and_then(crs_text::crs_comment).unwrap_or_default()),
             _ => (),
         }
     }

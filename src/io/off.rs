@@ -36,12 +36,12 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut rows = Rows::new(bytes);
     let [vertex_count, face_count] = read_header(&mut rows)?;
-    let mut vertices = Vec::with_capacity(vertex_count.min(bytes.len() / SHORTEST));
+    let mut vertices = Vec::with_capacity(vertex_count.min(bytes.len() / MIN_BYTES));
     for i in 0..vertex_count {
         let mut row = rows.expect(|| format!("vertex {i} of {vertex_count}"), "X Y Z")?;
         vertices.push([row.finite("x coordinate")?, row.finite("y coordinate")?, row.finite("z coordinate")?]);
     }
-    let mut faces = Vec::with_capacity(face_count.min(bytes.len() / SHORTEST));
+    let mut faces = Vec::with_capacity(face_count.min(bytes.len() / MIN_BYTES));
     let mut corners = Vec::new();
     for i in 0..face_count {
         let mut row = rows.expect(|| format!("face {i} of {face_count}"), "COUNT V1 V2 V3 ...")?;
@@ -58,12 +58,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     }
     let comments = bytes.split(|&b| b == b'\n').filter_map(|line| line.strip_prefix(b"# "));
     let comments = comments.map(|text| String::from_utf8_lossy(text).trim_end_matches('\r').to_owned());
-    let crs: String = comments.filter_map(|text| crs_text::said(&text).map(str::to_owned)).collect();
+    let crs: String = comments.filter_map(|text| crs_text::crs_comment(&text).map(str::to_owned)).collect();
     Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
 }
 
 /// The fewest bytes of a vertex or a face, which limit the memory allocated for a stated count.
-const SHORTEST: usize = 6;
+const MIN_BYTES: usize = 6;
 
 /// Returns the numbers of vertices and faces, which follow the keyword in its line or in the next.
 fn read_header(rows: &mut Rows) -> Result<[usize; 2]> {

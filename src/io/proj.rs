@@ -98,7 +98,7 @@ mod with_proj {
         };
         // Created now, so that an impossible operation fails before anything is read.
         let object = operation.object()?;
-        operation.learn(&object.proj_info());
+        operation.record_accuracy(&object.proj_info());
         Ok(Box::new(operation))
     }
 
@@ -192,7 +192,7 @@ mod with_proj {
         }
 
         /// Records the accuracy of the operation that was used last.
-        fn learn(&self, info: &ProjInfo) {
+        fn record_accuracy(&self, info: &ProjInfo) {
             let name = info.description.as_deref().unwrap_or("an operation without a name");
             // Before the first point, PROJ has not yet chosen among several operations.
             if info.id.as_deref() == Some("unknown") && name.starts_with("unavailable until") {
@@ -238,7 +238,7 @@ mod with_proj {
                 })?;
             }
             if !points.is_empty() {
-                self.learn(&object.proj_info());
+                self.record_accuracy(&object.proj_info());
             }
             Ok(())
         }

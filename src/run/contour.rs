@@ -82,7 +82,7 @@ impl ContourProduct<'_> {
     pub fn write(&self, target: Destination, context: &Context) -> Result<ContourSummary> {
         target.put_whole(|target| {
             self.draw(context, |lines, count| {
-                contours::foresee(target, count)?;
+                contours::check_size(target, count)?;
                 contours::write(target, lines, self.product.crs())
             })
         })

@@ -29,7 +29,7 @@ pub use raster::{Raster, open_raster};
 pub use vector::read_layer;
 
 /// True if this build has GDAL.
-pub const IS_HERE: bool = cfg!(feature = "gdal");
+pub const IS_AVAILABLE: bool = cfg!(feature = "gdal");
 
 /// Splits `FILE:NAME` if there is no file with the whole name, but one with the first part.
 fn split(path: &Path) -> (PathBuf, Option<String>) {

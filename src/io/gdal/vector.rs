@@ -13,7 +13,7 @@ use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
 
 /// Limit for the nesting of geometry collections; deeper ones lead to an error.
-const DEEPEST: usize = 16;
+const MAX_DEPTH: usize = 16;
 
 /// Reads a layer of any vector file that GDAL supports.
 ///
@@ -169,8 +169,8 @@ fn each_vertex(shape: &mut Shape, mut change: impl FnMut(&mut [f64; 3])) {
 
 /// Adds the shape of a geometry, or several for a collection.
 fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()> {
-    if depth > DEEPEST {
-        return Err(Error::limit(format!("geometry collections nested more than {DEEPEST} deep")));
+    if depth > MAX_DEPTH {
+        return Err(Error::limit(format!("geometry collections nested more than {MAX_DEPTH} deep")));
     }
     let members = || (0..geometry.geometry_count()).map(|i| geometry.get_geometry(i));
     let kind = geometry_type_flatten(geometry.geometry_type());

@@ -321,7 +321,7 @@ impl Layout {
                 bytes.len()
             )));
         }
-        if raw > length.saturating_mul(most_from_one_byte(self.compression)) {
+        if raw > length.saturating_mul(max_bytes_from_one(self.compression)) {
             let name = tags::compression_name(self.compression);
             return Err(Error::format(format!("{length} bytes of {name} cannot give {raw} bytes")));
         }
@@ -330,7 +330,7 @@ impl Layout {
 }
 
 /// Returns how many bytes one compressed byte can yield at most, by the rules of the format.
-fn most_from_one_byte(compression: u16) -> u64 {
+fn max_bytes_from_one(compression: u16) -> u64 {
     match compression {
         tags::COMPRESSION_NONE => 1,
         // 128 bytes from 2.

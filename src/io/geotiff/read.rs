@@ -222,7 +222,7 @@ fn raster_type(keys: &GeoKeys) -> Option<u16> {
 
 /// Returns the sizes of the overviews. A mask leads to a warning, since it is not applied.
 fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) -> Vec<[u64; 2]> {
-    const MOST: usize = 100;
+    const MAX_IMAGES: usize = 100;
     let mut overviews = Vec::new();
     let mut seen = BTreeSet::new();
     let mut next = first.following(bytes);
@@ -232,7 +232,7 @@ fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) 
             warnings.push(format!("a further image at byte {offset} cannot be read and is ignored"));
             break;
         };
-        if !seen.insert(offset) || seen.len() > MOST {
+        if !seen.insert(offset) || seen.len() > MAX_IMAGES {
             warnings.push("the list of images in the file is circular or unreasonably long".into());
             break;
         }
@@ -360,9 +360,9 @@ impl GeoTiffReader {
             block::values(&self.layout, &self.nodata, &self.bytes, span, overlap(span, window), take)
         };
         /// Limit for the bytes of values that wait to be copied.
-        const WAITING: u64 = 1 << 27;
+        const MAX_WAITING_BYTES: u64 = 1 << 27;
         let span_bytes = self.layout.span_bytes().max(8 * self.layout.span_cells()).max(1);
-        let batch = (WAITING / span_bytes).min(4 * rayon::current_num_threads() as u64);
+        let batch = (MAX_WAITING_BYTES / span_bytes).min(4 * rayon::current_num_threads() as u64);
         if batch < 2 {
             // Only one of such huge blocks is decoded at a time, and its values are copied at once.
             spans.iter().try_for_each(|span| values(span, &mut copy))?;

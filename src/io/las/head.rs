@@ -7,7 +7,7 @@ use crate::data::LasHead;
 use crate::error::{Error, Result};
 
 /// Limit for the bytes of all records together.
-const LARGEST: u64 = 1 << 26;
+const MAX_BYTES: u64 = 1 << 26;
 
 /// Reads the header and the records of a file, except for records that describe how its points are
 /// compressed or where they are found, see [`is_kept`].
@@ -17,7 +17,7 @@ const LARGEST: u64 = 1 << 26;
 pub(super) fn read(input: &mut Input, header: &Header) -> Result<LasHead> {
     let layout = header.layout;
     let file_end = input.length;
-    let mut left = LARGEST;
+    let mut left = MAX_BYTES;
     let mut run = |mut position: u64, end: u64, count: u64, is_extended: bool| -> Result<Vec<Vec<u8>>> {
         let size = if is_extended { EVLR_HEADER } else { VLR_HEADER };
         let mut records = Vec::new();
@@ -43,7 +43,7 @@ pub(super) fn read(input: &mut Input, header: &Header) -> Result<LasHead> {
             };
             if is_kept(&raw) {
                 left = left.checked_sub(raw.length).ok_or_else(|| {
-                    Error::limit(format!("the records of the file exceed the limit of {LARGEST} bytes together"))
+                    Error::limit(format!("the records of the file exceed the limit of {MAX_BYTES} bytes together"))
                         .at(format!("byte {position}"))
                 })?;
                 records.push([head, input.bytes(payload, raw.length as usize)?].concat());

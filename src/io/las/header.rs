@@ -1,6 +1,6 @@
 //! The header of a LAS file, with checked values.
 
-use super::raw::{LONGEST_HEADER, RawHeader, SHORTEST_HEADER};
+use super::raw::{MAX_HEADER, MIN_HEADER, RawHeader};
 use crate::data::Bounds;
 use crate::error::{Error, Result};
 
@@ -83,9 +83,9 @@ impl Header {
     /// that do not prevent reading are added to `warnings`.
     pub(super) fn check(bytes: &[u8], file_length: u64, warnings: &mut Vec<String>) -> Result<Self> {
         check_signature(bytes)?;
-        if bytes.len() < SHORTEST_HEADER {
+        if bytes.len() < MIN_HEADER {
             return Err(Error::format(format!(
-                "the file ends after {} bytes, within its header of at least {SHORTEST_HEADER}",
+                "the file ends after {} bytes, within its header of at least {MIN_HEADER}",
                 bytes.len()
             ))
             .at(format!("byte {}", bytes.len()))
@@ -165,7 +165,7 @@ fn check_version(raw: &RawHeader, available: usize) -> Result<()> {
             .at("byte 24")
             .cure("save it as LAS 1.4"));
     }
-    let least = if minor >= 4 { LONGEST_HEADER } else { SHORTEST_HEADER };
+    let least = if minor >= 4 { MAX_HEADER } else { MIN_HEADER };
     if usize::from(raw.header_size) < least || available < least {
         let found = available.min(raw.header_size.into());
         return Err(Error::format(format!(

@@ -4,9 +4,9 @@
 //! [`header`](super::header) checks the values.
 
 /// Bytes of the header in every version.
-pub(super) const SHORTEST_HEADER: usize = 227;
+pub(super) const MIN_HEADER: usize = 227;
 /// Bytes of a LAS 1.4 header; the time offsets that 1.5 adds are not used.
-pub(super) const LONGEST_HEADER: usize = 375;
+pub(super) const MAX_HEADER: usize = 375;
 /// Bytes before the payload of a variable length record.
 pub(super) const VLR_HEADER: usize = 54;
 /// Bytes before the payload of an extended variable length record.

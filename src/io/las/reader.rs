@@ -6,7 +6,7 @@ use super::input::Input;
 use super::laz::Laz;
 use super::options::{Detail, ReadOptions};
 use super::plain::Plain;
-use super::raw::LONGEST_HEADER;
+use super::raw::MAX_HEADER;
 use super::{head, records, reference};
 use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
 use crate::error::Result;
@@ -38,7 +38,7 @@ impl LasReader {
     fn start(mut input: Input, options: ReadOptions) -> Result<Self> {
         let name = input.name.clone();
         let mut warnings = Vec::new();
-        let bytes = input.bytes(0, LONGEST_HEADER)?;
+        let bytes = input.bytes(0, MAX_HEADER)?;
         let mut header = Header::check(&bytes, input.length, &mut warnings)?;
         let payloads = records::read(&input, &mut header, &mut warnings)?;
         let crs = reference::choose(&payloads, header.says_wkt, &mut warnings);

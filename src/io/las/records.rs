@@ -8,11 +8,11 @@ use super::raw::{EVLR_HEADER, RawRecordHeader, VLR_HEADER};
 use crate::error::Result;
 
 /// Limit for the number of records; more are ignored, since no file has a use for them.
-const MOST_RECORDS: u64 = 10_000;
+const MAX_RECORDS: u64 = 10_000;
 
 /// Limit for the payloads that are loaded, in bytes. Coordinate systems are texts of a few
 /// kilobytes; the limit guards against false lengths.
-const LARGEST_PAYLOAD: u64 = 1 << 20;
+const MAX_PAYLOAD_BYTES: u64 = 1 << 20;
 
 /// The payloads that a reader of points needs.
 #[derive(Debug, Default)]
@@ -85,7 +85,7 @@ impl Region {
         source.seek(SeekFrom::Start(start))?;
         let mut position = start;
         let mut found = 0;
-        while found < count.min(MOST_RECORDS) {
+        while found < count.min(MAX_RECORDS) {
             let Ok((record, size)) = next(&mut source) else { break };
             let payload = position.saturating_add(size as u64);
             if payload > end {
@@ -102,7 +102,7 @@ impl Region {
                 ));
                 return Ok(());
             }
-            let wanted = payloads.slot(&record).filter(|_| record.length <= LARGEST_PAYLOAD);
+            let wanted = payloads.slot(&record).filter(|_| record.length <= MAX_PAYLOAD_BYTES);
             if let Some(slot) = wanted {
                 let mut bytes = vec![0; record.length as usize];
                 source.read_exact(&mut bytes)?;

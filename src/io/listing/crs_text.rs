@@ -51,7 +51,7 @@ fn parts(text: &str) -> Vec<String> {
 
 /// Returns what a comment states of the coordinate system, in whole or in part; `None` for other
 /// comments.
-pub(in crate::io) fn said(comment: &str) -> Option<&str> {
+pub(in crate::io) fn crs_comment(comment: &str) -> Option<&str> {
     comment.strip_prefix("crs:").or_else(|| comment.strip_prefix("crs "))
 }
 
@@ -85,7 +85,7 @@ mod tests {
         let lines = comments(Some(&local(&long)));
         assert_eq!(lines.len(), 6);
         assert!(lines.iter().all(|line| line.len() <= PART + 4 && !line.contains(['\r', '\n'])));
-        assert_eq!(lines.iter().map(|line| said(line).unwrap()).collect::<String>(), text(&long));
+        assert_eq!(lines.iter().map(|line| crs_comment(line).unwrap()).collect::<String>(), text(&long));
         assert!(comments(None).is_empty());
     }
 
@@ -94,7 +94,7 @@ mod tests {
         for text in ["EPSG:25832", "EPSG:4326", "EPSG:2994"] {
             let crs = Crs::from_user(text).unwrap();
             let [line] = &comments(Some(&crs))[..] else { panic!("{text}") };
-            assert_eq!(parse(said(line).unwrap()).unwrap().as_ref(), Some(&crs));
+            assert_eq!(parse(crs_comment(line).unwrap()).unwrap().as_ref(), Some(&crs));
         }
         let with_heights = Crs::from_user("EPSG:25832+7837").unwrap();
         assert!(comments(Some(&with_heights))[0].starts_with("crs: COMPD_CS["));

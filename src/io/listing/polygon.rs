@@ -24,11 +24,11 @@ pub(in crate::io) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: 
         faces.push([a, b, c]);
         return Ok(());
     }
-    if count > MOST_CORNERS {
-        return Err(Error::limit(format!("a face has {count} corners; at most {MOST_CORNERS} are divided")));
+    if count > MAX_CORNERS {
+        return Err(Error::limit(format!("a face has {count} corners; at most {MAX_CORNERS} are divided")));
     }
-    let is_nowhere = |v: &&u32| vertices[**v as usize][..2].iter().any(|c| !c.is_finite());
-    if let Some(&v) = corners.iter().find(is_nowhere) {
+    let lacks_position = |v: &&u32| vertices[**v as usize][..2].iter().any(|c| !c.is_finite());
+    if let Some(&v) = corners.iter().find(lacks_position) {
         return Err(not_finite(v as usize, vertices[v as usize]));
     }
     let fan = |start: usize| (1..count - 1).map(move |i| [start, start + i, start + i + 1].map(|k| corners[k % count]));
@@ -44,7 +44,7 @@ pub(in crate::io) fn add_polygon(vertices: &[[f64; 3]], corners: &[u32], faces: 
 }
 
 /// Limit for the corners of a polygon: trying all fans takes time quadratic in their number.
-const MOST_CORNERS: usize = 1000;
+const MAX_CORNERS: usize = 1000;
 
 #[cfg(test)]
 mod tests {

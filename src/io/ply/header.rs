@@ -113,7 +113,7 @@ impl Header {
                 }
                 ["comment" | "obj_info", ..] => {
                     let comment = line.split_once(' ').map_or("", |(_, comment)| comment);
-                    crs.push_str(crs_text::said(comment).unwrap_or_default());
+                    crs.push_str(crs_text::crs_comment(comment).unwrap_or_default());
                 }
                 [] => (),
                 ["end_header"] => break,
@@ -131,8 +131,8 @@ impl Header {
 /// Returns a line without its end, and its length in bytes including the end.
 fn line(bytes: &[u8]) -> Option<(String, usize)> {
     /// A longer line cannot belong to a header.
-    const LONGEST: usize = 1 << 16;
-    let length = bytes.iter().take(LONGEST).position(|&b| b == b'\n')?;
+    const MAX_BYTES: usize = 1 << 16;
+    let length = bytes.iter().take(MAX_BYTES).position(|&b| b == b'\n')?;
     let line = String::from_utf8_lossy(&bytes[..length]);
     Some((line.strip_suffix('\r').unwrap_or(&line).to_owned(), length + 1))
 }

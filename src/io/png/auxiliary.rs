@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 const ESCAPES: [(&str, &str); 4] = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;")];
 
 /// Limit for the bytes of the file; a larger one contains statistics, which are not used.
-const LARGEST: u64 = 1 << 20;
+const MAX_BYTES: u64 = 1 << 20;
 
 /// Returns the path of the auxiliary file of a picture: `relief.png` has `relief.png.aux.xml`.
 pub(crate) fn path_of(picture: &Path) -> PathBuf {
@@ -29,7 +29,7 @@ pub(crate) fn text(crs: &Crs) -> String {
 /// file, or it states none.
 pub(crate) fn read_beside(picture: &Path) -> Result<Option<Crs>> {
     let path = path_of(picture);
-    if !path.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() < LARGEST) {
+    if !path.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() < MAX_BYTES) {
         return Ok(None);
     }
     let read = || {

@@ -52,7 +52,7 @@ use record::type_name;
 pub(in crate::io) use table::parse_number;
 use table::{Rows, Table};
 use walk::{Record, Walk};
-pub use write::{Column, foresee, write_contours, write_layer};
+pub use write::{Column, check_size, write_contours, write_layer};
 
 /// The first four bytes of a `.shp` and a `.shx`, big-endian.
 const FILE_CODE: u32 = 9994;

@@ -92,11 +92,10 @@ fn fill(outer: &[[f64; 3]], holes: &[Vec<[f64; 3]>]) -> Option<Vec<Triangle>> {
         let clear = |k: &usize| {
             let to = at(path[*k]);
             let n = path.len();
-            opens(to, at(path[(k + n - 1) % n]), at(path[(k + 1) % n]), from)
-                && [&path, &hole]
-                    .into_iter()
-                    .chain(&holes)
-                    .all(|ring| (0..ring.len()).all(|i| !meet(from, to, at(ring[i]), at(ring[(i + 1) % ring.len()]))))
+            is_within_corner(to, at(path[(k + n - 1) % n]), at(path[(k + 1) % n]), from)
+                && [&path, &hole].into_iter().chain(&holes).all(|ring| {
+                    (0..ring.len()).all(|i| !segments_meet(from, to, at(ring[i]), at(ring[(i + 1) % ring.len()])))
+                })
         };
         let door = (0..path.len())
             .filter(clear)
@@ -134,7 +133,7 @@ fn fill(outer: &[[f64; 3]], holes: &[Vec<[f64; 3]>]) -> Option<Vec<Triangle>> {
 
 /// Returns true if `p` lies within the angle at corner `q`, with the inside to the left of its
 /// edges (O'Rourke 1998, InCone).
-fn opens(q: [f64; 2], before: [f64; 2], after: [f64; 2], p: [f64; 2]) -> bool {
+fn is_within_corner(q: [f64; 2], before: [f64; 2], after: [f64; 2], p: [f64; 2]) -> bool {
     if area(q, after, before) >= 0.0 {
         area(q, p, before) > 0.0 && area(p, q, after) > 0.0
     } else {
@@ -143,7 +142,7 @@ fn opens(q: [f64; 2], before: [f64; 2], after: [f64; 2], p: [f64; 2]) -> bool {
 }
 
 /// Returns true if two segments share more than a common end.
-fn meet(p: [f64; 2], q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> bool {
+fn segments_meet(p: [f64; 2], q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> bool {
     if [a, b].iter().any(|end| *end == p || *end == q) {
         return false;
     }

@@ -120,7 +120,7 @@ pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, column
 ///
 /// # Errors
 /// If a file would be too large; the message states the minimum size.
-pub fn foresee(vertices: u64) -> Result<()> {
+pub fn check_size(vertices: u64) -> Result<()> {
     let bytes = vertices.saturating_mul(24);
     if bytes <= MAX_BYTES {
         return Ok(());

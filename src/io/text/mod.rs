@@ -46,7 +46,7 @@ const BATCH: usize = 1 << 16;
 
 /// Limit for the bytes of a line; text for people has shorter lines, and a binary file may have no
 /// line ends.
-const LONGEST_LINE: u64 = 1 << 16;
+const MAX_LINE_BYTES: u64 = 1 << 16;
 
 /// A reader of points from text, made by [`open`].
 pub struct TextReader {
@@ -270,10 +270,10 @@ impl Lines {
     fn next(&mut self) -> Result<bool> {
         self.line.clear();
         self.number += 1;
-        let length = (&mut self.source).take(LONGEST_LINE).read_until(b'\n', &mut self.line)?;
-        if length as u64 == LONGEST_LINE && !self.line.ends_with(b"\n") {
+        let length = (&mut self.source).take(MAX_LINE_BYTES).read_until(b'\n', &mut self.line)?;
+        if length as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
             return Err(Error::format(format!(
-                "a line of more than {LONGEST_LINE} bytes, which begins {}",
+                "a line of more than {MAX_LINE_BYTES} bytes, which begins {}",
                 quote(&self.line)
             ))
             .cure("this may not be a text file"));
@@ -318,10 +318,10 @@ impl<'a> Line<'a> {
 
 /// Returns text for a message: on one line, and shortened.
 fn quote(text: &[u8]) -> String {
-    const MOST: usize = 60;
+    const MAX_SHOWN: usize = 60;
     let text = text.trim_ascii();
-    let shown = &text[..text.len().min(MOST)];
-    let dots = if text.len() > MOST { "..." } else { "" };
+    let shown = &text[..text.len().min(MAX_SHOWN)];
+    let dots = if text.len() > MAX_SHOWN { "..." } else { "" };
     format!("\"{}{dots}\"", String::from_utf8_lossy(shown).escape_debug())
 }
 

@@ -32,15 +32,15 @@ const POINTS_PER_THREAD: u64 = 1 << 18;
 
 /// Limit for the points of a chunk that is decoded at once. LASzip writes 50 000; COPC some 100
 /// 000.
-const LARGEST_CHUNK: u64 = 1 << 23;
+const MAX_CHUNK_POINTS: u64 = 1 << 23;
 
 /// Limit for the points per byte. Real points take a byte or more each, those of a flat and regular
 /// grid some tenths of a byte.
-const POINTS_PER_BYTE: u64 = 16;
+const MAX_POINTS_PER_BYTE: u64 = 16;
 
 /// This many points are accepted however few bytes they take, for example if all are at one
 /// position.
-const ALWAYS_TAKEN: u64 = 1 << 24;
+const ALWAYS_ACCEPTED: u64 = 1 << 24;
 
 /// Reads the points of a LAZ file.
 #[derive(Debug)]
@@ -63,7 +63,7 @@ impl Laz {
         check_count(header)?;
         let is_streamed = match compression.chunks {
             ChunkSize::Whole => true,
-            ChunkSize::Fixed(size) => compression.order == Order::Pointwise && size > LARGEST_CHUNK,
+            ChunkSize::Fixed(size) => compression.order == Order::Pointwise && size > MAX_CHUNK_POINTS,
             ChunkSize::Variable => false,
         };
         if is_streamed {
@@ -98,9 +98,9 @@ impl Laz {
             );
             options.cut.refuse_or_warn(text, input.length, warnings)?;
         }
-        if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > LARGEST_CHUNK) {
+        if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > MAX_CHUNK_POINTS) {
             return Err(Error::limit(format!(
-                "a chunk of {} points; at most {LARGEST_CHUNK} are supported",
+                "a chunk of {} points; at most {MAX_CHUNK_POINTS} are supported",
                 chunk.points
             ))
             .at(format!("byte {}", chunk.start))
@@ -129,11 +129,11 @@ impl Laz {
 /// decoder makes a thousand points per byte.
 fn check_count(header: &Header) -> Result<()> {
     let bytes = header.layout.points_end - header.layout.points_start;
-    if header.count <= ALWAYS_TAKEN.max(bytes.saturating_mul(POINTS_PER_BYTE)) {
+    if header.count <= ALWAYS_ACCEPTED.max(bytes.saturating_mul(MAX_POINTS_PER_BYTE)) {
         return Ok(());
     }
     Err(Error::limit(format!(
-        "{} points in {bytes} bytes; at most {POINTS_PER_BYTE} points in a byte are read",
+        "{} points in {bytes} bytes; at most {MAX_POINTS_PER_BYTE} points in a byte are read",
         header.count
     ))
     .at(format!("byte {}", header.layout.points_start))
