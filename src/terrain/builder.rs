@@ -312,13 +312,13 @@ impl TinBuilder {
     }
 }
 
-/// The distinct places of points and lines.
+/// The distinct sites of points and lines.
 struct Sites {
     /// In spatial order.
     vertices: Vec<[f64; 3]>,
-    /// For each vertex of a breakline its place.
+    /// For each vertex of a breakline, the index of its site.
     line_vertices: Vec<u32>,
-    /// The breaklines at places at which they have vertices of different heights.
+    /// The breaklines at sites where their vertices have different heights.
     disputed: Vec<Pass>,
 }
 

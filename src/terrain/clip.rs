@@ -1,4 +1,4 @@
-//! Clipping a TIN to polygons: which [cut](super::cut) that is.
+//! Clips a TIN to polygons and bounds, by a [cut](super::cut).
 
 use crate::data::Bounds;
 use crate::error::Result;
@@ -9,14 +9,14 @@ use super::Tin;
 use super::builder::refused;
 use super::cut::{Cut, Domain, Segment, cut};
 
-/// The numbers of the domains: the bounds, and from then on the polygons.
+/// The number of the domain of the bounds, and that of the first polygon.
 const BOUNDS: Domain = 0;
 const POLYGONS: Domain = 1;
 
-/// Polygons and a box; what lies in any of the polygons (in the plane, if there are none) and in the box
-/// stays.
+/// Polygons and a box: the surface is kept where it is inside the box and any of the polygons.
+/// Without polygons, the box alone counts.
 pub(super) struct Clip {
-    /// Each polygon's rings. By the even-odd rule: it does not matter which is a hole.
+    /// The rings of each polygon. The even-odd rule applies, so holes need not be marked.
     pub(super) polygons: Vec<Vec<Vec<[f64; 2]>>>,
     pub(super) bounds: Option<Bounds>,
 }
@@ -26,19 +26,20 @@ impl Clip {
         self.polygons.is_empty() && self.bounds.is_none()
     }
 
-    /// The closed lines to insert, each with the number of the domain that it bounds.
+    /// The closed lines to cut along, each with the number of the domain that it bounds.
     fn rings(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
         let polygons = self.polygons.iter().enumerate();
         let mut rings: Vec<(usize, Vec<[f64; 2]>)> =
             polygons.flat_map(|(i, rings)| rings.iter().map(move |ring| (POLYGONS + i, ring.clone()))).collect();
         if let Some(Bounds { min, max }) = self.bounds {
-            // What is wider than the arithmetic goes is wider than any data.
+            // A box beyond the range of the arithmetic is larger than any data.
             let within = |[x, y]: [f64; 2]| [x, y].map(|c| c.clamp(-RANGE.max, RANGE.max));
             let corners = [[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]];
             rings.push((BOUNDS, corners.map(within).to_vec()));
         }
         for (_, ring) in &mut rings {
-            // Zero has one sign only, and what is closer to it than the arithmetic goes is zero.
+            // Zero has one sign only, and coordinates below the range of the arithmetic count as
+            // zero.
             let positive_zero = |c: f64| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c };
             ring.iter_mut().flatten().for_each(|c| *c = positive_zero(*c));
             ring.extend(ring.first().copied());
@@ -46,10 +47,11 @@ impl Clip {
         rings
     }
 
-    /// Clips the surface; returns the number of triangles of which nothing is left, and of those that are in pieces.
+    /// Clips the surface. Returns the number of triangles that were removed, and of those that were
+    /// cut to fragments.
     ///
     /// # Errors
-    /// If a vertex of a polygon or a bound cannot be computed with.
+    /// If a vertex of a polygon or a bound is outside of the range of the arithmetic.
     pub(super) fn apply(&self, tin: &mut Tin) -> Result<(usize, usize)> {
         let rings = self.rings();
         for &[x, y] in rings.iter().flat_map(|(_, ring)| ring) {

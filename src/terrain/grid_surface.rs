@@ -4,31 +4,42 @@ use crate::crs::Crs;
 use crate::data::{EdgeKind, Grid, Surface};
 use crate::error::{Error, Result};
 
-/// The surface over the centers of a raster's cells, for contours of a DEM.
+/// A surface over the cell centers of a raster, for contours of a DEM.
 ///
-/// Four neighboring cells are the corners of a quad, and a fifth vertex in its middle, at the mean of
-/// their heights, divides it into four triangles. No diagonal is preferred then: turned or mirrored
-/// rasters give turned or mirrored surfaces, and a saddle has its pass in the middle, at the height
-/// that bilinear interpolation has there. (One diagonal in all quads draws valleys that run along it
-/// smooth and the others ragged; a diagonal chosen by the heights jumps where they change a little.)
+/// The centers of four neighboring cells are the corners of a quad. A fifth vertex in its middle,
+/// at the mean of their heights, divides the quad into four triangles:
 ///
-/// A quad with one cell missing (NaN, or infinite) is one triangle, with two or more missing there is none. Faces
-/// are computed when asked for: the surface takes no memory beside the raster.
+/// ```text
+/// +-------+
+/// | \   / |
+/// |   x   |
+/// | /   \ |
+/// +-------+
+/// ```
 ///
-/// Vertices are numbered by cell, row by row, then by quad; faces by quad, four numbers each.
+/// So no diagonal is preferred: rotated or mirrored rasters give rotated or mirrored surfaces, and
+/// a saddle has its pass in the middle, at the height of bilinear interpolation. (With the same
+/// diagonal in all quads, contours of valleys along it are smooth and others ragged; a diagonal
+/// chosen by the heights jumps when these change a little.)
+///
+/// A quad with one missing cell (NaN, or infinite) is one triangle; with two or more missing cells
+/// it is empty. Faces are computed on request: the surface needs no memory in addition to the
+/// raster.
+///
+/// Vertices are numbered by cell, row by row, and then by quad; faces by quad, four numbers each.
 #[derive(Debug, Clone, Copy)]
 pub struct GridSurface<'a> {
     grid: &'a Grid,
-    /// Quads in a row and rows of quads.
+    /// The number of quads in a row, and of rows of quads.
     quads: [usize; 2],
-    /// The corners of a quad counter-clockwise in plan, as steps of column and row.
+    /// The corners of a quad, counter-clockwise in plan, as offsets of column and row.
     corners: [[usize; 2]; 4],
 }
 
 /// Which corners of a quad have values.
 enum Quad {
     Whole,
-    /// All but this one.
+    /// All corners but this one.
     Without(usize),
     Nothing,
 }
@@ -47,11 +58,11 @@ impl Quad {
 }
 
 impl<'a> GridSurface<'a> {
-    /// The surface over a raster.
+    /// Creates the surface over a raster.
     ///
     /// # Errors
-    /// If the raster has more quads than faces can be numbered (about a thousand million), or its
-    /// transform is singular.
+    /// If the raster has more faces than can be numbered (about a billion quads), or its transform
+    /// is singular.
     pub fn new(grid: &'a Grid) -> Result<Self> {
         let frame = &grid.frame;
         let quads = [frame.width.saturating_sub(1), frame.height.saturating_sub(1)];
@@ -64,7 +75,7 @@ impl<'a> GridSurface<'a> {
                 grid.values.len()
             )));
         }
-        // Faces are more than vertices, but for single rows.
+        // There are more faces than vertices, except in single rows.
         let largest = (4 * (quads[0] as u128) * (quads[1] as u128)).max(2 * grid.values.len() as u128);
         if largest > u128::from(u32::MAX) {
             return Err(Error::limit(format!(
@@ -87,7 +98,7 @@ impl<'a> GridSurface<'a> {
         Ok(GridSurface { grid, quads, corners })
     }
 
-    /// Column and row of a face's quad, and which of its four faces it is.
+    /// Column and row of a face's quad, and the position of the face among its four.
     fn quad_of(&self, face: u32) -> ([usize; 2], usize) {
         (cell_at(face / 4, self.quads[0]), face as usize % 4)
     }
@@ -96,7 +107,8 @@ impl<'a> GridSurface<'a> {
         Quad::of(self.corners.map(|[right, down]| self.grid.value(column + right, row + down)))
     }
 
-    /// Does [`heights_in`](Surface::heights_in) for the faces between four cells, numbered from `first`.
+    /// Implements [`heights_in`](Surface::heights_in) for the faces of a quad, numbered from
+    /// `first`.
     #[inline]
     fn heights_between(
         &self,
@@ -119,7 +131,7 @@ impl<'a> GridSurface<'a> {
         let [[a, b], [c, d]] = cells;
         if [a, b, c, d].map(f64::is_finite) == [true; 4] {
             let center = center(cells);
-            // `PERF:` of numbers, two instructions fewer than `f64::min`.
+            // `PERF:` without a case for NaN, two instructions fewer than `f64::min`.
             let lower = |a: f64, b: f64| if a < b { a } else { b };
             let higher = |a: f64, b: f64| if a > b { a } else { b };
             let low = lower(lower(lower(a, b), lower(c, d)), center);
@@ -153,16 +165,17 @@ impl<'a> GridSurface<'a> {
     }
 }
 
-/// The height amid four cells.
+/// The height in the middle of four cells.
 fn center(cells: [[f64; 2]; 2]) -> f64 {
     let [[a, b], [c, d]] = cells.map(|row| row.map(|height| 0.25 * height));
-    // By diagonals: the sum is the same however the raster is turned.
+    // Summed by diagonals: the result is the same if the raster is rotated.
     (a + d) + (b + c)
 }
 
-/// Column and row of what is numbered row by row. All numbers fit in 32 bits, which divide faster.
+/// Column and row of a number that counts row by row. All numbers fit into 32 bits, which divide
+/// faster.
 fn cell_at(number: u32, width: usize) -> [usize; 2] {
-    // Asked only for what exists, so that the width is not 0.
+    // Called only for numbers that exist, so the width is not 0.
     let width = width as u32;
     [(number % width) as usize, (number / width) as usize]
 }
@@ -237,7 +250,7 @@ impl Surface for GridSurface<'_> {
         let end = numbers.end.div_ceil(4);
         let mut quad = numbers.start / 4;
         while quad < end {
-            // A row of quads, or what is asked for of it.
+            // A row of quads, or the requested part of it.
             let (column, row) = (quad % across, quad / across);
             let count = (across - column).min(end - quad);
             let upper = &self.grid.values[(row * width + column) as usize..][..=count as usize];

@@ -2,33 +2,33 @@ use crate::crs::{Crs, CrsKind};
 use crate::data::{BlockSource, Frame, ToPixels, Window};
 use crate::error::{Error, Result};
 
-/// Metres in one radian of a great circle on the mean earth (6 371 008.8 m, Moritz 2000).
+/// Meters in one radian of a great circle on the mean earth (6 371 008.8 m, Moritz 2000).
 const EARTH_RADIUS: f64 = 6_371_008.8;
 
-/// Where the light comes from, and how heights compare with lengths.
+/// The direction of the light, and the ratio of heights to lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// Direction of the light in degrees, clockwise from north.
+    /// The direction that the light comes from, in degrees clockwise from north.
     pub azimuth: f64,
-    /// Its height above the horizon in degrees.
+    /// The angle of the light above the horizon, in degrees.
     pub altitude: f64,
-    /// Heights are multiplied by this: units of x and y in a unit of z, times any exaggeration.
+    /// The factor for heights: units of x and y per unit of z, times any exaggeration.
     pub z_factor: f64,
 }
 
 impl Default for Light {
-    /// From the north-west, at half height, as maps have it.
+    /// Light from the northwest at 45 degrees, as is usual on maps.
     fn default() -> Self {
         Light { azimuth: 315.0, altitude: 45.0, z_factor: 1.0 }
     }
 }
 
 impl Light {
-    /// The default light with the z factor that the units of a coordinate system ask for.
+    /// Returns the default light with a z factor for the units of a coordinate system.
     ///
-    /// A vertical unit that is not stated is that of x and y, or the metre where those are angles.
-    /// A degree counts as long in the east as in the north, so that slopes far from the equator come
-    /// out too gentle in one direction.
+    /// A vertical unit that is not stated is assumed to be that of x and y, or the meter if those
+    /// are angles. A degree of longitude is assumed to be as long as one of latitude; so slopes far
+    /// from the equator are too gentle in one direction.
     pub fn for_crs(crs: Option<&Crs>) -> Self {
         let z_factor = crs.map_or(1.0, |crs| {
             let vertical = crs.vertical_unit.as_ref().map(|unit| unit.factor);
@@ -41,24 +41,24 @@ impl Light {
     }
 }
 
-/// The shade of a raster of heights: whole numbers from 1 (dark) to 255 (facing the light), NaN
+/// The hillshade of a raster of heights: whole numbers from 1 (dark) to 255 (facing the light), NaN
 /// where there is no height.
 ///
 /// Slopes are those of Horn (1981), "Hill shading and the reflectance map": weighted differences
-/// over the 3 x 3 cells around each, as in `gdaldem hillshade`. At the edge of the data the
-/// surface is continued in straight lines, so that a plane is shaded alike up to its edge. Any frame
-/// will do: the light stays where it is when the raster is rotated.
+/// over the 3 x 3 cells around each cell, as in `gdaldem hillshade`. At the edge of the data the
+/// surface is extrapolated linearly, so that the shade of a plane is constant up to its edge.
+/// Frames may be rotated; the direction of the light refers to the map, not to the raster.
 pub struct Hillshade<S> {
     source: S,
     frame: Frame,
     to_pixels: ToPixels,
-    /// Towards the light: east, north, up.
+    /// The unit vector towards the light: east, north, up.
     light: [f64; 3],
     z_factor: f64,
 }
 
 impl<S: BlockSource> Hillshade<S> {
-    /// Shades the heights of `source`: a DEM, a grid, or a reference to one.
+    /// Creates the hillshade of `source`: a DEM, a grid, or a reference to one.
     ///
     /// # Errors
     /// If a number of `light` is not finite, or the frame of the source has no inverse.
@@ -76,7 +76,7 @@ impl<S: BlockSource> Hillshade<S> {
         Ok(Hillshade { source, frame, to_pixels: frame.inverse(), light, z_factor })
     }
 
-    /// The shade of the middle one of 3 x 3 heights, given row by row.
+    /// The shade of the center of 3 x 3 heights, given row by row.
     fn shade(&self, mut heights: [f64; 9]) -> f32 {
         let center = heights[4];
         if center.is_nan() {
@@ -127,8 +127,8 @@ impl<S> std::fmt::Debug for Hillshade<S> {
     }
 }
 
-/// Gives heights to the cells without one around the middle of 3 x 3: beside it from the opposite cell
-/// through the center, at the corners from the two cells beside them.
+/// Fills missing heights around the center of 3 x 3 cells by linear extrapolation: at the sides
+/// from the opposite cell through the center, at the corners from the two cells next to them.
 fn continue_straight(heights: &mut [f64; 9]) {
     let known = *heights;
     let center = known[4];
@@ -145,7 +145,7 @@ fn continue_straight(heights: &mut [f64; 9]) {
     }
 }
 
-/// A window of heights and one cell more on each side, NaN beyond the raster.
+/// A window of heights with one more cell on each side, NaN beyond the raster.
 struct Around {
     width: usize,
     heights: Vec<f32>,
@@ -153,7 +153,7 @@ struct Around {
 
 impl Around {
     fn new(source: &impl BlockSource, frame: &Frame, window: Window) -> Result<Self> {
-        // Cells that the raster has before and after the window: none or one.
+        // The number of cells of the raster before and after the window, at most one.
         let before = [window.column.min(1), window.row.min(1)];
         let after =
             [(frame.width - window.column - window.width).min(1), (frame.height - window.row - window.height).min(1)];
@@ -208,7 +208,8 @@ mod tests {
         let values = vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.5];
         let grid = Grid { frame: Frame::north_up(0.0, 0.0, 2.0, 3, 3), crs: None, values };
         assert_eq!(shades(&grid, Light::default())[4], 233.0);
-        // A tenth of the height: (0.70711 + 0.02656 + 0.07656) / sqrt(1 + 0.00282 + 0.02345) = 0.79980
+        // A tenth of the height: (0.70711 + 0.02656 + 0.07656) / sqrt(1 + 0.00282 + 0.02345) =
+        // 0.79980
         let gentle = Light { z_factor: 0.1, ..Light::default() };
         assert_eq!(shades(&grid, gentle)[4], 204.0);
     }

@@ -1,27 +1,28 @@
-//! Points in polygons.
+//! Point in polygon tests.
 
 use crate::data::orientation;
 use crate::triangulation::num::Sign;
 
 type Edge = [[f64; 2]; 2];
 
-/// Polygons in plan, to be asked whether a point lies in any of them.
+/// Polygons in plan, prepared for queries whether a point lies in any of them.
 ///
-/// Each polygon is a list of closed rings, by the even-odd rule. A point on a ring is in the polygon. Exact for all
-/// finite coordinates.
+/// Each polygon is a list of closed rings; the even-odd rule applies. A point on a ring is inside.
+/// Exact for all finite coordinates.
 #[derive(Debug, Clone)]
 pub struct Inside {
-    /// The edges of each band of equal height, with the numbers of their polygons, in order.
+    /// For each of some bands of equal height, its edges with the numbers of their polygons, in
+    /// order.
     bands: Vec<Vec<(usize, Edge)>>,
     low: f64,
     height: f64,
 }
 
-/// Most bands.
+/// The largest number of bands.
 const MOST: f64 = 65_536.0;
 
 impl Inside {
-    /// Prepares polygons. A ring that does not end where it begins is closed.
+    /// Prepares polygons. Rings that do not end where they begin are closed.
     ///
     /// # Complexity
     /// Linear in the number of edges, in time and memory.
@@ -34,7 +35,7 @@ impl Inside {
         }
         let ys = || edges.iter().flat_map(|(_, edge)| edge.map(|p| p[1]));
         let (low, high) = (ys().fold(f64::INFINITY, f64::min), ys().fold(f64::NEG_INFINITY, f64::max));
-        // As high as an edge on average: then an edge is in two or three bands on average.
+        // As high as the average edge: then an edge is in two or three bands on average.
         let average = edges.iter().map(|(_, [a, b])| (a[1] - b[1]).abs() / edges.len() as f64).sum::<f64>();
         let height = average.max((high - low) / MOST);
         let mut inside = Inside { bands: Vec::new(), low, height };
@@ -46,7 +47,7 @@ impl Inside {
         inside
     }
 
-    /// The band of a height; does not fall where the height rises.
+    /// The band of a height; monotone in the height.
     fn band(&self, y: f64) -> usize {
         if self.height > 0.0 { ((y - self.low) / self.height).clamp(0.0, 2.0 * MOST) as usize } else { 0 }
     }
@@ -71,7 +72,8 @@ impl Inside {
                 continue;
             }
             if p[0] < a[0].min(b[0]) {
-                // The edge is to the right: a ray in that direction meets it, unless it ends at the ray from below.
+                // The edge is to the right: a ray to the right crosses it, unless the edge ends on
+                // the ray from below.
                 is_odd ^= p[1] < high[1];
                 continue;
             }
@@ -80,7 +82,7 @@ impl Inside {
             }
             match orientation([low, high, p].map(|[x, y]| [x, y, 0.0])) {
                 Sign::Zero => return true,
-                // To the left of an edge that goes up.
+                // The point is to the left of an ascending edge.
                 Sign::Positive => is_odd ^= p[1] < high[1],
                 Sign::Negative => {}
             }

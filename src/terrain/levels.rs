@@ -1,9 +1,9 @@
 use crate::error::{Error, Result};
 
-/// Most levels that one run may ask for: far more than any map shows, few enough to be held.
+/// The largest number of levels in one run: far more than on any map, but few enough for memory.
 pub const MAX_LEVELS: usize = 1_000_000;
 
-/// The heights at which contours are wanted, in the units of the data.
+/// The heights at which contours are drawn, in the units of the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Levels(Choice);
 
@@ -14,11 +14,12 @@ enum Choice {
 }
 
 impl Levels {
-    /// The levels `base + k * interval` for every whole `k`.
+    /// Creates the levels `base + k * interval` for every whole `k`.
     ///
-    /// Each is computed on its own, so that nothing adds up. Where interval and base have at most
-    /// nine decimals, a level is the number nearest to the decimal: the third level of interval 0.1
-    /// is the number that is read from "0.3", and not `3.0 * 0.1`, which lies above it.
+    /// Each level is computed independently, so that rounding errors do not accumulate. If interval
+    /// and base have at most nine decimals, a level is the double nearest to its decimal value: the
+    /// third level of interval 0.1 is 0.3 as it is read from a text, not `3.0 * 0.1`, which is
+    /// larger.
     ///
     /// # Errors
     /// If the interval is not positive and finite, or the base is not finite.
@@ -32,7 +33,7 @@ impl Levels {
         Ok(Levels(Choice::Every { interval, base }))
     }
 
-    /// These levels, in any order; a level given twice counts once.
+    /// Creates levels from a list in any order; duplicates are removed.
     ///
     /// # Errors
     /// If one is not finite, or there are more than [`MAX_LEVELS`].
@@ -52,10 +53,11 @@ impl Levels {
         Ok(Levels(Choice::Listed(levels)))
     }
 
-    /// The levels from `low` to `high`, both included, ascending; none if `low > high`.
+    /// Returns the levels from `low` to `high`, both included, ascending; none if `low > high`.
     ///
     /// # Errors
-    /// If they are more than [`MAX_LEVELS`], or so far from the base that they cannot be told apart.
+    /// If there are more than [`MAX_LEVELS`], or they are so far from the base that doubles cannot
+    /// distinguish them.
     pub fn within(&self, low: f64, high: f64) -> Result<Vec<f64>> {
         match &self.0 {
             _ if low > high || low.is_nan() || high.is_nan() => Ok(Vec::new()),
@@ -71,7 +73,7 @@ impl Levels {
 const EXACT: f64 = (1_u64 << 53) as f64;
 
 fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64>> {
-    // One more on each side: the quotients are rounded.
+    // One more on each side, because the quotients are rounded.
     let first = ((low - base) / interval).floor() - 1.0;
     let last = ((high - base) / interval).ceil() + 1.0;
     let steps = last - first;
@@ -103,7 +105,7 @@ fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64
 
 /// How `base + k * interval` is computed.
 enum Progression {
-    /// In whole units of `1 / unit`, which is a power of ten.
+    /// In whole multiples of `1 / unit`, where `unit` is a power of ten.
     Decimal {
         interval: i64,
         base: i64,
@@ -130,7 +132,7 @@ impl Progression {
     fn level(&self, k: i64) -> f64 {
         plain_zero(match *self {
             Progression::Decimal { interval, base, unit } => {
-                // Below 2^107, and rounded only where it passes 2^53.
+                // Below 2^107, and rounded only above 2^53.
                 (i128::from(k) * i128::from(interval) + i128::from(base)) as f64 / unit
             }
             Progression::Binary { interval, base } => (k as f64).mul_add(interval, base),
@@ -138,7 +140,7 @@ impl Progression {
     }
 }
 
-/// Turns -0 into 0, so that equal levels are written alike.
+/// Replaces -0 by 0, so that equal levels are written alike.
 fn plain_zero(value: f64) -> f64 {
     value + 0.0
 }

@@ -7,79 +7,82 @@ use crate::error::{Error, Result};
 /// The class of ground points in LAS.
 const GROUND: u8 = 2;
 
-/// Which classes are used. Points of formats without classes are always used.
+/// Which classes of points are used. Points of formats without classes are always used.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Classes {
-    /// Class 2 (ground) when any point has it, otherwise all.
+    /// Class 2 (ground) if any point has it, otherwise all classes.
     #[default]
     GroundOrAll,
-    /// These and no others.
+    /// Only these classes.
     Only(Vec<u8>),
 }
 
-/// What a [`Selection`] saw and kept. Does not depend on the order of the points.
+/// Counts of the points that a [`Selection`] read and kept.
+///
+/// They do not depend on the order of the points.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SelectionReport {
-    /// Points seen.
+    /// Points read.
     pub read: u64,
     /// Points kept.
     pub used: u64,
-    /// Dropped: marked as deleted in their file.
+    /// Points dropped because their file marks them as deleted.
     pub withheld: u64,
-    /// Dropped: of a class that is not used.
+    /// Points dropped because their class is not used.
     pub other_class: u64,
-    /// Dropped: of a class in use, but outside of the window.
+    /// Points of a used class dropped because they lie outside of the window.
     pub outside: u64,
-    /// The points that are not withheld, by class.
+    /// Points that are not withheld, by class.
     pub by_class: BTreeMap<u8, u64>,
-    /// The points that are not withheld and come from a format without classes.
+    /// Points that are not withheld, from formats without classes.
     pub without_class: u64,
-    /// The classes that are used; `None` where all are.
+    /// The classes that are used; `None` if all are.
     pub classes: Option<Vec<u8>>,
-    /// The box around all points that are not withheld, those outside of the window included; empty without a window.
+    /// The box around all points that are not withheld, including those outside of the window;
+    /// empty without a window.
     pub extent: Bounds,
 }
 
-/// Chooses the points that a surface is made of, and keeps nothing but their coordinates.
+/// Selects points for a surface by class and position, and keeps their coordinates.
 ///
-/// Withheld points are dropped, coordinates that are not finite refused. While no ground point was
-/// seen, the points of other classes are kept, since they may be all there is; with the first
-/// ground point they are let go. The result is in the order of the input, and as a set does not
-/// depend on it.
+/// Withheld points are dropped; coordinates that are not finite are an error. With
+/// [`Classes::GroundOrAll`], points of other classes are kept until the first ground point is read,
+/// and dropped then. The result is in the order of the input; as a set it does not depend on the
+/// order.
 #[derive(Debug)]
 pub struct Selection {
     classes: Classes,
     window: Option<Bounds>,
     kept: Vec<[f64; 3]>,
-    /// Which of `kept` are there only until the first ground point comes.
+    /// The ranges of `kept` that are dropped when the first ground point is read.
     spare: Vec<Range<usize>>,
     has_ground: bool,
     read: u64,
     read_before_source: u64,
-    /// The points of each class, and of none, before the current source.
+    /// The number of points of each class, and without one, before the current source.
     before_source: Option<Box<[u64; 257]>>,
     /// The classes of the points of each source before the current one.
     sources: Vec<Vec<Option<u8>>>,
     withheld: u64,
-    /// One for every class.
+    /// For each class.
     by_class: [Tally; 256],
     without_class: Tally,
     extent: Bounds,
 }
 
-/// Points of one class, by place.
+/// The points of one class, inside and outside of the window.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     inside: u64,
     outside: u64,
 }
 
-/// What is to be done with the points of a class.
+/// What to do with the points of a class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Use {
     Yes,
     No,
-    /// Unless a ground point comes.
+    /// Keep them until the first ground point is read.
     Maybe,
 }
 
@@ -90,14 +93,15 @@ impl Tally {
 }
 
 impl Default for Selection {
-    /// Ground, or all where there is none, everywhere.
+    /// Selects the ground points, or all points if there are none, at any position.
     fn default() -> Self {
         Self::new(Classes::default(), None)
     }
 }
 
 impl Selection {
-    /// Selects by class and, where a window is given, by place in plan (its border included).
+    /// Creates a selection by class and, if a window is given, by position in plan. The border of
+    /// the window is part of it.
     pub fn new(classes: Classes, window: Option<Bounds>) -> Self {
         Selection {
             classes,
@@ -116,7 +120,7 @@ impl Selection {
         }
     }
 
-    /// Says that what follows comes from another file: errors count points from here.
+    /// Starts another source: errors count points from here.
     pub fn next_source(&mut self) {
         let classes = self.classes_of_source();
         self.sources.extend(classes);
@@ -124,7 +128,7 @@ impl Selection {
         self.read_before_source = self.read;
     }
 
-    /// The points seen so far of each class, and of none.
+    /// The number of points read so far of each class, and without one.
     fn tallies(&self) -> [u64; 257] {
         std::array::from_fn(|i| self.by_class.get(i).unwrap_or(&self.without_class).all())
     }
@@ -136,8 +140,10 @@ impl Selection {
         Some((0..now.len()).filter(|&i| now[i] > before[i]).map(|i| u8::try_from(i).ok()).collect())
     }
 
-    /// The sources, in the order of [`next_source`](Self::next_source), of which no point is used, be it in the window
-    /// or outside of it: they have none, or only of classes that are not used.
+    /// Returns the sources without points of a class that is used, numbered in the order of
+    /// [`next_source`](Self::next_source).
+    ///
+    /// It does not matter whether their points lie in the window.
     pub fn unused_sources(&self) -> Vec<usize> {
         let current = self.classes_of_source();
         let is_unused = |classes: &[Option<u8>]| classes.iter().all(|&class| self.fate(class) == Use::No);
@@ -145,15 +151,16 @@ impl Selection {
         sources.filter(|(_, classes)| is_unused(classes)).map(|(source, _)| source).collect()
     }
 
-    /// Points that are kept whatever comes: all, but for those of other classes as long as there is no ground point.
+    /// Returns the number of points that later ones cannot drop: all that are kept, without those
+    /// of other classes while there is no ground point.
     pub fn certain(&self) -> usize {
         self.kept.len() - self.spare.iter().map(Range::len).sum::<usize>()
     }
 
-    /// Takes the points of a whole source that are to be used.
+    /// Adds the selected points of a whole source.
     ///
     /// # Errors
-    /// If the source cannot be read, or see [`add`](Self::add).
+    /// If the source cannot be read, and those of [`add`](Self::add).
     pub fn add_source(&mut self, source: &mut dyn PointSource) -> Result<()> {
         self.next_source();
         let mut batch = PointBatch::default();
@@ -166,11 +173,11 @@ impl Selection {
         }
     }
 
-    /// Takes the points of a batch that are to be used.
+    /// Adds the selected points of a batch.
     ///
     /// # Errors
     /// If a point that is not withheld has a coordinate that is not finite; the error names its
-    /// number in its file, counted from 1. If there is no memory for them.
+    /// number in its file, counted from 1. If memory runs out.
     pub fn add(&mut self, batch: &PointBatch) -> Result<()> {
         if self.kept.try_reserve(batch.len()).is_err() {
             let count = self.kept.len() + batch.len();
@@ -236,7 +243,7 @@ impl Selection {
         }
     }
 
-    /// Forgets the points that were kept for the case that there is no ground point.
+    /// Drops the points that were kept in case there is no ground point.
     fn drop_spare(&mut self) {
         let (mut end, mut from) = (0, 0);
         for range in std::mem::take(&mut self.spare) {
@@ -261,7 +268,7 @@ impl Selection {
         error.at(format!("point {number}"))
     }
 
-    /// What was seen and kept so far.
+    /// Returns the counts of points read and kept so far.
     pub fn report(&self) -> SelectionReport {
         let mut report = SelectionReport {
             read: self.read,
@@ -289,7 +296,7 @@ impl Selection {
         report
     }
 
-    /// The points, in the order of the input (24 bytes each), and what became of the others.
+    /// Returns the selected points, in the order of the input (24 bytes each), and the report.
     pub fn finish(self) -> (Vec<[f64; 3]>, SelectionReport) {
         let report = self.report();
         (self.kept, report)

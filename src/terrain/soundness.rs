@@ -3,18 +3,20 @@ use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::kernel::Wide;
 use crate::triangulation::num::Sign;
 
-/// What is wrong with a surface of triangles, found with exact predicates.
+/// A flaw of a surface of triangles, found with exact predicates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SurfaceFlaw {
-    /// A vertex of a face has a coordinate that is not finite or too large or small to compute with.
+    /// A vertex of a face with a coordinate that is not finite, or too large or too small for exact
+    /// arithmetic.
     Vertex(u32),
-    /// The neighbor across edge `i` of this face does not know it, or has another edge there.
+    /// A face whose neighbor across edge `i` does not link back to it, or has a different edge
+    /// there.
     NotMutual(u32, usize),
-    /// A face that has no area in plan, or is turned around.
+    /// A face without area in plan, or with clockwise corners.
     Orientation(u32),
-    /// The faces around a vertex do not form one fan.
+    /// A vertex whose faces do not form a single fan.
     NotManifold(u32),
-    /// The vertex across the unconstrained edge `i` lies in the circumscribed circle of this face.
+    /// A face whose circumcircle contains the vertex across its unconstrained edge `i`.
     NotDelaunay(u32, usize),
 }
 
@@ -33,7 +35,7 @@ impl std::fmt::Display for SurfaceFlaw {
 }
 
 impl SurfaceFlaw {
-    /// The vertices at which it shows: one, the ends of an edge, or the corners of a face.
+    /// Returns the vertices of the flaw: one, the ends of an edge, or the corners of a face.
     pub fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         let corners = |face| surface.face(face).into_iter();
         match *self {
@@ -46,9 +48,12 @@ impl SurfaceFlaw {
     }
 }
 
-/// Checks any surface as far as faces and neighbors tell: [`shape_flaws`], and the constrained Delaunay law across each
-/// inner unconstrained edge between whole triangles, which is not asked of pieces of cut ones. Ties count as
-/// Delaunay. Returns all flaws of the first kind that has any, as each check relies on those before.
+/// Returns the flaws of a surface in shape and in the constrained Delaunay law.
+///
+/// These are the [`shape_flaws`], and edges that violate the law: unconstrained inner edges between
+/// whole triangles. The law does not hold for fragments of cut triangles, so they are not checked.
+/// Ties count as Delaunay. Each check relies on those before it; so only the flaws of the first
+/// kind that has any are returned, but all of these.
 ///
 /// # Complexity
 /// Linear.
@@ -58,8 +63,11 @@ pub fn surface_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     if flaws.is_empty() { bad_circles(surface) } else { flaws }
 }
 
-/// Checks finite vertices, mutual links, orientation and fans around the vertices: what holds of any surface, also where
-/// it is not known which edges are constrained. Returns all flaws of the first kind that has any.
+/// Returns the flaws of a surface in its shape.
+///
+/// The checks are: finite vertices, mutual links, orientation, and fans around the vertices. These
+/// hold for any surface, even if its constrained edges are unknown. All flaws of the first kind
+/// that has any are returned.
 ///
 /// # Complexity
 /// Linear.
@@ -81,12 +89,12 @@ fn bad_vertices(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     flaws.into_iter().map(SurfaceFlaw::Vertex).collect()
 }
 
-/// The corners beside edge `i`, in the order of the face.
+/// The ends of edge `i`, in the order of the face.
 fn edge(corners: [u32; 3], i: usize) -> [u32; 2] {
     [corners[(i + 1) % 3], corners[(i + 2) % 3]]
 }
 
-/// The index by which the neighbor across edge `i` knows the face.
+/// The neighbor across edge `i`, and the index by which it links back to the face.
 fn mirror(surface: &dyn Surface, face: u32, corners: [u32; 3], i: usize) -> Option<(u32, usize)> {
     let beside = surface.neighbor(face, i)?;
     let theirs = surface.face(beside)?;
@@ -117,8 +125,9 @@ fn bad_orientations(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
         .collect()
 }
 
-/// A border that passes a vertex twice is allowed (two pieces of a clipped surface may touch there), a
-/// closed fan beside another face is not: the faces would overlap.
+/// Finds vertices whose faces overlap: a closed fan and other faces besides.
+///
+/// A border may pass a vertex twice, because two parts of a clipped surface may touch there.
 fn bad_fans(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     let mut degree = vec![0u32; surface.vertex_count()];
     let mut border = vec![false; surface.vertex_count()];

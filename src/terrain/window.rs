@@ -1,9 +1,10 @@
-//! Whether a triangulation of some of the points is that of all of them, within a box.
+//! A test whether the triangulation of some of the points equals that of all of them, within a box.
 //!
-//! A triangle of the points that were read is one of all points if no other point lies in its circumdisk, as far as the
-//! disk can be seen from the triangle past constraints. Points that were not read lie outside of what was read; so
-//! nothing has to be known of them but the box that they lie in. Arithmetic is rounded, and disks are made larger than
-//! all that rounding can hide: a triangle that is called certain is.
+//! A triangle of the points that were read is also a triangle of all points if no unread point lies
+//! in its circumdisk, as far as the disk is visible from the triangle past constraints. Unread
+//! points lie outside of the box that was read; so the box around all points is all that has to be
+//! known of them. Arithmetic is rounded, and disks are enlarged by more than all rounding errors: a
+//! triangle that is reported as certain is certain.
 
 use crate::data::Bounds;
 use crate::triangulation::ConstrainedDelaunay;
@@ -11,12 +12,12 @@ use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::num::Sign;
 use crate::triangulation::tds::{CellId, VertexId};
 
-/// What is known of points of which not all were read, in plan.
+/// The boxes, in plan, of the points that were read and of all points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// All points in this box were read, those on its border included.
+    /// All points in this box were read, including those on its border.
     pub read: Bounds,
-    /// All points lie in this box, read or not.
+    /// All points lie in this box, whether read or not.
     pub all: Bounds,
 }
 
@@ -24,7 +25,7 @@ pub struct Window {
 type Box2 = [[f64; 2]; 2];
 
 impl Window {
-    /// The boxes that may hold points that were not read. They overlap at the corners.
+    /// The boxes that may contain unread points. They overlap at the corners.
     fn unread(&self) -> Vec<Box2> {
         let Window { read, all } = self;
         let mut unread = Vec::new();
@@ -39,13 +40,14 @@ impl Window {
     }
 }
 
-/// How many triangles that meet a box, or were cut along it, may be others once all points are read; those count, too, by
-/// which triangles in the box hang on the rim over unconstrained edges longer than `max_edge`, and places at which the
-/// hull may be another.
+/// Counts the triangles that meet a box, or were cut along it, and that unread points may change.
+///
+/// Also counted are triangles that connect triangles in the box to the rim over unconstrained edges
+/// longer than `max_edge`, and edges of the hull that unread points may change.
 ///
 /// # Complexity
-/// Linear in the number of triangles, and for those that are near the border of what was read, the number of triangles
-/// that their circles meet.
+/// Linear in the number of triangles; for those near the border of what was read, in addition the
+/// number of triangles that their circles meet.
 pub(super) fn uncertain(
     triangulation: &ConstrainedDelaunay<Terrain>,
     bounds: &Bounds,
@@ -65,7 +67,7 @@ pub(super) fn uncertain(
         .cells()
         .filter(|&cell| match judge.hull_edge(cell) {
             None => overlap(judge.box_of(cell), within).is_some(),
-            // What comes beyond an edge along the box counts: it is met by a cut there.
+            // A triangle beyond an edge along the box counts, because a cut along the box meets it.
             Some(edge) => judge.is_beyond(edge, within, Sign::Zero),
         })
         .collect();
@@ -117,13 +119,13 @@ impl Judge<'_> {
         [[0, 1].map(|k| a[k].min(b[k]).min(c[k])), [0, 1].map(|k| a[k].max(b[k]).max(c[k]))]
     }
 
-    /// Of an infinite cell its edge on the hull, with the outside on the left.
+    /// The hull edge of an infinite cell, with the outside on its left.
     fn hull_edge(&self, cell: CellId) -> Option<[[f64; 2]; 2]> {
         let infinite = self.triangulation.tds().index_of(cell, VertexId::INFINITE)?;
         Some(self.ends(cell, infinite))
     }
 
-    /// Whether a box reaches beyond an edge of the hull, or to its line, if `least` is zero.
+    /// Returns true if a box reaches beyond the line of a hull edge, or to it if `least` is zero.
     fn is_beyond(&self, [p, q]: [[f64; 2]; 2], [min, max]: Box2, least: Sign) -> bool {
         let space = |[x, y]: [f64; 2]| [x, y, 0.0];
         let corners = [min, [max[0], min[1]], max, [min[0], max[1]]].map(space);
@@ -133,8 +135,10 @@ impl Judge<'_> {
             .any(|corner| !geometry.admits(corner) || geometry.orientation([&space(p), &space(q), corner]) >= least)
     }
 
-    /// Whether the longest side of a triangle that is hardly more than a line is a constraint. Its disk is nearly a half
-    /// plane then, all beyond that side but a cap that is not wider than the triangle.
+    /// Returns true if the longest side of a sliver is a constraint.
+    ///
+    /// The circumdisk of a sliver is nearly a half plane, which lies beyond that side except for a
+    /// cap no wider than the sliver.
     fn is_hidden(&self, cell: CellId) -> bool {
         let length = |&i: &usize| {
             let [p, q] = self.ends(cell, i);
@@ -148,7 +152,8 @@ impl Judge<'_> {
             && !self.unread.iter().any(|&unread| overlap(around, unread).is_some())
     }
 
-    /// Whether no point that was not read can lie in the circumdisk of a triangle, as far as it can be seen from there.
+    /// Returns true if no unread point can lie in the part of the circumdisk that is visible from
+    /// the triangle.
     fn is_certain(&self, cell: CellId) -> bool {
         let Some(disk) = Disk::around(self.corners(cell)) else { return self.is_hidden(cell) };
         if !self.unread.iter().any(|&unread| disk.meets(unread)) {
@@ -159,8 +164,9 @@ impl Judge<'_> {
             in_disk.is_some_and(|part| self.unread.iter().any(|&unread| overlap(part, unread).is_some()))
         };
         let tds = self.triangulation.tds();
-        // Triangles that are seen, each from a neighbor. Constraints hide what is behind, so that no cycle is gone
-        // round but around a vertex: each triangle is left by the edges that it was not entered by.
+        // The triangles that are visible, each with the neighbor from which it was entered; it is
+        // left by its other edges. Constraints hide what is behind them, so that cycles exist
+        // around vertices only.
         let mut ahead: Vec<(CellId, Option<CellId>)> = Vec::new();
         let mut seen = rustc_hash::FxHashSet::default();
         let mut here = Some((cell, None));
@@ -181,16 +187,16 @@ impl Judge<'_> {
     }
 }
 
-/// Of triangles that are thinner than this part of their size, rounding hides how large their circles are.
+/// The ratio of width to size below which rounding hides how large a triangle's circle is.
 const THIN: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// What two boxes have in common, if they have anything.
+/// The intersection of two boxes, if there is one.
 fn overlap([a, b]: Box2, [c, d]: Box2) -> Option<Box2> {
     let common = [[0, 1].map(|k| a[k].max(c[k])), [0, 1].map(|k| b[k].min(d[k]))];
     (0..2).all(|k| common[0][k] <= common[1][k]).then_some(common)
 }
 
-/// A disk that holds the closed circumdisk of a triangle, and is about a hundredth larger.
+/// A disk that contains the closed circumdisk of a triangle, and is about a hundredth larger.
 #[derive(Debug, Clone, Copy)]
 struct Disk {
     center: [f64; 2],
@@ -198,10 +204,11 @@ struct Disk {
 }
 
 impl Disk {
-    /// `None` for triangles so thin that rounding hides how large their circles are.
+    /// The disk of a triangle; `None` if it is so thin that rounding hides how large its circle is.
     fn around([a, b, c]: [[f64; 2]; 3]) -> Option<Self> {
-        // From a corner. The relative error of the area is at most 2^-50 / THIN here, and goes into the hundredth; what
-        // the differences below lose by cancellation is `lost`.
+        // Computed relative to a corner. The relative error of the area is at most 2^-50 / THIN
+        // here, which the hundredth covers; `lost` is what the differences below lose by
+        // cancellation.
         const LOST: f64 = 1.0 / (1u64 << 48) as f64;
         let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
         let (p, q) = (u[0] * v[1], u[1] * v[0]);

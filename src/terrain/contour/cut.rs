@@ -1,13 +1,13 @@
 use crate::data::Surface;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
-/// A surface and the level at which it is cut.
+/// A surface and the level of a contour.
 pub(super) struct Cut<'a, S: ?Sized> {
     pub(super) surface: &'a S,
     pub(super) level: f64,
 }
 
-/// A face, with each corner compared with the level. Indices of corners count modulo 3.
+/// A face, with each corner compared to the level. Indices of corners are modulo 3.
 #[derive(Clone, Copy)]
 pub(super) struct Face {
     pub(super) id: u32,
@@ -16,42 +16,42 @@ pub(super) struct Face {
     side: [Ordering; 3],
 }
 
-/// A part of the contour that lies in one face or on one edge. High ground is on its right.
+/// A part of the contour in one face or on one edge, with high ground on its right.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(super) enum ContourArc {
-    /// Through the inside of the face, of which one corner is higher and one lower.
+    /// Through the inside of a face, which has a corner above and one below the level.
     Across(u32),
-    /// Along the edge opposite the corner, from corner `i + 2` to corner `i + 1`. The face is the
+    /// Along the edge opposite corner `i`, from corner `i + 2` to corner `i + 1`. The face is the
     /// one on the high side.
     Along(u32, u8),
 }
 
-/// Along or against the direction of a piece.
+/// Along or against the direction of an arc.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Direction {
     Forward,
     Backward,
 }
 
-/// Where a piece begins or ends.
+/// The position at which an arc begins or ends.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Node {
     /// On the edge opposite the corner.
     Edge(usize),
-    /// In the corner.
+    /// At the corner.
     Corner(usize),
 }
 
-/// A piece that begins or ends at a vertex, as seen from the vertex.
+/// An arc that begins or ends at a vertex, as seen from the vertex.
 pub(super) struct Ray {
     pub(super) face: Face,
     pub(super) arc: ContourArc,
-    /// Forward if the piece leaves the vertex, backward if it arrives there.
+    /// Forward if the arc leaves the vertex, backward if it arrives there.
     pub(super) direction: Direction,
 }
 
 impl ContourArc {
-    /// The face that it belongs to.
+    /// The face to which the arc belongs.
     pub(super) fn face(self) -> u32 {
         let (ContourArc::Across(face) | ContourArc::Along(face, _)) = self;
         face
@@ -70,7 +70,7 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
         at[2].partial_cmp(&self.level).unwrap_or(Less)
     }
 
-    /// The face on the other side of the edge opposite corner `i`, and its corner opposite the edge.
+    /// The face across the edge opposite corner `i`, and its corner opposite the edge.
     pub(super) fn across(&self, face: &Face, i: usize) -> Option<(Face, usize)> {
         let id = self.surface.neighbor(face.id, i)?;
         let vertices = self.surface.face(id)?;
@@ -85,7 +85,7 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
         Some((other, j))
     }
 
-    /// The piece along the edge that lies on the level, of a face that lies below it otherwise.
+    /// The arc along the edge on the level, for a face whose third corner is below it.
     pub(super) fn shore(&self, id: u32) -> Option<ContourArc> {
         let face = self.face(id)?;
         let i = (0..3).find(|&i| face.has_level_edge(i))?;
@@ -93,8 +93,7 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
         (high.side[j] != Less).then_some(ContourArc::Along(high.id, j as u8))
     }
 
-    /// Of the two faces at the edge opposite corner `i` the one that belongs to the high ground, if
-    /// the edge is a piece of the contour.
+    /// The face on the high side of the edge opposite corner `i`, if the edge is an arc.
     fn high_side(&self, face: &Face, i: usize) -> Option<Face> {
         if !face.has_level_edge(i) {
             return None;
@@ -107,18 +106,20 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
         }
     }
 
-    /// The pieces at a corner, in the order in which a ray from there meets them, that turns from
-    /// the inside of the face: counter-clockwise if forward, clockwise if backward. Ends where it
-    /// began (without the piece across that face), or at the edge of the data.
+    /// The arcs at a corner in the order in which a turning ray from it meets them, starting inside
+    /// the face: counter-clockwise if forward, clockwise if backward.
+    ///
+    /// Ends after a full turn (without the arc across the first face), or at the edge of the data.
     pub(super) fn fan(&self, face: &Face, corner: usize, turn: Direction) -> Fan<'_, 'a, S> {
         Fan { cut: self, first: face.id, now: Some((*face, corner)), turn, waiting: None }
     }
 
-    /// The piece that goes on where another one ends in a corner of its face (forward), or goes
-    /// before one that begins there (backward): the turn rule within one fan of faces. None if
-    /// the edge of the data comes first.
+    /// The arc that follows one that ends at a corner of its face (forward), or that precedes one
+    /// that begins there (backward), by the turn rule within one fan of faces.
+    ///
+    /// `None` if the edge of the data comes first.
     pub(super) fn continuation(&self, face: &Face, corner: usize, direction: Direction) -> Option<Ray> {
-        // High ground lies between the two, so that the next is one of the other kind.
+        // High ground lies between the two, so the next arc is of the other kind.
         self.fan(face, corner, direction).next().filter(|ray| ray.direction == direction)
     }
 
@@ -133,18 +134,18 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
 }
 
 impl Face {
-    /// Whether the edge opposite corner `i` lies on the level.
+    /// Returns true if the edge opposite corner `i` lies on the level.
     fn has_level_edge(&self, i: usize) -> bool {
         self.side[(i + 1) % 3] == Equal && self.side[(i + 2) % 3] == Equal
     }
 
-    /// The node at which a piece ends (forward) or begins (backward).
+    /// The node at which an arc ends (forward) or begins (backward).
     pub(super) fn node(&self, arc: ContourArc, direction: Direction) -> Node {
         match (arc, direction) {
             (ContourArc::Along(_, i), Direction::Forward) => Node::Corner((usize::from(i) + 1) % 3),
             (ContourArc::Along(_, i), Direction::Backward) => Node::Corner((usize::from(i) + 2) % 3),
             (ContourArc::Across(_), _) => {
-                // Counter-clockwise around the face, a piece ends where the ground falls below the
+                // Counter-clockwise around the face, an arc ends where the ground falls below the
                 // level and begins where it rises above.
                 let change = match direction {
                     Direction::Forward => [Greater, Less],
@@ -157,12 +158,12 @@ impl Face {
         }
     }
 
-    /// Whether the edge opposite corner `i` has an end at a point in plan.
+    /// Returns true if the edge opposite corner `i` has an end at a point in plan.
     pub(super) fn ends_at(&self, i: usize, point: [f64; 2]) -> bool {
         [1, 2].into_iter().any(|k| self.at[(i + k) % 3][..2] == point)
     }
 
-    /// The piece across the face that begins or ends in a corner on the level.
+    /// The arc across the face that begins or ends at a corner on the level.
     fn ray(&self, corner: usize) -> Option<Ray> {
         let direction = match [self.side[(corner + 1) % 3], self.side[(corner + 2) % 3]] {
             [Greater, Less] => Direction::Forward,
@@ -191,7 +192,7 @@ impl<S: Surface + ?Sized> Iterator for Fan<'_, '_, S> {
                 return Some(ray);
             }
             let (face, corner) = self.now.take()?;
-            // The edge to be turned over, by the corner opposite of it; the same corner beyond it.
+            // The edge to cross, by its opposite corner, and the offset of the vertex beyond it.
             let (i, beyond) = match self.turn {
                 Direction::Forward => ((corner + 1) % 3, 1),
                 Direction::Backward => ((corner + 2) % 3, 2),
@@ -211,13 +212,14 @@ impl<S: Surface + ?Sized> Iterator for Fan<'_, '_, S> {
     }
 }
 
-/// Where an edge meets a level that lies between its ends.
+/// The point where an edge meets a level that lies between its ends.
 ///
-/// The edge is taken from its smaller end to its larger one, so that both of its faces see the same
-/// bits, and never leaves the box of its ends. Along an edge, points are ordered as their levels.
+/// It is computed from the smaller end of the edge to the larger one, so that both faces get the
+/// same bits, and lies in the box of the ends. Along an edge, points are in the order of their
+/// levels.
 fn crossing(a: [f64; 3], b: [f64; 3], level: f64) -> [f64; 2] {
     let (a, b) = if a <= b { (a, b) } else { (b, a) };
-    // Halves, whose differences cannot overflow; halving changes no bit of the result otherwise.
+    // Differences of halves cannot overflow; otherwise halving does not change the result.
     let t = (0.5 * level - 0.5 * a[2]) / (0.5 * b[2] - 0.5 * a[2]);
     let between = |a: f64, b: f64| {
         let value = 2.0 * (0.5 * a + t * (0.5 * b - 0.5 * a));

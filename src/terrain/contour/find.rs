@@ -1,4 +1,4 @@
-//! Where a surface crosses levels: the pieces of contour, by all cores, a stretch of faces each.
+//! The search for the arcs of contours: all cores scan stretches of faces in parallel.
 
 use super::cut::{ContourArc, Cut};
 use super::index::LevelIndex;
@@ -7,13 +7,14 @@ use rayon::prelude::*;
 use std::cell::Cell;
 use std::ops::Range;
 
-/// Faces of a stretch.
+/// The number of faces of a stretch.
 const STRETCH: u32 = 1 << 15;
 
-/// Stretches whose results wait together to be counted.
+/// The number of stretches whose results are kept until they are counted.
 const WAITING: usize = 64;
 
-/// Returns the lowest and the highest height of the faces; infinite, and the lowest above, if there is no face.
+/// Returns the lowest and the highest height of the faces; without faces, infinity and its
+/// negative.
 pub(super) fn height_range<S: Surface + ?Sized>(surface: &S) -> [f64; 2] {
     let of_stretch = |numbers: Range<u32>| {
         let range = Cell::new([f64::INFINITY, f64::NEG_INFINITY]);
@@ -31,7 +32,7 @@ fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// Returns how many pieces each level has.
+/// Returns the number of arcs of each level.
 pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec<usize> {
     let mut counts = vec![0; index.levels().len()];
     for waiting in stretches(surface).chunks(WAITING) {
@@ -52,7 +53,7 @@ pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec
     counts
 }
 
-/// Returns each piece of some levels with its level, in the order of the faces.
+/// Returns the arcs of some levels, each with its level, in the order of the faces.
 pub(super) fn arcs<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
@@ -74,16 +75,16 @@ pub(super) fn arcs<S: Surface + ?Sized>(
     stretches(surface).into_par_iter().map(of_stretch).collect()
 }
 
-/// The levels of a face.
+/// The levels that have an arc at a face.
 struct Crossed {
-    /// Those that it crosses.
+    /// The levels of arcs across the face.
     across: Range<usize>,
-    /// Whether the level after these is that of an edge, with the face below.
+    /// True if the next level is that of an edge, with the rest of the face below it.
     along: bool,
 }
 
 impl Crossed {
-    /// `levels` are those from the lowest corner to the highest, both included.
+    /// The levels of a face; `levels` are those from its lowest corner to its highest, inclusive.
     fn of(heights: [f64; 3], levels: Range<usize>, index: &LevelIndex) -> Self {
         let [a, b, c] = heights;
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
@@ -95,8 +96,8 @@ impl Crossed {
     }
 }
 
-/// Calls `found` with each face of a stretch that is not level and has a level of the band between its corners, the
-/// heights of these, and the levels from the lowest to the highest of them.
+/// Calls `found` for each face of a stretch that is not horizontal and meets a level of the band,
+/// with the heights of its corners and the levels from the lowest to the highest of them.
 fn faces_at<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
@@ -123,7 +124,7 @@ fn faces_at<S: Surface + ?Sized>(
 }
 
 fn stretches<S: Surface + ?Sized>(surface: &S) -> Vec<Range<u32>> {
-    // As many faces as numbers have room for.
+    // No more faces than there are numbers.
     let count = u32::try_from(surface.face_count()).unwrap_or(u32::MAX);
     let starts = (0..count).step_by(STRETCH as usize);
     starts.map(|start| start..start.saturating_add(STRETCH).min(count)).collect()

@@ -1,8 +1,8 @@
-/// Sorted levels that are found by height in constant time, if they are spread evenly.
+/// Sorted levels with a search by height, in constant time if they are evenly spaced.
 pub(super) struct LevelIndex {
     levels: Vec<f64>,
-    /// For each of as many equal steps as there are levels: the first level from there on, or one
-    /// near it.
+    /// For each of as many equal steps as there are levels: the first level at or above the step,
+    /// or one near it.
     starts: Vec<u32>,
     low: f64,
     steps_per_unit: f64,
@@ -19,7 +19,7 @@ impl LevelIndex {
         for i in (0..index.levels.len()).rev() {
             starts[index.step(index.levels[i])] = i as u32;
         }
-        // Steps without a level: that of the step before.
+        // A step without a level has that of the step before.
         for i in 1..starts.len() {
             starts[i] = starts[i].max(starts[i - 1]);
         }
@@ -31,7 +31,7 @@ impl LevelIndex {
         &self.levels
     }
 
-    /// The number of the first level at a height or above.
+    /// The index of the first level at a height or above.
     pub(super) fn first_from(&self, height: f64) -> usize {
         let mut i = self.starts[self.step(height)] as usize;
         while i < self.levels.len() && self.levels[i] < height {
@@ -40,7 +40,7 @@ impl LevelIndex {
         i
     }
 
-    /// Never falls as the height grows. Conversion brings what is below to 0.
+    /// The step of a height; monotone. The conversion maps heights below all levels to 0.
     fn step(&self, height: f64) -> usize {
         (((height - self.low) * self.steps_per_unit) as usize).min(self.levels.len())
     }

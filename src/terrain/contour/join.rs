@@ -5,14 +5,14 @@ use crate::triangulation::kernel::{Exact, Kernel, Orientation2};
 use crate::triangulation::num::Sign;
 use std::cmp::Ordering;
 
-/// The points of a line; one that is closed repeats its first at the end.
+/// The points of a line; a closed line repeats its first point at the end.
 pub(super) struct Joined {
     pub(super) points: Vec<[f64; 2]>,
     pub(super) closed: bool,
 }
 
-/// Joins lines that end and begin at one vertex at the edge of the data: the turn rule over the gaps
-/// between fans of faces.
+/// Joins lines that end and begin at the same vertex at the edge of the data: the turn rule across
+/// the gaps between fans of faces.
 pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<Joined> {
     let mut joined = Vec::new();
     let mut open = Vec::new();
@@ -43,8 +43,10 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
     joined
 }
 
-/// Takes lines apart, lets pieces of no length go and opposite pieces cancel that coincide now that
-/// their points are rounded, and joins the rest anew, by the turn rule at each point.
+/// Applies the rule to lines whose points were rounded.
+///
+/// Arcs without length are removed, opposite arcs that coincide cancel, and the others are joined
+/// again by the turn rule at each point.
 pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
     let mut arcs: Vec<[[f64; 2]; 2]> =
         lines.iter().flat_map(|line| line.points.windows(2)).map(|p| [p[0], p[1]]).filter(|[a, b]| a != b).collect();
@@ -73,26 +75,26 @@ pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
     joined
 }
 
-/// An end of an open line, seen from there: forward if the line begins.
+/// An end of an open line; forward if the line begins there.
 #[derive(Clone, Copy)]
 struct End {
     center: [f64; 2],
-    /// Says on which side of the center the line is.
+    /// A point in the direction of the line, seen from the center.
     toward: [f64; 2],
     direction: Direction,
     line: usize,
 }
 
-/// Gives each line that arrives at a point the first one counter-clockwise that leaves and is not taken by one
-/// that arrives in between: as brackets are paired, around the vertex.
+/// Pairs each line that arrives at a point with the first leaving line counter-clockwise from it
+/// that is not taken by one arriving in between, like pairs of brackets around the vertex.
 fn pair(mut group: Vec<End>, next: &mut [Option<usize>]) {
-    // Two can be paired in one way only.
+    // Two ends have only one possible pairing.
     if group.len() > 2 {
         group.sort_by(|a, b| around(a.center, a.toward, b.toward));
     }
     let mut arrived = Vec::new();
     let mut left = vec![false; group.len()];
-    // The second round closes the circle: nothing arrives anew.
+    // The second round closes the circle; arrivals were recorded in the first.
     for round in 0..2 {
         for (end, left) in group.iter().zip(&mut left) {
             match end.direction {
@@ -119,14 +121,14 @@ fn around(center: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Ordering {
     })
 }
 
-/// Follows the links from line to line.
+/// Appends the lines that result from following `next` from line to line.
 fn chain(mut open: Vec<Vec<[f64; 2]>>, next: &[Option<usize>], joined: &mut Vec<Joined>) {
     let mut has_previous = vec![false; open.len()];
     for &line in next.iter().flatten() {
         has_previous[line] = true;
     }
     let firsts = (0..open.len()).filter(|&line| !has_previous[line]);
-    // What is left after the open chains are closed ones.
+    // The lines that remain after the open ones are closed.
     for first in firsts.chain(0..open.len()) {
         let mut points = std::mem::take(&mut open[first]);
         if points.is_empty() {

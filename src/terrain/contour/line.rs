@@ -1,16 +1,16 @@
 use super::join::Joined;
 use crate::data::ContourLine;
 
-/// Whether pieces lost their length, or a line its width, when points were rounded.
+/// Returns true if rounding has removed the length of an arc or the width of a line.
 pub(super) fn falls_together(line: &Joined) -> bool {
     let points = &line.points;
-    // Around the point where a ring closes, too.
+    // Also around the point where a ring closes.
     let closing = if line.closed { points.get(1) } else { None };
     let mut after_next = points.iter().skip(2).chain(closing);
     points.windows(2).any(|pair| pair[0] == pair[1] || after_next.next() == Some(&pair[0]))
 }
 
-/// The line, begun at a point that its shape alone decides if it is closed.
+/// The finished line; the first point of a closed one depends on its shape alone.
 pub(super) fn finish(level: f64, line: Joined) -> ContourLine {
     let mut points = line.points;
     if line.closed {
@@ -21,8 +21,8 @@ pub(super) fn finish(level: f64, line: Joined) -> ContourLine {
     ContourLine { level, points }
 }
 
-/// Begins a ring at its smallest point; where that is passed more than once, at the one from which
-/// the ring as a whole is smallest.
+/// Rotates a ring to its smallest point; if that occurs more than once, to the occurrence from
+/// which the whole ring is smallest.
 fn start_at_smallest(ring: &mut [[f64; 2]]) {
     let from = |start: usize| ring[start..].iter().chain(&ring[..start]);
     let best = (0..ring.len()).min_by(|&a, &b| {

@@ -1,69 +1,70 @@
-//! Contour lines, cut straight from the triangles.
+//! Contour lines of a surface, computed directly from its triangles.
 //!
 //! # The rule
 //!
-//! Heights rounded to centimetres lie on a level all the time: corners, edges, whole triangles and
-//! saddles. One rule covers them all. Let *H* be the closure of the interior of the set where the
-//! surface is at the level or above. **The contour is the boundary of *H***, without what lies on
-//! the edge of the data, directed so that *H* is on its right.
+//! Heights rounded to centimeters often lie exactly on a level: at corners, along edges, on whole
+//! triangles and at saddles. One rule covers all of these cases. Let *H* be the closure of the
+//! interior of the set where the surface is at the level or above. **The contour is the boundary of
+//! *H***, except where it is the edge of the data, directed so that *H* is on its right.
 //!
-//! *H* is a union of one polygon per face. By the heights of the corners, `+` above, `0` on and `-`
-//! below the level:
+//! *H* is a union of one polygon per face, and the contour consists of *arcs*, each in one face or
+//! on one edge. The heights of the corners, `+` above, `0` on and `-` below the level, decide:
 //!
-//! | corners | in *H* | pieces of contour |
+//! | corners | in *H* | arcs |
 //! |---|---|---|
-//! | `+++` `++0` `+00` `000` | all of the face | none inside |
+//! | `+++` `++0` `+00` `000` | the whole face | none inside |
 //! | `---` `--0` `-00` | nothing: a corner or an edge has no interior | none inside |
 //! | `++-` `+--` | the part above the crossings | from crossing to crossing |
 //! | `+0-` | the part above | from the corner to the crossing |
 //!
-//! What remains are the edges of faces. Along an edge `++`, `+0` or the upper part of `+-` both
-//! faces belong to *H*, along `--` and `0-` neither: their pieces cancel, or there are none. Along an
-//! edge `00` each face counts by its third corner, so:
+//! This leaves the edges of faces. Along an edge `++`, `+0` or the upper part of `+-`, both faces
+//! belong to *H*, so their arcs cancel; along `--` and `0-` neither does. Along an edge `00`, each
+//! face counts by its third corner:
 //!
-//! | third corners of the faces at an edge `00` | piece |
+//! | third corners of the faces at an edge `00` | arc |
 //! |---|---|
 //! | `+` or `0` in one, `-` in the other | the edge |
 //! | both `+` or `0`; both `-` | none |
 //! | only one face: the edge of the data | none |
 //!
-//! So a ridge that just reaches the level, a summit on it, and the inside of a lake on it give
-//! nothing, the shore of the lake gives one line, and no piece comes twice.
+//! So there is no contour on a ridge that just reaches the level, at a summit on it, or inside a
+//! lake on it. The shore of the lake is one line, and no arc occurs twice.
 //!
 //! # Why every line closes or ends at the edge of the data
 //!
-//! Pieces meet at *nodes*: the crossing of an edge `+-`, or a vertex `0`. Each face at an edge `+-` has
-//! exactly one piece that ends there, and one of the two faces sees it begin and the other end,
-//! because they see the edge in opposite directions. Around a vertex `0`, the sectors of the faces
-//! belong to *H* or do not; going around counter-clockwise, a piece leaves the vertex where *H* ends
-//! and arrives where it begins. Around an inner vertex the changes alternate and come out even: as
-//! many arrive as leave. At the edge of the data the faces around a vertex form one or more *fans*;
-//! within a fan the changes alternate, and one may be left over: the line ends there.
+//! Arcs meet at *nodes*: the crossing of an edge `+-`, or a vertex `0`. Each face at an edge `+-`
+//! has exactly one arc with an end there. It starts in one of the two faces and ends in the other,
+//! because they have the edge in opposite directions. Around a vertex `0`, each face's sector
+//! belongs to *H* or does not. Counter-clockwise, an arc leaves the vertex where *H* ends, and
+//! arrives where *H* begins. Around an inner vertex these changes alternate, so as many arcs arrive
+//! as leave. At the edge of the data, the faces around a vertex form one or more *fans*. The
+//! changes alternate within a fan, and one may be left over: the line ends there.
 //!
 //! # The turn rule
 //!
-//! At a vertex where more than one line passes (a saddle on the level), **an arriving piece goes on
-//! with the first leaving piece counter-clockwise from it** that is not itself taken by a piece
-//! arriving in between, as brackets are paired. That is the sharpest turn to the right, around one
-//! sector of high ground: high ground that meets only at a vertex stays apart. Pairs of neighbors in
-//! the circle never cross. At the edge of the data the circle goes on over the gap, so that a line
-//! ends there only if there is nothing left to join it with.
+//! At a vertex that more than one line passes (a saddle on the level), **an arriving arc continues
+//! with the first leaving arc counter-clockwise from it** that is not taken by an arc arriving in
+//! between, like pairs of brackets. This is the sharpest turn to the right, around one sector of
+//! high ground: areas of high ground that meet only at a vertex stay separate. Pairs of neighbors
+//! in the circle never cross. At the edge of the data the circle continues across the gap, so that
+//! a line ends there only if no arc is left to join it with.
 //!
 //! # Points
 //!
-//! Nodes are joined by the links between faces, never by comparing coordinates. The crossing of an edge
-//! is computed from its smaller end, in `f64`, and lies in the box of the edge: both faces, and any
-//! numbering of the vertices, give the same bits. Where ground is narrower than the steps of an
-//! `f64` (0.57 and 57 * 0.01 differ in the last bit), crossings fall on vertices or on each other. Where
-//! that is seen, the rule is kept for the rounded pieces: those without length go, opposite ones
-//! that coincide cancel, and the others are joined anew by the turn rule. (Pieces less than such a step
-//! apart may still cross by the last bit.)
+//! Nodes are joined by the links between faces, never by comparing coordinates. The crossing of an
+//! edge is computed from its smaller end, in `f64`, and lies in the box of the edge. So both faces,
+//! and any numbering of the vertices, give the same bits. Where ground is narrower than the steps
+//! of an `f64` (0.57 and 57 * 0.01 differ in the last bit), crossings coincide with vertices or
+//! with each other. If this is detected, the rule is applied to the rounded arcs: those without
+//! length are removed, opposite ones that coincide cancel, and the others are joined again by the
+//! turn rule. (Arcs less than such a step apart may still cross by the last bit.)
 //!
 //! # The order
 //!
-//! Lines come by level and then by their points, a closed line from its smallest point. So the result
-//! depends on the set of triangles alone: not on numbers, order or threads. Contours of a part of the
-//! faces are those of the whole, cut to the pieces inside those faces and between two of them.
+//! Lines are sorted by level and then by their points; a closed line starts at its smallest point.
+//! So the result depends on the set of triangles alone: not on numbers, order or threads. The
+//! contours of some of the faces are those of all faces, restricted to the arcs inside these faces
+//! and between two of them.
 
 mod cut;
 mod find;
@@ -81,19 +82,22 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use trace::{Done, Traces};
 
-/// Draws the contours of a surface: lines by level and then by their points, high ground on the
-/// right, each closed or ending at the edge of the data. The exact rule, which covers vertices,
-/// edges and triangles on a level, is told in [the module](self). Vertices must be finite.
+/// Returns the contours of a surface, sorted by level and then by their points.
+///
+/// Each line has the higher ground on its right, and is closed or ends at the edge of the data.
+/// [The module](self) states the exact rule, which covers vertices, edges and triangles on a level.
+/// Vertices must be finite.
 ///
 /// # Errors
-/// If the levels within the heights of the surface are more than [`MAX_LEVELS`](super::MAX_LEVELS).
+/// If more than [`MAX_LEVELS`](super::MAX_LEVELS) levels lie within the heights of the surface.
 ///
 /// # Complexity
-/// Linear in faces and pieces of contour, but for sorting the lines: two passes over the faces at once,
-/// and one for every two million pieces (or one level with more), which are drawn together while the
-/// iterator waits. Faces that no level meets cost a comparison, in a raster a quarter of one. Memory: for
-/// pieces drawn together, 24 bytes a piece and 16 bytes a point; 24 bytes a level; one bit a face for each
-/// thread. Faces are looked at in parallel, and levels are drawn in parallel.
+/// Linear in faces and arcs, except for sorting the lines. There are two passes over the faces at
+/// first, and one more for every two million arcs (or for one level with more), which are drawn
+/// together when the iterator needs them. A face that no level meets costs a comparison; in a
+/// raster, a quarter of one. Memory: 24 bytes per arc and 16 bytes per point, of those drawn
+/// together; 24 bytes per level; one bit per face for each thread. Faces are scanned in parallel,
+/// and levels are drawn in parallel.
 pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Result<Contours<'a, S>> {
     let [low, high] = find::height_range(surface);
     let index = LevelIndex::new(levels.within(low, high)?);
@@ -101,18 +105,18 @@ pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Res
     Ok(Contours { surface, index, counts, next_level: 0, ready: Vec::new().into_iter() })
 }
 
-/// The contours of a surface, one after the other; made by [`contours`].
+/// An iterator over the contours of a surface, returned by [`contours`].
 #[must_use = "lines are drawn when they are asked for"]
 pub struct Contours<'a, S: ?Sized> {
     surface: &'a S,
     index: LevelIndex,
-    /// Pieces of each level.
+    /// The number of arcs of each level.
     counts: Vec<usize>,
     next_level: usize,
     ready: std::vec::IntoIter<ContourLine>,
 }
 
-/// Levels are drawn together up to so many pieces.
+/// The largest number of arcs of levels that are drawn together.
 const BAND: usize = 1 << 21;
 
 impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
@@ -132,13 +136,15 @@ impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
 }
 
 impl<S: Surface + ?Sized> Contours<'_, S> {
-    /// The pieces of all lines, counted before any is drawn. A line has a vertex for each, and one more if it is open;
-    /// the few that are shorter than a rounding have none.
+    /// Returns the number of arcs of all lines, which is known before any line is drawn.
+    ///
+    /// A line has one vertex per arc, and one more if it is open; the few arcs that rounding
+    /// collapses have none.
     pub fn arc_count(&self) -> usize {
         self.counts.iter().sum()
     }
 
-    /// Draws the next levels, at least one, and at most [`BAND`] pieces if they are more.
+    /// Draws the next levels: at least one, and no more than have [`BAND`] arcs together.
     fn draw_band(&mut self) -> Vec<ContourLine> {
         let first = self.next_level;
         let mut sum = 0;
@@ -148,7 +154,7 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
         };
         let band = first..first + self.counts[first..].iter().take_while(fits).count();
         self.next_level = band.end;
-        // Pieces are sorted by level, by counting.
+        // A counting sort of the arcs by level.
         let found = find::arcs(self.surface, &self.index, band.clone());
         let mut starts = vec![0; band.len() + 1];
         found.iter().flatten().for_each(|(level, _)| starts[level - first + 1] += 1);

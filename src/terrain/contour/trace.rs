@@ -2,9 +2,9 @@ use super::cut::{ContourArc, Cut, Direction, Face, Node};
 use crate::data::Surface;
 use rustc_hash::FxHashSet;
 
-/// Pieces of one level, joined as far as the links between faces lead.
+/// A line of one level, joined as far as faces are linked.
 pub(super) enum Trace {
-    /// The last point is the first.
+    /// The last point equals the first.
     Closed(Vec<[f64; 2]>),
     /// Begins and ends at the edge of the data.
     Open { points: Vec<[f64; 2]>, start: Option<LooseEnd>, end: Option<LooseEnd> },
@@ -13,23 +13,23 @@ pub(super) enum Trace {
 /// All lines of a level.
 pub(super) struct Traces {
     pub(super) traces: Vec<Trace>,
-    /// Whether the crossing of an edge was rounded to one of its ends.
+    /// True if the crossing of an edge was rounded to one of its ends.
     pub(super) touches_vertices: bool,
 }
 
-/// An end at a vertex. The line may go on beyond the gap in the data.
+/// An end of a line at a vertex. The line may continue beyond the gap in the data.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct LooseEnd {
     pub(super) vertex: u32,
-    /// A neighboring vertex in the same fan of faces: says where around the vertex the line is.
+    /// A neighboring vertex in the same fan of faces, for the order of lines around the vertex.
     pub(super) toward: u32,
 }
 
-/// Pieces that are part of a line already. One bit a face, kept from level to level by the thread
-/// that owns it, and empty between levels.
+/// The set of arcs that are already part of a line: one bit per face. Each thread reuses its own
+/// set, which is empty between levels.
 pub(super) struct Done {
     across: Vec<u64>,
-    /// Few: they need an edge on the level.
+    /// A hash set, because arcs along edges are rare: they need an edge on the level.
     along: FxHashSet<(u32, u8)>,
 }
 
@@ -38,7 +38,7 @@ impl Done {
         Done { across: vec![0; face_count.div_ceil(64)], along: FxHashSet::default() }
     }
 
-    /// Adds a piece; false if it was there.
+    /// Adds an arc; returns false if the set contains it already.
     fn insert(&mut self, arc: ContourArc) -> bool {
         match arc {
             ContourArc::Along(face, i) => self.along.insert((face, i)),
@@ -59,7 +59,7 @@ impl Done {
     }
 }
 
-/// Joins the pieces of a level, each of which is given once.
+/// Joins the arcs of a level to lines. Each arc must be given once.
 pub(super) fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, arcs: &[ContourArc], done: &mut Done) -> Traces {
     let mut tracer = Tracer { cut, done, touches_vertices: false };
     let traces = arcs.iter().filter_map(|&seed| tracer.line_of(seed)).collect();
@@ -75,14 +75,14 @@ struct Tracer<'t, 'a, S: ?Sized> {
 }
 
 enum Stop {
-    /// Back at the piece that it began with.
+    /// Back at the first arc.
     Seed,
     /// At the edge of the data.
     Data(Option<LooseEnd>),
 }
 
 impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
-    /// The line that a piece is part of, unless it was found before.
+    /// The line that contains an arc, unless it was found before.
     fn line_of(&mut self, seed: ContourArc) -> Option<Trace> {
         if !self.done.insert(seed) {
             return None;
@@ -98,7 +98,7 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
                 let mut points = Vec::new();
                 let start = match self.follow(face, seed, Direction::Backward, &mut points) {
                     Stop::Data(start) => start,
-                    // Not possible: forward would have come here too.
+                    // Impossible: the forward search would have come here as well.
                     Stop::Seed => None,
                 };
                 points.reverse();
@@ -108,7 +108,7 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
         })
     }
 
-    /// Goes from the seed as far as it leads; adds the far node of each piece.
+    /// Follows arcs from the seed as far as possible; adds the far node of each arc.
     fn follow(&mut self, mut face: Face, seed: ContourArc, direction: Direction, points: &mut Vec<[f64; 2]>) -> Stop {
         let mut arc = seed;
         loop {
@@ -125,7 +125,7 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
             match next {
                 Some((next, next_arc)) if self.done.insert(next_arc) => (face, arc) = (next, next_arc),
                 Some((_, next_arc)) if next_arc == seed => return Stop::Seed,
-                // The first of these only if the links between faces contradict each other.
+                // `Some` occurs only if the links between faces contradict each other.
                 Some(_) | None => {
                     return Stop::Data(match node {
                         Node::Edge(_) => None,

@@ -1,4 +1,4 @@
-//! Lines that reach far beyond a triangulation, divided near it.
+//! Division of lines that reach far beyond a triangulation.
 
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::{Crossing, Geometry, Terrain};
@@ -7,14 +7,15 @@ use crate::triangulation::tds::VertexId;
 
 use super::{Domain, Segment};
 
-/// How many times as far from zero as the triangulation, on each axis, a segment may reach.
+/// How far a segment may reach from zero on each axis, relative to the triangulation.
 const REACH: f64 = 2.0;
 
-/// Closed curves without long ways from the triangulation to an end: where a segment leaves the box that is [`REACH`]
-/// times as far from zero as the triangulation, it is divided.
+/// Divides segments where they leave the box that reaches [`REACH`] times as far from zero as the
+/// triangulation.
 ///
-/// The places to which crossings are rounded are as fine as the largest coordinate of a segment has them. From a corner
-/// at 2^52, in place of "no limit", they would be whole numbers: the surface would be cut a meter off.
+/// The grid to which crossings are rounded is as coarse as the largest coordinate of a segment
+/// requires. With a corner at 2^52, as a stand-in for "no limit", it would consist of whole
+/// numbers, and the cut could be a meter off.
 ///
 /// # Complexity
 /// Linear.
@@ -46,8 +47,10 @@ pub(super) fn divided(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
     divided
 }
 
-/// Where a segment crosses a line across an axis, if it does so between its ends: to within two units in the last place,
-/// however long the segment is; and exactly, if it runs along the axis.
+/// The point at which a segment crosses a line perpendicular to an axis, strictly between its ends.
+///
+/// It is accurate to two units in the last place, however long the segment is, and exact if the
+/// segment runs along the axis.
 fn crossing([a, b]: Segment, axis: usize, limit: f64) -> Option<[f64; 2]> {
     let is_between = a[axis] < limit && limit < b[axis] || b[axis] < limit && limit < a[axis];
     if !is_between {

@@ -1,4 +1,4 @@
-//! Which triangles a segment meets.
+//! The triangles that segments meet.
 
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
@@ -6,12 +6,13 @@ use crate::triangulation::{ConstrainedDelaunay, Passage};
 
 use super::Segment;
 
-/// The triangles that each of some segments meets: in their inside, or along or across an edge. A triangle that is
-/// touched at a corner only is not met.
+/// The triangles that each segment meets: inside, or along or across an edge.
+///
+/// A triangle that a segment touches only at a corner is not met.
 ///
 /// # Complexity
-/// Linear in the number of triangles met, after a walk to each start; for a start outside of the hull, the size of the
-/// hull.
+/// Linear in the number of triangles met, after a walk to each start; for a start outside of the
+/// hull, linear in the size of the hull.
 pub(super) fn met<'t>(
     triangulation: &'t ConstrainedDelaunay<Terrain>,
     segments: impl IntoIterator<Item = Segment> + 't,

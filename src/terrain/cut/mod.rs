@@ -1,29 +1,36 @@
-//! Cutting a finished surface along lines.
+//! Cuts of a finished surface along lines.
 //!
-//! The surface is cut as it is, not triangulated anew: triangles that no line meets stay, and the others are divided
-//! into pieces on which the height is that of the triangle.
+//! The surface is cut as it is, not triangulated again. Triangles that no line meets stay; the
+//! others are divided into fragments, on which the height is that of the triangle.
 //!
 //! ```text
 //!        +                    +
 //!       / \                  / \          the line crosses two triangles:
-//!      /   \                / _-\         one has three pieces now,
+//!      /   \                / _-\         one has three fragments now,
 //!   --/-----\--    ->    --+-----+--      the other two; both have the
 //!    /_______\            /_______\       same new vertices
 //! ```
 //!
-//! 0. *Far*: segments that reach far beyond the surface are divided, so that their ends do not say how it is rounded.
-//! 1. *Met*: the triangles that each segment of the lines meets are found by walking.
-//! 2. *Snap*: these segments are snapped to each other, so that a corner of one polygon that was meant to lie on the side
-//!    of another one does, and a side that goes out and back over itself encloses nothing.
-//! 3. *Patch*: the segments and the edges of the triangles are [arranged](crate::triangulation::arrangement) together: where they
-//!    cross, they get a common vertex, rounded, and bend with it. No piece can be turned around by that, and no crack
-//!    can open, since what is bent is bent for both sides. All is triangulated, with edges and lines as constraints.
-//! 4. *Heights* at new vertices are those of the edge that they lie on, breaklines first, or of the triangle.
-//! 5. *Regions*: lines are closed curves, which bound domains. One walk over all faces finds in which of them each lies.
-//! 6. Triangles of which all pieces are kept are made whole again, unless a neighbor needs a vertex on their side.
+//! 0. *Far*: segments that reach far beyond the surface are divided, so that rounding does not
+//!    depend on their ends.
+//! 1. *Met*: a walk finds the triangles that each segment meets.
+//! 2. *Snap*: these segments are snapped to each other. So a corner of one polygon that was meant
+//!    to lie on the side of another one does, and a side that runs back over itself encloses
+//!    nothing.
+//! 3. *Patch*: the segments and the edges of the triangles are
+//!    [arranged](crate::triangulation::arrangement) together: where they cross, they get a common
+//!    vertex, rounded, and bend with it. This cannot reverse a fragment, and cannot open a crack,
+//!    because both sides of an edge bend alike. The result is triangulated, with edges and lines as
+//!    constraints.
+//! 4. *Heights*: a new vertex has the height of the edge that it lies on, breaklines first, or else
+//!    that of the triangle.
+//! 5. *Regions*: lines are closed curves, which bound domains. One walk over all faces finds the
+//!    domains of each.
+//! 6. Triangles all of whose fragments are kept become whole again, unless a neighbor needs a
+//!    vertex on one of their sides.
 //!
-//! The pieces of a triangle need not be Delaunay with those beside: the triangulation that was cut stays as it is
-//! underneath.
+//! Fragments need not be Delaunay with their neighbors. The triangulation underneath does not
+//! change.
 
 mod far;
 mod met;
@@ -45,19 +52,18 @@ use patch::Patch;
 use patched::{Patched, Remains};
 use snap::snapped;
 
-/// The number of what some closed curves bound together, by the even-odd rule.
+/// The number of an area that some closed curves bound together, by the even-odd rule.
 pub(super) type Domain = usize;
 
 /// The ends of a straight part of a line, in plan.
 pub(super) type Segment = [[f64; 2]; 2];
 
-/// A side of a face: its number, and that of the corner opposite.
+/// A side of a face: the number of the face, and the index of the opposite corner.
 type Side = (u32, usize);
 
-/// What a cut leaves of a triangulation beside whole triangles: pieces of others.
+/// The fragments that a cut leaves of the triangles of a triangulation.
 ///
-/// Faces and vertices of the surface are numbered on from those of the triangulation: after these come all of the
-/// patch.
+/// Faces and vertices of the patch are numbered after those of the triangulation.
 #[derive(Debug)]
 pub(super) struct Cut {
     patch: Patch,
@@ -66,16 +72,17 @@ pub(super) struct Cut {
     first_vertex: usize,
 }
 
-/// Cuts a triangulation along closed curves, given as segments, each with the number of a domain that it bounds.
+/// Cuts a triangulation along closed curves, given as segments, each with the domain that it
+/// bounds.
 ///
-/// A face stays if `is_kept` says so, given the domains that the face lies in, sorted. Of the triangles `inside`, those
-/// that stay whole remain; pieces of others are returned.
+/// A face is kept if `is_kept` returns true for the sorted domains that contain it. On return,
+/// `inside` contains the triangles that stay whole; the fragments of the others are returned.
 ///
 /// # Errors
 /// If there are more vertices than can be numbered.
 ///
 /// # Complexity
-/// Linear in the number of triangles, and O(m log m) for m segments and triangles that they meet.
+/// Linear in the number of triangles, plus O(m log m) for m segments and triangles that they meet.
 pub(super) fn cut(
     base: &ConstrainedDelaunay<Terrain>,
     inside: &mut [bool],
@@ -106,12 +113,13 @@ pub(super) fn cut(
 }
 
 impl Cut {
-    /// How many triangles are in pieces.
+    /// The number of triangles of which there are fragments.
     pub(super) fn cut_count(&self) -> usize {
         self.remains.cut
     }
 
-    /// The triangles that lines meet, and some beside them, in order of their numbers; not all of them are in pieces.
+    /// The triangles that the patch replaces, in order of their numbers: those that lines meet and
+    /// some neighbors. Not all of them are cut.
     pub(super) fn replaced(&self) -> &[CellId] {
         &self.patch.replaced
     }
@@ -126,7 +134,7 @@ impl Cut {
         self.first_vertex + self.patch.vertices.len()
     }
 
-    /// Where a vertex is that is none of the triangulation.
+    /// The coordinates of a vertex of the patch.
     pub(super) fn position(&self, vertex: u32) -> [f64; 3] {
         self.point(VertexId::new(vertex as usize - self.first_vertex))
     }
@@ -136,14 +144,14 @@ impl Cut {
         [x, y, self.patch.heights[vertex.index()]]
     }
 
-    /// The face of the patch with a number, if it is a piece.
+    /// The face of the patch with a number, if it is a fragment.
     fn fragment(&self, face: u32) -> Option<CellId> {
         let at = (face as usize).checked_sub(self.first_fragment)?;
         let is_fragment = *self.remains.is_fragment.get(at)?;
         is_fragment.then(|| CellId::new(at))
     }
 
-    /// The corners of a piece, counter-clockwise.
+    /// The corners of a fragment, counter-clockwise.
     pub(super) fn face(&self, face: u32) -> Option<[u32; 3]> {
         let number = |vertex: VertexId| match self.patch.vertices[vertex.index()] {
             Some(vertex) => vertex.index() as u32,
@@ -152,7 +160,7 @@ impl Cut {
         Some(self.patch.triangulation.tds().corners(self.fragment(face)?).map(number))
     }
 
-    /// What lies beyond a side, if it or the face is a piece.
+    /// The face across a side, if either of the two is a fragment.
     pub(super) fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
         if let Some(fragment) = self.fragment(face) {
             let beyond = self.patch.triangulation.tds().neighbor(fragment, i);
@@ -163,22 +171,22 @@ impl Cut {
         self.remains.beside.get(&(face, i)).copied()
     }
 
-    /// What a side of a piece is.
+    /// The kind of a side of a fragment.
     pub(super) fn edge_kind(&self, face: u32, i: usize) -> Option<EdgeKind> {
         self.fragment(face).map(|fragment| self.remains.kinds[fragment.index()][i])
     }
 
-    /// Whether a breakline runs along the side of a whole triangle, as it is seen from the piece beside it.
+    /// Returns true if the fragment across a side of a whole triangle has a breakline there.
     pub(super) fn is_breakline(&self, face: u32, i: usize) -> bool {
         self.remains.breaklines.contains(&(face, i))
     }
 
-    /// Whether a line runs along the side of a whole triangle.
+    /// Returns true if a line runs along the side of a whole triangle.
     pub(super) fn is_clipped(&self, face: u32, i: usize) -> bool {
         self.remains.clipped.contains(&(face, i))
     }
 
-    /// The height at a place in plan that is admitted, if it lies in a piece.
+    /// The height at a position in plan, if it lies in a fragment. The position must be admitted.
     pub(super) fn elevation(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let triangulation = &self.patch.triangulation;
         let is_fragment = |cell: &CellId| self.remains.is_fragment[cell.index()];

@@ -1,4 +1,4 @@
-//! The triangles that lines meet, triangulated anew together with the lines.
+//! The triangles that lines meet, triangulated again together with the lines.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -13,32 +13,33 @@ use super::Segment;
 use super::met::met;
 use super::steps::{Arranged, is_breakline};
 
-/// The part of a triangulation that lines meet, in pieces that the lines do not cross.
+/// The part of a triangulation that lines meet, divided so that the lines cross no face.
 ///
-/// It is a constrained triangulation of its own: of the corners of the triangles that are met, of the ends of the lines
-/// and of the points where lines and edges cross. Its constraints are the lines and the edges of these triangles, so
-/// that each of its faces is a piece of one triangle, or lies beside all of them.
+/// It is a separate constrained triangulation. Its points are the corners of the triangles that are
+/// met, the ends of the lines, and the crossings of lines and edges. Its constraints are the lines
+/// and the edges of these triangles. So each of its faces is a fragment of one triangle, or lies
+/// outside of all of them.
 #[derive(Debug)]
 pub(super) struct Patch {
     pub(super) triangulation: ConstrainedDelaunay<Terrain>,
     /// The triangles that the patch replaces, in order of their numbers.
     pub(super) replaced: Vec<CellId>,
-    /// For each vertex of the patch that of the surface at the same point, if it has one.
+    /// For each vertex of the patch, the vertex of the surface at the same point, if there is one.
     pub(super) vertices: Vec<Option<VertexId>>,
-    /// For each face of the patch the triangle that it is a piece of, if it is one.
+    /// For each face of the patch, the triangle of which it is a fragment, if any.
     pub(super) cells: Vec<Option<CellId>>,
-    /// The heights of the vertices: of those that lie in no triangle that is met, none.
+    /// The heights of the vertices; NaN for vertices outside of all triangles that are met.
     pub(super) heights: Vec<f64>,
-    /// The edges of the triangles that are met, from the smaller vertex to the larger. The lines of the triangulation
-    /// from [`first_edge`](Self::first_edge) on.
+    /// The edges of the triangles that are met, from the smaller vertex to the larger. Their lines
+    /// in the triangulation start at [`first_edge`](Self::first_edge).
     pub(super) edges: Vec<[VertexId; 2]>,
     first_edge: usize,
-    /// For each segment that was given its line in the triangulation, if it meets a triangle.
+    /// For each given segment, its line in the triangulation, if it meets a triangle.
     pub(super) segments: Vec<Option<LineId>>,
 }
 
-/// The corners of a triangle, counter-clockwise from the first in lexicographic order: what is computed from them does
-/// not depend on how the triangles are numbered.
+/// The corners of a triangle, counter-clockwise from the lexicographically smallest, so that
+/// results do not depend on the numbering of the triangles.
 fn corners(base: &ConstrainedDelaunay<Terrain>, cell: CellId) -> [[f64; 3]; 3] {
     let mut corners = base.tds().corners(cell).map(|corner| *base.point(corner));
     let order = |p: &[f64; 3], q: &[f64; 3]| base.geometry().compare(p, q);
@@ -47,15 +48,15 @@ fn corners(base: &ConstrainedDelaunay<Terrain>, cell: CellId) -> [[f64; 3]; 3] {
     corners
 }
 
-/// A segment to arrange, as positions among the points.
+/// A segment to arrange, as indices of points.
 type Ends = [u32; 2];
 
-/// What is arranged: the edges of some triangles, and the segments that meet them.
+/// The input of the arrangement: the edges of some triangles, and the segments that meet them.
 struct Drawing {
-    /// The corners of the triangles, in order, and then the other ends of segments.
+    /// The corners of the triangles, in order, followed by the other ends of segments.
     points: Vec<[f64; 3]>,
     corners: Vec<VertexId>,
-    /// The segments that meet triangles, and then the edges, each once.
+    /// The segments that meet triangles, followed by the edges, each once.
     lines: Vec<Ends>,
     first_edge: usize,
     edges: Vec<[VertexId; 2]>,
@@ -105,9 +106,10 @@ impl Drawing {
         Drawing { points, corners, lines, first_edge, edges, segments: drawn }
     }
 
-    /// Arranges the lines: those to cut along are led through all that they come near, so that nothing is left of
-    /// spikes and gaps that are narrower than a rounding. An edge that is such a line, too, is arranged once. Returns
-    /// the segment of each line, too.
+    /// Arranges the lines. Returns the arrangement and the segment in it of each line.
+    ///
+    /// Cut lines pass through all points that they come near, so that spikes and gaps narrower than
+    /// the rounding vanish. An edge that is also a cut line is arranged once.
     fn arrange(&self, step: f64) -> (Arrangement, Vec<u32>) {
         let site = |i: u32| [self.points[i as usize][0], self.points[i as usize][1]];
         let cut: FxHashMap<Ends, u32> = self.lines[..self.first_edge].iter().copied().zip(0..).collect();
@@ -126,7 +128,7 @@ impl Drawing {
 }
 
 impl Patch {
-    /// The patch of what some segments meet; `None` if they meet nothing.
+    /// The patch of the triangles that some segments meet; `None` if they meet none.
     ///
     /// # Errors
     /// If there are more points than can be numbered.
@@ -140,7 +142,7 @@ impl Patch {
         if cells.is_empty() {
             return Ok(None);
         }
-        // An edge that is divided belongs to the patch with the triangles on both of its sides.
+        // If an edge is divided, the triangles on both of its sides belong to the patch.
         loop {
             let drawing = Drawing::new(base, &cells, segments, &is_met);
             let patch = Self::triangulated(base, &cells, drawing)?;
@@ -193,7 +195,7 @@ impl Patch {
         Ok(patch)
     }
 
-    /// How many lines of the triangulation are parts of lines to cut along: those before the edges.
+    /// The number of lines of the triangulation that are cut lines; the edges follow them.
     pub(super) fn first_edge(&self) -> usize {
         self.first_edge
     }
@@ -203,22 +205,24 @@ impl Patch {
         self.triangulation.chain(LineId::new(self.first_edge + edge))
     }
 
-    /// The edges of the surface that run along an edge of the patch, by their positions.
+    /// The edges of the surface that run along an edge of the patch, as indices.
     pub(super) fn edges_along(&self, [p, q]: [VertexId; 2]) -> impl Iterator<Item = usize> + '_ {
         self.triangulation.lines_through(p, q).filter_map(|line| line.index().checked_sub(self.first_edge))
     }
 
-    /// Whether a line to cut along runs along an edge of the patch.
+    /// Returns true if a cut line runs along an edge of the patch.
     pub(super) fn is_cut_along(&self, [p, q]: [VertexId; 2]) -> bool {
         self.triangulation.lines_through(p, q).next().is_some_and(|line| line.index() < self.first_edge)
     }
 
-    /// For each face the triangle that it is a piece of. Beside the chain of an edge that is known from the edge; from
-    /// there it spreads over all that is no such chain.
+    /// For each face, the triangle of which it is a fragment.
+    ///
+    /// Next to the chain of an edge, this is the triangle at the edge. From there it is propagated
+    /// to neighbors, but not across such chains.
     fn find_cells(&self, base: &ConstrainedDelaunay<Terrain>, cells: &FxHashSet<CellId>) -> Vec<Option<CellId>> {
         let tds = self.triangulation.tds();
-        // On the left of each edge of the patch; twice where triangles have collapsed onto it, which are then on its
-        // other side, too.
+        // The triangle on the left of each edge of the patch. Triangles that have collapsed onto an
+        // edge are listed as well, on both of its sides.
         let mut left: Vec<([VertexId; 2], CellId)> = Vec::new();
         for (edge, &[u, v]) in self.edges.iter().enumerate() {
             let sides = [base.tds().edge(u, v), base.tds().edge(v, u)];
@@ -261,9 +265,11 @@ impl Patch {
         (0..found.len()).map(|face| found[face].filter(|_| is_face(face))).collect()
     }
 
-    /// The heights of the vertices: those of the surface have theirs, on an edge it is that of the edge, and in a
-    /// triangle that of its plane. Where several edges come so near that they share a vertex, breaklines go first, and
-    /// of equal ones the lowest.
+    /// The heights of the vertices.
+    ///
+    /// A vertex of the surface keeps its height. One on an edge has the height of the edge, one in
+    /// a triangle that of its plane. If several edges are so close that they share a vertex,
+    /// breaklines precede other edges, and then the lowest is used.
     fn find_heights(&self, base: &ConstrainedDelaunay<Terrain>) -> Vec<f64> {
         let slots = self.triangulation.tds().vertex_slots();
         let mut on_edges: Vec<Option<(bool, f64)>> = vec![None; slots];

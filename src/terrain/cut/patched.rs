@@ -18,29 +18,29 @@ use super::{Domain, Segment, Side};
 pub(super) struct Patched<'a> {
     base: &'a ConstrainedDelaunay<Terrain>,
     patch: &'a Patch,
-    /// For each triangle, whether the patch replaces it.
+    /// For each triangle: true if the patch replaces it.
     is_replaced: Vec<bool>,
-    /// For each line of the patch to cut along the domains that it bounds: as often as it was given for them.
+    /// For each cut line of the patch, the domains that it bounds, each as often as it was given.
     domains: Vec<Vec<Domain>>,
-    /// Sides between the patch and what is not replaced, from either.
+    /// The sides between patch and triangles that are not replaced, from both of their faces.
     border: FxHashMap<Side, Side>,
 }
 
-/// What is left of a patched triangulation.
+/// What a cut leaves of a patched triangulation.
 #[derive(Debug)]
 pub(super) struct Remains {
-    /// For each face of the patch, whether it is part of the surface as a piece.
+    /// For each face of the patch: true if it is part of the surface as a fragment.
     pub(super) is_fragment: Vec<bool>,
-    /// What the sides of the pieces are.
+    /// The kinds of the sides of the fragments.
     pub(super) kinds: Vec<[EdgeKind; 3]>,
-    /// Across sides between a piece and a whole triangle, from either.
+    /// The face across each side between a fragment and a whole triangle, from both of them.
     pub(super) beside: FxHashMap<Side, u32>,
-    /// Sides of whole triangles beside pieces along which a breakline runs: maybe another edge than their own, that has
-    /// come to lie here.
+    /// The sides of whole triangles along which a neighboring fragment has a breakline. It may be
+    /// an edge other than their own that rounding has moved here.
     pub(super) breaklines: FxHashSet<Side>,
-    /// Sides of triangles along which a line runs.
+    /// The sides of triangles along which a line runs.
     pub(super) clipped: FxHashSet<Side>,
-    /// How many triangles are in pieces.
+    /// The number of triangles of which there are fragments.
     pub(super) cut: usize,
 }
 
@@ -86,7 +86,7 @@ impl<'a> Patched<'a> {
         (self.first_fragment() + face.index()) as u32
     }
 
-    /// A face of the patch by its number, or `None` if it is one of the triangulation.
+    /// The face of the patch with a number; `None` for faces of the triangulation.
     fn fragment(&self, face: u32) -> Option<CellId> {
         (face as usize).checked_sub(self.first_fragment()).map(CellId::new)
     }
@@ -108,7 +108,7 @@ impl<'a> Patched<'a> {
         }
     }
 
-    /// The curves as they run between the faces.
+    /// The curves along the edges of the patch.
     pub(super) fn drawn(&self, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
         let mut drawn = Vec::with_capacity(curves.len());
         for (line, &(domain, segment)) in self.patch.segments.iter().zip(curves) {
@@ -126,8 +126,8 @@ impl<'a> Patched<'a> {
         drawn
     }
 
-    /// What is left of the triangles `inside`, given which faces are kept. Of these, those that stay whole remain
-    /// `inside`.
+    /// The fragments of the triangles `inside`, given the faces that are kept. On return, `inside`
+    /// contains the triangles that stay whole.
     pub(super) fn remains(&self, inside: &mut [bool], kept: &[bool]) -> Remains {
         let was_inside: Vec<(CellId, bool)> =
             self.patch.replaced.iter().map(|&cell| (cell, inside[cell.index()])).collect();
@@ -172,8 +172,8 @@ impl<'a> Patched<'a> {
         remains
     }
 
-    /// The replaced triangles that stay whole: those of which all is kept, if what lies beside them needs none of the
-    /// vertices that their sides have in the patch.
+    /// The replaced triangles that stay whole: those of which all fragments are kept, unless a
+    /// neighbor needs a vertex that one of their sides has in the patch.
     fn whole(&self, inside: &[bool], kept: &[bool]) -> FxHashSet<CellId> {
         let mut faces: FxHashMap<CellId, [usize; 2]> = FxHashMap::default();
         for (face, cell) in self.patch.cells.iter().enumerate() {
@@ -185,7 +185,7 @@ impl<'a> Patched<'a> {
         }
         let is_whole = |cell: &CellId| inside[cell.index()] && faces.get(cell).is_some_and(|[all, left]| all == left);
         let mut whole: FxHashSet<CellId> = self.patch.replaced.iter().copied().filter(is_whole).collect();
-        // Of a triangle that has collapsed, the neighbor's neighbor is not known here.
+        // If a triangle has collapsed, the neighbor beyond it is not known here.
         let is_gone = |cell: CellId| {
             self.base.tds().is_infinite(cell)
                 || !inside[cell.index()]
@@ -223,7 +223,8 @@ impl<'a> Patched<'a> {
         clipped
     }
 
-    /// The triangle that lies beyond a side of a face of the patch, and its side, if these have both ends in common.
+    /// The triangle across a side of a face of the patch, and its side, if the two sides share both
+    /// ends.
     fn whole_beside(&self, face: CellId, i: usize, beyond: CellId) -> Option<Side> {
         let Some(cell) = self.patch.cells[beyond.index()] else {
             return self.border.get(&(self.number(face), i)).copied();
@@ -255,7 +256,7 @@ impl Faces for Patched<'_> {
     fn beyond(&self, face: u32, side: usize, domains: &mut Vec<Domain>) -> Option<u32> {
         let tds = self.patch.triangulation.tds();
         let across_border = self.border.get(&(face, side)).copied();
-        // The side of a piece, on whichever side of it, and what is beyond.
+        // The side as one of a fragment, on either side of it, and the face across it.
         let (fragment, i, beyond) = match (self.fragment(face), across_border) {
             (Some(fragment), Some((beyond, _))) => (fragment, side, beyond),
             (Some(fragment), None) => {

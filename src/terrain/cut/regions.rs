@@ -1,4 +1,4 @@
-//! Which faces lie within which closed curves.
+//! The search for the faces inside closed curves.
 
 use rustc_hash::FxHashMap;
 
@@ -7,18 +7,18 @@ use crate::triangulation::num::Sign;
 
 use super::{Domain, Segment};
 
-/// Faces of a plane that curves divide: a face is a number, with sides from 0 to 2.
+/// The faces of a plane divided by curves: a face is a number, with sides from 0 to 2.
 pub(super) trait Faces {
-    /// The face beyond a side, and the domains that the side is a border of: of each as often as its curves run along
-    /// it. `None` where nothing lies beyond.
+    /// Returns the face across a side; `None` if there is none. Appends the domains that the side
+    /// bounds to `domains`, each as often as its curves run along the side.
     fn beyond(&self, face: u32, side: usize, domains: &mut Vec<Domain>) -> Option<u32>;
 }
 
-/// For each of `count` faces that hang together with `start` whether `is_kept` says so of the domains that it lies in,
-/// which come sorted; given those that `start` lies in. Of all others, no.
+/// For each of `count` faces: true if it is connected to `start` and `is_kept` returns true for the
+/// sorted domains that contain it. `within` are the domains of `start`.
 ///
 /// # Complexity
-/// Linear, and for each region that curves bound, the number of domains that it lies in.
+/// Linear, plus, for each region that curves bound, the number of domains that contain it.
 pub(super) fn keep(
     faces: &impl Faces,
     count: usize,
@@ -28,7 +28,7 @@ pub(super) fn keep(
 ) -> Vec<bool> {
     let mut kept = vec![false; count];
     let mut is_seen = vec![false; count];
-    // Faces to go on from, each with the domains that it lies in.
+    // Faces to continue from, each with the domains that contain it.
     let mut regions = vec![(start, within)];
     let mut here = Vec::new();
     let mut domains = Vec::new();
@@ -59,17 +59,18 @@ pub(super) fn keep(
     kept
 }
 
-/// Sorted domains, without those and with those others that are listed an odd number of times.
+/// The sorted symmetric difference of domains and those that are listed an odd number of times.
 fn toggled(within: &[Domain], listed: &[Domain]) -> Vec<Domain> {
     let mut all = [within, listed].concat();
     all.sort_unstable();
     all.chunk_by(Domain::eq).filter(|same| same.len() % 2 == 1).map(|same| same[0]).collect()
 }
 
-/// The domains that a triangle lies in, sorted, given all segments of the curves, none of which crosses it.
+/// The sorted domains that contain a triangle, given all segments of the curves, none of which
+/// crosses it.
 ///
-/// A ray to the right of its lowest corner, a little above it, is followed: where a segment starts at the corner, the
-/// triangle's other corners tell on which side of it the triangle lies.
+/// A ray runs from the lowest corner to the right, a little above it. If a segment starts at the
+/// corner, the other corners of the triangle decide on which side of it the triangle lies.
 ///
 /// # Complexity
 /// Linear in the number of segments.

@@ -1,4 +1,4 @@
-//! Lines to cut along, snapped to each other.
+//! Snapping of cut lines to each other.
 
 use rustc_hash::FxHashMap;
 
@@ -9,9 +9,12 @@ use crate::triangulation::geometry::{Crossing, Terrain};
 use super::met::met;
 use super::{Domain, Segment};
 
-/// Closed curves whose segments have common ends only, or both ends in common: they are led through the ends of others
-/// and the crossings that they come near. So a side that runs along another one, or was meant to, is the same from then
-/// on, and is rounded alike whatever it crosses. No segment moves by more than half a unit.
+/// Snaps the segments of closed curves to each other: afterwards, two segments share at most an
+/// end, or are equal.
+///
+/// Segments are bent through the ends of others and the crossings that they come near. So a side
+/// that runs along another one, or was meant to, becomes equal to it, and is rounded like it
+/// wherever it crosses other lines. No segment moves by more than half a unit.
 ///
 /// Segments that meet no triangle stay as they are.
 ///

@@ -1,9 +1,9 @@
-//! Where the surface steps from one height to another within a rounding.
+//! Vertices where the height of a surface steps within a rounding error.
 //!
-//! A point beside a breakline by less than doubles resolve leaves a triangle between them that is as thin, and as steep
-//! as the heights differ. Where a line crosses it, its sides come to one vertex, which can have the height of one of
-//! them only; the triangle beyond the other side would be tilted as a whole. There, that side gets a vertex of its own,
-//! a unit further out:
+//! If a point is closer to a breakline than doubles resolve, the triangle between them is as thin,
+//! and as steep as the heights differ. Where a line crosses it, its sides are rounded to one
+//! vertex. This vertex can have the height of only one of the sides; the triangle across the other
+//! side would be tilted as a whole. So the other side gets a vertex of its own, a unit further out:
 //!
 //! ```text
 //!          |                          |
@@ -12,7 +12,7 @@
 //!          | line                     |
 //! ```
 //!
-//! Where the side itself goes that way, to another vertex, it shares what that one gets.
+//! If the side itself runs in that direction, to another vertex, it uses the vertex of that one.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -21,31 +21,31 @@ use crate::triangulation::geometry::{Geometry, Terrain, height_along};
 use crate::triangulation::num::Sign;
 use crate::triangulation::tds::{CellId, VertexId};
 
-/// Lines to cut along and edges of triangles as they were arranged.
+/// Cut lines and edges of triangles after their arrangement.
 pub(super) struct Arranged<'a> {
     pub(super) base: &'a ConstrainedDelaunay<Terrain>,
-    /// Vertices of the triangles, which are the first points.
+    /// The vertices of the triangles, which are the first points.
     pub(super) corners: &'a [VertexId],
     /// The edges of the triangles, from the smaller vertex to the larger, sorted.
     pub(super) edges: &'a [[VertexId; 2]],
-    /// How far one center of a pixel is from the next.
+    /// The distance between the centers of neighboring pixels.
     pub(super) unit: [f64; 2],
     pub(super) points: Vec<[f64; 3]>,
-    /// The points of each line to cut along, and then those of each edge, in order.
+    /// The points of each cut line, followed by those of each edge, in order.
     pub(super) chains: Vec<Vec<u32>>,
 }
 
-/// A side that gets a vertex of its own, beside a site.
+/// A side that gets a vertex of its own next to a site.
 struct Step {
     edge: usize,
     vertex: u32,
-    /// Whether the vertex is on the left of the side, from the smaller to the larger of its ends.
+    /// True if the vertex is on the left of the side, from the smaller to the larger of its ends.
     is_left: bool,
-    /// What a line passes from the site to the vertex, both left out.
+    /// The vertices that a line passes between the site and the vertex.
     between: Vec<u32>,
 }
 
-/// The new vertices, by the sites that they are beside.
+/// Maps sites to the new vertices next to them.
 type Steps = FxHashMap<u32, Vec<Step>>;
 
 fn bits(p: &[f64; 3]) -> [u64; 2] {
@@ -53,10 +53,10 @@ fn bits(p: &[f64; 3]) -> [u64; 2] {
 }
 
 impl Arranged<'_> {
-    /// Gives sides of steep triangles vertices of their own where they share one with another height.
+    /// Inserts vertices for the sides of steep triangles that share a vertex of a different height.
     ///
     /// # Complexity
-    /// Linear in the length of all chains, but for sorting.
+    /// Linear in the length of all chains, except for sorting.
     pub(super) fn separate(&mut self) {
         let first_edge = self.chains.len() - self.edges.len();
         let mut edges_at: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
@@ -100,7 +100,8 @@ impl Arranged<'_> {
         height_along(u, v, [x, y])
     }
 
-    /// The edges at a point that get a vertex of their own, those nearer to the point's own height first.
+    /// The edges at a point that get a vertex of their own, those closer to the point's height
+    /// first.
     fn steps_at(
         &mut self,
         site: u32,
@@ -109,7 +110,7 @@ impl Arranged<'_> {
         taken: &mut FxHashSet<[u64; 2]>,
     ) -> Vec<Step> {
         let tds = self.base.tds();
-        // From the triangles at the vertex, or on both sides of the edge, that the point's height is that of.
+        // Start at the triangles of the vertex or edge that the point has its height from.
         let (start, height, own) = match self.corner(site) {
             Some(vertex) => (tds.around(vertex).collect::<Vec<CellId>>(), self.base.point(vertex)[2], None),
             None => {
@@ -160,12 +161,12 @@ impl Arranged<'_> {
                 ahead.push((beyond, vertex, height, distance));
             }
         }
-        // What runs along such an edge for a while shares its steps: a chain of one point is none.
+        // Lines along such an edge share its steps. A chain without inner points has none.
         steps.retain(|step| self.chains[first_edge + step.edge].len() > 2);
         steps
     }
 
-    /// What a height may be off in a triangle, if its vertices are a unit off.
+    /// The largest error of a height in a triangle whose vertices are off by a unit.
     fn tolerance(&self, cell: CellId) -> f64 {
         let [a, b, c] = self.base.tds().corners(cell).map(|vertex| *self.base.point(vertex));
         let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
@@ -175,14 +176,16 @@ impl Arranged<'_> {
         self.unit[0].max(self.unit[1]) * slope + 1e-12 * highest
     }
 
-    /// The edges of a triangle, by their positions.
+    /// The edges of a triangle, as indices.
     fn edges_of(&self, cell: CellId) -> impl Iterator<Item = usize> + '_ {
         let sides = (0..3).map(move |i| self.base.tds().edge_ends(cell, i));
         sides.filter_map(|[u, v]| self.edges.binary_search(&[u.min(v), u.max(v)]).ok())
     }
 
-    /// A new point some units from another one, to the right of the direction from one vertex to another, from where the
-    /// chain of the edge between them meets none of the others; or, if the chain goes that way, the next point on it.
+    /// A new point for the chain of an edge, some units from a site, to the right of the edge.
+    ///
+    /// Moved to this point, the chain meets none of the others. If the chain runs in that
+    /// direction, its next point is returned instead.
     fn beside(
         &mut self,
         site: u32,
@@ -205,7 +208,7 @@ impl Arranged<'_> {
         if let Some(next) = self.beside_on(chain, site).into_iter().flatten().find(is_that_direction) {
             return Some(next);
         }
-        // If it does meet another, then a little to one side, or not as far.
+        // If it meets another chain, try a little to one side, or less far.
         let turned = |[i, j]: [f64; 2], turn: f64| [i - turn * j, j + turn * i].map(f64::round);
         let tried = [[i, j], turned([i, j], 0.5), turned([i, j], -0.5), [i / 2.0, j / 2.0], [i / 4.0, j / 4.0]];
         for [i, j] in tried {
@@ -220,7 +223,7 @@ impl Arranged<'_> {
         None
     }
 
-    /// Whether a chain can be led through a new point in place of a site without meeting others.
+    /// Returns true if a chain meets no others after one of its sites is replaced by a new point.
     fn is_free(&self, site: u32, moved: &[f64; 3], chain: usize, others: &[usize]) -> bool {
         let point = |site: u32| &self.points[site as usize];
         let side = |p, q, r| self.base.geometry().orientation([p, q, r]);
@@ -244,13 +247,13 @@ impl Arranged<'_> {
         [next_to(at.and_then(|at| at.checked_sub(1))), next_to(at.map(|at| at + 1))]
     }
 
-    /// A line's chain with the vertices that it passes on its way to and from steps.
+    /// The chain of a line with the vertices that it passes before and after steps.
     fn through_steps(&self, chain: &[u32], steps: &Steps, first_edge: usize) -> Vec<u32> {
         let mut through = Vec::with_capacity(chain.len());
         for (at, &site) in chain.iter().enumerate() {
             let none = Vec::new();
             let here = steps.get(&site).unwrap_or(&none);
-            // From the innermost to the outermost that lies between the point and what is next to it on the line.
+            // From the innermost to the outermost between the site and its neighbor on the line.
             let passed = |beside: u32| {
                 let mut passed: Vec<u32> = Vec::new();
                 for step in here.iter().filter(|step| self.is_beyond(step, site, beside, first_edge)) {
@@ -270,7 +273,7 @@ impl Arranged<'_> {
         through
     }
 
-    /// Whether a point lies on that side of an edge at a site on which the step's vertex does.
+    /// Returns true if a point lies on the same side of an edge at a site as the step's vertex.
     fn is_beyond(&self, step: &Step, site: u32, beside: u32, first_edge: usize) -> bool {
         let [Some(before), Some(after)] = self.beside_on(first_edge + step.edge, site) else { return false };
         let side = |p: u32, q: u32, r: u32| {
@@ -287,7 +290,7 @@ impl Arranged<'_> {
     }
 }
 
-/// Steps whose vertex is a site of the same edge lead on to the vertex that the edge gets there.
+/// Follows steps whose vertex is itself a site of the edge to the vertex that the edge gets there.
 fn followed(mut steps: Steps) -> Steps {
     let on = |steps: &Steps, site: u32, edge: usize| {
         steps.get(&site)?.iter().find(|step| step.edge == edge).map(|step| step.vertex)
@@ -310,7 +313,7 @@ fn followed(mut steps: Steps) -> Steps {
     steps
 }
 
-/// Whether an edge of a triangulation is a constraint.
+/// Returns true if an edge of a triangulation is constrained.
 pub(super) fn is_breakline(base: &ConstrainedDelaunay<Terrain>, [u, v]: [VertexId; 2]) -> bool {
     base.tds().edge(u, v).is_some_and(|(cell, i)| base.is_constrained(cell, i))
 }

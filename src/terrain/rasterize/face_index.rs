@@ -5,32 +5,33 @@ use rayon::prelude::*;
 use super::placement::Placement;
 use crate::data::Surface;
 
-/// Which faces a rectangle of cells has to look at.
+/// A spatial index that finds the faces which a rectangle of cells may meet.
 ///
-/// The raster is divided into square bins; a face is listed in each bin where it may hold the
-/// center of a cell, and nowhere if it holds none: most faces of a surface finer than the raster.
+/// The raster is divided into square bins. A face is listed in each bin where it may contain the
+/// center of a cell. If a surface is finer than the raster, most faces contain none, and are not
+/// listed at all.
 #[derive(Debug)]
 pub(super) struct FaceIndex {
     /// Cells along a side of a bin.
     side: usize,
     columns: usize,
     rows: usize,
-    /// Where the faces of each bin begin, bins row by row; one more entry than bins.
+    /// Where the faces of each bin begin, bins row by row; one more entry than there are bins.
     first: Vec<usize>,
     faces: Vec<u32>,
 }
 
-/// Faces in a bin, on average. Large bins are wasted work for a window that cuts them, small ones
-/// list more faces twice: at 64, half of them.
+/// The average number of faces in a bin. Larger bins waste work in windows that cut them, smaller
+/// ones list more faces twice: at 64, half of them.
 const FACES_PER_BIN: f64 = 64.0;
 const SMALLEST_BIN: f64 = 16.0;
-/// Faces that one task looks at.
+/// The number of faces per parallel task.
 const CHUNK: u32 = 1 << 15;
 
 impl FaceIndex {
     /// # Complexity
-    /// Linear in the faces and in the bins they meet. Takes 4 bytes for each face in each bin, and 12
-    /// while it is made.
+    /// Linear in the faces and in the bins they meet. Takes 4 bytes for each face in each bin, and
+    /// 12 during construction.
     pub(super) fn new<S: Surface + ?Sized>(surface: &S, placement: &Placement) -> Self {
         let face_count = surface.face_count() as u32;
         let (width, height) = (placement.columns.count, placement.rows.count);
@@ -71,11 +72,11 @@ impl FaceIndex {
         FaceIndex { first, faces, ..empty }
     }
 
-    /// The bins where a face may hold a center: for each row of bins, those between the leftmost and
-    /// the rightmost place of the face in it.
+    /// Calls `each` with the bins in which a face may contain a center: in each row of bins, those
+    /// between the leftmost and the rightmost point of the face.
     fn bins_of(&self, corners: &[[f64; 3]; 3], placement: &Placement, mut each: impl FnMut(u32)) {
         if corners.as_flattened().iter().any(|c| !c.is_finite()) {
-            // Beyond what can be scanned: vertices near the end of the numbers, a rotated raster.
+            // Vertices near the end of the range of doubles overflow in a rotated raster.
             return;
         }
         let [a, b, c] = corners;
@@ -94,7 +95,7 @@ impl FaceIndex {
             return;
         }
         for row in bin_rows {
-            // One cell more on both sides than the centers of the bin, against rounding.
+            // One more cell on both sides, to allow for rounding.
             let below = placement.rows.center((row * self.side).max(1) - 1);
             let above = placement.rows.center((row + 1) * self.side);
             let Some((left, right)) = extent_between(corners, below, above) else { continue };
@@ -106,8 +107,8 @@ impl FaceIndex {
         }
     }
 
-    /// The faces of each bin that meets a window (as rows and columns of cells), and what the bin
-    /// and the window have in common.
+    /// The faces of each bin that meets a window, and the intersection of bin and window, as rows
+    /// and columns of cells.
     pub(super) fn bins_in(
         &self,
         rows: Range<usize>,

@@ -10,15 +10,14 @@ use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Surface, Window};
 use crate::error::Result;
 
-/// The heights of a surface as a raster: linear on each triangle, sampled at the centers of the
-/// cells, NaN where there is no surface.
+/// A raster of the heights of a surface, sampled at the centers of the cells.
 ///
-/// Cells whose center lies on the edge of the surface belong to it. A cell at a vertex has the
-/// vertex's height, one on a breakline the breakline's. What a cell holds depends on the surface
-/// alone: not on the block it is asked in, nor on the numbering of vertices and faces (as long as
-/// faces do not overlap).
+/// Heights are linear on each triangle, and NaN outside of the surface. A cell whose center lies on
+/// the rim of the surface belongs to it. A cell at a vertex has the height of the vertex, one on a
+/// breakline that of the breakline. Values depend on the surface alone: not on the requested block,
+/// nor on the numbering of vertices and faces (if faces do not overlap).
 ///
-/// Any frame will do: south-up, rotated, larger than the surface or a part of it.
+/// The frame may be south-up, rotated, larger than the surface, or cover a part of it.
 #[derive(Debug)]
 pub struct Dem<'a, S: ?Sized> {
     surface: &'a S,
@@ -28,13 +27,13 @@ pub struct Dem<'a, S: ?Sized> {
 }
 
 impl<'a, S: Surface + ?Sized> Dem<'a, S> {
-    /// Prepares the raster: lists the faces by where they are. No cell is computed yet.
+    /// Prepares the raster by a spatial index of the faces. No cell is computed yet.
     ///
     /// # Errors
-    /// If [`Frame::checked`] refuses the frame.
+    /// Those of [`Frame::checked`].
     ///
     /// # Complexity
-    /// Linear in the faces; keeps up to some 6 bytes for each.
+    /// Linear in the faces; the index takes up to about 6 bytes per face.
     pub fn new(surface: &'a S, frame: Frame) -> Result<Self> {
         let frame = frame.checked()?;
         let placement = Placement::new(&frame);

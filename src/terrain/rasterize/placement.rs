@@ -2,9 +2,9 @@ use crate::data::{Frame, ToPixels};
 
 /// The plane in which faces are scanned: columns and rows of cell centers ascend along its axes.
 ///
-/// For a raster that is not rotated this is the map itself, mirrored where columns or rows descend:
-/// coordinates are not changed by a bit, and a vertex at a cell's center stays there. A rotated
-/// raster is scanned in pixels.
+/// For a raster that is not rotated this is the map itself, mirrored if columns or rows descend.
+/// Coordinates are exact then, and a vertex at a cell's center stays there. A rotated raster is
+/// scanned in pixels.
 #[derive(Debug)]
 pub(super) struct Placement {
     mapping: Mapping,
@@ -24,7 +24,7 @@ pub(super) struct Axis {
     origin: f64,
     step: f64,
     per_step: f64,
-    /// How many there are.
+    /// The number of columns or rows.
     pub(super) count: usize,
 }
 
@@ -46,7 +46,7 @@ impl Placement {
         }
     }
 
-    /// Where a vertex is in the plane of the scan.
+    /// Maps a vertex to the plane of the scan.
     #[inline]
     pub(super) fn to_plane(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         match &self.mapping {
@@ -59,7 +59,7 @@ impl Placement {
     }
 }
 
-/// How far rounding can move a place on its way to pixels.
+/// The largest rounding error of the conversion of a position to pixels.
 fn rounding(frame: &Frame) -> [f64; 2] {
     let end = frame.to_map(frame.width as f64, frame.height as f64);
     let reach = [0, 1].map(|i| frame.transform[3 * i].abs().max(end[i].abs()));
@@ -68,7 +68,7 @@ fn rounding(frame: &Frame) -> [f64; 2] {
     [0, 1].map(|i| 8.0 * f64::EPSILON * (reach[0] * dx[i].abs() + reach[1] * dy[i].abs()))
 }
 
-/// The middle of the pixel, if `value` is that but for rounding.
+/// The center of the pixel if `value` is within `rounding` of it, otherwise `value`.
 fn to_center(value: f64, rounding: f64) -> f64 {
     let center = value.floor() + 0.5;
     if (value - center).abs() <= rounding { center } else { value }
@@ -79,16 +79,16 @@ impl Axis {
         Axis { origin, step, per_step: 1.0 / step, count }
     }
 
-    /// The center of one cell, to the bit the same as [`Frame::center`] (but for its sign).
+    /// The center of one cell, bit for bit that of [`Frame::center`] except for its sign.
     #[inline]
     pub(super) fn center(&self, i: usize) -> f64 {
         self.origin + (i as f64 + 0.5) * self.step
     }
 
-    /// The cells whose centers may lie in `low..=high`: all that do, and those a hair beyond.
+    /// The cells whose centers lie in `low..=high`, or beyond it by less than a rounding error.
     #[inline]
     pub(super) fn cells(&self, low: f64, high: f64) -> std::ops::Range<usize> {
-        // `Frame::checked` keeps a center within 2^-13 of a cell of its place.
+        // `Frame::checked` ensures that a center is within 2^-13 of a cell of its exact position.
         const SLACK: f64 = 1e-3;
         let first = (low - self.origin) * self.per_step - (0.5 + SLACK);
         let end = (high - self.origin) * self.per_step + (0.5 + SLACK);
@@ -112,12 +112,12 @@ impl Centers {
         Centers { axis, first, values: (first..first + count).map(|i| axis.center(i)).collect() }
     }
 
-    /// One center for each column or row of the window.
+    /// The center of each column or row of the window.
     pub(super) fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The first whose center is `value` or more.
+    /// The first column or row whose center is `value` or more.
     #[inline]
     pub(super) fn at_or_after(&self, value: f64) -> usize {
         let mut i = self.guess(value);
@@ -130,7 +130,7 @@ impl Centers {
         i
     }
 
-    /// The first whose center is more than `value`.
+    /// The first column or row whose center is more than `value`.
     #[inline]
     pub(super) fn after(&self, value: f64) -> usize {
         let mut i = self.guess(value);
@@ -143,7 +143,7 @@ impl Centers {
         i
     }
 
-    /// Right but for one cell where rounding shows: the walks above are short.
+    /// An estimate that rounding can make wrong by one cell, so that the searches above are short.
     #[inline]
     fn guess(&self, value: f64) -> usize {
         let cell = (value - self.axis.origin) * self.axis.per_step + 0.5 - self.first as f64;
@@ -151,7 +151,7 @@ impl Centers {
     }
 }
 
-/// Rounds down to a cell; 0 for what is negative, and for NaN.
+/// Rounds down to a cell; 0 if `value` is negative or NaN.
 ///
 /// PERF: one instruction on the baseline x86-64, where `floor` is a call into the C library and a
 /// cast to `usize` takes five. `MAX_SIDE` fits.

@@ -1,12 +1,13 @@
-//! One face into a block of cells.
+//! Scan conversion of one face into a block of cells.
 //!
-//! What a cell holds is a function of its center and of the surface, whichever face comes first:
-//! - the center at a vertex: the height of the vertex;
-//! - on an edge: the height on the edge, computed from its lower left end, so that both faces agree;
-//! - inside a face: the height on the line between the two places where the row cuts the face.
+//! The value of a cell depends on its center and the surface, not on the order of the faces:
+//! - center at a vertex: the height of the vertex;
+//! - on an edge: the height on the edge, computed from its lower left end, so that both faces
+//!   agree;
+//! - inside a face: the height on the segment in which the row of centers cuts the face.
 //!
-//! Which of these holds is decided by exact orientation tests. Few cells need them: a cut is computed
-//! with a known error, and a center farther than that from both cuts of its row is inside.
+//! Exact orientation tests decide which of these applies. Few cells need them: the ends of the
+//! segment are computed with a known error, and a center farther than that from both is inside.
 
 use std::ops::Range;
 
@@ -14,17 +15,17 @@ use super::placement::Centers;
 use crate::data::orientation;
 use crate::triangulation::num::Sign;
 
-/// A block of cells that faces are drawn into.
+/// A block of cells into which faces are drawn.
 pub(super) struct Scan<'a> {
     pub(super) columns: &'a Centers,
     pub(super) rows: &'a Centers,
-    /// Row by row, as many columns and rows as there are centers.
+    /// The cells, row by row, as many columns and rows as there are centers.
     pub(super) cells: &'a mut [f32],
 }
 
 impl Scan<'_> {
     /// Writes the cells of `rows` and `columns` (counted in the block) whose centers lie in the
-    /// triangle or on its border. Corners may come in any order.
+    /// triangle or on its border. The corners may be in any order.
     pub(super) fn draw(&mut self, corners: [[f64; 3]; 3], rows: &Range<usize>, columns: &Range<usize>) {
         let face = Face::new(corners);
         let [low, middle, high] = &face.corners;
@@ -67,9 +68,9 @@ impl Scan<'_> {
 
 /// A triangle in the plane of the scan.
 struct Face {
-    /// In the order of y, then x: the same whatever the numbering.
+    /// Sorted by y, then x, so that their order does not depend on the numbering.
     corners: [[f64; 3]; 3],
-    /// How far rounding can move a cut.
+    /// The largest rounding error of a cut.
     error: f64,
 }
 
@@ -81,13 +82,13 @@ impl Face {
                 corners.swap(i, j);
             }
         }
-        // The sum of what the roundings in `cut` can do, with u = EPSILON / 2: 5 u of an extent in x
-        // of at most 2 M, and u of the result; 16 u M is more than that.
+        // The sum of the rounding errors in `cut`, with u = EPSILON / 2: 5 u of an extent in x of
+        // at most 2 M, and u of the result. 16 u M is larger than that.
         let largest = corners.iter().fold(0.0, |most: f64, p| most.max(p[0].abs()));
         Face { corners, error: 8.0 * f64::EPSILON * largest }
     }
 
-    /// Writes a cell whose center is close to the border of the face, if it is not outside.
+    /// Writes a cell whose center is close to the border of the face, unless it is outside.
     #[cold]
     fn judge(&self, x: f64, y: f64, [left, right]: [(f64, f64); 2], cell: &mut f32) {
         let [a, b, c] = &self.corners;
@@ -98,14 +99,14 @@ impl Face {
         let center = [x, y, 0.0];
         let turn = orientation([*a, *b, *c]);
         if turn == Sign::Zero {
-            // A face without area covers nothing that its neighbors do not cover.
+            // A face without area covers only what its neighbors cover as well.
             return;
         }
         let mut edge = None;
         for (p, q) in [(a, b), (b, c), (c, a)] {
             match turn * orientation([*p, *q, center]) {
                 Sign::Negative => return,
-                // Its direction must not depend on the face.
+                // The direction of the edge must not depend on the face.
                 Sign::Zero => edge = Some(if (p[1], p[0]) < (q[1], q[0]) { (p, q) } else { (q, p) }),
                 Sign::Positive => (),
             }
@@ -119,7 +120,8 @@ impl Face {
     }
 }
 
-/// Where the edge from `p` up to `q` meets the line of cells at `y`, and its height there.
+/// The x at which the edge from `p` up to `q` meets the row of centers at `y`, and its height
+/// there.
 #[inline]
 fn cut(p: &[f64; 3], q: &[f64; 3], y: f64) -> (f64, f64) {
     if y == q[1] && (p[1] != q[1]) {
@@ -132,7 +134,7 @@ fn cut(p: &[f64; 3], q: &[f64; 3], y: f64) -> (f64, f64) {
     (p[0] + part * (q[0] - p[0]), p[2] + part * (q[2] - p[2]))
 }
 
-/// The height at a place on the edge from `p` to `q`, measured along its longer extent.
+/// The height at a point on the edge from `p` to `q`, interpolated along its longer extent.
 fn height_on_edge(p: &[f64; 3], q: &[f64; 3], x: f64, y: f64) -> f64 {
     let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
     let part = if dx.abs() > dy.abs() { (x - p[0]) / dx } else { (y - p[1]) / dy };
