@@ -8,6 +8,17 @@
 //! center, or of an end of a segment, is routed through that center. Then no two of the resulting
 //! parts cross.
 //!
+//! ```text
+//! the segment a b meets the pixel of c      it is routed through c
+//! +-------+-------+-------+                 +-------+-------+-------+
+//! |       |   c   |   .b  |                 |       |   c---|---b   |
+//! |       |     .-|-'     |                 |       | .'    |       |
+//! +-------+-.-'---+-------+                 +-------+'------+-------+
+//! |     .-|'      |       |                 |      .|       |       |
+//! |   a'  |       |       |                 |   a-' |       |       |
+//! +-------+-------+-------+                 +-------+-------+-------+
+//! ```
+//!
 //! *Why.* Let a part run from center `A` to center `B`, and let `C` be a center whose pixel the
 //! segment `s` does not meet. `A` and `B` lie in `s - Q`, where `Q` is a pixel around zero, and so
 //! does all of `A B`, since that set is convex; `C` does not. When the line is moved from `s` to

@@ -68,7 +68,7 @@ impl Order {
 
     /// Inserts a number at a position. Each number can be inserted once.
     pub(super) fn insert(&mut self, number: u32, position: &[u32; LEVELS]) {
-        let node = number; // which nobody else ever had before
+        let node = number; // unused so far
         for (level, &before) in position.iter().enumerate().take(levels(node)) {
             let behind = self.next(before, level);
             *self.links(node, level) = [before, behind];

@@ -111,7 +111,7 @@ impl Grid {
         }
         let [rightward, upward] = [0, 1].map(|k| b[k] - a[k]);
         if rightward == 0.0 || upward == 0.0 {
-            return true; // along an axis, the intervals have said all
+            return true; // along an axis, the intervals decide
         }
         let [left, down] = [0, 1].map(|k| -self.down(k, center[k]));
         let [right, up] = [0, 1].map(|k| self.up(k, center[k]));

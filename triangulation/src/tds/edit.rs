@@ -157,9 +157,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.exchange(&inner, &[(cell, far), (beside, self.vertex(cell, i))])
     }
 
-    /// Replaces an edge by the face that the vertices around it span, and returns the new cells: two
-    /// triangles become two others, as by [`flip`](Self::flip); three tetrahedra become two, the
-    /// inverse of `flip`.
+    /// Replaces an edge by the face that the vertices around it span, and returns the new cells:
+    /// two triangles become two others, as by [`flip`](Self::flip); three tetrahedra become two,
+    /// the inverse of `flip`.
     ///
     /// ```text
     ///      three tetrahedra, seen along their edge a b; then two, on both sides of the facet c d e

@@ -12,6 +12,15 @@
 //!   point), 0 (one), 1 (collinear), 2 (coplanar). Its cells then have `dimension + 1` vertices, in
 //!   the low slots of the same arrays.
 //!
+//! ```text
+//!                 2
+//!                / \
+//!   neighbor 1  /   \  neighbor 0
+//!              /     \
+//!             0-------1
+//!             neighbor 2
+//! ```
+//!
 //! | to find | use |
 //! |---|---|
 //! | the corners and neighbors of a cell | [`Tds::cell_vertices`], [`Tds::cell_neighbors`] |
