@@ -192,7 +192,7 @@ pub struct Format {
     /// Extensions of the files written along with it. If one starts with the format's own
     /// extension, the rest is appended to the whole file name.
     pub beside: &'static [&'static str],
-    /// Extensions of files that belong to it, whoever wrote them.
+    /// Extensions of files that belong to a file of this format, whichever program wrote them.
     pub parts: &'static [&'static str],
     /// GDAL's name for the format, if breakline writes it.
     pub gdal_name: Option<&'static str>,
@@ -497,7 +497,7 @@ const fn plane(
     }
 }
 
-/// All formats, in the order of lists.
+/// All formats, in the order in which lists show them.
 pub static FORMATS: &[Format] = &[
     Format {
         name: "LAS",

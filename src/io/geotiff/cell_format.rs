@@ -3,7 +3,7 @@
 /// The stored value for a missing height.
 pub(super) const NO_HEIGHT: f32 = -9999.0;
 
-/// What the cells of a raster hold, and how they are stored.
+/// What the cells of a raster contain, and how they are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CellFormat {
     /// Heights: Float32, predictor 3; nodata is -9999, so a height of exactly -9999 reads back as

@@ -15,9 +15,9 @@ use crate::io::{Destination, Output};
 /// How a raster is written.
 #[derive(Clone, Copy, Default)]
 pub struct WriteOptions<'a> {
-    /// What the cells hold.
+    /// What the cells contain.
     pub cells: CellFormat,
-    /// Called now and then with the cells done and all cells.
+    /// Called from time to time with the number of cells done and the total number.
     pub progress: Option<&'a (dyn Fn(u64, u64) + Sync)>,
 }
 

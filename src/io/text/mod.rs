@@ -1,12 +1,12 @@
 //! Points as text: XYZ, CSV and similar formats.
 //!
 //! Each line contains one point. Fields are separated by semicolons, tabs, commas or blanks; the
-//! first point shows by which. The columns are those of [`Columns`] if given, else those that a
-//! header line names, else the first three are x, y and z.
+//! first point determines by which of them. The columns are those of [`Columns`] if given, else
+//! those that a header line names, else the first three are x, y and z.
 //!
-//! Without a header, the first column may be the number of the point. If it counts up by one from
-//! line to line and three numbers follow, reading fails. If it only contains integers, and the next
-//! two columns do not, there is a warning.
+//! If neither names the columns, the first one may be the number of the point. If it counts up by
+//! one from line to line and three numbers follow, reading fails. If it only contains integers, and
+//! the next two columns do not, there is a warning.
 //!
 //! Header names are matched in any case and order:
 //!
