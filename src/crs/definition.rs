@@ -1,27 +1,27 @@
 use super::projection::{Projection, normalized};
 use super::{CrsKind, Unit};
 
-/// What a coordinate system is made of, whatever format it was read from.
+/// The components of a coordinate system, independent of the format that it was read from.
 #[derive(Debug, Clone)]
 pub(super) struct Definition {
     pub(super) kind: CrsKind,
     pub(super) datum: Datum,
-    /// Name and EPSG code of the geographic system below a projected one, or of the system itself.
+    /// Name and EPSG code of the base system of a projected system, or of the system itself.
     pub(super) geographic: (String, Option<u32>),
-    /// In which longitudes and latitudes are written.
+    /// The unit of longitudes and latitudes.
     pub(super) angle: Unit,
     pub(super) projection: Option<Projection>,
-    /// Of the coordinates.
+    /// The unit of the coordinates.
     pub(super) unit: Unit,
 }
 
-/// What longitudes and latitudes refer to.
+/// The reference of longitudes and latitudes.
 #[derive(Debug, Clone)]
 pub(super) struct Datum {
     pub(super) name: String,
     pub(super) code: Option<u32>,
     pub(super) ellipsoid: Ellipsoid,
-    /// Degrees east of Greenwich.
+    /// The prime meridian, in degrees east of Greenwich.
     pub(super) meridian: f64,
 }
 
@@ -29,14 +29,14 @@ pub(super) struct Datum {
 pub(super) struct Ellipsoid {
     pub(super) name: String,
     pub(super) code: Option<u32>,
-    /// Semi-major axis in metres.
+    /// Semi-major axis in meters.
     pub(super) a: f64,
     /// Inverse flattening; 0 for a sphere.
     pub(super) rf: f64,
 }
 
 impl Definition {
-    /// Whether a pair of coordinates means the same place in both.
+    /// Returns true if a pair of coordinates means the same position in both.
     pub(super) fn is_same(&self, other: &Definition) -> bool {
         let projection = match (&self.projection, &other.projection) {
             (Some(a), Some(b)) => a.is_same(b),
@@ -58,8 +58,10 @@ impl Datum {
 }
 
 impl Ellipsoid {
-    /// To what definitions differ in for the same ellipsoid: digits cut off. (GRS 1980 and WGS 84 are the same by this;
-    /// the datum's name tells them apart.)
+    /// Returns true if two ellipsoids differ by no more than the truncation of digits in
+    /// definitions.
+    ///
+    /// (GRS 1980 and WGS 84 are the same by this test; the datum's name distinguishes them.)
     pub(super) fn is_same(&self, other: &Ellipsoid) -> bool {
         (self.a - other.a).abs() < 0.01 && (self.rf - other.rf).abs() < 1e-4
     }

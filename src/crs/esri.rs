@@ -1,14 +1,16 @@
-//! What Esri calls things in a `.prj`: EPSG's names by Esri's rule, and the well-known exceptions to it.
+//! Esri's names in a `.prj`: EPSG's names by Esri's rule, and the well-known exceptions.
 //!
-//! The rule: everything but letters, digits, `+` and `-` becomes an underscore, a geographic system begins with `GCS_`,
-//! a datum with `D_`, years are written out (`ETRS89`, `ETRS_1989`). Many of Esri's names follow none: the zones of the
-//! State Plane system have their FIPS numbers there, for example, and here EPSG's name. Readers identify a system by
-//! its parameters.
+//! The rule: everything except letters, digits, `+` and `-` becomes an underscore, a geographic
+//! system begins with `GCS_`, a datum with `D_`, and years have four digits (`ETRS89`,
+//! `ETRS_1989`). Many of Esri's names follow no rule: the zones of the State Plane system, for
+//! example, contain their FIPS numbers. They get EPSG's names here, because readers identify a
+//! system by its parameters.
 
 use super::definition::Datum;
 
-/// EPSG's name of a geographic system, code of its datum, and Esri's names: after `GCS_`, at the beginning of projected
-/// systems, after `D_`. As the `.prj` files have them that ArcGIS writes; not checked against a list of Esri's.
+/// EPSG's name of a geographic system, the code of its datum, and Esri's names: after `GCS_`, at
+/// the beginning of projected systems, after `D_`. From `.prj` files written by ArcGIS; not checked
+/// against a list from Esri.
 const WELL_KNOWN: &[(&str, u32, &str, &str, &str)] = &[
     ("WGS 84", 6326, "WGS_1984", "WGS_1984", "WGS_1984"),
     ("WGS 72", 6322, "WGS_1972", "WGS_1972", "WGS_1972"),
@@ -46,7 +48,7 @@ const WELL_KNOWN: &[(&str, u32, &str, &str, &str)] = &[
     ("Pulkovo 1942(83)", 6178, "Pulkovo_1942_Adj_1983", "Pulkovo_1942_Adj_1983", "Pulkovo_1942_Adj_1983"),
 ];
 
-/// Ellipsoids that Esri calls otherwise, from the same pages.
+/// Ellipsoids with different names at Esri, from the same pages.
 const ELLIPSOIDS: &[(&str, &str)] = &[
     ("WGS 84", "WGS_1984"),
     ("WGS 72", "WGS_1972"),
@@ -57,7 +59,8 @@ const ELLIPSOIDS: &[(&str, &str)] = &[
     ("Airy Modified 1849", "Airy_Modified"),
 ];
 
-/// Projected systems with a name of their own (ArcGIS REST documentation, "Projected coordinate systems").
+/// Projected systems with a name of their own (ArcGIS REST documentation, "Projected coordinate
+/// systems").
 const PROJECTED: &[(u32, &str)] = &[
     (2154, "RGF_1993_Lambert_93"),
     (2193, "NZGD_2000_New_Zealand_Transverse_Mercator"),
@@ -80,25 +83,25 @@ const PROJECTED: &[(u32, &str)] = &[
 const WORDS: &[(&str, &str)] =
     &[("3-degree Gauss-Kruger", "3_Degree_GK"), ("Gauss-Kruger zone", "GK_Zone"), ("zone", "Zone")];
 
-/// Of a datum.
+/// Esri's name of a datum.
 pub(super) fn datum(datum: &Datum) -> String {
     let known = WELL_KNOWN.iter().find(|row| Some(row.1) == datum.code);
     known.map_or_else(|| prefixed("D_", &datum.name), |row| format!("D_{}", row.4))
 }
 
-/// Of the ellipsoid with this name.
+/// Esri's name of an ellipsoid.
 pub(super) fn ellipsoid(name: &str) -> String {
     let known = ELLIPSOIDS.iter().find(|row| row.0 == name);
     known.map_or_else(|| underscored(name), |row| row.1.to_owned())
 }
 
-/// Of the geographic system with this name.
+/// Esri's name of a geographic system.
 pub(super) fn geographic(name: &str) -> String {
     let known = WELL_KNOWN.iter().find(|row| row.0 == name);
     known.map_or_else(|| prefixed("GCS_", name), |row| format!("GCS_{}", row.2))
 }
 
-/// Of the projected system with this name.
+/// Esri's name of a projected system.
 pub(super) fn projected(name: &str, code: Option<u32>) -> String {
     if let Some(row) = PROJECTED.iter().find(|row| Some(row.0) == code) {
         return row.1.to_owned();
@@ -115,7 +118,8 @@ fn prefixed(prefix: &str, name: &str) -> String {
     if name.starts_with(prefix) { name } else { format!("{prefix}{name}") }
 }
 
-/// "ETRS89 / UTM zone 32N" to "ETRS89_UTM_zone_32N"; signs that names carry a meaning in ("CH1903+") stay.
+/// Replaces signs by underscores: "ETRS89 / UTM zone 32N" becomes "ETRS89_UTM_zone_32N". Signs that
+/// have a meaning ("CH1903+") stay.
 pub(super) fn underscored(name: &str) -> String {
     let mut text = String::new();
     for c in name.chars() {
@@ -143,7 +147,8 @@ mod tests {
         assert_eq!(projected("CH1903+ / LV95", None), "CH1903+_LV95");
         assert_eq!(projected("Pulkovo 1942 / 3-degree Gauss-Kruger zone 46", None), "Pulkovo_1942_3_Degree_GK_Zone_46");
         assert_eq!(projected("WGS 84 / Pseudo-Mercator", Some(3857)), "WGS_1984_Web_Mercator_Auxiliary_Sphere");
-        // Esri: NAD_1983_StatePlane_North_Carolina_FIPS_3200_Feet, which nothing in EPSG's name says.
+        // Esri: NAD_1983_StatePlane_North_Carolina_FIPS_3200_Feet, which nothing in EPSG's name
+        // says.
         assert_eq!(projected("NAD83 / North Carolina (ftUS)", Some(2264)), "NAD_1983_North_Carolina_ftUS");
         assert_eq!(underscored(" a (b)/c "), "a_b_c");
     }

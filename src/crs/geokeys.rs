@@ -4,7 +4,7 @@ use super::wkt_write::{self, Dialect};
 use super::{Crs, CrsKind, Unit, registry};
 use crate::error::{Error, Result};
 
-/// The GeoTIFF tags that hold a coordinate system, as in a TIFF file or a LAS file's VLRs.
+/// The GeoTIFF tags of a coordinate system, as in a TIFF file or the VLRs of a LAS file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GeoKeys {
     /// GeoKeyDirectoryTag (34735).
@@ -15,19 +15,19 @@ pub struct GeoKeys {
     pub ascii: String,
 }
 
-/// What a raster's coordinates refer to.
+/// The point of a pixel to which coordinates refer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RasterType {
     /// The outer corner of a pixel.
     PixelIsArea,
-    /// The centre of a pixel.
+    /// The center of a pixel.
     PixelIsPoint,
 }
 
 const DOUBLES: u16 = 34736;
 const ASCII: u16 = 34737;
 const DIRECTORY: u16 = 34735;
-/// "Not in the registry, see other keys"; also what stands above all codes.
+/// The value for "not in the registry, see other keys"; it is larger than all codes.
 const USER_DEFINED: u16 = 32767;
 
 mod key {
@@ -55,15 +55,16 @@ mod key {
     pub(super) const VERTICAL_LENGTH: u16 = 4099;
 }
 
-/// How GDAL stores a definition that keys cannot say.
+/// The prefix of a definition that GDAL stores as text because keys cannot represent it.
 const PE_STRING: &str = "ESRI PE String = ";
 
 impl GeoKeys {
-    /// The coordinate system that the keys state; `None` if they state none.
+    /// Returns the coordinate system that the keys state; `None` if they state none.
     ///
-    /// A code wins over everything else, except that a unit beside it that is another one means that the coordinates
-    /// are in that unit (as GDAL and Esri read it). Without a code the system is built from the parameters of the
-    /// projection, as WKT; where not even those are there, its name comes from the citation.
+    /// A code takes precedence over all other keys, with one exception: if the keys also state a
+    /// different unit, the coordinates are in that unit (as GDAL and Esri read it). Without a code,
+    /// the system is built from the parameters of the projection, as WKT. If these are missing as
+    /// well, its name is that of the citation.
     ///
     /// # Errors
     /// If the directory is damaged.
@@ -76,7 +77,8 @@ impl GeoKeys {
         Ok(Some(crs))
     }
 
-    /// What the coordinates refer to; the area of the pixel if nothing is said.
+    /// Returns what coordinates refer to; [`PixelIsArea`](RasterType::PixelIsArea) if it is not
+    /// stated.
     pub fn raster_type(&self) -> RasterType {
         let keys = Entries::read(self);
         match keys.is_ok_and(|keys| keys.short(key::RASTER_TYPE) == Some(2)) {
@@ -85,7 +87,7 @@ impl GeoKeys {
         }
     }
 
-    /// The keys for a coordinate system, PixelIsArea.
+    /// Returns the keys of a coordinate system, with PixelIsArea.
     pub fn from_crs(crs: &Crs) -> Self {
         let mut writer = Writer::default();
         writer.short(key::RASTER_TYPE, 1);
@@ -142,7 +144,7 @@ enum Value {
     Text(String),
 }
 
-/// The directory, resolved.
+/// The entries of the directory, with their values.
 struct Entries {
     entries: Vec<(u16, Value)>,
 }
@@ -181,7 +183,7 @@ impl Entries {
                     let values = keys.doubles.get(offset..offset + length);
                     Value::Doubles(values.ok_or_else(|| outside("numbers", held))?.to_vec())
                 }
-                // A name that was cut off is still a name.
+                // A truncated name is still a name.
                 ASCII => {
                     let bytes = keys.ascii.as_bytes();
                     let end = (offset + length).min(bytes.len());
@@ -209,7 +211,7 @@ impl Entries {
         }
     }
 
-    /// A code of the registry: neither 0 (undefined) nor user-defined.
+    /// A code of the registry, which is neither 0 (undefined) nor user-defined.
     fn code(&self, id: u16) -> Option<u32> {
         self.short(id).filter(|&code| code > 0 && code < USER_DEFINED).map(u32::from)
     }
@@ -217,7 +219,7 @@ impl Entries {
     fn number(&self, id: u16) -> Option<f64> {
         match self.get(id)? {
             Value::Doubles(values) => values.first().copied().filter(|value| value.is_finite()),
-            // Seen for whole degrees.
+            // Some files have this for whole degrees.
             Value::Short(value) => Some(f64::from(*value)),
             Value::Text(_) => None,
         }
@@ -233,7 +235,7 @@ impl Entries {
     /// The name in a citation, which may be a list: "PCS Name = NAD83 / Nebraska|..".
     fn name(&self) -> Option<String> {
         let ids = [key::PROJECTED_CITATION, key::CITATION, key::GEODETIC_CITATION];
-        // What ERDAS writes is about itself.
+        // The citation of ERDAS is about the software.
         let is_name = |text: &&str| !text.starts_with(PE_STRING) && !text.starts_with("IMAGINE GeoTIFF Support");
         let text = ids.iter().filter_map(|&id| self.text(id)).find(is_name)?;
         let named = |label: &str| text.split('|').find_map(|part| part.trim().strip_prefix(label));
@@ -278,7 +280,7 @@ impl Entries {
             _ => None,
         };
         Ok(found.or_else(|| self.user_defined(kind)).or_else(|| {
-            // Only a name: enough to print, and to tell it from another.
+            // Only a name: enough to print it and to distinguish it from others.
             let unit = if kind == CrsKind::Geographic {
                 self.angle().unwrap_or_else(Unit::degree)
             } else {
@@ -288,7 +290,7 @@ impl Entries {
         }))
     }
 
-    /// The system of a code, in the unit that is stated beside it.
+    /// The system of a code, in the unit that the keys state.
     fn coded(&self, code: u32, kind: CrsKind, stated: Option<Unit>) -> Crs {
         let name = || self.name().unwrap_or_default();
         let Some(found) = registry::find(code).filter(|found| found.kind == kind || kind == CrsKind::Geocentric) else {
@@ -301,7 +303,7 @@ impl Entries {
         let differs = stated.filter(|unit| !unit.is_same(&found.unit));
         match (found.definition, differs) {
             (Some(mut definition), Some(unit)) => {
-                // The false origin keeps its place, and counts in the new unit.
+                // The false origin keeps its position, and is measured in the new unit.
                 definition.unit = unit;
                 if let Some(datum) = self.code(key::GEODETIC).and_then(registry::find).and_then(|base| base.definition)
                 {
@@ -315,7 +317,7 @@ impl Entries {
                 definition.unit = Unit::metre();
                 defined(&definition, &found.name)
             }
-            // Codes are registered, so this cannot fail; were it otherwise, the code is still the code.
+            // The code is registered, so this cannot fail; if it does, the code is still kept.
             _ => Crs::from_epsg(code).unwrap_or_else(|_| plain(name(), Some(code), kind, found.unit)),
         }
     }
@@ -342,7 +344,7 @@ impl Entries {
         Some(defined(&Definition { kind, datum, geographic, angle, projection, unit }, &name))
     }
 
-    /// "GCS Name = NAD83(HARN)|Primem = Greenwich" or a plain name.
+    /// The name in a citation: "GCS Name = NAD83(HARN)|Primem = Greenwich" or a plain name.
     fn geodetic_name(&self) -> String {
         let text = self.text(key::GEODETIC_CITATION).unwrap_or("unknown");
         let first = text.split('|').next().unwrap_or(text).trim();
@@ -389,7 +391,7 @@ impl Entries {
         let row = ROWS.iter().find(|row| row.geokey == Some(method))?;
         let value = |param: Param| {
             let own = row.params.iter().find(|entry| entry.0 == param).map(|entry| entry.3);
-            // Writers disagree on which of these goes with which method.
+            // Writers disagree on which of these keys belongs to which method.
             let others: &[u16] = match param {
                 Param::Lat0 => &[3081, 3085, 3089],
                 Param::Lon0 => &[3080, 3084, 3088, 3095],
@@ -418,7 +420,7 @@ impl Entries {
                     crs.vertical_unit = Some(found.unit);
                 }
                 (Some(found), Some(unit)) if found.unit.is_same(unit) => crs.vertical_epsg = found.code,
-                // The same heights in another unit; in old files the code is that of the datum.
+                // The same heights in a different unit. In old files the code is that of the datum.
                 (found, unit) => {
                     let metre = Unit::metre();
                     let datum = found.and_then(|_| registry::vertical_datum(code)).map_or(code, |(_, datum)| datum);
@@ -435,7 +437,8 @@ impl Entries {
     }
 }
 
-/// Conversion codes of UTM: 16001 to 16060 in the north, 16101 to 16160 in the south.
+/// The projection of a UTM conversion code: 16001 to 16060 in the north, 16101 to 16160 in the
+/// south.
 fn utm_zone(conversion: u32) -> Option<Projection> {
     let (zone, northing) = match conversion {
         16001..=16060 => (conversion - 16000, 0.0),
@@ -456,7 +459,7 @@ fn plain(name: String, epsg: Option<u32>, kind: CrsKind, unit: Unit) -> Crs {
     Crs { name, epsg, vertical_epsg: None, kind, unit, vertical_unit: None, wkt: None }
 }
 
-/// From a definition; without a name that of the registry, if it is there.
+/// The system of a definition. If `name` is empty, it gets that of the registry, if any.
 fn defined(definition: &Definition, name: &str) -> Crs {
     let epsg = registry::identify(definition, name);
     let known = epsg.filter(|_| name.is_empty()).and_then(registry::find).map(|found| found.name);
@@ -487,7 +490,8 @@ impl Writer {
         self.doubles.push(value);
     }
 
-    /// Texts are joined by bars in one string of 64 kB at most: what does not fit stays unsaid.
+    /// Adds a text. All texts share one string of at most 64 kB, separated by bars; a text that
+    /// does not fit is dropped.
     fn text(&mut self, id: u16, text: &str) {
         let text: String = text.chars().map(|c| if c.is_ascii() && c != '|' && c != '\0' { c } else { '?' }).collect();
         let (Ok(offset), Ok(length)) = (u16::try_from(self.ascii.len()), u16::try_from(text.len() + 1)) else {
@@ -502,7 +506,7 @@ impl Writer {
 
     fn unit(&mut self, unit: &Unit, (code, size): (u16, u16)) {
         match unit.code() {
-            // GDAL writes degrees by this code, older readers know no other.
+            // GDAL uses this code for degrees, and older readers know no other.
             Some(9122) => self.short(code, 9102),
             Some(known) => self.short(code, known),
             None => {
@@ -519,7 +523,7 @@ impl Writer {
             _ => None,
         };
         let (Some(definition), Some((row, code, values))) = (&definition, known) else {
-            // As GDAL does it: no projection of the keys, and the definition as text.
+            // Like GDAL: no keys for the projection, and the definition as text.
             self.short(key::MODEL_TYPE, USER_DEFINED);
             if definition.is_some() {
                 self.text(key::PROJECTED_CITATION, &format!("{PE_STRING}{}", crs.to_prj()));
@@ -539,7 +543,7 @@ impl Writer {
                 Measure::Length => value / definition.unit.factor,
                 Measure::Ratio => *value,
             };
-            // Its presence would say that it is a Mercator by a parallel.
+            // Its presence would mean a Mercator projection defined by a parallel.
             let is_absent = row.method == Method::Mercator && *param == Param::Lat1 && value == 0.0;
             if is_absent {
                 continue;
@@ -565,7 +569,7 @@ impl Writer {
 
     fn finish(mut self) -> GeoKeys {
         self.entries.sort_by_key(|entry| entry[0]);
-        // Heights count since GeoTIFF 1.1 only: GDAL looks at the revision.
+        // Vertical keys need GeoTIFF 1.1: GDAL checks the revision.
         let revision = u16::from(self.entries.iter().any(|entry| entry[0] >= key::VERTICAL));
         let mut directory = vec![1, 1, revision, self.entries.len() as u16];
         directory.extend(self.entries.iter().flatten());

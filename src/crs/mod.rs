@@ -1,11 +1,12 @@
-//! Coordinate systems: what they are called, which units they have, how formats write them down.
+//! Coordinate systems: names, codes, units, and how formats write them.
 //!
-//! Nothing here reprojects; that is PROJ's task, behind [`Transform`].
+//! Nothing here reprojects; that is the task of PROJ, behind [`Transform`].
 
 //!
-//! Whatever a format writes (a code, WKT of any kind, GeoKeys) becomes a `Definition`: datum, projection with its
-//! parameters, unit. Two systems are the same when their definitions are; names never decide. Codes come from the EPSG
-//! registry in `proj-core`, names that it lacks from `crs-definitions`, names for a `.prj` from a rule.
+//! Every form that a format uses (a code, WKT of any kind, GeoKeys) is converted to a `Definition`:
+//! datum, projection with its parameters, unit. Two systems are the same if their definitions are;
+//! names do not matter. Codes come from the EPSG registry in `proj-core`, names that it lacks from
+//! `crs-definitions`, and names for a `.prj` follow a rule.
 
 mod definition;
 mod esri;
@@ -26,41 +27,42 @@ use wkt_write::Dialect;
 
 use crate::error::{Error, Result};
 
-/// What the coordinates of a [`Crs`] are.
+/// The kind of the coordinates of a [`Crs`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrsKind {
     /// Lengths on a map.
     Projected,
     /// Longitude and latitude in angles.
     Geographic,
-    /// X, Y and Z from the centre of the earth.
+    /// X, Y and Z from the center of the earth.
     Geocentric,
-    /// Engineering and other local systems, and what could not be told.
+    /// Engineering and other local systems, and systems of unknown kind.
     Local,
 }
 
-/// A coordinate system, identified well enough to compare it, to print it and to write it into a
-/// file.
+/// A coordinate system that can be compared, printed and written into files.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crs {
-    /// As its definition calls it: "ETRS89 / UTM zone 32N".
+    /// The name in its definition: "ETRS89 / UTM zone 32N".
     pub name: String,
-    /// Code in the EPSG registry of the horizontal (or the whole) system.
+    /// The EPSG code of the horizontal (or the whole) system.
     pub epsg: Option<u32>,
-    /// Code of the vertical part.
+    /// The EPSG code of the vertical part.
     pub vertical_epsg: Option<u32>,
-    /// What the coordinates are.
+    /// The kind of the coordinates.
     pub kind: CrsKind,
-    /// Unit of x and y.
+    /// The unit of x and y.
     pub unit: Unit,
-    /// Unit of z, if the definition gives one.
+    /// The unit of z, if the definition states one.
     pub vertical_unit: Option<Unit>,
-    /// The definition as found, in WKT, if there was one.
+    /// The WKT from which the system was read, if any.
     pub wkt: Option<String>,
 }
 
 impl Crs {
-    /// The system with this code: a horizontal, compound or geocentric one. A compound one is split into its parts.
+    /// Returns the horizontal, compound or geocentric system with an EPSG code.
+    ///
+    /// A compound system is split into its parts.
     ///
     /// # Errors
     /// If the registry has no such code.
@@ -85,8 +87,10 @@ impl Crs {
         })
     }
 
-    /// Reads WKT, version 1 (OGC or Esri) or 2. A definition without a code gets the code of the system in the registry
-    /// that has the same datum, projection, parameters and unit, if there is one.
+    /// Parses WKT, version 1 (OGC or Esri) or 2.
+    ///
+    /// A definition without a code gets the code of the system in the registry with the same datum,
+    /// projection, parameters and unit, if there is one.
     ///
     /// # Errors
     /// If the text is not WKT of a coordinate system.
@@ -94,10 +98,11 @@ impl Crs {
         wkt_read::read(text).map(|(crs, _)| crs)
     }
 
-    /// Reads what a user types: `EPSG:25832`, `EPSG:25832+7837`, `25832`, `urn:ogc:def:crs:EPSG::25832`, or WKT.
+    /// Parses the input of a user: `EPSG:25832`, `EPSG:25832+7837`, `25832`,
+    /// `urn:ogc:def:crs:EPSG::25832`, or WKT.
     ///
     /// # Errors
-    /// With the forms that are understood.
+    /// If the text has none of these forms; the error lists them.
     pub fn from_user(text: &str) -> Result<Self> {
         let text = text.trim();
         if text.contains(['[', '(']) {
@@ -111,7 +116,7 @@ impl Crs {
             "https://www.opengis.net/def/crs/epsg/",
         ];
         let rest = prefixes.iter().find_map(|prefix| lower.strip_prefix(prefix)).unwrap_or(&lower);
-        // The version of the registry stands before the code, in URNs often as nothing.
+        // The version of the registry precedes the code; in URNs it is often empty.
         let codes = if lower.len() == rest.len() { rest } else { rest.rsplit([':', '/']).next().unwrap_or(rest) };
         let (horizontal, vertical) = match codes.split_once('+') {
             Some((horizontal, vertical)) => (horizontal, Some(vertical)),
@@ -133,13 +138,18 @@ impl Crs {
         Ok(crs)
     }
 
-    /// The definition for a `.prj` file: WKT 1 in Esri's words, which GDAL, QGIS and ArcGIS identify. Horizontal only,
-    /// as most readers expect.
+    /// Returns the definition for a `.prj` file: WKT 1 with Esri's names, which GDAL, QGIS and
+    /// ArcGIS identify.
+    ///
+    /// It is horizontal only, as most readers expect.
     pub fn to_prj(&self) -> String {
         self.write(Dialect::Esri)
     }
 
-    /// The definition as found; else as WKT 1 in GDAL's words with EPSG codes, compound where heights are known.
+    /// Returns the definition as WKT: as it was read, or else WKT 1 with GDAL's names and EPSG
+    /// codes.
+    ///
+    /// The latter is compound if the vertical part is known.
     pub fn to_wkt(&self) -> String {
         if let Some(wkt) = &self.wkt {
             return wkt.clone();
@@ -155,7 +165,7 @@ impl Crs {
 
     fn write(&self, dialect: Dialect) -> String {
         let found = self.epsg.and_then(registry::find);
-        // The name of the horizontal part, where the registry knows it.
+        // The name of the horizontal part, if the registry has it.
         let name = found.as_ref().map_or(self.name.clone(), |found| found.name.clone());
         let definition = found.and_then(|found| found.definition).or_else(|| self.definition());
         definition
@@ -171,8 +181,11 @@ impl Crs {
         }
     }
 
-    /// Whether both mean the same horizontal system (and the same vertical one where both state one): by code where
-    /// both have one, else by definition (datum, projection, parameters, unit), never by name.
+    /// Returns true if both are the same horizontal system, and the same vertical one if both state
+    /// one.
+    ///
+    /// Systems are compared by code if both have one, otherwise by definition (datum, projection,
+    /// parameters, unit), and never by name.
     pub fn is_same(&self, other: &Crs) -> bool {
         if self == other {
             return true;
@@ -187,34 +200,38 @@ impl Crs {
         let by_code = self.epsg.is_some() && self.epsg == other.epsg;
         let by_definition = || match (self.definition(), other.definition()) {
             (Some(a), Some(b)) => a.is_same(&b),
-            // Nothing is known but the text.
+            // Only the text is known.
             _ => self.epsg.is_none() && other.epsg.is_none() && self.wkt.is_some() && self.wkt == other.wkt,
         };
         vertical && self.kind == other.kind && (by_code || by_definition())
     }
 
-    /// The system, unless it is one of those by which GDAL says that there is none, in formats that need one: "Undefined
-    /// geographic SRS" and the like.
+    /// Returns the system, or `None` for the names that GDAL writes for a missing one, such as
+    /// "Undefined geographic SRS".
+    ///
+    /// GDAL writes these into formats that require a system.
     pub fn unless_undefined(self) -> Option<Self> {
         let name = self.name.replace('_', " ").to_ascii_lowercase();
-        // Esri's words for a `.prj` begin with GCS.
+        // In Esri's `.prj` the name begins with GCS.
         let name = name.strip_prefix("gcs ").unwrap_or(&name);
         let is_undefined = self.epsg.is_none() && name.starts_with("undefined ") && name.ends_with(" srs");
         (!is_undefined).then_some(self)
     }
 
-    /// The unit of lengths in plan; `None` where coordinates are angles.
+    /// Returns the unit of lengths in plan; `None` if coordinates are angles.
     pub fn length_unit(&self) -> Option<&Unit> {
         (self.kind != CrsKind::Geographic).then_some(&self.unit)
     }
 
-    /// Whether lengths in plan are in one of the feet.
+    /// Returns true if lengths in plan are in feet of any kind.
     pub fn is_foot(&self) -> bool {
         self.length_unit().is_some_and(Unit::is_foot)
     }
 
-    /// For printing: `EPSG:2994 (NAD83(HARN) / Oregon GIC Lambert (ft)), foot` and, where heights are known,
-    /// `, heights in US survey foot (EPSG:6360)`.
+    /// Returns a description for users.
+    ///
+    /// For example `EPSG:2994 (NAD83(HARN) / Oregon GIC Lambert (ft)), foot`, followed by
+    /// `, heights in US survey foot (EPSG:6360)` if the vertical part is known.
     pub fn describe(&self) -> String {
         let mut text = format!("{self}, {}", self.unit.name);
         if self.kind == CrsKind::Geocentric {
@@ -230,7 +247,7 @@ impl Crs {
 }
 
 impl std::fmt::Display for Crs {
-    /// `EPSG:25832 (ETRS89 / UTM zone 32N)`, or the name alone.
+    /// Formats the system as `EPSG:25832 (ETRS89 / UTM zone 32N)`, or as its name alone.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.epsg {
             Some(code) => write!(f, "EPSG:{code} ({})", self.name),
@@ -239,15 +256,16 @@ impl std::fmt::Display for Crs {
     }
 }
 
-/// Takes coordinates from one system to another.
+/// A transformation of coordinates from one system to another.
 pub trait Transform: Send + Sync {
-    /// Transforms in place.
+    /// Transforms points in place.
     ///
     /// # Errors
-    /// If a point lies outside of what the operation covers; the message names it.
+    /// If a point lies outside of the area of the operation; the message names the point.
     fn transform(&self, points: &mut [[f64; 3]]) -> Result<()>;
 
-    /// What a user should be told of the operation: unknown accuracy, heights left as they are.
+    /// Warnings for the user about the operation: unknown accuracy, heights that are not
+    /// transformed.
     fn warnings(&self) -> Vec<String>;
 }
 

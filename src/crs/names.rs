@@ -1,4 +1,5 @@
-//! Names that `proj-core` does not carry, out of the WKT definitions of `crs-definitions` (which are PostGIS's).
+//! Names that `proj-core` lacks, from the WKT definitions of `crs-definitions` (which are those of
+//! PostGIS).
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
@@ -6,9 +7,9 @@ use std::sync::OnceLock;
 use super::Unit;
 use super::wkt_tree::Node;
 
-/// What a definition says of a datum besides numbers.
+/// The names of a datum in a definition.
 pub(super) struct DatumNames {
-    /// With underscores for blanks, as WKT 1 has it.
+    /// With underscores for blanks, as in WKT 1.
     pub(super) name: String,
     /// Code of the prime meridian.
     pub(super) meridian: Option<u32>,
@@ -20,24 +21,24 @@ struct Geodetic {
     ellipsoids: HashMap<u32, String>,
 }
 
-/// Name and unit of the projected system with this code.
+/// Name and unit of the projected system with a code.
 pub(super) fn projected(code: u32) -> Option<(String, Unit)> {
     let root = parse(u16::try_from(code).ok()?, "PROJCS")?;
     let name = root.name().trim_end_matches(" (deprecated)");
     Some((name.to_owned(), Unit::length(root.find(&["UNIT"])?.number(0)?)))
 }
 
-/// The geodetic datum with this code.
+/// The geodetic datum with a code.
 pub(super) fn datum(code: u32) -> Option<&'static DatumNames> {
     geodetic().datums.get(&code)
 }
 
-/// The name of the ellipsoid with this code.
+/// The name of the ellipsoid with a code.
 pub(super) fn ellipsoid(code: u32) -> Option<&'static str> {
     geodetic().ellipsoids.get(&code).map(String::as_str)
 }
 
-/// The name of the vertical datum with this code, underscores for blanks in some.
+/// The name of the vertical datum with a code; some have underscores for blanks.
 pub(super) fn vertical_datum(code: u32) -> Option<&'static str> {
     static IN_COMPOUNDS: OnceLock<HashMap<u32, String>> = OnceLock::new();
     if let Some((_, name)) = VERTICAL_DATUMS.iter().find(|row| row.0 == code) {
@@ -53,8 +54,8 @@ pub(super) fn vertical_datum(code: u32) -> Option<&'static str> {
     found.get(&code).map(String::as_str)
 }
 
-/// Vertical datums of many files that no compound definition of the crate holds and whose system is called otherwise
-/// (names of the EPSG registry).
+/// Common vertical datums that no compound definition of the crate contains, and whose systems have
+/// different names (names of the EPSG registry).
 const VERTICAL_DATUMS: &[(u32, &str)] = &[
     (1039, "New Zealand Vertical Datum 2009"),
     (1089, "Mean Lower Low Water"),
@@ -92,14 +93,14 @@ fn geodetic() -> &'static Geodetic {
     })
 }
 
-/// The definitions that begin with this keyword, by code.
+/// The definitions that begin with a keyword, by code.
 fn all(keyword: &'static str) -> impl Iterator<Item = Node> {
     (0..=u16::MAX).filter_map(move |code| parse(code, keyword))
 }
 
 fn parse(code: u16, keyword: &str) -> Option<Node> {
     let wkt = crs_definitions::from_code(code)?.wkt;
-    // Most of them are not looked for: nothing is parsed in vain.
+    // The keyword is checked first, because most definitions are not wanted.
     let nodes = wkt.strip_prefix(keyword).filter(|rest| rest.starts_with('[')).and_then(|_| Node::parse_all(wkt).ok());
     nodes?.into_iter().next()
 }

@@ -1,10 +1,11 @@
-//! Projection methods and their parameters: one table from which WKT 1 (OGC and Esri), WKT 2 and GeoKeys are read and
-//! written.
+//! Projection methods and their parameters: one table for reading and writing WKT 1 (OGC and Esri),
+//! WKT 2 and GeoKeys.
 
 use proj_core::ProjectionMethod;
 
-/// What a parameter says, whatever a format calls it. Angles are in degrees from the prime meridian of the datum,
-/// lengths in metres.
+/// The meaning of a parameter, independent of its name in a format.
+///
+/// Angles are in degrees from the prime meridian of the datum, lengths in meters.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) enum Param {
     Lat0,
@@ -17,11 +18,12 @@ pub(super) enum Param {
     PseudoParallel,
     FalseEasting,
     FalseNorthing,
-    /// Of a method that is not in the table: its name, in lower case letters and digits.
+    /// A parameter of a method that is not in the table: its name, in lower case letters and
+    /// digits.
     Other(String),
 }
 
-/// How a parameter is measured.
+/// What a parameter measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Measure {
     Angle,
@@ -38,7 +40,7 @@ impl Param {
         }
     }
 
-    /// From the name in WKT, of any version.
+    /// The parameter with a name in WKT of any version.
     pub(super) fn from_name(name: &str) -> Self {
         let name = normalized(name);
         match name.as_str() {
@@ -116,18 +118,18 @@ pub(super) enum Method {
     EqualEarth,
 }
 
-/// How formats write a method.
+/// The names of a method in formats.
 pub(super) struct Row {
     pub(super) method: Method,
-    /// In WKT 1 of GDAL.
+    /// The name in GDAL's WKT 1.
     pub(super) ogc: &'static str,
-    /// In WKT 1 of Esri.
+    /// The name in Esri's WKT 1.
     pub(super) esri: &'static str,
-    /// Further names, normalized: WKT 2, and older ways.
+    /// Further names, normalized: those of WKT 2, and older ones.
     others: &'static [&'static str],
-    /// ProjCoordTransGeoKey.
+    /// The value of ProjCoordTransGeoKey.
     pub(super) geokey: Option<u16>,
-    /// With the names in GDAL's and Esri's WKT 1 and the GeoKey.
+    /// The parameters, with the names in GDAL's and Esri's WKT 1 and the GeoKey.
     pub(super) params: &'static [(Param, &'static str, &'static str, u16)],
 }
 
@@ -343,21 +345,21 @@ impl Method {
 /// A method with a value for each of its parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Projection {
-    /// In the order of [`Row::params`].
+    /// A method of the table, with values in the order of [`Row::params`].
     Known(Method, Vec<f64>),
-    /// A method that only its name tells, and what was stated for it.
+    /// A method of which only the name is known, with the stated parameters.
     Other(String, Vec<(Param, f64)>),
 }
 
-/// 1e-8 degrees are a millimetre; definitions are printed with 12 to 15 digits.
+/// 1e-8 degrees are a millimeter; definitions are printed with 12 to 15 digits.
 const SAME_ANGLE: f64 = 1e-8;
-/// Esri prints false origins in feet that are a millimetre beside EPSG's.
+/// Esri's false origins in feet differ from EPSG's by a millimeter.
 const SAME_LENGTH: f64 = 2e-3;
-/// A millimetre over a thousand kilometres.
+/// A millimeter in a thousand kilometers.
 const SAME_RATIO: f64 = 1e-9;
 
 impl Projection {
-    /// From the name of a method in WKT and its parameters.
+    /// The projection with the name of a method in WKT and its parameters.
     pub(super) fn new(name: &str, stated: &[(Param, f64)]) -> Self {
         let name = normalized(name);
         let get = |param: Param| stated.iter().find(|entry| entry.0 == param).map(|entry| entry.1);
@@ -383,11 +385,11 @@ impl Projection {
         }
     }
 
-    /// From a method and the parameters that were stated for it; defaults fill the rest.
+    /// The projection of a method with the stated parameters, and defaults for the others.
     pub(super) fn known(method: Method, get: impl Fn(Param) -> Option<f64>) -> Self {
         let value = |param: &Param| {
             get(param.clone()).or_else(|| match (method, param) {
-                // Some write a standard parallel, others the latitude of the origin.
+                // Some formats state a standard parallel, others the latitude of the origin.
                 (Method::PolarStereographic, Lat1) => get(Lat0),
                 (Method::Lambert1, Lat0) => get(Lat1),
                 (Method::Lambert2, Lat2) => get(Lat1),
@@ -398,7 +400,8 @@ impl Projection {
             })
         };
         let all = |param: &Param| value(param).unwrap_or(param.default());
-        // A scale beside two parallels is not in the table; nor is a latitude of origin of a Mercator off the equator.
+        // The table has no scale together with two parallels, and no Mercator with a latitude of
+        // origin off the equator.
         if method == Method::Lambert2 && (all(&K0) - 1.0).abs() > SAME_RATIO {
             let stated = [Lat0, Lon0, Lat1, Lat2, K0, FalseEasting, FalseNorthing].map(|p| (p.clone(), all(&p)));
             return Projection::Other("lambertconformalconic2spscaled".into(), stated.to_vec());
@@ -415,14 +418,14 @@ impl Projection {
         }
     }
 
-    /// Whether both take a place to the same coordinates, to about a millimetre.
+    /// Returns true if both map a position to the same coordinates, to about a millimeter.
     pub(super) fn is_same(&self, other: &Projection) -> bool {
         match (self, other) {
             (Projection::Known(a, values), Projection::Known(b, others)) => {
                 let same = |(param, x, y): (&Param, f64, f64)| is_near(param, x, y);
                 let params = || a.row().params.iter().map(|entry| &entry.0);
                 let straight = || params().zip(values).zip(others).all(|((p, x), y)| same((p, *x, *y)));
-                // The order of two standard parallels means nothing.
+                // The order of two standard parallels does not matter.
                 let swapped = || {
                     let swap = |param: &Param| match param {
                         Param::Lat1 => Param::Lat2,
@@ -442,7 +445,7 @@ impl Projection {
         }
     }
 
-    /// From a definition of the registry.
+    /// The projection of a definition in the registry.
     pub(super) fn from_registry(method: ProjectionMethod) -> Self {
         use ProjectionMethod as P;
         let make = |method: Method, stated: &[(Param, f64)]| {
@@ -590,7 +593,7 @@ impl Projection {
                     (FalseNorthing, false_northing),
                 ],
             ),
-            // Known by their codes alone.
+            // Rare methods are known by their codes alone.
             rare => Projection::Other(format!("{rare:?}"), Vec::new()),
         }
     }
@@ -605,7 +608,8 @@ fn is_near(param: &Param, a: f64, b: f64) -> bool {
     }
 }
 
-/// Lower case letters and digits only: formats differ in blanks, underscores and brackets.
+/// A name reduced to lower case letters and digits: formats differ in blanks, underscores and
+/// brackets.
 pub(super) fn normalized(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }

@@ -10,17 +10,17 @@ use super::definition::{Datum, Definition, Ellipsoid};
 use super::projection::{Projection, normalized};
 use super::{CrsKind, Unit, esri, names};
 
-/// The highest code that a coordinate system has in the registry, which is also the highest that GeoKeys can hold.
+/// The highest code of a coordinate system in the registry, which is also the highest in GeoKeys.
 const LAST_CODE: u32 = 32766;
 
-/// What the registry says of a code.
+/// The registry's entry for a code.
 pub(super) struct System {
     pub(super) name: String,
     pub(super) kind: CrsKind,
-    /// The code of the horizontal part; the code itself, for what has no parts.
+    /// The code of the horizontal part; for a system without parts, its own code.
     pub(super) code: u32,
     pub(super) unit: Unit,
-    /// None where proj-core has no formula for the projection.
+    /// `None` if proj-core has no formula for the projection.
     pub(super) definition: Option<Definition>,
     pub(super) vertical: Option<Vertical>,
 }
@@ -28,12 +28,12 @@ pub(super) struct System {
 /// A vertical system.
 pub(super) struct Vertical {
     pub(super) name: String,
-    /// None for heights over the ellipsoid.
+    /// `None` for heights above the ellipsoid.
     pub(super) code: Option<u32>,
     pub(super) unit: Unit,
 }
 
-/// The system with this code.
+/// The system with a code.
 pub(super) fn find(code: u32) -> Option<System> {
     let Some(found) = proj_core::lookup_epsg(code) else {
         let (name, unit) = names::projected(code)?;
@@ -49,7 +49,7 @@ pub(super) fn find(code: u32) -> Option<System> {
             let mut system = plain(&horizontal);
             let vertical = vertical(parts.vertical_crs());
             if vertical.code.is_none() {
-                // A three-dimensional system has no parts: the code is of the whole.
+                // A three-dimensional system has no parts: the code is that of the whole.
                 system.code = code;
             }
             system.vertical = Some(vertical);
@@ -61,7 +61,7 @@ pub(super) fn find(code: u32) -> Option<System> {
     Some(system)
 }
 
-/// The vertical system with this code.
+/// The vertical system with a code.
 pub(super) fn find_vertical(code: u32) -> Option<Vertical> {
     proj_core::lookup_vertical_epsg(code).map(|found| vertical(&found))
 }
@@ -87,7 +87,7 @@ fn plain(found: &CrsDef) -> System {
     };
     let code = found.datum().epsg();
     let geographic_name = proj_core::lookup_epsg(geographic).map_or(String::new(), |g| g.name().to_owned());
-    // The two systems of France in grads: their definitions are written in grads, as Esri and GDAL do.
+    // Definitions of the two French systems in grads use grads, as with Esri and GDAL.
     let angle =
         if [4807, 4902].contains(&geographic) { Unit::angle(std::f64::consts::PI / 200.0) } else { Unit::degree() };
     let unit = if kind == CrsKind::Geographic { angle.clone() } else { unit };
@@ -108,11 +108,11 @@ fn plain(found: &CrsDef) -> System {
     }
 }
 
-/// The geodetic datum with this code.
+/// The geodetic datum with a code.
 pub(super) fn datum(code: u32) -> Option<Datum> {
     let found = proj_core::lookup_datum_epsg(code)?;
     let names = names::datum(code);
-    // A datum that is younger than the definitions goes by the name of a system that rests on it.
+    // A datum that is newer than the definitions gets the name of a system that uses it.
     let named_after =
         || geographic().iter().find(|system| system.datum == code).map_or(String::new(), |system| system.name.clone());
     let ellipsoid_code = proj_core::lookup_ellipsoid_code_for_datum(code);
@@ -125,14 +125,14 @@ pub(super) fn datum(code: u32) -> Option<Datum> {
             name: ellipsoid_code.and_then(names::ellipsoid).unwrap_or("unknown").to_owned(),
             code: ellipsoid_code,
             a: ellipsoid.semi_major_axis(),
-            // Through the flattening and back costs digits that were never there.
+            // The inverse of the flattening has spurious digits.
             rf: (rf * 1e10).round() / 1e10,
         },
         meridian: names.and_then(|names| names.meridian).map_or(0.0, meridian),
     })
 }
 
-/// The name of a prime meridian by its longitude.
+/// Name and code of a prime meridian by its longitude.
 pub(super) fn meridian_name(longitude: f64) -> (&'static str, Option<u32>) {
     MERIDIANS
         .iter()
@@ -162,7 +162,7 @@ const MERIDIANS: &[(u32, &str, f64)] = &[
     (1026, "Copenhagen", 12.0 + 34.0 / 60.0 + 39.9 / 3600.0),
 ];
 
-/// The code of a datum by its name in any format, or by the name of the geographic system that rests on it.
+/// The code of a datum by its name in any format, or by that of a geographic system that uses it.
 pub(super) fn datum_code(datum: &str, geographic: &str) -> Option<u32> {
     const ALIASES: &[(&str, u32)] = &[
         ("wgs84", 6326),
@@ -188,7 +188,7 @@ pub(super) fn datum_code(datum: &str, geographic: &str) -> Option<u32> {
     by_name(datum).or_else(|| datum_of_geographic(geographic))
 }
 
-/// The code of the datum of the geographic system with this name, EPSG's or Esri's.
+/// The code of the datum of the geographic system with a name, EPSG's or Esri's.
 fn datum_of_geographic(name: &str) -> Option<u32> {
     static BY_NAME: OnceLock<HashMap<String, u32>> = OnceLock::new();
     let by_name = BY_NAME.get_or_init(|| {
@@ -209,7 +209,7 @@ pub(super) fn vertical_datum(code: u32) -> Option<(String, u32)> {
     Some((vertical_datum_name(system), system.vertical_datum_epsg()?))
 }
 
-/// The name of the datum; where nothing states it, that of the system without "height".
+/// The name of the datum; if it is unknown, that of the system without "height".
 fn vertical_datum_name(system: &VerticalCrsDef) -> String {
     let known = system.vertical_datum_epsg().and_then(names::vertical_datum);
     known.map_or_else(
@@ -222,8 +222,8 @@ fn vertical_datum_name(system: &VerticalCrsDef) -> String {
     )
 }
 
-/// The vertical system of heights over the datum of this name, in this unit; where no datum has that name, the one that
-/// is itself called so.
+/// The vertical system of heights above the datum of a name, in a unit; if no datum has that name,
+/// the system of this name.
 pub(super) fn identify_vertical(datum: &str, name: &str, unit: &Unit) -> Option<u32> {
     let (datum, name) = (normalized(datum), normalized(name));
     let by_datum = heights(unit).find(|system| normalized(&vertical_datum_name(system)) == datum);
@@ -231,20 +231,22 @@ pub(super) fn identify_vertical(datum: &str, name: &str, unit: &Unit) -> Option<
     found.map(VerticalCrsDef::epsg)
 }
 
-/// The vertical system of heights over the datum with this code, in this unit.
+/// The vertical system of heights above the datum with a code, in a unit.
 pub(super) fn vertical_of_datum(datum: u32, unit: &Unit) -> Option<u32> {
     heights(unit).find(|system| system.vertical_datum_epsg() == Some(datum)).map(VerticalCrsDef::epsg)
 }
 
-/// The vertical systems of heights in this unit, by code.
+/// The vertical systems of heights in a unit, by code.
 fn heights(unit: &Unit) -> impl Iterator<Item = &'static VerticalCrsDef> {
     let in_unit = |system: &&VerticalCrsDef| unit.is_same(&Unit::length(system.linear_unit_to_meter()));
     verticals().iter().filter(|system| system.name().contains("height")).filter(in_unit)
 }
 
-/// The code of the system with this definition: method, parameters, datum and unit are the same. Where several are (the
-/// registry has copies with northings first), the one of this name, else of the most words of it, else an ordinary one,
-/// else the lowest.
+/// The code of the system with a definition: the same method, parameters, datum and unit.
+///
+/// There may be several, as the registry has copies with northings first. Then the one with this
+/// name precedes those that share most of its words, then those with eastings first, then the
+/// lowest code.
 pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
     let datum = wanted.datum.code?;
     let codes: Vec<u32> = match wanted.kind {
@@ -275,24 +277,26 @@ pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
             [esri, found.name].iter().any(|name| normalized(name) == key)
         })
     };
-    // New Jersey's system is also New York East's; Esri's name has these words in common with EPSG's, and little else.
+    // New Jersey's system equals that of New York East. Esri's name shares the words of the state
+    // with EPSG's name, and little else.
     let stated = words(name);
     let common_words = |code: u32| find(code).map_or(0, |found| words(&found.name).intersection(&stated).count());
     codes.into_iter().min_by_key(|&code| {
         let northing_first = proj_core::lookup_authority_axis_order(code) == Some(AxisOrder::NorthEast);
-        // Geographic systems all begin with latitude.
+        // All geographic systems have latitude first.
         let odd = northing_first && wanted.kind == CrsKind::Projected;
         (!is_named(code), Reverse(common_words(code)), odd, code)
     })
 }
 
-/// "New", "Jersey": what is made of letters alone, as the numbers of zones are written in many ways.
+/// The words of a name that consist of letters alone ("New", "Jersey"): formats write the numbers
+/// of zones differently.
 fn words(name: &str) -> HashSet<String> {
     let words = name.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() > 2);
     words.map(str::to_ascii_lowercase).collect()
 }
 
-/// Every projected system, by code.
+/// All projected systems, by code.
 fn projected() -> &'static [(u32, Definition)] {
     static ALL: OnceLock<Vec<(u32, Definition)>> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -311,7 +315,7 @@ struct Geographic {
     datum: u32,
 }
 
-/// Every geographic system of two dimensions, by code.
+/// All two-dimensional geographic systems, by code.
 fn geographic() -> &'static [Geographic] {
     static ALL: OnceLock<Vec<Geographic>> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -326,7 +330,7 @@ fn geographic() -> &'static [Geographic] {
     })
 }
 
-/// Every vertical system, by code.
+/// All vertical systems, by code.
 fn verticals() -> &'static [VerticalCrsDef] {
     static ALL: OnceLock<Vec<VerticalCrsDef>> = OnceLock::new();
     ALL.get_or_init(|| (1024..=LAST_CODE).filter_map(proj_core::lookup_vertical_epsg).collect())

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 pub struct Unit {
     /// "metre", "US survey foot", "degree"
     pub name: String,
-    /// Metres (or radians) in one unit.
+    /// Meters (or radians) in one unit.
     pub factor: f64,
 }
 
@@ -57,7 +57,7 @@ const ANGLES: &[(u16, &str, f64)] = &[
     (9109, "microradian", 1e-6),
 ];
 
-/// Names that formats use, in lower case and letters only, for units of the tables above.
+/// Names in formats for the units of the tables above, in lower case and with letters only.
 const ALIASES: &[(&str, u16)] = &[
     ("m", 9001),
     ("meter", 9001),
@@ -91,72 +91,75 @@ const ALIASES: &[(&str, u16)] = &[
     ("grads", 9105),
 ];
 
-/// How far two factors may differ to be the same unit: tighter than the 2e-6 between the two feet, wider than the 12
-/// digits of the registry.
+/// The largest difference of the factors of equal units: smaller than the 2e-6 between the two
+/// feet, larger than the rounding to the registry's 12 digits.
 const SAME_FACTOR: f64 = 1e-10;
 
 impl Unit {
-    /// A unit by name and factor.
+    /// Creates a unit from a name and a factor.
     pub fn new(name: &str, factor: f64) -> Self {
         Unit { name: name.to_owned(), factor }
     }
 
-    /// The metre.
+    /// Returns the meter.
     pub fn metre() -> Self {
         Self::new("metre", 1.0)
     }
 
-    /// The degree.
+    /// Returns the degree.
     pub fn degree() -> Self {
         Self::new("degree", PI / 180.0)
     }
 
-    /// The unit of length with this many metres: a known one, exactly, or an unnamed one.
+    /// Returns the unit of length with a number of meters: a known unit with its exact factor, or
+    /// an unnamed one.
     pub fn length(factor: f64) -> Self {
         Self::nearest(LENGTHS, factor).unwrap_or_else(|| Self::new(&format!("unit of {factor} m"), factor))
     }
 
-    /// The unit of angle with this many radians: a known one, exactly, or an unnamed one.
+    /// Returns the unit of angle with a number of radians: a known unit with its exact factor, or
+    /// an unnamed one.
     pub fn angle(factor: f64) -> Self {
         Self::nearest(ANGLES, factor).unwrap_or_else(|| Self::new(&format!("unit of {factor} rad"), factor))
     }
 
-    /// The unit of length with this EPSG code.
+    /// Returns the unit of length with an EPSG code.
     pub fn length_from_code(code: u16) -> Option<Self> {
         Self::from_code(LENGTHS, code)
     }
 
-    /// The unit of angle with this EPSG code.
+    /// Returns the unit of angle with an EPSG code.
     pub fn angle_from_code(code: u16) -> Option<Self> {
         Self::from_code(ANGLES, code)
     }
 
-    /// The unit of length that goes by this name in some format: "Foot_US", "metres", "US survey foot".
+    /// Returns the unit of length with a name from any format: "Foot_US", "metres", "US survey
+    /// foot".
     pub fn length_from_name(name: &str) -> Option<Self> {
         Self::from_name(LENGTHS, name)
     }
 
-    /// The unit of angle that goes by this name in some format.
+    /// Returns the unit of angle with a name from any format.
     pub fn angle_from_name(name: &str) -> Option<Self> {
         Self::from_name(ANGLES, name)
     }
 
-    /// The EPSG code, for a known unit.
+    /// Returns the EPSG code of a known unit.
     pub fn code(&self) -> Option<u16> {
         LENGTHS.iter().chain(ANGLES).find(|(_, name, _)| *name == self.name).map(|(code, ..)| *code)
     }
 
-    /// Whether both are the same measure, whatever their names.
+    /// Returns true if both have the same factor; names do not matter.
     pub fn is_same(&self, other: &Unit) -> bool {
         same_factor(self.factor, other.factor)
     }
 
-    /// Whether this is one of the feet.
+    /// Returns true for feet of any kind.
     pub fn is_foot(&self) -> bool {
         (0.3047..0.3049).contains(&self.factor)
     }
 
-    /// For printing after a number: "m", "ft", "ftUS", "deg", or the name.
+    /// Returns the symbol to print after a number: "m", "ft", "ftUS", "deg", or the name.
     pub fn symbol(&self) -> &str {
         match self.name.as_str() {
             "metre" => "m",

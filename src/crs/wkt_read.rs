@@ -1,4 +1,4 @@
-//! From WKT, of version 1 (OGC, Esri) or 2, to a [`Crs`] and its [`Definition`].
+//! Conversion of WKT, version 1 (OGC, Esri) or 2, to a [`Crs`] and its [`Definition`].
 
 use super::definition::{Datum, Definition, Ellipsoid};
 use super::projection::{Measure, Param, Projection, normalized};
@@ -17,13 +17,13 @@ const BOUND: &[&str] = &["BOUNDCRS"];
 const VERTICAL: &[&str] = &["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
 const BASE: &[&str] = &["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS", "GEOGCRS", "GEODCRS", "GEOGRAPHICCRS", "GEODETICCRS"];
 
-/// Reads a definition; the second is `None` for a local system.
+/// Reads a system and its definition, which is `None` for a local system.
 pub(super) fn read(text: &str) -> Result<(Crs, Option<Definition>)> {
     let nodes = Node::parse_all(text)?;
     let (root, beside) = nodes.split_first().ok_or_else(|| Error::format("WKT without content"))?;
     let (mut crs, definition) = system(root)?;
     if crs.vertical_epsg.is_none() && crs.vertical_unit.is_none() {
-        // Esri writes the vertical system beside the horizontal one, others into it.
+        // Esri writes the vertical system after the horizontal one, others inside of it.
         let vertical = beside.iter().find(|node| is(node, VERTICAL)).or_else(|| root.find(VERTICAL));
         if let Some(vertical) = vertical {
             add_vertical(&mut crs, vertical);
@@ -71,7 +71,7 @@ fn system(node: &Node) -> Result<(Crs, Option<Definition>)> {
         None => unit(node, Measure::Length).unwrap_or(Unit::new("unknown", 1.0)),
     };
     let epsg = match node.epsg().map(|code| (code, registry::find(code))) {
-        // A code whose system is of another kind or unit than what is written out is an error in the file.
+        // A code whose system differs in kind or unit from the definition is an error in the file.
         Some((_, Some(found))) if found.kind != kind || !found.unit.is_same(&length) => None,
         Some((code, _)) => Some(code),
         None => None,
@@ -144,7 +144,7 @@ fn is_cartesian(node: &Node) -> bool {
     node.find(&["CS"]).is_some_and(|cs| cs.name().eq_ignore_ascii_case("Cartesian"))
 }
 
-/// The unit of a node: written in it (WKT 1) or in its axes (WKT 2).
+/// The unit of a node, stated in it (WKT 1) or in its axes (WKT 2).
 fn unit(node: &Node, measure: Measure) -> Option<Unit> {
     let keywords: &[&str] = if measure == Measure::Angle { &["UNIT", "ANGLEUNIT"] } else { &["UNIT", "LENGTHUNIT"] };
     let stated = node.find(keywords).or_else(|| {
@@ -156,7 +156,7 @@ fn unit(node: &Node, measure: Measure) -> Option<Unit> {
         _ => (Unit::length_from_name(stated.name()), Unit::length as fn(f64) -> Unit),
     };
     match (stated.number(0).filter(|&factor| factor > 0.0), named) {
-        // Some write every unit with the factor 1: the name is what they looked at.
+        // Some writers give every unit the factor 1; then the name is right.
         (Some(1.0), Some(named)) => Some(named),
         (Some(factor), _) => {
             let mut unit = from_factor(factor);
@@ -255,8 +255,8 @@ fn datum(base: &Node, missing: &dyn Fn(&str) -> Error) -> Result<Datum> {
         meridian.number(0).unwrap_or(0.0) * degrees
     });
     let by_base = base.epsg().and_then(registry::find).and_then(|found| found.definition?.datum.code);
-    // The name of a datum with the ellipsoid or meridian of another is neither; Esri calls a datum the same over every
-    // prime meridian.
+    // A datum with a known name but a different ellipsoid or meridian is not that datum; Esri's
+    // names of datums do not depend on the prime meridian.
     let fits = |known: &Datum| known.ellipsoid.is_same(&ellipsoid) && (known.meridian - meridian).abs() < 1e-6;
     let codes = [node.epsg(), by_base, registry::datum_code(node.name(), ""), registry::datum_code("", base.name())];
     if let Some(known) = codes.into_iter().flatten().filter_map(registry::datum).find(fits) {

@@ -1,8 +1,8 @@
-//! WKT as a tree: keywords with texts, numbers and further nodes. Knows no coordinate systems.
+//! WKT as a tree: keywords with texts, numbers and nested nodes. Independent of coordinate systems.
 
 use crate::error::{Error, Result};
 
-/// `KEYWORD["text", 1.5, NESTED[..]]`
+/// A node: `KEYWORD["text", 1.5, NESTED[..]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Node {
     /// In capitals.
@@ -19,17 +19,17 @@ pub(super) enum Value {
     Node(Node),
 }
 
-/// Definitions are about six deep; anything deeper is not one.
+/// The largest depth. Definitions are about six deep.
 const DEEPEST: usize = 32;
 
-/// A registry's longest definition is some 4 kB.
+/// The largest length. The longest definition of a registry has about 4 kB.
 const LONGEST: usize = 1 << 20;
 
 impl Node {
-    /// Reads one node, and further ones after a comma (Esri appends `,VERTCS[..]`).
+    /// Parses one node, and further ones after commas (Esri appends `,VERTCS[..]`).
     ///
     /// # Errors
-    /// With the place, if the text is not of this form.
+    /// If the text is not of this form; the error names the location.
     pub(super) fn parse_all(text: &str) -> Result<Vec<Node>> {
         let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0' || c == '\u{feff}');
         if text.len() > LONGEST {
@@ -46,7 +46,7 @@ impl Node {
                 break;
             }
         }
-        // One bracket too many is a frequent slip, and harmless.
+        // An extra closing bracket is a common mistake, and harmless.
         while reader.eat("]") || reader.eat(")") {}
         reader.blanks();
         if reader.at < text.len() {
@@ -68,7 +68,7 @@ impl Node {
         self.nodes().find(|node| keywords.contains(&node.keyword.as_str()))
     }
 
-    /// The first text: the name.
+    /// The first text, which is the name.
     pub(super) fn name(&self) -> &str {
         match self.values.first() {
             Some(Value::Text(text) | Value::Word(text)) => text,
@@ -89,7 +89,8 @@ impl Node {
 
     /// The code of `AUTHORITY["EPSG","1234"]` or `ID["EPSG",1234]` directly in this node.
     pub(super) fn epsg(&self) -> Option<u32> {
-        // WKT 1 puts it last, so a stray one of a missing bracket before does not win.
+        // WKT 1 puts it last. So one that is here because of a missing bracket does not take
+        // precedence.
         self.nodes()
             .rev()
             .find_map(|node| {
@@ -153,7 +154,7 @@ impl Reader<'_> {
             ")"
         } else {
             return Ok(match word.parse() {
-                // "inf" and "nan" are no numbers of WKT.
+                // "inf" and "nan" are not numbers in WKT.
                 Ok(number) if f64::is_finite(number) => Value::Number(number),
                 _ => Value::Word(word),
             });
@@ -173,7 +174,7 @@ impl Reader<'_> {
         }
     }
 
-    /// After the opening quote; a doubled quote stands for one.
+    /// Reads a text after its opening quote; a doubled quote stands for one.
     fn quoted(&mut self) -> Result<String> {
         let mut text = String::new();
         loop {

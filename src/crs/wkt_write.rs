@@ -1,11 +1,11 @@
-//! From a [`Definition`] to WKT 1, in GDAL's words or in Esri's.
+//! Conversion of a [`Definition`] to WKT 1, with GDAL's names or Esri's.
 
 use super::definition::Definition;
 use super::esri::{self, underscored};
 use super::projection::{Measure, Method, Param, Projection};
 use super::{CrsKind, Unit, registry};
 
-/// Whose WKT 1.
+/// A dialect of WKT 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dialect {
     /// OGC's names, with AUTHORITY codes.
@@ -14,7 +14,7 @@ pub(super) enum Dialect {
     Esri,
 }
 
-/// The horizontal definition as WKT 1; `None` if the method of projection has no name there.
+/// The horizontal definition as WKT 1; `None` if the projection method has no name in it.
 pub(super) fn write(definition: &Definition, name: &str, epsg: Option<u32>, dialect: Dialect) -> Option<String> {
     let writer = Writer { dialect };
     Some(match definition.kind {
@@ -25,13 +25,13 @@ pub(super) fn write(definition: &Definition, name: &str, epsg: Option<u32>, dial
     })
 }
 
-/// A system of which nothing but name and unit is known.
+/// The WKT of a system of which only name and unit are known.
 pub(super) fn write_local(name: &str, unit: &Unit, dialect: Dialect) -> String {
     let writer = Writer { dialect };
     format!("LOCAL_CS[{},{},AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]]", quoted(name), writer.unit(unit))
 }
 
-/// Horizontal WKT with a vertical system, as GDAL writes it.
+/// Horizontal WKT combined with a vertical system, as GDAL writes it.
 pub(super) fn write_compound(name: &str, horizontal: &str, vertical: (Option<u32>, &Unit)) -> String {
     let (code, unit) = vertical;
     let found = code.and_then(registry::find_vertical);
@@ -79,7 +79,8 @@ impl Writer {
         if !self.is_esri() {
             text += ",AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]";
             if *method == Method::WebMercator {
-                // Nothing else in WKT 1 says that the ellipsoid is to be taken for a sphere.
+                // WKT 1 has no other means to state that the ellipsoid is to be treated as a
+                // sphere.
                 text += ",EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +lat_ts=0 +lon_0=0 +x_0=0 +y_0=0 +k=1 \
                          +units=m +nadgrids=@null +wktext +no_defs\"]";
             }
@@ -98,7 +99,7 @@ impl Writer {
         let is_plain = |angle: f64, other: f64| (angle - other).abs() < 1e-9;
         let method_name = match (self.dialect, method) {
             (Dialect::Gdal, Method::Mercator) if get(Param::Lat1) != 0.0 => "Mercator_2SP",
-            // Esri's Mercator has no scale; everybody reads the other name.
+            // Esri's Mercator has no scale; all readers know the other name.
             (Dialect::Esri, Method::Mercator) if is_scaled => "Mercator_1SP",
             (Dialect::Esri, Method::PolarStereographic) if !is_pole && get(Param::Lat1) > 0.0 => {
                 "Stereographic_North_Pole"
@@ -154,7 +155,7 @@ impl Writer {
                 Method::Krovak => parameters.extend([("X_Scale", -1.0), ("Y_Scale", 1.0), ("XY_Plane_Rotation", 90.0)]),
                 _ => {}
             }
-            // False origin first, as Esri has it.
+            // Esri's order: false origin first.
             parameters.sort_by_key(|(name, _)| !name.starts_with("False_"));
         }
         Some((method_name, parameters))
@@ -232,7 +233,7 @@ impl Writer {
         }
     }
 
-    /// Fifteen significant digits, as everybody else; Esri's always with a point.
+    /// A number with fifteen significant digits, as other writers do; Esri's always have a point.
     fn number(&self, value: f64) -> String {
         let value: f64 = format!("{value:.14e}").parse().unwrap_or(value);
         let text = (value + 0.0).to_string();
@@ -240,7 +241,7 @@ impl Writer {
     }
 }
 
-/// The registry's angles have 12 digits; most were whole hundredths of a thousandth of a second.
+/// Restores an angle: the registry's have 12 digits, but most were whole multiples of 1e-5 seconds.
 fn snap_angle(degrees: f64) -> f64 {
     let snapped = snap(degrees * 3.6e8, 0.01) / 3.6e8;
     if (snapped - degrees).abs() < 2e-12 * degrees.abs().max(1.0) { snapped } else { degrees }
