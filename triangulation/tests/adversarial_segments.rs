@@ -14,7 +14,7 @@ type Point = [f64; 2];
 type Segment = [Point; 2];
 type Constrained<K = breakline_triangulation::kernel::Adaptive> = ConstrainedDelaunay<Plane<K>>;
 
-/// In UTM, as surveys are: a millionth of a millimetre is one unit in the last place of a northing.
+/// In UTM, as surveys are: a millionth of a millimeter is one unit in the last place of a northing.
 const UTM: Point = [500_000.37, 4_649_000.12];
 const NEAR: Point = [1.3, 2.7];
 
@@ -137,7 +137,7 @@ fn one_unit_in_the_last_place_apart() {
 }
 
 #[test]
-fn nearly_parallel_in_centimetres() {
+fn nearly_parallel_in_centimeters() {
     fuzz(3, 600, |random, [x, y]| {
         let end = |random: &mut Random, far: f64| {
             [x + far + 0.01 * random.below(3) as f64, y + 0.01 * random.below(12) as f64]

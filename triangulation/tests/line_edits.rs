@@ -110,7 +110,7 @@ fn edits_on_tiny_grids() {
 }
 
 #[test]
-fn edits_in_centimetres_far_away() {
+fn edits_in_centimeters_far_away() {
     edits(2, 150, |random| [500_000.0 + random.below(300) as f64 * 0.01, 4_649_000.0 + random.below(8) as f64 * 0.01]);
 }
 

@@ -21,7 +21,7 @@ fn named_cases() {
     assert!(count > 0, "no case was found");
 }
 
-/// Under its usual robust setting CGAL 6.1 moves one of these by metres, depending on the order.
+/// Under its usual robust setting CGAL 6.1 moves one of these by meters, depending on the order.
 #[test]
 fn displaced_breakline() {
     let shift = |p: Point| [p[0] + 500_000.0, p[1] + 4_649_000.0];

@@ -300,7 +300,7 @@ fn whole_numbers_of_few_bits() {
 }
 
 #[test]
-fn centimetres_far_from_the_origin() {
+fn centimeters_far_from_the_origin() {
     for side in [3, 100] {
         let mut random = Random(7);
         ask_all(800, || random.pick(&[500_000.37, 4_649_000.12]) + 0.01 * random.around(side) as f64);

@@ -238,7 +238,7 @@ fn walks_along_curves_are_cut_short() {
 /// Rounded numbers lead across long edges first, and from far outside of a curve all long edges
 /// lead along it: a walk that did not look for an exit from the hull would pass all vertices.
 #[test]
-fn walks_from_a_curve_look_for_a_way_out() {
+fn walks_from_a_curve_look_for_an_exit() {
     const COUNT: usize = 20_000;
     let mut random = Random(36);
     let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(RoughSides(rightly)), Hierarchy::new(RoughSides(rightly)));

@@ -64,7 +64,7 @@ struct Sample {
 }
 
 #[test]
-fn triangles_are_those_of_the_places() {
+fn triangles_are_those_of_the_sites() {
     let mut random = Random(1);
     let mut count = 0;
     for _ in 0..400 {
@@ -122,7 +122,7 @@ fn planes_by_their_normals() {
 }
 
 #[test]
-fn places_that_no_kernel_takes_are_refused() {
+fn sites_that_no_kernel_admits_are_refused() {
     let mut t = Delaunay::<_, 3>::new(Mapped::new(|p: &[f64; 2]| p.map(|x| 1.0 / x)));
     assert!(t.insert([1.0, 0.0]).is_err() && t.insert([1e-300, 1.0]).is_err() && t.insert([1.0, 2.0]).is_ok());
     let mut t = Delaunay::<_, 3>::new(Mapped::new(|p: &[f64; 2]| p.map(|x| x / 2.0)).with_kernel::<Fixed>());

@@ -43,7 +43,7 @@ fn both(t: &Free, q: &Point) -> [Option<Weights>; 2] {
 }
 
 #[test]
-fn weights_are_positive_sum_to_one_and_give_back_the_place() {
+fn weights_are_positive_sum_to_one_and_reproduce_the_site() {
     let mut dice = Random(1);
     let mut answers = 0;
     for round in 0..6000 {

@@ -80,7 +80,7 @@ fn constraints_bound_conflict_zones() {
         let points = points(&mut dice, round);
         let t = constrained(&mut dice, &points);
         if !t.crossings().is_empty() {
-            continue; // a point may lie on lines that were bent, which are led through it then
+            continue; // a point may lie on lines that were bent, which insertion moves onto it
         }
         let q = site(&mut dice);
         let mut after = t.clone();

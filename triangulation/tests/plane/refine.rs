@@ -290,7 +290,7 @@ fn small_angles_come_to_an_end() {
 }
 
 #[test]
-fn areas_are_bounded_everywhere_in_a_region_and_by_place() {
+fn areas_are_bounded_everywhere_in_a_region_and_by_site() {
     let mut halves = Pslg::ring(&[[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]]);
     halves.points.extend([[4.0, 0.0], [4.0, 8.0]]);
     halves.segments.push([4, 5]);
@@ -338,7 +338,7 @@ fn domains_are_holes_seeds_nesting_or_the_hull() {
 }
 
 #[test]
-fn a_limit_is_kept_and_told() {
+fn a_limit_is_kept_and_reported() {
     let square = Pslg::ring(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
     for max_added in [0, 1, 7, 100] {
         let quality = Quality { max_area: 1e-4, max_added, ..Quality::default() };
@@ -361,7 +361,7 @@ fn a_limit_is_kept_and_told() {
 }
 
 #[test]
-fn coordinates_that_are_too_coarse_are_told() {
+fn coordinates_that_are_too_coarse_are_reported() {
     let [x, y] = [1.0f64, 1.0 + 8.0 * f64::EPSILON];
     let speck = Pslg::ring(&[[x, x], [y, x], [y, y], [x, y]]);
     let t = speck.refined(&Quality { max_area: 1e-40, ..Quality::default() });
@@ -446,7 +446,7 @@ fn arithmetics_for_whole_numbers_refine() {
 
 /// Sites between whole numbers are rounded to these.
 #[test]
-fn arithmetics_for_whole_numbers_take_any_place_in_a_hole() {
+fn arithmetics_for_whole_numbers_take_any_site_in_a_hole() {
     let ring = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
     let inside = |domain| refined_ring::<Fixed<24>>(&ring, &Quality { domain, ..Quality::default() }).inside().count();
     let sites = vec![[4.5, 6.25]];

@@ -243,5 +243,5 @@ fn a_constraint_to_infinity_is_an_error() {
         }
     }
     let error = serde_json::from_value::<Constrained<Plane>>(saved).unwrap_err().to_string();
-    assert_eq!(error, "damaged triangulation: an edge that is not there is constrained");
+    assert_eq!(error, "damaged triangulation: an edge that does not exist is constrained");
 }

@@ -102,7 +102,7 @@ fn lines_come_back_that_bend() {
 
 /// Lines that cross again once their crossings have been rounded.
 #[test]
-fn lines_come_back_that_tangle() {
+fn lines_come_back_that_cross_again() {
     let (low, high) = (|n: i64| n as f64 * 2f64.powi(-53), |n: i64| ulps(1.0, n));
     let segments = [
         [[high(-3), low(0)], [low(3), high(-1)]],

@@ -37,7 +37,7 @@ pub(super) const LEAST: usize = 200;
 /// Larger ranges are cut in two, so that threads can share them.
 pub(super) const MOST: usize = 1 << 17;
 
-/// Ranges of up to so many points are sorted by comparison.
+/// Ranges of at most this many points are sorted by comparison.
 const FEW: usize = 8;
 
 /// Flips allowed for each point inserted so far: merges take about one for each level.

@@ -1,4 +1,4 @@
-//! Spatial order: points that are close in the plane or in space come close to each other.
+//! Spatial order: points that are close in space are close in the order.
 //!
 //! A *record* holds a key on the [curve](Curve) in its high bits and the position of the point in
 //! its low bits:

@@ -76,7 +76,11 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
                 corners += 1;
             }
         }
-        if corners == self.width() * self.cell_count() { Ok(()) } else { Err(Damaged::Header("pieces hang apart")) }
+        if corners == self.width() * self.cell_count() {
+            Ok(())
+        } else {
+            Err(Damaged::Header("the cells are not connected"))
+        }
     }
 
     /// Checks that finite cells are counter-clockwise and the hull is convex, see

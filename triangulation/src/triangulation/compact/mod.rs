@@ -84,7 +84,7 @@ impl fmt::Display for Damaged {
             }
             Damaged::Vertex(vertex) => write!(f, "vertex {vertex:?} does not exist or is damaged"),
             Damaged::Cell(cell) => write!(f, "cell {cell:?} does not exist or is damaged"),
-            Damaged::Unanswerable(law) => write!(f, "a question for Delaunay triangulations; the law here is {law:?}"),
+            Damaged::Unanswerable(law) => write!(f, "a query for Delaunay triangulations; the law here is {law:?}"),
         }
     }
 }
@@ -151,7 +151,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         if header.doubles as usize != D {
             return Err(Damaged::Coordinates { expected: D, found: header.doubles as usize });
         }
-        let offsets = header.offsets().ok_or(Damaged::Header("more bytes than can be"))?;
+        let offsets = header.offsets().ok_or(Damaged::Header("more bytes than can be addressed"))?;
         if all.len() != offsets.end {
             return Err(Damaged::Length { expected: offsets.end as u64, found: all.len() as u64 });
         }

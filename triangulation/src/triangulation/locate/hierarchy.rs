@@ -6,7 +6,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::{Delaunay, Inserted, Triangulation};
 use super::{Dice, Locate, Location};
 
-/// One vertex in this many is in the next smaller sample.
+/// The ratio of vertices to those in the next smaller sample.
 const RATIO: usize = 30;
 
 /// The Delaunay hierarchy (Devillers 2002): samples of samples of the vertices, each triangulated.

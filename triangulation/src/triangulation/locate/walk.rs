@@ -34,12 +34,12 @@ impl Dice {
 /// order nearly all walks end long before.
 pub(super) const PATIENCE: usize = 64;
 
-/// A walk looks again after this many more steps for each vertex that was examined. Where points
-/// are spread evenly, one step for each is left on average.
+/// The number of further steps, for each vertex that was examined, after which a walk looks again.
+/// Where points are spread evenly, one step for each is left on average.
 const PATIENCE_EACH: usize = 2;
 
-/// Every this many steps a walk tests if it can leave the hull there. It would leave sooner or
-/// later, but along a curve it may pass a facet of the hull at each step until then.
+/// The number of steps after which a walk tests again if it can leave the hull. It would leave
+/// sooner or later, but along a curve it may pass a facet of the hull at each step until then.
 const LOOKOUT: usize = 8;
 
 /// How many of `n` vertices a walk examines, the first time and the second. Along a curve it passes
@@ -51,9 +51,9 @@ const LOOKOUT: usize = 8;
 /// uniform points 4 to 5.
 pub(super) const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 
-/// A walk of more than this many times as many steps as there are cells is given up. On a Delaunay
-/// triangulation no walk of exact steps visits a cell twice, and on others the chance is at least
-/// halved with each round.
+/// The ratio of steps to cells at which a walk ends with an error. On a Delaunay triangulation no
+/// walk of exact steps visits a cell twice, and on others the chance is at least halved with each
+/// round.
 const WANDERING: usize = 8;
 
 /// Returns where `q` lies, exactly, by a walk from a cell nearby, or without one from an infinite
@@ -63,7 +63,7 @@ const WANDERING: usize = 8;
 /// The complex must fill its convex hull without overlap; it need not be Delaunay.
 ///
 /// # Errors
-/// If a link does not hold, or if there are many times more steps than cells, as damaged links may
+/// If links of the structure contradict each other, or if there are many times more steps than cells, as damaged links may
 /// cause.
 ///
 /// # Complexity
@@ -117,8 +117,8 @@ pub fn locate<const N: usize, T: Embedded<N>>(
         {
             return Ok(Location::OutsideHull { cell: complex.neighbor(cell, i)? });
         }
-        // `PERF:` an order that is known at compile time makes half the code. But only for a while:
-        // a walk in such an order may go around in circles.
+        // `PERF:` a test order that is known at compile time halves the code. It is used for the
+        // first steps only: a walk in a fixed order may go around in circles.
         let sides = if seems == Seems::There && steps < patience {
             ask_sides(t, cell, q, 0, from)?
         } else {

@@ -68,7 +68,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 /// error.
 ///
 /// # Errors
-/// If a link does not hold.
+/// If links of the structure contradict each other.
 ///
 /// # Complexity
 /// That of [`Triangulation::along`].
@@ -239,7 +239,8 @@ impl<T: Embedded<3>> Segment<'_, T> {
         }
     }
 
-    /// A line leaves a triangle where the border, counter-clockwise, comes over from the right.
+    /// Returns what the segment meets after a face. A line leaves a triangle where the border,
+    /// counter-clockwise, crosses it from right to left.
     fn after_face(&self, cell: CellId) -> Result<Option<Passage>, T::Error> {
         let complex = self.t.complex();
         let corners @ [u, v, w] = complex.corners(cell)?;

@@ -49,7 +49,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 /// exist. Ends at the first error.
 ///
 /// # Errors
-/// If a link does not hold.
+/// If links of the structure contradict each other.
 ///
 /// # Complexity
 /// Constant memory; constant time for a face, on average.

@@ -113,7 +113,7 @@ fn finite_neighbors<T: Embedded<3>>(
 /// at a cell nearby. In other triangulations the result may not be the nearest.
 ///
 /// # Errors
-/// If a link does not hold.
+/// If links of the structure contradict each other.
 ///
 /// # Complexity
 /// That of [`locate`](super::locate), and the degrees of a few vertices.
@@ -137,7 +137,7 @@ pub fn nearest<T: Embedded<3, Geometry: Metric>>(
 /// in the order of the geometry. Empty where [`nearest`] returns `None`. Ends at the first error.
 ///
 /// # Errors
-/// If a link does not hold.
+/// If links of the structure contradict each other.
 ///
 /// # Complexity
 /// That of [`nearest`], and `O(d log k)` for the `k`-th vertex, of degree `d`.
@@ -155,7 +155,7 @@ pub fn nearest_first<'t, T: Embedded<3, Geometry: Metric>>(
 /// rim. Ends at the first error.
 ///
 /// # Errors
-/// If a link does not hold.
+/// If links of the structure contradict each other.
 ///
 /// # Complexity
 /// That of [`nearest_first`].

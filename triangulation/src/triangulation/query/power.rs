@@ -13,8 +13,8 @@ impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
     /// weight; of several, the first in the [order](crate::geometry::Geometry::compare) of the
     /// geometry.
     ///
-    /// Never returns a hidden point: such a point has nowhere less power than all vertices, although
-    /// it may have the same. `None` if there are no points, or if the geometry does not
+    /// Never returns a hidden point: such a point has nowhere less power than all vertices,
+    /// although it may have the same. `None` if there are no points, or if the geometry does not
     /// [admit](crate::geometry::Geometry::admits) the point; otherwise the weight of the point does
     /// not matter. Exact.
     ///

@@ -81,7 +81,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
 /// corner starts at a cell nearby. Exact.
 ///
 /// # Errors
-/// If a link does not hold.
+/// If links of the structure contradict each other.
 ///
 /// # Complexity
 /// That of [`Triangulation::within_rectangle`].

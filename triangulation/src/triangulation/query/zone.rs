@@ -30,7 +30,7 @@ pub struct ConflictZone {
 /// edge in it: if the edge is not constrained.
 ///
 /// # Errors
-/// If a link does not hold, and what `passes` returns.
+/// If links of the structure contradict each other, and what `passes` returns.
 ///
 /// # Complexity
 /// That of [`locate`](super::locate), and time proportional to the size of the zone.

@@ -12,7 +12,8 @@ use super::{Quality, Shortfall};
 /// Two lengths that differ by less than this fraction are radii of the same circle, rounded.
 const SAME_CIRCLE: f64 = 1e-3;
 
-/// A triangle whose shortest edge is below so many last places of a coordinate gets no vertex.
+/// A triangle gets no vertex if its shortest edge is shorter than this many units in the last place
+/// of a coordinate.
 const LAST_PLACES: f64 = 64.0;
 
 /// Off-centers go this fraction of the distance at which the smallest angle is just the requested

@@ -31,7 +31,7 @@ pub(super) fn length(v: [f64; 2]) -> f64 {
 pub(super) fn is_in_lens(u: [f64; 2], v: [f64; 2], cosine: f64) -> bool {
     let along = -dot(u, v);
     if along < -ORDINARY.start {
-        return false; // an acute angle, no underflow: that of nearly all that are asked for
+        return false; // an acute angle, no underflow: the case of nearly all calls
     }
     let (uu, vv) = (dot(u, u), dot(v, v));
     if ORDINARY.contains(&uu) && ORDINARY.contains(&vv) {

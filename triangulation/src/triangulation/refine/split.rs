@@ -45,7 +45,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // Phase 1: the new point.
         let [from, to] = [a, b].map(|v| self.t.plan_of(v));
         let fraction = self.shells.fraction([a, b], constraint, length(minus(to, from)));
-        let site = [0, 1].map(|axis| from[axis] * (1.0 - fraction) + to[axis] * fraction + 0.0); // one zero
+        let site = [0, 1].map(|axis| from[axis] * (1.0 - fraction) + to[axis] * fraction + 0.0); // zero has one sign only
         let site = self.t.geometry().on_step(site);
         let p = self.t.geometry().meet(site, &[[self.t.point(a), self.t.point(b)]]);
         if self.t.inner.admit(&p).is_err() {

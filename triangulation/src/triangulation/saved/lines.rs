@@ -65,7 +65,7 @@ impl<P, V, C: Copy + Default> WithLines<Owned<P, V, ConstrainedEdges<C>>> {
         };
         let vertices = |numbers: &[u32]| {
             let vertices: Option<Vec<VertexId>> = numbers.iter().map(vertex).collect();
-            vertices.ok_or(Damage::Shape("a line names a vertex that is not there"))
+            vertices.ok_or(Damage::Shape("a line names a vertex that does not exist"))
         };
         fn all<const K: usize>(vertices: Vec<VertexId>) -> Result<[VertexId; K], Damage> {
             vertices.try_into().map_err(|_| Damage::Shape("a line names too few vertices"))

@@ -86,7 +86,7 @@ impl<P, V, C: Copy + Default> Owned<P, V, C> {
         }
         let vertex = |number: u32| match (number as usize) < points.len() {
             true => Ok(VertexId::new(number as usize)),
-            false => Err(Damage::Shape("a number is that of no vertex")),
+            false => Err(Damage::Shape("a number is not that of a vertex")),
         };
         let cells = cells.into_iter().map(|number| number.map_or(Ok(VertexId::INFINITE), vertex));
         let cells = cells.collect::<Result<Vec<_>, _>>()?;
@@ -150,7 +150,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
             i < 3 && self.dimension() == 2 && !self.tds.edge_ends(cell, i).contains(&VertexId::INFINITE)
         };
         match self.tds.cells().any(|cell| (0..8).any(|i| self.is_constrained(cell, i) && !is_edge(cell, i))) {
-            true => Err(Damage::Shape("an edge that is not there is constrained")),
+            true => Err(Damage::Shape("an edge that does not exist is constrained")),
             false => Ok(()),
         }
     }
