@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comments_and_blank_lines_are_no_rows() {
+    fn comments_and_blank_lines_are_not_rows() {
         let mut rows = Rows::new(b"\xef\xbb\xbf# title\r\n\n  \t\r\n 1, 2.5 # a comment\r\n,,\n3e0 x");
         let mut row = rows.next("N X").unwrap();
         assert_eq!((row.line, row.whole("n").unwrap(), row.finite("x").unwrap()), (4, 1, 2.5));

@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_world_file_is_refused() {
+    fn what_is_not_a_world_file_is_refused() {
         for text in ["", "1 0 0 -1 5", "1 0 0 x 5 5", "0 0 0 0 5 5", "1 0 0 nan 5 5"] {
             assert_eq!(parse(text), None, "{text:?}");
         }

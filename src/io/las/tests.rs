@@ -301,7 +301,7 @@ fn records_after_the_points_are_not_points() {
 }
 
 #[test]
-fn a_record_longer_than_its_place_is_a_warning() {
+fn a_record_longer_than_its_space_is_a_warning() {
     let record = Vlr { user_id: "tests".into(), record_id: 7, description: "".into(), data: vec![1; 9] };
     let mut bytes = Spec { records: vec![record], ..Spec::new((1, 2), 1) }.write();
     bytes[227 + 20..227 + 22].copy_from_slice(&10_u16.to_le_bytes());
@@ -312,7 +312,7 @@ fn a_record_longer_than_its_place_is_a_warning() {
 }
 
 #[test]
-fn counts_that_disagree_are_told() {
+fn counts_that_disagree_are_reported() {
     let mut bytes = Spec::new((1, 4), 1).write();
     bytes[107..111].copy_from_slice(&999_u32.to_le_bytes());
     let (reader, all) = read(&bytes).unwrap();
@@ -369,7 +369,7 @@ fn of_two_coordinate_systems_the_header_takes_one() {
 }
 
 #[test]
-fn wkt_that_is_no_wkt_is_a_warning() {
+fn text_that_is_not_wkt_is_a_warning() {
     for (text, word) in [(&b"nonsense[\0"[..], "not understood"), (b" \0", "is empty"), (b"", "is empty")] {
         let (reader, all) =
             read(&Spec { records: vec![projection(2112, text.to_vec())], ..Spec::new((1, 4), 6) }.write()).unwrap();

@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_corners_that_are_nowhere() {
+    fn refuses_corners_without_position() {
         let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for (corner, axis) in (0..4).flat_map(|corner| [(corner, 0), (corner, 1)]) {

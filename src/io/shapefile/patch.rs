@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_is_filled_in_its_own_plane() {
+    fn a_vertical_ring_is_filled_in_its_own_plane() {
         // An L in the plane x = 7.
         let ell: Vec<_> = [[0., 0.], [3., 0.], [3., 1.], [1., 1.], [1., 3.], [0., 3.], [0., 0.]]
             .map(|[y, z]: [f64; 2]| [7., y, z])

@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn no_data_is_no_height() {
+    fn no_data_is_not_a_height() {
         let (shape, odd) = read(&content(18, &[], &SQUARE, &[0., 0., -1e40, f64::NAN, f64::INFINITY, 7.]));
         let heights: Vec<bool> = shape.unwrap().vertices().map(|v| v[2].is_nan()).collect();
         assert_eq!(heights, [true, true, true, false]);

@@ -477,7 +477,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_are_met_before_the_bytes_are_written() {
+    fn limits_are_checked_before_the_bytes_are_written() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("x.shp");
         let mut set = FileSet::create(&target, 13, &[field("ID", ID_WIDTH, 0).unwrap()]).unwrap();
