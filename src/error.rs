@@ -174,7 +174,7 @@ fn plain_words(error: &std::io::Error) -> Option<(&'static str, &'static str)> {
         )),
         ErrorKind::ReadOnlyFilesystem => Some(("the disk can only be read", "write to another disk")),
         ErrorKind::PermissionDenied => {
-            Some(("no permission", "ask the owner for it: `ls -ld` tells who may read and write"))
+            Some(("no permission", "ask the owner for it: `ls -ld` shows who may read and write"))
         }
         ErrorKind::BrokenPipe => Some(("the program that read it has ended", "see what that program says")),
         _ => None,

@@ -69,7 +69,7 @@ impl Crs {
     pub fn from_epsg(code: u32) -> Result<Self> {
         let Some(found) = registry::find(code) else {
             let error = match registry::find_vertical(code) {
-                Some(vertical) => Error::usage(format!("EPSG:{code} ({}) is a vertical system alone", vertical.name))
+                Some(vertical) => Error::usage(format!("EPSG:{code} ({}) is only a vertical system", vertical.name))
                     .cure(format!("state the horizontal system with it, as EPSG:25832+{code}")),
                 None => Error::usage(format!("EPSG:{code} is not the code of a coordinate system")),
             };

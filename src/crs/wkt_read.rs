@@ -54,11 +54,11 @@ fn system(node: &Node) -> Result<(Crs, Option<Definition>)> {
     } else if is(node, LOCAL) {
         CrsKind::Local
     } else if is(node, VERTICAL) {
-        return Err(Error::unsupported(format!("\"{}\" is a vertical coordinate system alone", node.name()))
+        return Err(Error::unsupported(format!("\"{}\" is only a vertical coordinate system", node.name()))
             .cure("state the horizontal system with it, as EPSG:HORIZONTAL+VERTICAL"));
     } else {
         return Err(Error::format(format!(
-            "{} is no keyword of a coordinate system, expected PROJCS, GEOGCS, PROJCRS, COMPD_CS or the like",
+            "{} is not a keyword of a coordinate system, expected PROJCS, GEOGCS, PROJCRS, COMPD_CS or the like",
             node.keyword
         )));
     };

@@ -40,7 +40,7 @@ impl Node {
         loop {
             match reader.value(0)? {
                 Value::Node(node) => nodes.push(node),
-                other => return Err(reader.error(&format!("{other:?} stands where KEYWORD[...] was expected"))),
+                other => return Err(reader.error(&format!("found {other:?}, expected KEYWORD[...]"))),
             }
             if !reader.eat(",") {
                 break;

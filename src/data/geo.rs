@@ -106,7 +106,7 @@ impl TryFrom<Bounds> for Rect<f64> {
     /// If the box is empty, which a `Rect` cannot be.
     fn try_from(bounds: Bounds) -> Result<Self> {
         if bounds.is_empty() {
-            return Err(Error::usage("an empty box is no rectangle"));
+            return Err(Error::usage("an empty box is not a rectangle"));
         }
         let Bounds { min, max } = bounds;
         Ok(Rect::new(plan(min), plan(max)))
@@ -231,7 +231,7 @@ fn joined(all: Shape, more: Shape) -> Result<Shape> {
         (Shape::Polygon(a), Shape::Polygon(b)) => Shape::Polygon([a, b].concat()),
         (a, b) => {
             let kinds = format!("{:?} and {:?}", a.kind(), b.kind()).to_lowercase();
-            return Err(Error::unsupported(format!("a collection of {kinds} is no shape of one kind"))
+            return Err(Error::unsupported(format!("a collection of {kinds} has no single kind of geometry"))
                 .cure("convert its members one by one"));
         }
     })
@@ -315,7 +315,7 @@ mod tests {
         let line = Geometry::from(LineString::from(vec![[0.0, 0.0], [1.0, 1.0]]));
         let mixed = Geometry::GeometryCollection(GeometryCollection(vec![point, line]));
         let error = Shape::try_from(&mixed).unwrap_err();
-        assert_eq!(error.to_string(), "a collection of points and lines is no shape of one kind");
+        assert_eq!(error.to_string(), "a collection of points and lines has no single kind of geometry");
     }
 
     #[test]

@@ -215,7 +215,7 @@ fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]]) -> Resu
             Sign::Zero => {
                 let [a, b, c] = *face;
                 return Err(Error::format(format!("face {i} ({a} {b} {c}) has no area in plan"))
-                    .cure("a surface has one height per place: remove vertical and collapsed faces"));
+                    .cure("a surface has one height at each position: remove vertical and collapsed faces"));
             }
         }
     }
@@ -348,7 +348,8 @@ impl EdgeTable {
 
 #[cold]
 fn folded(flaw: LinkFlaw) -> Error {
-    Error::format(flaw.to_string()).cure("a surface has one height per place: remove overhangs and repeated faces")
+    Error::format(flaw.to_string())
+        .cure("a surface has one height at each position: remove overhangs and repeated faces")
 }
 
 /// The orientation of three points in plan: positive if counter-clockwise, zero if collinear. Exact
@@ -426,13 +427,13 @@ mod tests {
         refuses(square(), vec![[0, 1, 4]], &[], "face 0 names vertex 4, but there are 4 vertices");
         refuses(square(), vec![[0, 1, 0]], &[], "face 0 names one vertex twice: 0 1 0");
         let twice = vec![[0, 1, 2], [1, 0, 2]];
-        refuses(square(), twice, &[], "faces 0 and 1: both run the same way along their edge 0 1");
+        refuses(square(), twice, &[], "faces 0 and 1: both pass their edge 0 1 in the same direction");
         let three = vec![[0, 1, 2], [0, 2, 3], [1, 3, 0], [2, 3, 0]];
-        refuses(square(), three, &[], "faces 0 and 2: both run the same way along their edge 0 1");
+        refuses(square(), three, &[], "faces 0 and 2: both pass their edge 0 1 in the same direction");
         let flat = vec![[0.0, 0.0, 0.0], [0.1, 0.1, 5.0], [0.3, 0.3, 0.0]];
         refuses(flat, vec![[0, 1, 2]], &[], "face 0 (0 1 2) has no area in plan");
-        refuses(square(), vec![[0, 1, 2]], &[[0, 3]], "the constrained edge 0 3 is no edge of a face");
-        refuses(square(), vec![[0, 1, 2]], &[[9, 3]], "the constrained edge 9 3 is no edge of a face");
+        refuses(square(), vec![[0, 1, 2]], &[[0, 3]], "the constrained edge 0 3 is not an edge of any face");
+        refuses(square(), vec![[0, 1, 2]], &[[9, 3]], "the constrained edge 9 3 is not an edge of any face");
     }
 
     #[test]

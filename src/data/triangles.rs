@@ -69,12 +69,12 @@ impl std::fmt::Display for LinkFlaw {
         let name = |face: Option<u32>| face.map_or("none".to_owned(), |face| face.to_string());
         match *self {
             LinkFlaw::Folded { faces: [one, other], edge: [a, b] } => {
-                write!(f, "faces {one} and {other}: both run the same way along their edge {a} {b}")
+                write!(f, "faces {one} and {other}: both pass their edge {a} {b} in the same direction")
             }
             LinkFlaw::StrayVertex(vertex) => {
                 write!(f, "vertex {vertex}: a coordinate is not finite (no face uses it, but no reader can take it)")
             }
-            LinkFlaw::NoEdge([a, b]) => write!(f, "the constrained edge {a} {b} is no edge of a face"),
+            LinkFlaw::NoEdge([a, b]) => write!(f, "the constrained edge {a} {b} is not an edge of any face"),
             LinkFlaw::Neighbor { face, corner, stated, found } => {
                 let (stated, found) = (name(stated), name(found));
                 write!(f, "face {face}, edge {corner}: its neighbor is stated as {stated}, by its edges it is {found}")

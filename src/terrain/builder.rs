@@ -271,7 +271,7 @@ impl TinBuilder {
         let site = |i: u32| [all[i as usize][0], all[i as usize][1]];
         let mut vertices = Vec::new();
         if vertices.try_reserve_exact(all.len()).is_err() {
-            return Err(Error::limit(format!("there is no memory for {} vertices", all.len())));
+            return Err(Error::limit(format!("not enough memory for {} vertices", all.len())));
         }
         let mut line_vertices = vec![u32::MAX; all.len() - lines_from];
         let mut disputed = Vec::new();
@@ -334,7 +334,7 @@ fn not_built(error: InputError, name: &dyn Fn(usize) -> String) -> Error {
         InputError::Crossing { segments: [(line, _), (other, _)], at: [x, y] } => {
             let (line, other) = (name(line), name(other));
             Error::format(format!("{line} and {other} cross at {x} {y} without a common vertex"))
-                .cure("mend the lines, or let them be split there with --on-crossing split")
+                .cure("fix the lines, or split them there with --on-crossing split")
         }
         error => Error::limit(error.to_string()),
     }

@@ -148,14 +148,14 @@ pub(super) fn refuse(crossings: &[CrossingHeights], tolerance: f64, name: &dyn F
     let [(low, lowest), (high, highest)] = first.extremes();
     let more = match crossings.len() {
         1 => String::new(),
-        count => format!(" ({count} such places in all)"),
+        count => format!(" ({count} such sites in total)"),
     };
     Err(Error::format(format!(
         "breaklines meet with different heights at {x} {y}: {lowest} of {}, {highest} of {}, expected within {tolerance}{more}",
         name(low),
         name(high)
     ))
-    .cure("mend the lines, or choose a height with --crossing-z lowest, highest or mean (--crossing-report lists all places)"))
+    .cure("fix the lines, or choose a height with --crossing-z lowest, highest or mean (--crossing-report lists all sites)"))
 }
 
 #[cfg(test)]

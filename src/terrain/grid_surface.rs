@@ -84,7 +84,7 @@ impl<'a> GridSurface<'a> {
                 frame.height,
                 u32::MAX / 4
             ))
-            .cure("draw a part of it, or make it coarser"));
+            .cure("use a part of it, or a coarser raster"));
         }
         let t = &frame.transform;
         let area = t[1] * t[5] - t[2] * t[4];

@@ -45,10 +45,7 @@ impl Levels {
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         if levels.len() > MAX_LEVELS {
-            return Err(Error::limit(format!(
-                "{} contour levels are given, at most {MAX_LEVELS} can be",
-                levels.len()
-            )));
+            return Err(Error::limit(format!("{} contour levels, expected at most {MAX_LEVELS}", levels.len())));
         }
         Ok(Levels(Choice::Listed(levels)))
     }
@@ -82,7 +79,7 @@ fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64
             "contour interval {interval} gives {} levels between {low} and {high}, at most {MAX_LEVELS} are drawn",
             (steps - 3.0).max(0.0)
         ))
-        .cure("give a larger interval, or levels one by one"));
+        .cure("use a larger interval, or list the levels"));
     }
     if !(first.abs() < EXACT && last.abs() < EXACT) {
         return Err(Error::usage(format!(
@@ -98,7 +95,7 @@ fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64
             "contour interval {interval} gives {} levels between {low} and {high}, at most {MAX_LEVELS} are drawn",
             levels.len()
         ))
-        .cure("give a larger interval, or levels one by one"));
+        .cure("use a larger interval, or list the levels"));
     }
     Ok(levels)
 }

@@ -181,8 +181,8 @@ impl Selection {
     pub fn add(&mut self, batch: &PointBatch) -> Result<()> {
         if self.kept.try_reserve(batch.len()).is_err() {
             let count = self.kept.len() + batch.len();
-            return Err(Error::limit(format!("there is no memory for {count} points"))
-                .cure("use fewer points: a part of the area, a class, or tiles one by one"));
+            return Err(Error::limit(format!("not enough memory for {count} points"))
+                .cure("use fewer points: a part of the area, one class, or one tile at a time"));
         }
         for i in 0..batch.len() {
             self.read += 1;

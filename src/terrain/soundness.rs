@@ -25,10 +25,10 @@ impl std::fmt::Display for SurfaceFlaw {
         match self {
             SurfaceFlaw::Vertex(v) => write!(f, "vertex {v}: a coordinate is not finite or out of range"),
             SurfaceFlaw::NotMutual(face, i) => write!(f, "face {face}, edge {i}: its neighbor does not share the edge"),
-            SurfaceFlaw::Orientation(face) => write!(f, "face {face}: no area in plan, or turned around"),
-            SurfaceFlaw::NotManifold(v) => write!(f, "vertex {v}: its faces do not hang together"),
+            SurfaceFlaw::Orientation(face) => write!(f, "face {face}: no area in plan, or clockwise"),
+            SurfaceFlaw::NotManifold(v) => write!(f, "vertex {v}: its faces do not form a single fan"),
             SurfaceFlaw::NotDelaunay(face, i) => {
-                write!(f, "face {face}, edge {i}: the vertex beyond lies in the circumscribed circle")
+                write!(f, "face {face}, edge {i}: the vertex beyond lies in the circumcircle")
             }
         }
     }

@@ -111,7 +111,7 @@ fn what_is_refused_names_both_lines_and_leaves_nothing() {
         1,
         &[
             "different heights at 1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1, expected within 0.01",
-            "(2 such places in all)",
+            "(2 such sites in total)",
         ],
     );
     run(&["--crossing-z", "error", "--crossing-tolerance", "-1"]).fails(2, &["-1 is below zero"]);

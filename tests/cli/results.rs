@@ -281,7 +281,7 @@ fn a_flaw_is_listed_and_ends_with_1() {
     let folder = folder_with(&[("kite.obj", kite), ("kite.ply", same), ("turned.obj", turned), ("a.xyz", SLOPE)]);
     let run = run_in(&folder, &["check", "kite.ply"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
-    let flaw = "face 0, edge 1: the vertex beyond lies in the circumscribed circle, at (8 0) (0 0)\n";
+    let flaw = "face 0, edge 1: the vertex beyond lies in the circumcircle, at (8 0) (0 0)\n";
     assert_eq!(run.stdout, format!("{flaw}4 vertices, 2 triangles, 0 constrained edges: 1 flaws\n"));
     let run = run_in(&folder, &["check", "kite.obj"]);
     run.works(&[
@@ -290,7 +290,7 @@ fn a_flaw_is_listed_and_ends_with_1() {
     let run = run_in(&folder, &["check", "turned.obj"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
     assert!(
-        run.stdout.starts_with("face 1: no area in plan, or turned around, at (4.5 -1) (0 0) (8 0)\n"),
+        run.stdout.starts_with("face 1: no area in plan, or clockwise, at (4.5 -1) (0 0) (8 0)\n"),
         "{}",
         run.stdout
     );
