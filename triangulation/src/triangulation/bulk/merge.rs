@@ -33,13 +33,14 @@ pub(super) const NONE: u32 = u32::MAX;
 const LEFT: usize = 0;
 const RIGHT: usize = 1;
 
-/// Returns the slot of the edge between the lower end of a hull edge and infinity, or between
-/// infinity and it: the ghost further up lies across it ...
+/// Returns the slot, in a ghost, of the edge between the upper end of the hull edge and infinity:
+/// the ghost further up lies across it.
 const fn onward(side: usize) -> usize {
     2 - side
 }
 
-/// ... and the ghost further down across this one.
+/// Returns the slot, in a ghost, of the edge between the lower end of the hull edge and infinity:
+/// the ghost further down lies across it.
 const fn back(side: usize) -> usize {
     1 + side
 }

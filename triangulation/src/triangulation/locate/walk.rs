@@ -63,8 +63,8 @@ const WANDERING: usize = 8;
 /// The complex must fill its convex hull without overlap; it need not be Delaunay.
 ///
 /// # Errors
-/// If links of the structure contradict each other, or if there are many times more steps than cells, as damaged links may
-/// cause.
+/// If links of the structure contradict each other, or if there are many times more steps than
+/// cells, as damaged links may cause.
 ///
 /// # Complexity
 /// Time proportional to the number of cells between. If that is large, the walk continues from one
