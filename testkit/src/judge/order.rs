@@ -59,9 +59,9 @@ fn shuffled(case: &Case, random: &mut Random) -> (Case, Vec<usize>, Vec<bool>) {
 
 pub(crate) fn judge(case: &Case, built: &Built, random: &mut Random) -> Verdict {
     let (other_case, lines, turned) = shuffled(case, random);
-    let other = build(&other_case).map_err(|refused| format!("order: refused in another one: {refused}"))?;
+    let other = build(&other_case).map_err(|refused| format!("order: refused in another order: {refused}"))?;
     if constrained_edges(&other) != constrained_edges(built) {
-        return Err("order: other constrained edges".to_owned());
+        return Err("order: different constrained edges".to_owned());
     }
     for (new, &old) in lines.iter().enumerate() {
         let mut expected = chain(built, old);
@@ -69,11 +69,11 @@ pub(crate) fn judge(case: &Case, built: &Built, random: &mut Random) -> Verdict 
             expected.reverse();
         }
         if chain(&other, new) != expected {
-            return Err(format!("order: another chain for line {old}"));
+            return Err(format!("order: different chain for line {old}"));
         }
     }
     if triangles(&other) != triangles(built) {
-        return Err("order: other triangles".to_owned());
+        return Err("order: different triangles".to_owned());
     }
     Ok(())
 }

@@ -72,7 +72,7 @@ pub(crate) fn judge(built: &Built) -> Verdict {
     }
     for [a, b] in t.constrained_edges().map(|edge| edge.map(|v| v.index())) {
         if !opposite.contains_key(&[a, b]) && !opposite.contains_key(&[b, a]) {
-            return Err(format!("constrained edge {a} {b} is no edge"));
+            return Err(format!("constrained edge {a} {b} is not an edge"));
         }
     }
     let constrained: std::collections::HashSet<[usize; 2]> =

@@ -100,8 +100,9 @@ impl Arrangement {
     ///
     /// Given sites are all different, their coordinates finite and multiples of `step`, a power of
     /// two or zero; the coordinates of added sites will be multiples of it, too. Segments are all
-    /// different, and the ends of a segment differ. A given site that is no end of a segment has an
-    /// effect only if it lies exactly on a segment that is bent: the segment is routed through it.
+    /// different; one from a site to itself counts as none. A given site that is no end of a
+    /// segment has an effect only if it lies exactly on a segment that is bent: the segment is
+    /// routed through it.
     ///
     /// # Complexity
     /// O((n + k) log n) to find the k pairs that cross among n segments. Routing segments through

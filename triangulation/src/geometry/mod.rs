@@ -65,7 +65,7 @@ use crate::num::Sign;
 /// # Models
 /// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`]. For points that have a
 /// position in the plane, `Mapped` is a geometry in one line. You can add your own; this one counts
-/// how often a predicate is evaluated:
+/// the in-circle tests:
 ///
 /// ```
 /// use std::cell::Cell;
@@ -117,7 +117,7 @@ pub trait Geometry<const N: usize> {
     /// Returns the approximate distance of two points, in any measure.
     ///
     /// Used to choose where a walk starts; no result depends on it. The default is NaN, for no
-    /// measure: walks then start far away and take long.
+    /// measure: walks from far away then take long.
     #[inline]
     fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> f64 {
         f64::NAN
@@ -152,8 +152,9 @@ pub trait Geometry<const N: usize> {
     /// simplex spans and `q` lies in: positive inside, whatever the orientation of the simplex.
     ///
     /// For two points, inside means between them. A single point is only asked about for weighted
-    /// points: `q` is then on the same site, and inside if its weight is larger. The default, for
-    /// points without weights, answers that no point is inside of another.
+    /// points: `q` is then on the same site, and inside if its weight is larger. The default is
+    /// for points without weights: no point is inside of another. A geometry with weights overrides
+    /// it.
     fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
         match simplex {
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
