@@ -66,7 +66,7 @@
 //!
 //! Each module depends only on those above it in this table.
 //!
-//! | module | holds |
+//! | module | contains |
 //! |---|---|
 //! | [`triangulation`] | the crate `breakline-triangulation`: numbers, predicates, geometry, combinatorics, all kinds of triangulations |
 //! | [`crs`] | coordinate systems: names, codes, units |

@@ -1,6 +1,7 @@
-//! Bounds over points of which not all are read: once the report says that these are enough, the surface is that of all.
+//! Bounds over points of which not all are read: if the report says that they suffice, the surface
+//! is that of all points.
 //!
-//! Takes the number of scenes from the environment:
+//! The environment sets the number of scenes:
 //!
 //! ```text
 //! BREAKLINE_WINDOWS=20000 cargo test --release --test bounds_of_what_is_read

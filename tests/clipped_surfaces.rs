@@ -41,7 +41,7 @@ impl Corners {
     }
 }
 
-/// Whether a ray to the left crosses the rings an odd number of times.
+/// Returns true if a ray to the left crosses the rings an odd number of times.
 fn is_within(rings: &[Ring], [x, y]: [f64; 2]) -> bool {
     let sides = rings.iter().flat_map(|ring| (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()])));
     let crosses = |&([ax, ay], [bx, by]): &([f64; 2], [f64; 2])| {
@@ -50,8 +50,8 @@ fn is_within(rings: &[Ring], [x, y]: [f64; 2]) -> bool {
     sides.filter(crosses).count() % 2 == 1
 }
 
-/// Rings that cross themselves and each other, over breaklines that do so too, many edges in common: what is inside of any
-/// polygon is there, and nothing else.
+/// Rings and breaklines that cross themselves and each other, with many common edges: the surface
+/// is exactly what lies inside any polygon.
 #[test]
 fn what_stays_is_what_lies_in_any_polygon() {
     let (mut inside, mut outside) = (0, 0);
@@ -60,8 +60,8 @@ fn what_stays_is_what_lies_in_any_polygon() {
         let mut corners = Corners { random: Random(round as u64), scale };
         let mut builder = TinBuilder::default();
         let mut add = |[x, y, z]: [f64; 3]| builder.add_points(&[x], &[y], &[z]);
-        for place in [[0, 0], [SIDE, 0], [SIDE, SIDE], [0, SIDE]].map(|p| p.map(|c| f64::from(c) * scale)) {
-            add([place[0], place[1], height(place)]);
+        for site in [[0, 0], [SIDE, 0], [SIDE, SIDE], [0, SIDE]].map(|p| p.map(|c| f64::from(c) * scale)) {
+            add([site[0], site[1], height(site)]);
         }
         (0..corners.random.below(30)).for_each(|_| add(corners.within()));
         let polygons: Vec<Vec<Ring>> = (0..1 + corners.random.below(3))
@@ -71,7 +71,7 @@ fn what_stays_is_what_lies_in_any_polygon() {
         for _ in 0..corners.random.below(4) {
             builder.add_breakline(&[(); 3].map(|()| corners.within()));
         }
-        // A side of a polygon that is a breakline, too, where it is within the data.
+        // A side of a polygon that is also a breakline, where it is within the data.
         let [p, q] = [0, 1].map(|i| polygons[0][0][i]);
         if [p, q].iter().flatten().all(|c| (0.0..=f64::from(SIDE) * scale).contains(c)) {
             builder.add_breakline(&[p, q].map(|p| [p[0], p[1], height(p)]));
@@ -79,19 +79,19 @@ fn what_stays_is_what_lies_in_any_polygon() {
         let tin = builder.build().unwrap();
         assert!(tin.check(Level::Law).is_empty(), "round {round}");
         for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
-            let place = [(f64::from(i) + OFF[0]) * scale, (f64::from(j) + OFF[1]) * scale];
-            let expected = polygons.iter().any(|rings| is_within(rings, place));
-            let found = tin.elevation(place[0], place[1]);
-            assert_eq!(found.is_some(), expected, "round {round} at {place:?}: {polygons:?}");
-            let is_on_ground = |z: f64| (z - height(place)).abs() < 1e-9;
-            assert!(found.is_none_or(is_on_ground), "round {round} at {place:?}: {found:?}");
+            let site = [(f64::from(i) + OFF[0]) * scale, (f64::from(j) + OFF[1]) * scale];
+            let expected = polygons.iter().any(|rings| is_within(rings, site));
+            let found = tin.elevation(site[0], site[1]);
+            assert_eq!(found.is_some(), expected, "round {round} at {site:?}: {polygons:?}");
+            let is_on_ground = |z: f64| (z - height(site)).abs() < 1e-9;
+            assert!(found.is_none_or(is_on_ground), "round {round} at {site:?}: {found:?}");
             *(if expected { &mut inside } else { &mut outside }) += 1;
         }
     }
     assert!(inside > 2000 && outside > 2000, "{inside} {outside}");
 }
 
-/// Boxes around nothing but a place, and wider than the numbers that can be computed with.
+/// Boxes around a single site, and boxes beyond the range of the arithmetic.
 #[test]
 fn bounds_may_be_endless() {
     use breakline::data::Bounds;
@@ -107,7 +107,8 @@ fn bounds_may_be_endless() {
     assert_eq!(error.to_string(), "boundary: [0.0, NaN, 0.0] is not a finite point");
 }
 
-/// A field of many parcels beside each other, each a polygon of its own: none is left out, no side is in the way.
+/// A field of adjacent parcels, each a polygon of its own: none is left out, and no common side
+/// cuts the surface.
 #[test]
 fn parcels_add_up() {
     let mut builder = TinBuilder::default();
@@ -129,7 +130,8 @@ fn vertices(tin: &Tin) -> Vec<[f64; 3]> {
     vertices
 }
 
-/// A side of the clip polygon runs between two points of the ground and over a breakline that is 10 high.
+/// A side of the clip polygon runs between two points of the ground and over a breakline that is 10
+/// high.
 #[test]
 fn a_side_that_crosses_a_breakline_is_as_high_as_the_breakline_there() {
     let mut builder = TinBuilder::default();
@@ -143,7 +145,7 @@ fn a_side_that_crosses_a_breakline_is_as_high_as_the_breakline_there() {
     let tin = builder.build().unwrap();
     let on_breakline: Vec<[f64; 3]> = vertices(&tin).into_iter().filter(|p| p[1] == 0.0).collect();
     assert_eq!(on_breakline, [[5.0, 0.0, 10.0], [9.0, 0.0, 10.0]]);
-    // The breakline and the sides of the polygon are told apart, and nothing else is a line.
+    // The breakline and the sides of the polygon differ in kind, and there are no other lines.
     let sides = (0..tin.face_count() as u32).filter_map(|face| Some((face, tin.face(face)?)));
     let kinds = sides.flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i))).map(|(face, corners, i)| {
         let [p, q] = [1, 2].map(|k| tin.position(corners[(i + k) % 3]));
@@ -160,8 +162,8 @@ fn a_side_that_crosses_a_breakline_is_as_high_as_the_breakline_there() {
     assert!(kinds.filter(|kind| *kind == EdgeKind::Clip).count() >= 6);
 }
 
-/// Two polygons, one with a corner in the middle of the other's side, over ground in waves: no crack, so that contours
-/// do not end there; and no trace of the common side, where both sides are kept.
+/// Two polygons over wavy ground, one with a corner in the middle of the other's side: there is no
+/// crack at which contours end, and no trace of the common side where both of its sides are kept.
 #[test]
 fn polygons_that_share_part_of_a_side_are_one_surface() {
     let ground = |round: u64| {
@@ -183,15 +185,15 @@ fn polygons_that_share_part_of_a_side_are_one_surface() {
         builder.add_boundary(&[vec![a, b, at(14.0, 1.0)]]);
         builder.add_boundary(&[vec![middle, b, at(3.0, 14.0)]]);
         let tin = builder.build().unwrap();
-        // All rim lies on the sides of the union: none between the corner and the common end.
+        // The rim lies on the sides of the union, not between the corner and the common end.
         let rims = (0..tin.face_count() as u32).filter_map(|face| Some((face, tin.face(face)?)));
         for (face, corners) in rims {
             for i in (0..3).filter(|&i| tin.neighbor(face, i).is_none()) {
                 let [p, q] = [1, 2].map(|k| tin.position(corners[(i + k) % 3]));
-                let way = [0, 1].map(|k| 0.5 * (p[k] + q[k]) - middle[k]);
+                let offset = [0, 1].map(|k| 0.5 * (p[k] + q[k]) - middle[k]);
                 let along = [0, 1].map(|k| b[k] - middle[k]);
-                let off = (along[0] * way[1] - along[1] * way[0]) / along[0].hypot(along[1]);
-                let fraction = (along[0] * way[0] + along[1] * way[1]) / (along[0].powi(2) + along[1].powi(2));
+                let off = (along[0] * offset[1] - along[1] * offset[0]) / along[0].hypot(along[1]);
+                let fraction = (along[0] * offset[0] + along[1] * offset[1]) / (along[0].powi(2) + along[1].powi(2));
                 assert!(
                     off.abs() > 1e-8 || !(1e-6..1.0 - 1e-6).contains(&fraction),
                     "round {round}: a crack {part} {p:?} {q:?} {off} {fraction}"
@@ -201,7 +203,7 @@ fn polygons_that_share_part_of_a_side_are_one_surface() {
     }
 }
 
-/// A spike that goes out and comes back over itself, and polygons without an area, leave nothing.
+/// A spike that runs back over itself, and polygons without area, leave nothing.
 #[test]
 fn what_has_no_area_leaves_nothing() {
     let clipped = |rings: &[Ring]| {
@@ -213,7 +215,7 @@ fn what_has_no_area_leaves_nothing() {
         builder.build().unwrap()
     };
     let square: Ring = vec![[10.0, 10.0], [30.0, 10.0], [30.0, 30.0], [10.0, 30.0]];
-    // Out from a corner to 50.1 70.3 and back over a place a tenth of the way, rounded.
+    // From a corner to 50.1 70.3 and back through a site at a tenth of the distance, rounded.
     let mut spike = square.clone();
     spike.splice(2..3, [[30.0, 30.0], [50.1, 70.3], [30.0 + 0.1 * 20.1, 30.0 + 0.1 * 40.3], [30.0, 30.0]]);
     assert_eq!(vertices(&clipped(&[spike])).len(), vertices(&clipped(&[square])).len());

@@ -1,5 +1,5 @@
-//! Coordinate systems against real files, and against what GDAL makes of our text and keys (where its tools are
-//! installed).
+//! Coordinate systems against real files, and against GDAL's reading of our text and keys (if its
+//! tools are installed).
 
 use std::path::Path;
 use std::process::Command;
@@ -13,7 +13,7 @@ const CODES: &[u32] = &[
     27572, 5514, 2953, 3395, 2193, 31467, 28356, 4258, 4269, 2949, 32128,
 ];
 
-/// What a program prints; `None`, said plainly, where it is not installed.
+/// The output of a program; `None`, with a note, if it is not installed.
 fn output(program: &str, args: &[&str]) -> Option<String> {
     match Command::new(program).args(args).output() {
         Ok(done) => Some(String::from_utf8_lossy(&done.stdout).into_owned() + &String::from_utf8_lossy(&done.stderr)),
@@ -150,7 +150,7 @@ fn gdal_reads_our_geokeys_as_the_same_system() {
     assert!(found.contains("ID[\"EPSG\",25832]") && found.contains("ID[\"EPSG\",7837]"), "{found}");
 }
 
-/// Systems of nobody, one of every method that GeoKeys can say, as GDAL writes them.
+/// Invented systems, one for every method that GeoKeys can represent, as GDAL writes them.
 fn custom() -> Vec<String> {
     let projected = |method: &str, parameters: &str, unit: &str| {
         format!(
@@ -190,8 +190,8 @@ fn custom() -> Vec<String> {
     ]
 }
 
-/// Where GDAL puts a place, as a judge that knows nothing of names.
-fn place(system: &str, point: &[u8]) -> Option<Vec<f64>> {
+/// The position that GDAL computes for a point, as a judge independent of names.
+fn position(system: &str, point: &[u8]) -> Option<Vec<f64>> {
     use std::io::Write;
     let mut child = Command::new("gdaltransform")
         .args(["-s_srs", "EPSG:4326", "-t_srs", system, "-output_xy"])
@@ -219,7 +219,7 @@ fn systems_without_a_code_keep_their_coordinates_in_geokeys_and_prj() {
         assert_eq!((back.epsg, &back.unit), (None, &crs.unit));
 
         let point: &[u8] = if wkt.contains("-70") { b"15 -68\n" } else { b"15 47.5\n" };
-        let Some(wanted) = place(&wkt, point) else {
+        let Some(wanted) = position(&wkt, point) else {
             eprintln!("skipped: gdaltransform is not installed");
             return;
         };
@@ -232,7 +232,7 @@ fn systems_without_a_code_keep_their_coordinates_in_geokeys_and_prj() {
         std::fs::write(&path, crs.to_prj()).unwrap();
         let from_prj = format!("ESRI::{}", path.display());
         for (ours, text) in [(&from_keys, &from_keys), (&from_prj, &crs.to_prj())] {
-            let found = place(ours, point).unwrap();
+            let found = position(ours, point).unwrap();
             assert!(
                 found.len() == 2 && found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-3),
                 "{found:?} instead of {wanted:?}\n{wkt}\n{text}"
@@ -340,7 +340,7 @@ fn damaged_wkt_never_panics() {
         .chain(custom())
         .chain([Crs::from_user("EPSG:2994+6360").unwrap().to_wkt()])
         .collect();
-    let pieces = [
+    let parts = [
         "[",
         "]",
         "\"",
@@ -362,7 +362,7 @@ fn damaged_wkt_never_panics() {
             let at = (0..=next(text.len() + 1)).rev().find(|&at| text.is_char_boundary(at)).unwrap();
             let end = (at + next(12)).min(text.len());
             let end = (end..=text.len()).find(|&end| text.is_char_boundary(end)).unwrap();
-            text.replace_range(at..end, pieces[next(pieces.len())]);
+            text.replace_range(at..end, parts[next(parts.len())]);
         }
         if let Ok(crs) = Crs::from_wkt(&text) {
             read += 1;
@@ -437,7 +437,8 @@ fn damaged_keys_are_errors_and_absent_ones_are_none() {
 
 #[test]
 fn a_unit_beside_a_code_is_the_unit_of_the_coordinates() {
-    // A file of Nebraska: the code is in metres, the coordinates in US survey feet, the datum a newer one.
+    // A file of Nebraska: the code is in meters, the coordinates in US survey feet, and the datum
+    // is newer.
     let keys = GeoKeys {
         directory: vec![
             1, 1, 0, 5, 1024, 0, 1, 1, 2048, 0, 1, 6318, 3072, 0, 1, 32104, 3076, 0, 1, 9003, 4099, 0, 1, 9003,
@@ -545,7 +546,8 @@ fn real_files_have_the_systems_that_the_facts_state() {
         let epsg = crs.as_ref().and_then(|crs| crs.epsg);
         match wanted {
             serde_json::Value::Number(code) => {
-                // The facts repeat the key; its code is in metres, the unit key and the coordinates are in feet.
+                // The facts repeat the key. Its code is in meters, the unit key and the coordinates
+                // are in feet.
                 let wanted = if file.contains("point-version-1-point-wise") { Some(2271) } else { code.as_u64() };
                 assert_eq!(epsg.map(u64::from), wanted, "{file}: {crs:?}");
                 coded += 1;
@@ -611,46 +613,46 @@ mod with_proj {
     }
 
     #[test]
-    fn helmert_paths_are_taken_and_their_accuracy_is_told() {
+    fn helmert_paths_are_taken_and_their_accuracy_is_reported() {
         // cs2cs of PROJ 9.1 without grids (which prints the Austrian northing first).
-        for (code, place, wanted) in [
+        for (code, position, wanted) in [
             ("EPSG:27700", [-1.5, 52.5], [434_039.457_29, 289_239.281_09]),
             ("EPSG:2056", [7.5, 47.0], [2_604_667.476_42, 1_205_439.960_18]),
             ("EPSG:31287", [13.5, 47.5], [412_608.702_49, 400_070.560_75]),
         ] {
-            let [x, y] = place;
-            let told = check("EPSG:4326", code, [x, y, 100.0], [wanted[0], wanted[1], 100.0], 1e-4);
-            assert!(told.iter().any(|text| text.contains("accura")), "{code}: {told:?}");
+            let [x, y] = position;
+            let warnings = check("EPSG:4326", code, [x, y, 100.0], [wanted[0], wanted[1], 100.0], 1e-4);
+            assert!(warnings.iter().any(|text| text.contains("accura")), "{code}: {warnings:?}");
             // Two millimetres: in plan, PROJ drops the height between the ellipsoids on both ways.
             check(code, "EPSG:4326", [wanted[0], wanted[1], 100.0], [x, y, 100.0], 2e-8);
         }
     }
 
     #[test]
-    fn heights_that_stay_are_told() {
-        let told = check("EPSG:4326+5773", "EPSG:4979", [15.5, 47.0, 300.0], [15.5, 47.0, 300.0], 1e-9);
-        assert!(told.iter().any(|text| text.contains("heights are left")), "{told:?}");
-        let told = check(
+    fn heights_that_stay_are_reported() {
+        let warnings = check("EPSG:4326+5773", "EPSG:4979", [15.5, 47.0, 300.0], [15.5, 47.0, 300.0], 1e-9);
+        assert!(warnings.iter().any(|text| text.contains("heights are left")), "{warnings:?}");
+        let warnings = check(
             "EPSG:25832+7837",
             "EPSG:25833",
             [700_000.0, 5_300_000.0, 300.0],
             [250_912.281_132, 5_301_906.474_428, 300.0],
             1e-5,
         );
-        assert!(told.iter().any(|text| text.contains("heights are left as they are")), "{told:?}");
+        assert!(warnings.iter().any(|text| text.contains("heights are left as they are")), "{warnings:?}");
     }
 
     #[test]
     fn geocentric_files_become_maps() {
         // cs2cs EPSG:4978 EPSG:4979
-        let told = check(
+        let warnings = check(
             "EPSG:4978",
             "EPSG:4326",
             [4_194_423.0, 1_162_702.0, 4_647_245.0],
             [15.493_474_331_5, 47.067_133_849, 537.325_021_646_9],
             1e-6,
         );
-        assert!(told.iter().any(|text| text.contains("ellipsoid")), "{told:?}");
+        assert!(warnings.iter().any(|text| text.contains("ellipsoid")), "{warnings:?}");
         assert!(transform(&crs("EPSG:4326"), &crs("EPSG:4978")).is_err());
     }
 

@@ -1,4 +1,4 @@
-//! The raster of a surface: what its cells hold, and that nothing else matters.
+//! The raster of a surface: the values of its cells, independent of everything else.
 
 use breakline::data::{BlockSource, Frame, Grid, Mesh, Surface, Window};
 use breakline::terrain::{Dem, Hillshade, Light};

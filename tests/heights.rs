@@ -1,8 +1,9 @@
-//! Heights asked of a surface, wherever the place lies.
+//! Heights of a surface at any position.
 
 use breakline::terrain::TinBuilder;
 
-/// A place that is none has no height; one that is nearer to zero than the arithmetic goes lies at zero.
+/// A position that is not finite has no height; one below the range of the arithmetic counts as
+/// zero.
 #[test]
 fn heights_are_told_where_there_is_a_surface_only() {
     let mut builder = TinBuilder::default();

@@ -120,7 +120,7 @@ fn crossings_are_whole_numbers() {
     }
 }
 
-/// Of a tile: the coordinates that are read are points of its lattice, all of them, and its steps triangulate.
+/// All coordinates read from a tile are points of its lattice, and its steps can be triangulated.
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_tile() {

@@ -1,4 +1,4 @@
-//! Mesh files: written, read back, foreign, damaged.
+//! Mesh files: written, read again, foreign, damaged.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,8 @@ fn field(n: u32) -> Mesh {
 /// The coordinates of a corner, and the kind of the edge that starts at it.
 type Side = ([u64; 3], EdgeKind);
 
-/// Each face by the coordinates of its corners, the kinds of its edges and whether it is a piece, in an order of its own.
+/// Each face by the coordinates of its corners, the kinds of its edges, and true if it is a
+/// fragment; in canonical order.
 fn content(surface: &impl Surface) -> Vec<([Side; 3], bool)> {
     let mut faces: Vec<_> = (0..surface.face_count() as u32)
         .filter_map(|f| {
@@ -84,7 +85,7 @@ fn ply_tells_breaklines_clip_lines_rim_and_pieces_apart() {
     assert_eq!(mesh::write(&path, &cut).unwrap().constrained_edges, 3);
     assert_eq!(content(&mesh::read(&path).unwrap()), content(&cut));
     let bytes = std::fs::read(&path).unwrap();
-    // From the first corner to the second, to the third, and back: face 1 is 0 3 1.
+    // From the first corner to the second, the third, and the first: face 1 is 0 3 1.
     let row = |face: usize| &bytes[bytes.len() - 17 * (6 - face)..][13..17];
     assert_eq!([row(0), row(1), row(4)], [[3, 1, 0, 0], [0, 3, 2, 1], [3, 2, 0, 1]]);
     // Programs pass over no element that they do not know, and QGIS shows no faces beside edges.

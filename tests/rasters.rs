@@ -423,8 +423,8 @@ fn a_picture_is_gray_and_knows_its_place() {
             assert_eq!(pixels[2 * (row * 400 + column)..][..2], gray, "column {column}, row {row}");
         }
     }
-    let place = std::fs::read_to_string(folder.path().join("relief.pgw")).unwrap();
-    assert_eq!(place, "2\n0\n0\n-2\n101\n199\n");
+    let world_file = std::fs::read_to_string(folder.path().join("relief.pgw")).unwrap();
+    assert_eq!(world_file, "2\n0\n0\n-2\n101\n199\n");
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! TINs of real deliveries: the counts that ../shared/data states, and every breakline edge present.
+//! TINs of real deliveries: the counts are those that ../shared/data states, and every breakline is
+//! present.
 
 use breakline::data::{PointBatch, Shape};
 use breakline::terrain::{Tin, TinBuilder};
@@ -29,7 +30,7 @@ fn lines(path: &str) -> Vec<Vec<[f64; 3]>> {
     parts.collect()
 }
 
-/// Every piece of every line is a constrained edge, or a chain of them.
+/// Every segment of every line is a constrained edge, or a chain of them.
 fn missing(tin: &Tin, lines: &[Vec<[f64; 3]>]) -> usize {
     let t = tin.triangulation();
     let vertex = |p: &[f64; 3]| match t.locate(p, None) {
@@ -37,8 +38,8 @@ fn missing(tin: &Tin, lines: &[Vec<[f64; 3]>]) -> usize {
         other => panic!("{p:?} is no vertex: {other:?}"),
     };
     let constrained = |a: VertexId, b: VertexId| t.tds().edge(a, b).is_some_and(|(cell, i)| t.is_constrained(cell, i));
-    let pieces = lines.iter().flat_map(|line| line.windows(2)).map(|pair| [vertex(&pair[0]), vertex(&pair[1])]);
-    pieces.filter(|[a, b]| a != b && !constrained(*a, *b)).count()
+    let segments = lines.iter().flat_map(|line| line.windows(2)).map(|pair| [vertex(&pair[0]), vertex(&pair[1])]);
+    segments.filter(|[a, b]| a != b && !constrained(*a, *b)).count()
 }
 
 fn check(points: &[&str], ground_only: bool, breaklines: Option<&str>, expected: [usize; 3]) {

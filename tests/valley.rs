@@ -1,4 +1,5 @@
-//! The fixtures through the library: the surface is the one that another program counts, and lies where the ground is.
+//! The fixtures through the library: the surface has the counts of another program, and matches the
+//! ground.
 
 #[path = "../examples/fixtures/mod.rs"]
 mod fixtures;
@@ -34,8 +35,8 @@ fn tin(breaklines: &[Vec<[f64; 3]>]) -> Tin {
     builder(breaklines).build().unwrap()
 }
 
-/// Root mean square and largest difference from the known height, at the centers of cells of half a metre within the
-/// boundary.
+/// Root mean square and largest difference from the known height, at the centers of cells of half a
+/// meter within the boundary.
 fn error(tin: &Tin) -> [f64; 2] {
     let [west, south] = valley::ORIGIN;
     let [width, height] = valley::SIZE;
@@ -91,7 +92,7 @@ fn the_lake_is_level() {
     }
 }
 
-/// A boundary of straight pieces of 20 m across all that the valley has leaves the surface where it is.
+/// A boundary of segments of 20 m across everything in the valley does not change the surface.
 #[test]
 fn a_boundary_leaves_the_surface_as_it_is() {
     let mut builder = builder(&parts("breaklines.shp"));

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 /// A unit of length or angle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
-    /// "metre", "US survey foot", "degree"
+    /// The name, such as "metre", "US survey foot", "degree".
     pub name: String,
     /// Meters (or radians) in one unit.
     pub factor: f64,

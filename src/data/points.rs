@@ -123,7 +123,7 @@ impl fmt::Display for Columns {
 /// It may be wrong: memory must not be allocated by it.
 #[derive(Debug, Clone, Default)]
 pub struct PointInfo {
-    /// "LAS 1.4, point format 6, LAZ"
+    /// The format, such as "LAS 1.4, point format 6, LAZ".
     pub format: String,
     /// The stated number of points.
     pub count: Option<u64>,

@@ -69,7 +69,7 @@ impl Shape {
 /// The shapes of a vector file.
 #[derive(Debug, Clone, Default)]
 pub struct Layer {
-    /// "shapefile PolyLineZ"
+    /// The format, such as "shapefile PolyLineZ".
     pub format: String,
     /// The shapes in the order of the file, null shapes included.
     pub shapes: Vec<Shape>,

@@ -41,9 +41,9 @@ pub enum LinkFlaw {
         face: u32,
         /// The corner opposite the edge.
         corner: usize,
-        /// What the file says.
+        /// The neighbor that the file states.
         stated: Option<u32>,
-        /// What the edges say.
+        /// The neighbor by the shared edge.
         found: Option<u32>,
     },
 }

@@ -399,7 +399,8 @@ mod tests {
         });
     }
 
-    /// In batches as one by one, also where numbers are unused and the last batch is not full.
+    /// Batches yield the same faces as single calls, also with unused numbers and a partial last
+    /// batch.
     #[test]
     fn many_faces_are_those_that_one_asks_for() {
         let mut builder = TinBuilder { max_edge: Some(1.5), ..TinBuilder::default() };

@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_is_touched_keeps_its_height_and_is_told() {
+    fn a_vertex_that_is_touched_keeps_its_height_and_is_reported() {
         // The second line ends on the first, the third shares that end, the fourth is elsewhere.
         let lines: [Line; 4] = [
             &[[-4.0, 0.0, 0.0], [4.0, 0.0, 2.0]],
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_that_ends_at_another_height_than_it_began_is_told() {
+    fn a_ring_that_ends_at_a_height_other_than_its_first_is_reported() {
         let ring: Line = &[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0, 0.0, 3.0]];
         let tin = tin(&[ring], DuplicateRule::Lowest);
         let [reported] = tin.report().crossing_heights.as_slice() else { panic!() };

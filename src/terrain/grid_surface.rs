@@ -276,7 +276,7 @@ impl Surface for GridSurface<'_> {
 mod tests {
     use super::*;
 
-    /// Of all faces of a range, those whose heights a range has to do with.
+    /// The faces of a range whose heights meet a range.
     #[test]
     fn heights_are_those_of_the_faces() {
         let cell = |i: u32| match i.wrapping_mul(2_654_435_769) >> 29 {

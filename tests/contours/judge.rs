@@ -1,12 +1,12 @@
-//! What contours must be, told from the definition and checked the slow way, in whole numbers.
+//! The expected contours, computed naively from the definition, in whole numbers.
 
 use super::surface::Faces;
 use breakline::data::ContourLine;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Steps per unit of the lattice on which all crossings lie: places and heights are whole numbers,
-/// heights differ by at most 3, and levels are multiples of a half.
+/// Steps per unit of the lattice on which all crossings lie: coordinates and heights are whole
+/// numbers, heights differ by at most 3, and levels are multiples of a half.
 const LATTICE: i64 = 12;
 
 pub(crate) type Point = [i64; 2];
@@ -27,10 +27,10 @@ pub(crate) fn to_lattice(c: f64) -> f64 {
     near
 }
 
-/// The pieces of contour at `half_level / 2`: the polygons {height >= level} of all faces, those
-/// without area left out; the sum of their boundaries; less what lies on the edge of the data;
-/// turned to have the polygons on the right.
-pub(crate) fn pieces(surface: &Faces, half_level: i64) -> Vec<Segment> {
+/// The arcs of the contour at `half_level / 2`: the sum of the boundaries of the polygons
+/// {height >= level} of all faces, without polygons of no area and without the edge of the data,
+/// directed so that the polygons are on the right.
+pub(crate) fn arcs(surface: &Faces, half_level: i64) -> Vec<Segment> {
     let mut sum = BTreeMap::<Segment, i64>::new();
     let mut sides = BTreeMap::<[u32; 2], i64>::new();
     for face in &surface.faces {
@@ -42,21 +42,21 @@ pub(crate) fn pieces(surface: &Faces, half_level: i64) -> Vec<Segment> {
     }
     for face in &surface.faces {
         let height = |v: u32| surface.vertices[v as usize][2] as i64 * 2 - half_level;
-        let place = |v: u32| lattice_point([surface.vertices[v as usize][0], surface.vertices[v as usize][1]]);
-        // Each vertex of the polygon with the side of the face that leads on from there.
+        let site = |v: u32| lattice_point([surface.vertices[v as usize][0], surface.vertices[v as usize][1]]);
+        // Each vertex of the polygon with the side of the face that follows it.
         let mut polygon: Vec<(Point, usize)> = Vec::new();
         for i in 0..3 {
             let (a, b) = (face[i], face[(i + 1) % 3]);
             if height(a) >= 0 {
-                polygon.push((place(a), i));
+                polygon.push((site(a), i));
             }
             if height(a) * height(b) < 0 {
                 let along = |k: usize| {
-                    let (rise, run) = (height(b) - height(a), place(b)[k] - place(a)[k]);
+                    let (rise, run) = (height(b) - height(a), site(b)[k] - site(a)[k]);
                     assert_eq!(run * -height(a) % rise, 0);
-                    place(a)[k] + run * -height(a) / rise
+                    site(a)[k] + run * -height(a) / rise
                 };
-                // Going down, what leads on is the new side, through the face.
+                // Where heights fall, the next side is the new one through the face.
                 polygon.push(([along(0), along(1)], if height(a) > 0 { 3 } else { i }));
             }
         }
@@ -68,7 +68,7 @@ pub(crate) fn pieces(surface: &Faces, half_level: i64) -> Vec<Segment> {
         for i in 0..polygon.len() {
             let ((from, side), (to, _)) = (polygon[i], polygon[(i + 1) % polygon.len()]);
             // From a corner on the level straight through the face.
-            let on_side = side < 3 && is_between(to, place(face[side]), place(face[(side + 1) % 3]));
+            let on_side = side < 3 && is_between(to, site(face[side]), site(face[(side + 1) % 3]));
             if on_side {
                 let mut side = [face[side], face[(side + 1) % 3]];
                 side.sort_unstable();
@@ -83,7 +83,7 @@ pub(crate) fn pieces(surface: &Faces, half_level: i64) -> Vec<Segment> {
     sum.into_iter().flat_map(|(segment, count)| std::iter::repeat_n(segment, count.max(0) as usize)).collect()
 }
 
-pub(crate) fn pieces_of(lines: &[ContourLine]) -> Vec<Segment> {
+pub(crate) fn arcs_of(lines: &[ContourLine]) -> Vec<Segment> {
     let mut all: Vec<Segment> = lines
         .iter()
         .flat_map(|line| line.points.windows(2).map(|pair| [lattice_point(pair[0]), lattice_point(pair[1])]))
@@ -92,13 +92,13 @@ pub(crate) fn pieces_of(lines: &[ContourLine]) -> Vec<Segment> {
     all
 }
 
-/// Checks the lines of one level, as lines: the pieces are to be checked before.
+/// Checks how the lines of one level are joined; the arcs must be checked before.
 pub(crate) fn check_lines(surface: &Faces, half_level: i64, lines: &[ContourLine]) {
-    let segments = pieces_of(lines);
+    let segments = arcs_of(lines);
     let undirected: BTreeSet<Segment> = segments.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
-    assert_eq!(undirected.len(), segments.len(), "a piece comes twice");
+    assert_eq!(undirected.len(), segments.len(), "an arc occurs twice");
     for (i, &s) in segments.iter().enumerate() {
-        assert_ne!(s[0], s[1], "a piece of no length");
+        assert_ne!(s[0], s[1], "an arc of no length");
         for &t in &segments[..i] {
             assert!(!cross_or_overlap(s, t), "{s:?} and {t:?} cross");
         }
@@ -131,11 +131,11 @@ pub(crate) fn check_lines(surface: &Faces, half_level: i64, lines: &[ContourLine
     }
 }
 
-/// From where a line comes to a point and where it goes on.
+/// The points before and after a point of a line.
 type Passage = (Option<Point>, Option<Point>);
 
-/// Between a way in and its way out, counter-clockwise, there are whole pairs only; no way in and
-/// way out are both left over.
+/// Checks that only whole pairs lie between an incoming ray and its outgoing one,
+/// counter-clockwise, and that not both kinds are left over.
 fn check_turns(node: Point, passages: &[Passage]) {
     let starts = passages.iter().filter(|(before, _)| before.is_none()).count();
     let ends = passages.iter().filter(|(_, after)| after.is_none()).count();
@@ -157,8 +157,8 @@ fn check_turns(node: Point, passages: &[Passage]) {
             }
         }
     }
-    // The sharpest turn to the right keeps to one sector: what lies between is made of whole pairs
-    // whose first ray, counter-clockwise, is a way in.
+    // The sharpest turn to the right stays in one sector: only whole pairs lie between, whose
+    // first ray, counter-clockwise, is an incoming one.
     for &(before, after) in passages {
         let (Some(before), Some(after)) = (before, after) else { continue };
         let next = passages
@@ -199,7 +199,7 @@ impl PartialOrd for Angle {
     }
 }
 
-/// Where lines may end: vertices and crossings at the edge of the data.
+/// The sites where lines may end: vertices and crossings at the edge of the data.
 fn border(surface: &Faces, half_level: i64) -> BTreeSet<Point> {
     let mut half_edges = BTreeSet::new();
     for face in &surface.faces {
@@ -219,18 +219,18 @@ fn border(surface: &Faces, half_level: i64) -> BTreeSet<Point> {
     border
 }
 
-/// The faces that hold the middle of a segment, on their border too.
+/// The faces that contain the middle of a segment, also on their border.
 pub(crate) fn faces_at(surface: &Faces, segment: Segment) -> Vec<usize> {
     (0..surface.faces.len()).filter(|&i| turns_around(surface, i, segment).iter().all(|&turn| turn >= 0)).collect()
 }
 
-/// Whether the middle of a segment lies on a side of one face only.
+/// Returns true if the middle of a segment lies on a side of one face only.
 pub(crate) fn is_on_edge_of_data(surface: &Faces, segment: Segment) -> bool {
     let faces = faces_at(surface, segment);
     faces.len() == 1 && turns_around(surface, faces[0], segment).contains(&0)
 }
 
-/// On which side of each side of a face the middle of a segment lies.
+/// The orientation of the middle of a segment relative to each side of a face.
 fn turns_around(surface: &Faces, face: usize, segment: Segment) -> [i64; 3] {
     let middle = [segment[0][0] + segment[1][0], segment[0][1] + segment[1][1]];
     let at = surface.faces[face].map(|v| {
@@ -252,7 +252,7 @@ fn is_between(p: Point, a: Point, b: Point) -> bool {
     turn(a, b, p) == 0 && a.min(b) <= p && p <= a.max(b)
 }
 
-/// Whether two segments share more than an end of both.
+/// Returns true if two segments share more than an end of both.
 fn cross_or_overlap(s: Segment, t: Segment) -> bool {
     let touches = |p: Point, other: Segment| is_between(p, other[0], other[1]) && p != other[0] && p != other[1];
     let proper =

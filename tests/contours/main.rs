@@ -1,4 +1,4 @@
-//! The laws of contours, on surfaces where levels hit vertices, edges and faces all the time.
+//! The laws of contours, on surfaces where levels often meet vertices, edges and faces.
 
 mod judge;
 mod raster;
@@ -14,10 +14,10 @@ fn draw(surface: &(impl Surface + ?Sized), levels: &[f64]) -> Vec<ContourLine> {
     contours(surface, &Levels::listed(levels).unwrap()).unwrap().collect()
 }
 
-/// Draws one level and holds it against the judge.
+/// Draws one level and compares it to the judge's.
 fn check(surface: &Faces, half_level: i64) -> Vec<ContourLine> {
     let lines = draw(surface, &[half_level as f64 / 2.0]);
-    assert_eq!(judge::pieces_of(&lines), judge::pieces(surface, half_level));
+    assert_eq!(judge::arcs_of(&lines), judge::arcs(surface, half_level));
     judge::check_lines(surface, half_level, &lines);
     lines
 }
@@ -62,12 +62,12 @@ proptest! {
     fn whole_and_partial_grids((whole, keep) in any_grid()) {
         let part = whole.subset(|face| keep[face]);
         for half_level in -1..8 {
-            let all = judge::pieces_of(&check(&whole, half_level));
-            let some = judge::pieces_of(&check(&part, half_level));
-            // Contours of a part are those of the whole inside its faces and between two of them.
+            let all = judge::arcs_of(&check(&whole, half_level));
+            let some = judge::arcs_of(&check(&part, half_level));
+            // Contours of some faces are those of all, inside these faces and between two of them.
             let expected: Vec<_> = all
                 .into_iter()
-                .filter(|&piece| judge::faces_at(&whole, piece).iter().all(|&face| keep[face]))
+                .filter(|&arc| judge::faces_at(&whole, arc).iter().all(|&face| keep[face]))
                 .collect();
             prop_assert_eq!(some, expected);
         }
@@ -81,8 +81,8 @@ proptest! {
         }
     }
 
-    /// Heights that pass the level by the last bit give the contours of heights on the level, but for
-    /// what then runs along the edge of the data.
+    /// Heights that exceed the level by the last bit give the contours of heights on the level,
+    /// except along the edge of the data.
     #[test]
     fn noise_in_the_last_bit_does_not_matter((whole, keep) in any_grid()) {
         let exact = whole.subset(|face| keep[face]);
@@ -98,15 +98,15 @@ proptest! {
                 *p = [p[0] - 512_000.0, p[1] - 5_403_000.0].map(judge::to_lattice);
             }
             judge::check_lines(&exact, 2 * i64::from(level), &lines);
-            let pieces: Vec<_> = judge::pieces_of(&lines)
+            let arcs: Vec<_> = judge::arcs_of(&lines)
                 .into_iter()
-                .filter(|&piece| !judge::is_on_edge_of_data(&exact, piece))
+                .filter(|&arc| !judge::is_on_edge_of_data(&exact, arc))
                 .collect();
-            prop_assert_eq!(pieces, judge::pieces(&exact, 2 * i64::from(level)));
+            prop_assert_eq!(arcs, judge::arcs(&exact, 2 * i64::from(level)));
         }
     }
 
-    /// Places and heights without any lattice: the points are rounded, and still the same.
+    /// Coordinates and heights off any lattice: points are rounded, and the laws still hold.
     #[test]
     fn numbers_do_not_matter_for_rounded_points(
         (mut surface, _) in any_grid(),
@@ -202,7 +202,7 @@ fn a_lake_on_the_level_gives_its_shore() {
     assert_eq!(lines, [ContourLine { level: 3.0, points: shore.to_vec() }]);
 }
 
-/// The pass of a saddle on the level: the high ground on both sides stays apart.
+/// The pass of a saddle on the level: the high ground on both sides stays separate.
 #[test]
 fn a_saddle_on_the_level_parts_the_high_ground() {
     let lines = draw(&wheel(0, [1, 1, -1, -1, 1, 1, -1, -1], 0xff), &[0.0]);
@@ -213,7 +213,7 @@ fn a_saddle_on_the_level_parts_the_high_ground() {
     }
 }
 
-/// A ridge that passes the level by the last bit has no width in `f64`: no line is left of it.
+/// A ridge that exceeds the level by the last bit has no width in `f64`, and no contour.
 #[test]
 fn what_is_narrower_than_a_bit_vanishes() {
     let mut surface = grid(5, &[0; 25], |_| false);

@@ -1,4 +1,4 @@
-//! Contours of a raster: the surface over its cells.
+//! Contours of the surface over the cells of a raster.
 
 use super::surface::Faces;
 use super::{bits, draw, judge, signed_area};
@@ -15,7 +15,7 @@ fn raster(width: usize, values: &[f64], transform: [f64; 6]) -> Grid {
     Grid { frame, crs: None, values: values.to_vec() }
 }
 
-/// As a list of faces, with the links found by the test; checks those of the grid.
+/// The surface as a list of faces, with links found by the test; checks those of the grid.
 fn copied(surface: &GridSurface<'_>) -> Faces {
     let vertices = (0..surface.vertex_count()).map(|v| surface.position(v as u32)).collect();
     let used: Vec<u32> = (0..surface.face_count() as u32).filter(|&f| surface.face(f).is_some()).collect();
@@ -71,17 +71,18 @@ proptest! {
     }
 }
 
-/// Cells of a raster whose contours lie on the judge's lattice: heights amid four cells are whole numbers too.
+/// Cells of a raster whose contours lie on the judge's lattice: heights between four cells are
+/// whole numbers as well.
 const OF_THE_JUDGE: [f64; 6] = [100.0, 4.0, 0.0, 200.0, 0.0, -4.0];
 
-/// Holds a raster against the judge, at levels between its heights, on them and beyond.
+/// Compares a raster's contours to the judge's, at levels between its heights, on them and beyond.
 fn judged(width: usize, values: &[f64]) {
     let grid = raster(width, values, OF_THE_JUDGE);
     let surface = GridSurface::new(&grid).unwrap();
     let faces = copied(&surface);
     for half_level in -1..=9 {
         let lines = draw(&surface, &[f64::from(half_level) / 2.0]);
-        assert_eq!(judge::pieces_of(&lines), judge::pieces(&faces, half_level.into()));
+        assert_eq!(judge::arcs_of(&lines), judge::arcs(&faces, half_level.into()));
         judge::check_lines(&faces, half_level.into(), &lines);
     }
 }
@@ -107,7 +108,7 @@ proptest! {
     }
 }
 
-/// More than one stretch of faces: the same lines as of the faces one by one, with any number of threads.
+/// More than one stretch of faces: the lines are those of single faces, with any number of threads.
 #[test]
 fn a_raster_is_its_faces() {
     let height = |i: u32| match i.wrapping_mul(2_654_435_769) >> 20 {
@@ -122,7 +123,7 @@ fn a_raster_is_its_faces() {
     let count = drawing.arc_count();
     let lines = bits(&drawing.collect::<Vec<_>>());
     let drawn = lines.iter().map(|(_, points)| points.len() - 1).sum::<usize>();
-    assert!(drawn <= count && count <= drawn + drawn / 100, "{count} pieces told, {drawn} drawn");
+    assert!(drawn <= count && count <= drawn + drawn / 100, "{count} arcs counted, {drawn} drawn");
     assert_eq!(lines, bits(&draw(&copied(&surface), &levels)));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
     assert_eq!(lines, pool.install(|| bits(&draw(&surface, &levels))));
@@ -144,7 +145,7 @@ fn lines_of_the_fixture_stay() {
     assert_eq!(sum(&path, 1.0), (304, 15_558_705_505_747_641_504));
 }
 
-/// The same with ties, holes and coordinates as they come.
+/// Like the test above, but with ties, holes and arbitrary coordinates.
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn lines_of_real_rasters_stay() {
@@ -199,7 +200,8 @@ fn a_cone_gives_circles() {
         assert_eq!(lines.len(), 1);
         assert!(lines[0].is_closed());
         for p in &lines[0].points {
-            // Linear interpolation over a diagonal of a cell: off by its square over 8 radii, at most.
+            // Linear interpolation over a diagonal of a cell: off by its square over 8 radii, at
+            // most.
             let off = (p[0] - center).hypot(p[1] - center) - radius;
             assert!(off.abs() < 2.0 * step * step / (8.0 * (radius - step)) + 1e-9, "{off} at radius {radius}");
         }

@@ -1,4 +1,4 @@
-//! Contours of real deliveries, with coordinates and heights as they come.
+//! Contours of real deliveries, with unchanged coordinates and heights.
 
 use breakline::data::{ContourLine, PointBatch, Shape, Surface};
 use breakline::terrain::{Levels, Tin, TinBuilder, contours};
@@ -7,7 +7,7 @@ use breakline::triangulation::num::Sign;
 use std::collections::{HashMap, HashSet};
 use testkit::shared;
 
-type Piece = [[f64; 2]; 2];
+type Segment = [[f64; 2]; 2];
 
 fn tin(points: &[&str], breaklines: Option<&str>) -> Tin {
     let mut builder = TinBuilder::default();
@@ -43,38 +43,38 @@ fn check(tin: &Tin, interval: f64) {
             assert!(off < 1e-9, "a line ends at {end:?}, {off} from the edge of the data");
         }
     }
-    let pieces: Vec<Piece> = lines.iter().flat_map(|line| line.points.windows(2)).map(|p| [p[0], p[1]]).collect();
+    let segments: Vec<Segment> = lines.iter().flat_map(|line| line.points.windows(2)).map(|p| [p[0], p[1]]).collect();
     let mut seen = HashSet::new();
-    for [a, b] in &pieces {
-        assert_ne!(a, b, "a piece of no length");
+    for [a, b] in &segments {
+        assert_ne!(a, b, "an arc of no length");
         let [a, b] = [a, b].map(|p| p.map(f64::to_bits));
-        assert!(seen.insert([a.min(b), a.max(b)]), "a piece comes twice");
+        assert!(seen.insert([a.min(b), a.max(b)]), "an arc occurs twice");
     }
-    assert_eq!(crossing(&pieces), None);
+    assert_eq!(crossing(&segments), None);
 }
 
-fn border(surface: &impl Surface) -> Vec<Piece> {
-    let place = |v: u32| [surface.position(v)[0], surface.position(v)[1]];
+fn border(surface: &impl Surface) -> Vec<Segment> {
+    let site = |v: u32| [surface.position(v)[0], surface.position(v)[1]];
     let faces = (0..surface.face_count() as u32).filter_map(|f| Some((f, surface.face(f)?)));
     let sides = faces.flat_map(|(f, corners)| (0..3).map(move |i| (f, corners, i)));
     sides
         .filter(|&(f, _, i)| surface.neighbor(f, i).is_none())
-        .map(|(_, corners, i)| [place(corners[(i + 1) % 3]), place(corners[(i + 2) % 3])])
+        .map(|(_, corners, i)| [site(corners[(i + 1) % 3]), site(corners[(i + 2) % 3])])
         .collect()
 }
 
-fn distance(p: [f64; 2], [a, b]: Piece) -> f64 {
+fn distance(p: [f64; 2], [a, b]: Segment) -> f64 {
     let (ux, uy) = (b[0] - a[0], b[1] - a[1]);
     let t = (((p[0] - a[0]) * ux + (p[1] - a[1]) * uy) / (ux * ux + uy * uy)).clamp(0.0, 1.0);
     (p[0] - a[0] - t * ux).hypot(p[1] - a[1] - t * uy)
 }
 
-/// Two pieces, of any levels, of which each has the ends of the other on both sides.
-fn crossing(pieces: &[Piece]) -> Option<[Piece; 2]> {
-    let mean = pieces.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum::<f64>() / pieces.len() as f64;
+/// Two segments, of any levels, each with the ends of the other on both of its sides.
+fn crossing(segments: &[Segment]) -> Option<[Segment; 2]> {
+    let mean = segments.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum::<f64>() / segments.len() as f64;
     let cell = |c: f64| (c / (4.0 * mean)).floor() as i64;
-    let mut cells = HashMap::<[i64; 2], Vec<Piece>>::new();
-    for &[a, b] in pieces {
+    let mut cells = HashMap::<[i64; 2], Vec<Segment>>::new();
+    for &[a, b] in segments {
         let range = |k: usize| cell(a[k].min(b[k]))..=cell(a[k].max(b[k]));
         for x in range(0) {
             for y in range(1) {
@@ -82,7 +82,7 @@ fn crossing(pieces: &[Piece]) -> Option<[Piece; 2]> {
             }
         }
     }
-    let parts = |[a, b]: Piece, [c, d]: Piece| {
+    let parts = |[a, b]: Segment, [c, d]: Segment| {
         let sign = |p| Adaptive::sign(&Orientation2([a, b, p]));
         matches!((sign(c), sign(d)), (Sign::Negative, Sign::Positive) | (Sign::Positive, Sign::Negative))
     };
@@ -107,7 +107,7 @@ fn a_lake_with_its_shore() {
     check(&tin, 0.5);
 }
 
-/// Heights in whole centimetres, every one of them on a level.
+/// Heights in whole centimeters, all of them on levels.
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn levels_through_all_vertices() {

@@ -1,11 +1,11 @@
-//! Small surfaces with whole-numbered places and heights, where levels hit vertices all the time.
+//! Small surfaces with integer coordinates and heights, where levels often meet vertices.
 
 use breakline::crs::Crs;
 use breakline::data::{EdgeKind, Surface};
 use proptest::prelude::*;
 use std::collections::HashMap;
 
-/// Triangles with their neighbors, found the simplest way.
+/// Triangles with their neighbors, found naively.
 #[derive(Clone, Debug)]
 pub(crate) struct Faces {
     pub(crate) vertices: Vec<[f64; 3]>,
@@ -30,7 +30,7 @@ impl Faces {
         Faces::new(self.vertices.clone(), faces)
     }
 
-    /// The same triangles under other numbers: `order` says by which keys things are sorted anew.
+    /// The same triangles with other numbers: `order` is the key by which they are sorted.
     pub(crate) fn renumbered(&self, order: &[u32]) -> Self {
         let key = |i: usize| order[i % order.len()].rotate_left((i / order.len()) as u32);
         let mut old_of_new: Vec<usize> = (0..self.vertices.len()).collect();
@@ -97,7 +97,7 @@ pub(crate) fn grid(width: usize, heights: &[i32], rising: impl Fn(usize) -> bool
     Faces::new(vertices.collect(), faces)
 }
 
-/// A vertex amid a ring of eight; all of its neighbors are seen at angles below 90 degrees.
+/// A vertex in a ring of eight; the angles between its neighbors are below 90 degrees.
 pub(crate) fn wheel(center: i32, ring: [i32; 8], keep: u32) -> Faces {
     const RING: [[f64; 2]; 8] =
         [[2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [-2.0, 2.0], [-2.0, 0.0], [-2.0, -2.0], [0.0, -2.0], [2.0, -2.0]];

@@ -1,11 +1,14 @@
-//! What is left of a surface: told from the definition, in exact numbers.
+//! The expected result of a cut, computed from the definition in exact numbers.
 //!
-//! - *Area*: by slabs between all places where sides of rings and of the surface end or cross. In a slab they come in
-//!   one order from below to above, and the even-odd rule tells what stays between each two.
-//! - *Rim*: each side without a neighbor lies along what bounds that area. So there is no crack. Between two lines that run
-//!   less than a rounding apart a sliver may go on beyond its end: its sides lie along one of the two, and outside.
-//! - *Heights*: each vertex, and the middle of each face, is as high as the triangle of the uncut surface there.
-//! - *Pieces*: each has an area, and none has a vertex of another one in the middle of its side.
+//! - *Area*: by slabs between all sites where sides of rings and of the surface end or cross. In a
+//!   slab the sides have one order from bottom to top, and the even-odd rule decides what is kept
+//!   between each two of them.
+//! - *Rim*: each side without a neighbor lies along the boundary of that area, so there is no
+//!   crack. Between two lines less than a rounding error apart, a sliver may extend beyond their
+//!   end: its sides lie along one of the two, and outside.
+//! - *Heights*: each vertex, and the middle of each face, has the height of the triangle of the
+//!   uncut surface there.
+//! - *Fragments*: each has an area, and none has a vertex of another one inside a side.
 
 use breakline::terrain::{Tin, surface_flaws};
 use dashu_ratio::RBig;
@@ -13,8 +16,8 @@ use dashu_ratio::RBig;
 use crate::found::{Exact, Found, exact, turn};
 use crate::scene::Scene;
 
-/// What a cut may move, in units of the last place of the largest coordinate of the surface and of the rings; but of
-/// rings no more than twice the surface's.
+/// How far a cut may move points, in units in the last place of the largest coordinate of the
+/// surface and of the rings; coordinates of rings count up to twice the surface's.
 const UNITS: f64 = 2.0;
 
 /// Judges the clipped surface of a scene; returns the number of its faces.
@@ -29,7 +32,7 @@ pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
     let tin = builder.build().map_err(|error| error.to_string())?;
     let (before, after) = (Found::new(&uncut)?, Found::new(&tin)?);
     let region = Region::new(scene, &before);
-    judge_pieces(&after)?;
+    judge_fragments(&after)?;
     judge_area(&region, &after)?;
     judge_rim(scene, &region, &after)?;
     judge_heights(&region, &before, &after)?;
@@ -40,7 +43,7 @@ pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
     }
 }
 
-fn judge_pieces(after: &Found) -> Result<(), String> {
+fn judge_fragments(after: &Found) -> Result<(), String> {
     for &face in &after.faces {
         let [a, b, c] = after.corners(face);
         if turn(a, b, c) <= RBig::ZERO {
@@ -102,16 +105,16 @@ fn judge_heights(region: &Region, before: &Found, after: &Found) -> Result<(), S
         let here = before.faces.iter().map(|&face| before.corners(face)).filter(|face| is_near(face, &p, region.unit));
         let off: Vec<(f64, f64)> = here.map(|face| off_plane(face, &p, region.unit)).collect();
         if !off.iter().any(|(off, tolerance)| off <= tolerance) {
-            let place = [0, 1, 2].map(|k| p[k].to_f64().value());
-            return Err(format!("{what}, at {place:?}, is off by and may be by {off:?}"));
+            let site = [0, 1, 2].map(|k| p[k].to_f64().value());
+            return Err(format!("{what}, at {site:?}, is off by and may be by {off:?}"));
         }
     }
     Ok(())
 }
 
-/// Whether a triangle comes as near to a place as a cut may move it.
+/// Returns true if a triangle is within the distance of a site by which a cut may move it.
 fn is_near([a, b, c]: &[&Exact; 3], p: &Exact, unit: f64) -> bool {
-    // Far less is lost by rounding than this, and most are further away.
+    // Rounding loses far less than this, and most triangles are farther away.
     const FAR: f64 = 1e-3;
     let [at, corners] = [[p, p, p], [*a, *b, *c]].map(|points| points.map(|p| [0, 1].map(|k| p[k].to_f64().value())));
     let is_far = |k: usize| {
@@ -127,7 +130,7 @@ fn is_near([a, b, c]: &[&Exact; 3], p: &Exact, unit: f64) -> bool {
     })
 }
 
-/// By how much a point is off the plane of a triangle, and how much is allowed.
+/// The distance of a point from the plane of a triangle, and the allowed one.
 fn off_plane([a, b, c]: [&Exact; 3], p: &Exact, unit: f64) -> (f64, f64) {
     let size = turn(a, b, c);
     let (at_b, at_c) = (turn(a, p, c) / &size, turn(a, b, p) / &size);
@@ -139,7 +142,7 @@ fn off_plane([a, b, c]: [&Exact; 3], p: &Exact, unit: f64) -> (f64, f64) {
     (off.abs(), UNITS * unit * slope[0].hypot(slope[1]) + 1e-12 * highest)
 }
 
-/// The triangulation beneath is that of the uncut surface.
+/// Checks that the triangulation underneath is that of the uncut surface.
 fn judge_uncut(uncut: &Tin, tin: &Tin) -> Result<(), String> {
     let all = |tin: &Tin| {
         let t = tin.triangulation();
@@ -148,7 +151,7 @@ fn judge_uncut(uncut: &Tin, tin: &Tin) -> Result<(), String> {
     if all(uncut) == all(tin) { Ok(()) } else { Err("the triangulation beneath has changed".to_owned()) }
 }
 
-/// What is to stay.
+/// The part of the surface that is to be kept.
 struct Region {
     area: RBig,
     /// The parts of what bounds it, from the origin.
@@ -175,7 +178,7 @@ struct Line {
     doubt: f64,
 }
 
-/// Far more than what rounding hides in numbers of the size of a scene; and of others, as part of them.
+/// Far more than a rounding error in numbers of the size of a scene; relative for others.
 const DOUBT: f64 = 1e-6;
 const RELATIVE_DOUBT: f64 = 1e-12;
 
@@ -193,7 +196,7 @@ impl Line {
         &self.from[1] + (x - &self.from[0]) * &self.slope
     }
 
-    /// The height, rounded, and what it may be off.
+    /// The height, rounded, and its largest error.
     fn about(&self, x: f64) -> (f64, f64) {
         (self.about[0][1] + (x - self.about[0][0]) * self.about_slope, self.doubt * (1.0 + self.about_slope.abs()))
     }
@@ -266,9 +269,9 @@ impl Region {
         region
     }
 
-    /// Whether a place is part of what stays: by the lines above it.
-    fn holds(&self, scene: &Scene, place: &[RBig; 2]) -> bool {
-        let [x, y] = sheared(&self.origin, place);
+    /// Returns true if a site is part of what is kept, by the lines above it.
+    fn holds(&self, scene: &Scene, site: &[RBig; 2]) -> bool {
+        let [x, y] = sheared(&self.origin, site);
         let mut within = vec![false; self.surface + 1];
         for line in self.lines.iter().filter(|line| line.from[0] <= x && x < line.to[0]) {
             within[line.domain] ^= line.height(&x) > y;
@@ -276,9 +279,10 @@ impl Region {
         within[self.surface] && scene.is_kept(|domain| within[domain])
     }
 
-    /// Whether a place is as near to a ring or to the rim of the uncut surface as a cut may move it.
-    fn is_along_a_line(&self, place: &[RBig; 2]) -> bool {
-        let [x, y] = sheared(&self.origin, place);
+    /// Returns true if a site is within the distance of a ring, or of the rim of the uncut surface,
+    /// by which a cut may move it.
+    fn is_along_a_line(&self, site: &[RBig; 2]) -> bool {
+        let [x, y] = sheared(&self.origin, site);
         let reach = UNITS * self.unit;
         self.lines.iter().any(|line| {
             let is_above = line.from[0] <= &x + exact(reach) && &x - exact(reach) <= line.to[0];
@@ -311,7 +315,7 @@ impl Region {
             }
             is_kept = now;
             let line = same[0];
-            // Back to where it was before the shear; far less than a unit is lost.
+            // Undo the shear; far less than a unit is lost.
             let end = |x: &RBig| {
                 let y = line.height(x).to_f64().value();
                 [x.to_f64().value() - y / 65_537.0, y]
@@ -325,13 +329,13 @@ impl Region {
     }
 }
 
-/// From the origin; and so that no side is upright.
+/// Relative to the origin, and sheared so that no side is vertical.
 fn sheared(origin: &[RBig; 2], p: &[RBig]) -> [RBig; 2] {
     let [x, y] = [0, 1].map(|k| &p[k] - &origin[k]);
     [x + RBig::from_parts(1.into(), 65_537u32.into()) * &y, y]
 }
 
-/// How far a place is from a segment.
+/// The distance of a site from a segment.
 fn distance([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
     let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
     let [vx, vy] = [p[0] - a[0], p[1] - a[1]];

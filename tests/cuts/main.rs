@@ -1,6 +1,6 @@
-//! Surfaces that are cut by boundaries and bounds, against an exact judge that knows no triangulation.
+//! Surfaces cut by boundaries and bounds, against an exact judge that uses no triangulation.
 //!
-//! Takes the number of sets of each kind from the environment:
+//! The environment sets the number of scenes of each kind:
 //!
 //! ```text
 //! BREAKLINE_CUTS=2500 cargo test --release --test cuts
@@ -18,10 +18,12 @@ fn count() -> u64 {
     std::env::var("BREAKLINE_CUTS").ok().and_then(|n| n.parse().ok()).unwrap_or(25)
 }
 
-/// Where vertices of steep slivers lie a unit apart on both of their sides, or beside other edges.
+/// Scenes with vertices of steep slivers a unit apart on both of their sides, or next to other
+/// edges.
 const HARD: [u64; 6] = [101, 138, 524, 536, 636, 689];
 
-/// A few hundred sets of clip polygons over a surface with breaklines, on small grids of whole numbers and in UTM.
+/// A few hundred sets of clip polygons over a surface with breaklines, on small integer grids and
+/// in UTM.
 #[test]
 fn what_is_left_is_what_the_rings_enclose() {
     let judged = |(kind, seed): (usize, u64)| {

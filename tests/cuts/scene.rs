@@ -1,17 +1,17 @@
-//! Surfaces and what they are clipped to, as an adversary would draw them.
+//! Adversarial surfaces and clip polygons.
 
 use breakline::data::Bounds;
 use breakline::terrain::TinBuilder;
 
 use testkit::random::{Random, ulps};
 
-pub(crate) type Place = [f64; 2];
-pub(crate) type Ring = Vec<Place>;
+pub(crate) type Site = [f64; 2];
+pub(crate) type Ring = Vec<Site>;
 
-/// Where and how long a step of the grid is on which scenes are drawn.
+/// The origin and the step of the grid on which scenes are drawn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Units {
-    origin: Place,
+    origin: Site,
     step: f64,
 }
 
@@ -52,12 +52,12 @@ pub(crate) const KINDS: [(&str, Draw); 10] = [
 ];
 
 impl Units {
-    fn at(&self, [i, j]: [f64; 2]) -> Place {
+    fn at(&self, [i, j]: [f64; 2]) -> Site {
         [self.origin[0] + i * self.step, self.origin[1] + j * self.step]
     }
 
     /// A corner of the grid, within the data or a little beyond.
-    fn corner(&self, random: &mut Random) -> Place {
+    fn corner(&self, random: &mut Random) -> Site {
         self.at([0, 1].map(|_| random.below(SIDE + 5) as f64 - 2.0))
     }
 
@@ -102,7 +102,7 @@ impl Scene {
         builder
     }
 
-    /// The closed curves with the domain that each bounds: the bounds are 0, polygons are counted from 1.
+    /// The closed curves with the domain that each bounds: 0 for the bounds, polygons count from 1.
     pub(crate) fn curves(&self) -> Vec<(usize, Ring)> {
         let polygons = self.polygons.iter().zip(1..);
         let mut curves: Vec<(usize, Ring)> =
@@ -113,7 +113,7 @@ impl Scene {
         curves
     }
 
-    /// Whether what lies in these domains stays.
+    /// Returns true if the part of the surface in these domains is kept.
     pub(crate) fn is_kept(&self, within: impl Fn(usize) -> bool) -> bool {
         let in_polygon = self.polygons.is_empty() || (1..=self.polygons.len()).any(&within);
         in_polygon && (self.bounds.is_none() || within(0))
@@ -145,7 +145,7 @@ fn adjacent(scene: &mut Scene, random: &mut Random, units: Units) {
     scene.polygons.extend([vec![below], vec![above]]);
 }
 
-/// A polygon with a corner in the middle of a side of another one: exactly, or as near as doubles come.
+/// A polygon with a corner in the middle of a side of another one, exactly or up to rounding.
 fn corners_on_sides(scene: &mut Scene, random: &mut Random, units: Units) {
     let (a, b, c) = (units.corner(random), units.corner(random), units.corner(random));
     let part = random.pick(&[0.5, 0.25, 1.0 / 3.0, 0.7]);
@@ -159,7 +159,8 @@ fn corners_on_sides(scene: &mut Scene, random: &mut Random, units: Units) {
     }]);
 }
 
-/// A ring that goes out to a point and comes back, past or over places on its way out, or nearly so.
+/// A ring that runs to a point and back, past sites on its first half or through them, exactly or
+/// nearly.
 fn spikes(scene: &mut Scene, random: &mut Random, units: Units) {
     let mut ring = units.ring(random);
     let at = random.index(ring.len());
@@ -181,7 +182,8 @@ fn no_area(scene: &mut Scene, random: &mut Random, units: Units) {
     }
 }
 
-/// A hole with a corner on its polygon's side, an island in it, and another hole that shares a corner.
+/// A hole with a corner on its polygon's side, an island in it, and another hole that shares a
+/// corner.
 fn holes(scene: &mut Scene, random: &mut Random, units: Units) {
     let side = SIDE as f64;
     let square = |low: [f64; 2], high: [f64; 2]| {
@@ -209,7 +211,7 @@ fn through_vertices(scene: &mut Scene, random: &mut Random, units: Units) {
     }
 }
 
-/// Sides that run between existing vertices, over a breakline that is higher than all else.
+/// Sides that run between existing vertices, over a breakline that is higher than everything else.
 fn across_breaklines(scene: &mut Scene, random: &mut Random, units: Units) {
     let (j, side) = (4 + random.below(8), SIDE as f64);
     let [[x, y], [u, v]] = [units.at([0.0, j as f64]), units.at([side, j as f64])];

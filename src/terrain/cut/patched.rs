@@ -91,7 +91,7 @@ impl<'a> Patched<'a> {
         (face as usize).checked_sub(self.first_fragment()).map(CellId::new)
     }
 
-    /// Any face.
+    /// A finite face, if there is one.
     pub(super) fn first(&self) -> Option<u32> {
         let whole = self.base.finite_cells().find(|cell| !self.is_replaced[cell.index()]);
         let fragment = || self.patch.cells.iter().position(Option::is_some).map(|at| self.number(CellId::new(at)));
