@@ -5,7 +5,18 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     #[cfg(unix)]
     signals::clean_up();
+    hold_back_contained_panics();
     breakline::cli::run(std::env::args_os()).into()
+}
+
+/// A panic of a decoder that becomes an error is not printed as well.
+fn hold_back_contained_panics() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !breakline::io::is_contained() {
+            print(panic);
+        }
+    }));
 }
 
 /// A program that is asked to end removes its temporary files first.

@@ -66,4 +66,5 @@ pub mod triangle;
 mod world_file;
 
 pub(crate) use contain::contain;
+pub use contain::is_contained;
 pub use output::{Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe};

@@ -189,3 +189,76 @@ impl<'a> Journal<'a> {
         std::mem::take(&mut self.notices.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+    use crate::run::{
+        ContourOptions, FrameOptions, HillshadeOptions, Input, Source, SurfaceRequest, TinRequest, check, contour, dem,
+        hillshade, triangles, write_mesh,
+    };
+    use std::path::Path;
+
+    /// Cancels when a stage begins, and notes which there were.
+    struct Canceler {
+        cancel: AtomicBool,
+        at: Option<Stage>,
+        stages: Mutex<Vec<Stage>>,
+    }
+
+    impl Monitor for Canceler {
+        fn start(&self, stage: Stage, _: Size) -> Box<dyn Progress> {
+            self.cancel.store(self.at == Some(stage), Ordering::Relaxed);
+            self.stages.lock().unwrap().push(stage);
+            Box::new(())
+        }
+
+        fn notice(&self, _: &Notice) {}
+    }
+
+    /// Everything that can be done with a surface, into a folder.
+    fn everything(folder: &Path, context: &Context) -> Result<()> {
+        let points: Vec<[f64; 3]> =
+            (0..400).map(|i| [f64::from(i % 20), f64::from(i / 20), f64::from(i % 7)]).collect();
+        let tin = TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() };
+        let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+        let product = triangles(&request, context)?;
+        contour(&product, &ContourOptions::default(), context)?
+            .write(folder.join("a.geojson").as_path().into(), context)?;
+        hillshade(&product, &HillshadeOptions::default(), context)?
+            .write_picture(folder.join("a.png").as_path().into(), context)?;
+        dem(&product, &FrameOptions::default(), context)?.write(folder.join("a.tif").as_path().into(), context)?;
+        write_mesh(product.triangles()?, folder.join("a.ply").as_path().into(), context)?;
+        check(&request, context).map(drop)
+    }
+
+    #[test]
+    fn a_run_that_is_canceled_at_any_stage_is_an_error_and_writes_nothing_from_then_on() {
+        let run = |at: Option<Stage>| {
+            let folder = tempfile::tempdir().unwrap();
+            let canceler = Canceler { cancel: AtomicBool::new(false), at, stages: Mutex::default() };
+            let context = Context { monitor: &canceler, cancel: &canceler.cancel };
+            let done = everything(folder.path(), &context);
+            let files = std::fs::read_dir(folder.path()).unwrap().count();
+            (done, files, canceler.stages.into_inner().unwrap())
+        };
+        let (done, all, stages) = run(None);
+        done.unwrap();
+        assert_eq!(all, 5, "the picture comes with a world file");
+        for (stage, files) in [
+            (Stage::ReadingPoints, 0),
+            (Stage::Triangulating, 0),
+            (Stage::FindingContours, 0),
+            (Stage::DrawingContours, 0),
+            (Stage::ShadingCells, 1),
+            (Stage::WritingCells, 3),
+            (Stage::WritingFaces, 4),
+            (Stage::CheckingFaces, 5),
+        ] {
+            assert!(stages.contains(&stage), "{stage:?}");
+            let (done, written, _) = run(Some(stage));
+            assert_eq!((done.unwrap_err().kind(), written), (Kind::Canceled, files), "{stage:?}");
+        }
+    }
+}

@@ -4,10 +4,10 @@ use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
-use crate::triangulation::kernel::{RANGE, Range};
 use crate::triangulation::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, Rounding, spatial_order};
 
+use super::admitted::refused;
 use super::clip::Clip;
 use super::crossings::{Pass, choose_heights, refuse};
 use super::tin::Count;
@@ -165,9 +165,9 @@ impl TinBuilder {
     /// Builds the TIN.
     ///
     /// # Errors
-    /// If a coordinate is not finite or outside of [`RANGE`], there are more points than 32-bit
-    /// numbers can count, the input does not span an area, or breaklines cross or differ in height
-    /// where the rules refuse that.
+    /// If a coordinate is not finite or outside of [`RANGE`](crate::triangulation::kernel::RANGE),
+    /// there are more points than 32-bit numbers can count, the input does not span an area, or
+    /// breaklines cross or differ in height where the rules refuse that.
     ///
     /// # Complexity
     /// O(n log n) in practice; about 80 bytes per point in addition to the input.
@@ -202,7 +202,7 @@ impl TinBuilder {
         go_on()?;
         let lines = lines_of(&line_vertices, &self.line_ends);
         let (mut triangulation, renumbered) =
-            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, &lines, self.on_crossing)
+            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, &lines, self.on_crossing, cancel)
                 .map_err(|error| not_built(error, name))?;
         if let Some(renumbered) = renumbered {
             disputed.iter_mut().for_each(|pass| pass.vertex = renumbered[pass.vertex.index()]);
@@ -336,17 +336,9 @@ fn not_built(error: InputError, name: &dyn Fn(usize) -> String) -> Error {
             Error::format(format!("{line} and {other} cross at {x} {y} without a common vertex"))
                 .cure("fix the lines, or split them there with --on-crossing split")
         }
+        InputError::Canceled => Error::canceled(),
         error => Error::limit(error.to_string()),
     }
-}
-
-#[cold]
-pub(super) fn refused(p: [f64; 3]) -> Error {
-    if p.iter().all(|x| x.is_finite()) {
-        let Range { min, max } = RANGE;
-        return Error::limit(format!("{p:?} has a coordinate that is neither 0 nor between {min:.0e} and {max:.0e}"));
-    }
-    Error::format(format!("{p:?} is not a finite point"))
 }
 
 #[cfg(test)]

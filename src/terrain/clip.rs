@@ -6,7 +6,7 @@ use crate::triangulation::geometry::Geometry;
 use crate::triangulation::kernel::RANGE;
 
 use super::Tin;
-use super::builder::refused;
+use super::admitted::refused;
 use super::cut::{Cut, Domain, Segment, cut};
 
 /// The number of the domain of the bounds, and that of the first polygon.

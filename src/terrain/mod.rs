@@ -30,6 +30,7 @@
 //! Coordinates are not reprojected, ground is not separated from vegetation (classes are taken as
 //! given), and nothing is smoothed or thinned out.
 
+mod admitted;
 mod builder;
 mod clip;
 pub mod contour;

@@ -191,7 +191,7 @@ fn build_with<K: Kernel>(
 }
 
 /// What triangles are to be, if anything is asked for.
-fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, _context: &Context<'a>) -> Option<Quality<'a>> {
+fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Context<'a>) -> Option<Quality<'a>> {
     if options.min_angle.is_none() && options.max_area.is_none() && !options.region_areas {
         return None;
     }
@@ -204,6 +204,7 @@ fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, _context: &Conte
         regions: bounds.filter_map(|region| Some(Region { seed: region.at, max_area: region.max_area? })).collect(),
         domain: if is_hull { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
         max_added: options.max_added.unwrap_or(Quality::MAX_ADDED),
+        cancel: Some(context.cancel),
         ..Quality::default()
     })
 }

@@ -60,6 +60,8 @@ pub enum InputError {
         /// The crossing, rounded.
         at: [f64; 2],
     },
+    /// The caller canceled the work.
+    Canceled,
 }
 
 impl fmt::Display for InputError {
@@ -76,6 +78,7 @@ impl fmt::Display for InputError {
             InputError::Crossing { segments: [(line, segment), (other, crossed)], at: [x, y] } => {
                 write!(f, "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}")
             }
+            InputError::Canceled => f.write_str("canceled"),
         }
     }
 }

@@ -318,6 +318,7 @@ fn lines_and_meshes() {
                     domain,
                     max_added: 20,
                     area_at: None,
+                    cancel: None,
                 };
                 let mesh = t.clone().refined(&quality);
                 assert!(mesh.added().len() <= 20);

@@ -72,7 +72,7 @@ pub(super) struct Range<'a, G: Coordinates<N>, const N: usize, const FILTERED: b
     /// The faces from number `offset` on.
     pub(super) faces: &'a mut [Links<3>],
     pub(super) offset: usize,
-    pub(super) grain: Grain,
+    pub(super) grain: Grain<'a>,
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {

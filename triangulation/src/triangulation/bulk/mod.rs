@@ -60,6 +60,7 @@ mod small;
 mod tests;
 
 use std::any::Any;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::geometry::Coordinates;
 use crate::parallel::*;
@@ -79,20 +80,59 @@ pub use order::spatial_order;
 const MAX_POINTS: usize = 1 << 29;
 const _: () = assert!(4 * (2 * MAX_POINTS as u64 - 2) <= u32::MAX as u64);
 
-/// How much work one thread does at a time, in points.
+/// How much work one thread does at a time, in points; and the flag that ends it early.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Grain {
+pub(crate) struct Grain<'a> {
     /// Points per chunk of a pass over all points.
     points: usize,
     /// Points per group of the sort: two arrays of records fit a core's cache.
     group: usize,
     /// Larger ranges are divided between threads.
     range: usize,
+    /// `None` if nothing ends it.
+    stop: Option<&'a Stop<'a>>,
 }
 
-impl Default for Grain {
+impl Default for Grain<'_> {
     fn default() -> Self {
-        Grain { points: 1 << 14, group: 1 << 14, range: 1 << 14 }
+        Grain { points: 1 << 14, group: 1 << 14, range: 1 << 14, stop: None }
+    }
+}
+
+impl<'a> Grain<'a> {
+    /// The usual sizes; the work ends early once `stop` is asked for it.
+    pub(crate) fn until(stop: &'a Stop<'a>) -> Self {
+        Grain { stop: Some(stop), ..Grain::default() }
+    }
+
+    /// Returns true if the work is to end; from then on, [`is_stopped`](Self::is_stopped).
+    pub(crate) fn stops(&self) -> bool {
+        self.stop.is_some_and(Stop::is_asked_for)
+    }
+
+    /// Returns true if a thread has ended its work early: what it should have built is not there.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop.is_some_and(|stop| stop.is_seen.load(Ordering::Relaxed))
+    }
+}
+
+/// A flag that ends work early, and whether a thread has seen it: the flag alone may be cleared again.
+#[derive(Debug)]
+pub(crate) struct Stop<'a> {
+    flag: &'a AtomicBool,
+    is_seen: AtomicBool,
+}
+
+impl<'a> Stop<'a> {
+    pub(crate) fn new(flag: &'a AtomicBool) -> Self {
+        Stop { flag, is_seen: AtomicBool::new(false) }
+    }
+
+    fn is_asked_for(&self) -> bool {
+        if self.flag.load(Ordering::Relaxed) {
+            self.is_seen.store(true, Ordering::Relaxed);
+        }
+        self.is_seen.load(Ordering::Relaxed)
     }
 }
 
@@ -113,7 +153,7 @@ enum Axis {
 }
 
 /// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
-/// are all collinear, more than [`MAX_POINTS`], or not in the plane.
+/// are all collinear, more than [`MAX_POINTS`], or not in the plane, or if the work was stopped.
 ///
 /// # Complexity
 /// O(n log n) at worst; linear for points that are spread evenly.
@@ -142,6 +182,9 @@ where
         fill::<G, N, false>(geometry, &points, &keys, &curve, &mut faces, grain);
     }
     drop(keys);
+    if grain.is_stopped() {
+        return (points, None);
+    }
     let finished = finish::finish(&mut faces, count, grain);
     // The same type: `N` is 3 here, but the compiler does not know it.
     let faces: Box<dyn Any> = Box::new(faces);
@@ -190,6 +233,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
         let Some((mid, axis)) = self.halve(lo, hi) else { return self.build_dense(lo, hi, arcs) };
         let (left, right) = if hi - lo > self.grain.range {
+            if self.grain.stops() {
+                return self.unbuilt(lo);
+            }
             let Range { seen, keys, first, offset, grain, .. } = *self;
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
             let mut left = Range { seen, keys, first, faces: left, offset, grain };
@@ -198,7 +244,18 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         } else {
             (self.build(lo, mid, arcs), self.build(mid, hi, arcs))
         };
+        // Of parts of this size one may be missing.
+        if hi - lo > self.grain.range && self.grain.is_stopped() {
+            return self.unbuilt(lo);
+        }
         self.merge(left, right, mid, axis)
+    }
+
+    /// Returns what stands for a part that was not built because the work was stopped. It is never
+    /// merged.
+    #[cold]
+    fn unbuilt(&self, lo: usize) -> Part {
+        Part { bottom: NONE, top: NONE, first: lo as u32 }
     }
 
     /// Returns where the keys cut a range in two, and along which axis; `None` if the keys of all

@@ -329,7 +329,7 @@ struct Sorter<'a, C, S> {
     coordinates: &'a C,
     is_same: &'a S,
     low: u64,
-    grain: Grain,
+    grain: Grain<'a>,
 }
 
 impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<'_, C, S> {

@@ -12,9 +12,9 @@ use crate::triangulation::{Delaunay, Level};
 
 use super::faces::Range;
 use super::filter::{Arrow, Circle, Seen};
-use super::{Grain, Sites, build};
+use super::{Grain, Sites, Stop, build};
 
-const TINY: Grain = Grain { points: 3, group: 2, range: 3 };
+const TINY: Grain = Grain { points: 3, group: 2, range: 3, stop: None };
 
 type Cells = BTreeSet<[[u64; 2]; 3]>;
 
@@ -319,4 +319,35 @@ fn certain_answers_are_right() {
         }
     }
     assert!(certain > 10_000 && open > 10_000, "{certain} {open}");
+}
+
+/// A flag that is set before or while many ranges are built leaves nothing half built; one that is never set changes
+/// nothing.
+#[test]
+fn canceled_work_ends_without_a_result() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    let points: Vec<[f64; 2]> = (0..900).map(|i| [f64::from(i % 30), f64::from(i / 30)]).collect();
+    let geometry = Plane::<Adaptive>::default();
+    let built = |flag: &AtomicBool| {
+        let stop = Stop::new(flag);
+        let grain = Grain { stop: Some(&stop), ..TINY };
+        let (sites, _) = Sites::of(&geometry, &points, TINY).unwrap();
+        let (points, tds) = build::<_, 3, (), ()>(&geometry, sites, grain);
+        assert_eq!((points.len(), tds.is_none()), (900, grain.is_stopped()));
+        tds.is_some()
+    };
+    assert!(built(&AtomicBool::new(false)));
+    assert!(!built(&AtomicBool::new(true)));
+    for spins in (0..20).map(|k| 1 << k) {
+        let flag = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                (0..spins).for_each(|_| std::hint::spin_loop());
+                flag.store(true, Ordering::Relaxed);
+                std::hint::spin_loop();
+                flag.store(false, Ordering::Relaxed);
+            });
+            built(&flag);
+        });
+    }
 }

@@ -175,21 +175,27 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 
 impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// Triangulates sites. Vertices are numbered as the sites are, whose points are not copied.
-    pub(crate) fn from_sites(geometry: G, sites: Sites<G::Point>) -> Self {
+    ///
+    /// # Errors
+    /// [`InputError::Canceled`] if the flag of the grain is set.
+    pub(crate) fn from_sites(geometry: G, sites: Sites<G::Point>, grain: bulk::Grain) -> Result<Self, InputError> {
         let mut triangulation = Self::new(geometry);
-        let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, bulk::Grain::default());
+        let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, grain);
         let count = points.len();
         triangulation.inner.points = points;
         if let Some(tds) = tds {
             triangulation.inner.tds = tds;
-            return triangulation;
+            return Ok(triangulation);
+        }
+        if grain.is_stopped() {
+            return Err(InputError::Canceled);
         }
         for index in 0..count {
             let ConstrainedDelaunay { inner, lines } = &mut triangulation;
             lines.insert_point(inner, inner.points[index], None);
         }
         debug_assert_eq!(triangulation.vertex_count(), count, "two points on one site");
-        triangulation
+        Ok(triangulation)
     }
 
     /// Triangulates many points; also returns the vertex of each. Vertices are numbered along a
@@ -202,6 +208,6 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     /// O(n log n), on all threads.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let (sites, vertices) = Sites::of(&geometry, points, bulk::Grain::default())?;
-        Ok((Self::from_sites(geometry, sites), vertices))
+        Ok((Self::from_sites(geometry, sites, bulk::Grain::default())?, vertices))
     }
 }

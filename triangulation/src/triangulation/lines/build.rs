@@ -8,12 +8,14 @@
 //!
 //! Every step depends on the set of points and segments only.
 
+use std::sync::atomic::AtomicBool;
+
 use crate::arrangement::Arrangement;
 use crate::geometry::{Coordinates, Crossing};
 use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::super::bulk::{Grain, Sites};
+use super::super::bulk::{Grain, Sites, Stop};
 use super::super::locate::Dice;
 use super::super::{ConstrainedDelaunay, InputError};
 use super::paths::{LineVertices, segments_of, undirected};
@@ -71,11 +73,12 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         check_numbers(points.len(), lines)?;
         let (sites, mut vertices) = Sites::of(&geometry, points, Grain::default())?;
         if lines.is_empty() {
-            return Ok((Self::from_sites(geometry, sites), vertices));
+            return Ok((Self::from_sites(geometry, sites, Grain::default())?, vertices));
         }
         let named = |line: &L| LineVertices::of(line.as_ref(), |i| vertices[i as usize]);
         let lines = lines.iter().map(named).collect();
-        let (triangulation, renumbered) = Self::from_sites_and_lines(geometry, sites, lines, on_crossing)?;
+        let (triangulation, renumbered) =
+            Self::from_sites_and_lines(geometry, sites, lines, on_crossing, Grain::default())?;
         if let Some(renumbered) = renumbered {
             vertices.iter_mut().for_each(|v| *v = renumbered[v.index()]);
         }
@@ -91,10 +94,12 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     ///
     /// The triangulation is that of [`from_lines`](Self::from_lines), which sorts and merges first.
     ///
+    /// Set to true by any thread, `cancel` ends the work early.
+    ///
     /// # Errors
-    /// Those of [`from_lines`](Self::from_lines), and if a point does not come after the one before
-    /// it. (For points that are one rounding apart this is not always detected; they must be
-    /// distinct.)
+    /// Those of [`from_lines`](Self::from_lines), [`InputError::Canceled`], and if a point does not
+    /// come after the one before it. (For points that are one rounding apart this is not always
+    /// detected; they must be distinct.)
     ///
     /// # Complexity
     /// That of [`from_lines`](Self::from_lines), without sorting: O((n + k) log n) for k crossings.
@@ -103,11 +108,14 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         points: Vec<G::Point>,
         lines: &[L],
         on_crossing: OnCrossing,
+        cancel: &AtomicBool,
     ) -> Result<(Self, Option<Vec<VertexId>>), InputError> {
         check_numbers(points.len(), lines)?;
         let sites = Sites::sorted(&geometry, points)?;
         let named = |line: &L| LineVertices::of(line.as_ref(), |i| VertexId::new(i as usize));
-        Self::from_sites_and_lines(geometry, sites, lines.iter().map(named).collect(), on_crossing)
+        let stop = Stop::new(cancel);
+        let lines = lines.iter().map(named).collect();
+        Self::from_sites_and_lines(geometry, sites, lines, on_crossing, Grain::until(&stop))
     }
 
     /// Triangulates sites and lines through them. If vertices had to be added, also returns the new
@@ -117,6 +125,7 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         mut sites: Sites<G::Point>,
         mut lines: Vec<LineVertices>,
         on_crossing: OnCrossing,
+        grain: Grain,
     ) -> Result<(Self, Option<Vec<VertexId>>), InputError> {
         let index = |v: VertexId| v.index() as u32;
         let segments = segments_of(lines.iter().map(|line| &**line), index);
@@ -124,6 +133,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             let position = |i: u32| geometry.plan(&sites.points[i as usize]);
             Arrangement::new(sites.points.len(), position, &segments, geometry.step())
         };
+        if grain.stops() {
+            return Err(InputError::Canceled);
+        }
         if on_crossing == OnCrossing::Reject {
             reject(&geometry, &sites.points, &lines, &arrangement, &segments)?;
         }
@@ -136,7 +148,10 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             lines.iter_mut().flat_map(|line| line.iter_mut()).for_each(|v| *v = renumbered[v.index()]);
         }
 
-        let mut triangulation = Self::from_sites(geometry, sites);
+        let mut triangulation = Self::from_sites(geometry, sites, grain)?;
+        if grain.stops() {
+            return Err(InputError::Canceled);
+        }
         triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
         triangulation.lines.added = added.into_iter().collect();
         let parts = triangulation.lines.paths.record(&arrangement, &segments, vertex);

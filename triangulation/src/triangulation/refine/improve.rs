@@ -1,6 +1,8 @@
 //! Delaunay refinement: destroys triangles that are too thin or too large by a vertex in their
 //! circles.
 
+use std::sync::atomic::Ordering;
+
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId, ccw};
 
@@ -15,6 +17,9 @@ const SAME_CIRCLE: f64 = 1e-3;
 /// A triangle gets no vertex if its shortest edge is shorter than this many units in the last place
 /// of a coordinate.
 const LAST_PLACES: f64 = 64.0;
+
+/// The flag that cancels is read once per so many triangles.
+const LOOK_EVERY: u32 = 256;
 
 /// Off-centers go this fraction of the distance at which the smallest angle is just the requested
 /// one: a little nearer, so that the rounded angle is not missed.
@@ -48,9 +53,15 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         self.draft.fresh.clear();
         let cells: Vec<CellId> = self.draft.t.tds().cells().collect();
         cells.into_iter().for_each(|cell| self.test(cell));
+        let mut tried = 0;
         while self.draft.budget > 0
             && let Some(bad) = self.queue.pop()
         {
+            tried += 1;
+            if tried % LOOK_EVERY == 0 && self.quality.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                self.draft.budget = 0;
+                break;
+            }
             let Some(shape) = self.still_bad(&bad) else { continue };
             match self.draft.add_in(bad.cell, shape.off_center(self.reach)) {
                 Attempt::Added => {}

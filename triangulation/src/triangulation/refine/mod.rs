@@ -41,6 +41,7 @@ mod split;
 
 use std::fmt;
 use std::ops::Deref;
+use std::sync::atomic::AtomicBool;
 
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
@@ -120,6 +121,8 @@ pub struct Quality<'a> {
     /// The largest number of vertices to insert; those that are removed again count, too. An angle
     /// that cannot be reached uses up the limit, and about 350 bytes for each vertex.
     pub max_added: usize,
+    /// Set to true by any thread, it ends the refinement early, with what is there, like `max_added`.
+    pub cancel: Option<&'a AtomicBool>,
 }
 
 impl Quality<'_> {
@@ -138,13 +141,14 @@ impl Default for Quality<'_> {
             area_at: None,
             domain: Domain::Enclosed { holes: Vec::new() },
             max_added: Self::MAX_ADDED,
+            cancel: None,
         }
     }
 }
 
 impl fmt::Debug for Quality<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Quality { min_angle, max_area, regions, domain, max_added, area_at } = self;
+        let Quality { min_angle, max_area, regions, domain, max_added, area_at, cancel } = self;
         f.debug_struct("Quality")
             .field("min_angle", min_angle)
             .field("max_area", max_area)
@@ -152,6 +156,7 @@ impl fmt::Debug for Quality<'_> {
             .field("area_at", &area_at.is_some())
             .field("domain", domain)
             .field("max_added", max_added)
+            .field("cancel", cancel)
             .finish()
     }
 }
