@@ -215,7 +215,7 @@ fn what_has_no_area_leaves_nothing() {
         builder.build().unwrap()
     };
     let square: Ring = vec![[10.0, 10.0], [30.0, 10.0], [30.0, 30.0], [10.0, 30.0]];
-    // From a corner to 50.1 70.3 and back through a site at a tenth of the distance, rounded.
+    // From a corner to 50.1 70.3, returning through a site at a tenth of the distance, rounded.
     let mut spike = square.clone();
     spike.splice(2..3, [[30.0, 30.0], [50.1, 70.3], [30.0 + 0.1 * 20.1, 30.0 + 0.1 * 40.3], [30.0, 30.0]]);
     assert_eq!(vertices(&clipped(&[spike])).len(), vertices(&clipped(&[square])).len());

@@ -159,8 +159,8 @@ fn corners_on_sides(scene: &mut Scene, random: &mut Random, units: Units) {
     }]);
 }
 
-/// A ring that runs to a point and back, past sites on its first half or through them, exactly or
-/// nearly.
+/// A ring that runs to a point and returns, past sites on its first half or through them, exactly
+/// or nearly.
 fn spikes(scene: &mut Scene, random: &mut Random, units: Units) {
     let mut ring = units.ring(random);
     let at = random.index(ring.len());
