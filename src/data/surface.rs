@@ -39,7 +39,16 @@ impl EdgeKind {
 /// grid.
 ///
 /// Vertices and faces are numbered from 0; some numbers may be unused. Corners are
-/// counter-clockwise in plan, and neighbor `i` of a face lies across the edge opposite corner `i`.
+/// counter-clockwise in plan, and neighbor `i` of a face lies across the edge opposite corner `i`:
+///
+/// ```text
+///             0
+///            / \
+/// neighbor 2/   \neighbor 1
+///          /     \
+///         1-------2
+///         neighbor 0
+/// ```
 pub trait Surface: Sync {
     /// One more than the largest vertex number.
     fn vertex_count(&self) -> usize;

@@ -1,4 +1,4 @@
-//! Points that cannot be computed with.
+//! The error for points outside of the range of the arithmetic.
 
 use crate::error::Error;
 use crate::triangulation::kernel::{RANGE, Range};

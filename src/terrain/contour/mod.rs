@@ -17,6 +17,14 @@
 //! | `++-` `+--` | the part above the crossings | from crossing to crossing |
 //! | `+0-` | the part above | from the corner to the crossing |
 //!
+//! ```text
+//!           -
+//!          / \
+//!     ----x-->x----     a face `++-`: the high ground, below, is on the right
+//!        /     \
+//!       +-------+
+//! ```
+//!
 //! This leaves the edges of faces. Along an edge `++`, `+0` or the upper part of `+-`, both faces
 //! belong to *H*, so their arcs cancel; along `--` and `0-` neither does. Along an edge `00`, each
 //! face counts by its third corner:
