@@ -1,23 +1,23 @@
 use super::args::CheckArgs;
+use super::console::Console;
 use super::outputs::{self, Existing};
 use super::plan::SurfacePlan;
-use super::summary::tell_surface;
-use super::talk::Talk;
+use super::summary::print_surface;
 use super::{Exit, print};
 use crate::error::Result;
 use crate::run::{self, CheckProduct, SurfaceFacts};
 
 /// Lists the flaws of a TIN, or of a mesh that may be none.
-pub(super) fn run(args: &CheckArgs, talk: &Talk) -> Result<Exit> {
-    let plan = SurfacePlan::resolve(&args.surface, talk)?;
+pub(super) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
+    let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
-    let CheckProduct { product, flaws, .. } = run::check(&plan.request, &talk.context())?;
+    let CheckProduct { product, flaws, .. } = run::check(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }
-    tell_surface(&product, talk);
-    outputs.commit(talk)?;
+    print_surface(&product, console);
+    outputs.commit(console)?;
     let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = SurfaceFacts::of(product.triangles()?);
     let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", breaklines + clips);
     match flaws.len() {

@@ -1,9 +1,9 @@
 use super::Exit;
 use super::args::ContourArgs;
+use super::console::Console;
 use super::outputs;
 use super::plan::SurfacePlan;
-use super::summary::tell_surface;
-use super::talk::Talk;
+use super::summary::print_surface;
 use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::contours::ContourSummary;
@@ -12,32 +12,32 @@ use crate::run::units::Units;
 use crate::run::{self, ContourOptions};
 
 /// Draws contours of a TIN or of a DEM.
-pub(super) fn run(args: &ContourArgs, talk: &Talk) -> Result<Exit> {
-    let plan = SurfacePlan::resolve(&args.surface, talk)?;
+pub(super) fn run(args: &ContourArgs, console: &Console) -> Result<Exit> {
+    let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Contours, |_| ()), &plan)?;
     let options = ContourOptions { interval: args.interval, base: args.base, levels: args.levels.clone() };
     // What is wrong with them is known before anything is read.
     options.to_levels()?;
-    let product = run::surface(&plan.request, &talk.context())?;
+    let product = run::surface(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
-    let contours = run::contour(&product, &options, &talk.context())?;
+    let contours = run::contour(&product, &options, &console.context())?;
     let mut drawn = ContourSummary::default();
     for target in &outputs.targets {
-        drawn = contours.write(target.within(&outputs.set), &talk.context())?;
-        drawn.warnings.iter().for_each(|text| talk.warning(format_args!("{}: {text}", target.path.display())));
+        drawn = contours.write(target.within(&outputs.set), &console.context())?;
+        drawn.warnings.iter().for_each(|text| console.warning(format_args!("{}: {text}", target.path.display())));
     }
-    tell_surface(&product, talk);
-    tell_lines(&drawn, product.crs(), talk);
-    outputs.commit(talk)?;
+    print_surface(&product, console);
+    print_contours(&drawn, product.crs(), console);
+    outputs.commit(console)?;
     Ok(Exit::Done)
 }
 
-fn tell_lines(drawn: &ContourSummary, crs: Option<&Crs>, talk: &Talk) {
+fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) {
     if drawn.lines == 0 {
-        return talk.warning("no contour crosses the surface at these levels");
+        return console.warning("no contour crosses the surface at these levels");
     }
     let units = Units::of(crs);
     let (low, high) = (units.height(drawn.bounds.min[2]), units.height(drawn.bounds.max[2]));
     let noun = if drawn.lines == 1 { "line" } else { "lines" };
-    talk.line(format_args!("contours    {} {noun} ({} closed) from {low} to {high}", drawn.lines, drawn.closed));
+    console.line(format_args!("contours    {} {noun} ({} closed) from {low} to {high}", drawn.lines, drawn.closed));
 }

@@ -1,36 +1,36 @@
 use super::Exit;
 use super::args::DemArgs;
+use super::console::Console;
 use super::outputs;
 use super::plan::SurfacePlan;
-use super::summary::tell_surface;
-use super::talk::Talk;
+use super::summary::print_surface;
 use crate::error::Result;
 use crate::io::formats::Product;
 use crate::run;
 use crate::run::units::Units;
 
 /// Writes heights of a TIN as a raster.
-pub(super) fn run(args: &DemArgs, talk: &Talk) -> Result<Exit> {
-    let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+pub(super) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
+    let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     let frame = plan.add_frame(&args.frame)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), &plan)?;
-    let product = run::triangles(&plan.request, &talk.context())?;
+    let product = run::triangles(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
-    let cells = run::dem(&product, &frame, &talk.context())?;
-    outputs.announce(&cells, |()| 4, talk)?;
+    let cells = run::dem(&product, &frame, &console.context())?;
+    outputs.announce(&cells, |()| 4, console)?;
     let mut written = None;
     for target in &outputs.targets {
-        written = Some(cells.write(target.within(&outputs.set), &talk.context())?);
+        written = Some(cells.write(target.within(&outputs.set), &console.context())?);
     }
-    tell_surface(&product, talk);
+    print_surface(&product, console);
     if written.as_ref().is_some_and(|cells| cells.valid == 0) {
-        talk.warning("no cell has a height");
+        console.warning("no cell has a height");
     }
     if let Some(cells) = written.filter(|cells| cells.valid > 0) {
         let units = Units::of(product.crs());
         let (low, high) = (units.height(cells.min), units.height(cells.max));
-        talk.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
+        console.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
     }
-    outputs.commit(talk)?;
+    outputs.commit(console)?;
     Ok(Exit::Done)
 }

@@ -3,8 +3,8 @@ use std::io::Write;
 use std::path::Path;
 
 use super::Exit;
-use super::args::{DemoArgs, TalkArgs};
-use super::talk::Talk;
+use super::args::{ConsoleArgs, DemoArgs};
+use super::console::Console;
 use crate::error::{Error, Result};
 use crate::io::Output;
 
@@ -47,7 +47,7 @@ const COMMANDS: &[&[&str]] = &[
 ];
 
 /// Writes the data and runs everything on it, as if it were typed.
-pub(super) fn run(args: &DemoArgs, how: &TalkArgs, talk: &Talk) -> Result<Exit> {
+pub(super) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     let folder = &args.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::from(e).in_file(folder))?;
     for (name, bytes) in FIXTURES {
@@ -56,20 +56,20 @@ pub(super) fn run(args: &DemoArgs, how: &TalkArgs, talk: &Talk) -> Result<Exit> 
         output.write_all(bytes).map_err(|e| Error::from(e).in_file(&path))?;
         output.commit()?;
     }
-    talk.line(format_args!("A small valley, made up, is in {}.", folder.display()));
+    console.line(format_args!("A small valley, made up, is in {}.", folder.display()));
     for command in COMMANDS {
         let words: Vec<OsString> = command.iter().map(|word| in_folder(word, folder)).collect();
         let typed: Vec<String> = words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
-        talk.line("");
-        talk.line(format_args!("$ breakline {}", typed.join(" ")));
+        console.line("");
+        console.line(format_args!("$ breakline {}", typed.join(" ")));
         let exit = super::run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)));
 
         if exit != Exit::Done {
             return Ok(exit);
         }
     }
-    talk.line("");
-    talk.line(format_args!("All results are in {}.", folder.display()));
+    console.line("");
+    console.line(format_args!("All results are in {}.", folder.display()));
     Ok(Exit::Done)
 }
 
@@ -86,7 +86,7 @@ fn quoted(word: &str) -> String {
     if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
-fn flags(how: &TalkArgs) -> Vec<OsString> {
+fn flags(how: &ConsoleArgs) -> Vec<OsString> {
     let mut flags: Vec<OsString> = Vec::new();
     if how.quiet {
         flags.push("--quiet".into());

@@ -1,9 +1,9 @@
 use super::Exit;
 use super::args::HillshadeArgs;
+use super::console::Console;
 use super::outputs;
 use super::plan::SurfacePlan;
-use super::summary::{tell_place, tell_surface};
-use super::talk::Talk;
+use super::summary::{print_extent, print_surface};
 use crate::error::Result;
 use crate::io::formats::{Content, Product};
 use crate::run::{self, HillshadeOptions, LightOptions, Model};
@@ -16,8 +16,8 @@ enum ShadeFormat {
 }
 
 /// Shades a TIN or a DEM.
-pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
-    let mut plan = SurfacePlan::resolve(&args.surface, talk)?;
+pub(super) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exit> {
+    let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     let frame = plan.add_frame(&args.frame)?;
     let light = LightOptions { azimuth: args.azimuth, altitude: args.altitude, z_factor: args.z_factor };
     let formats = outputs::formats_of(Product::Shades, |format| match format.content {
@@ -25,23 +25,23 @@ pub(super) fn run(args: &HillshadeArgs, talk: &Talk) -> Result<Exit> {
         _ => ShadeFormat::GeoTiff,
     });
     let outputs = outputs::resolve_with_report(&args.output, &formats, &plan)?;
-    let product = run::surface(&plan.request, &talk.context())?;
+    let product = run::surface(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
-    let cells = run::hillshade(&product, &HillshadeOptions { frame, light }, &talk.context())?;
-    outputs.announce(&cells, cell_bytes, talk)?;
+    let cells = run::hillshade(&product, &HillshadeOptions { frame, light }, &console.context())?;
+    outputs.announce(&cells, cell_bytes, console)?;
     for target in &outputs.targets {
         let destination = target.within(&outputs.set);
         match target.kind {
-            ShadeFormat::GeoTiff => cells.write(destination, &talk.context()).map(drop)?,
-            ShadeFormat::Png => cells.write_picture(destination, &talk.context())?,
+            ShadeFormat::GeoTiff => cells.write(destination, &console.context()).map(drop)?,
+            ShadeFormat::Png => cells.write_picture(destination, &console.context())?,
         }
     }
     match &product.model {
         // Its cells were announced.
-        Model::Raster(grid) => tell_place(grid.extent(), grid.crs.as_ref(), talk),
-        Model::Tin(_) | Model::Mesh(_) => tell_surface(&product, talk),
+        Model::Raster(grid) => print_extent(grid.extent(), grid.crs.as_ref(), console),
+        Model::Tin(_) | Model::Mesh(_) => print_surface(&product, console),
     }
-    outputs.commit(talk)?;
+    outputs.commit(console)?;
     Ok(Exit::Done)
 }
 

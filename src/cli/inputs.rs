@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::talk::Talk;
+use super::console::Console;
 use crate::error::{Error, Result};
 use crate::run::STDIN;
 
@@ -11,7 +11,7 @@ use crate::run::STDIN;
 ///
 /// # Errors
 /// If a glob matches nothing, a list cannot be read or a file does not exist.
-pub(super) fn expand(typed: &[PathBuf], talk: &Talk) -> Result<Vec<PathBuf>> {
+pub(super) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for path in typed {
         match path.to_str().and_then(|text| text.strip_prefix('@')) {
@@ -23,7 +23,7 @@ pub(super) fn expand(typed: &[PathBuf], talk: &Talk) -> Result<Vec<PathBuf>> {
     found.retain(|path| {
         let is_new = seen.insert(identity(path));
         if !is_new {
-            talk.note(format_args!("{} is named twice and used once", path.display()));
+            console.note(format_args!("{} is named twice and used once", path.display()));
         }
         is_new
     });

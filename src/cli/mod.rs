@@ -1,12 +1,13 @@
 //! The command line: one file per verb.
 //!
 //! What is typed (`args`) and what it means (`plan`, `outputs`) are kept apart. A verb hands a request to
-//! [`run`](crate::run), writes the product and says what came out. Data goes to files or stdout, talk (`talk`) to
+//! [`run`](crate::run), writes the product and says what came out. Data goes to files or stdout, messages (`console`) to
 //! stderr.
 
 mod args;
 mod check;
 mod classes;
+mod console;
 mod contour;
 mod dem;
 mod demo;
@@ -21,7 +22,6 @@ mod plan;
 mod points;
 mod progress;
 mod summary;
-mod talk;
 mod tin;
 mod triangulate;
 
@@ -32,8 +32,8 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use self::args::{Cli, TalkArgs, Verb};
-use self::talk::Talk;
+use self::args::{Cli, ConsoleArgs, Verb};
+use self::console::Console;
 use crate::error::{Kind, Result};
 
 /// How a run ended.
@@ -58,7 +58,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     let words = match habits::understood(args) {
         Ok(words) => words,
         Err(error) => {
-            Talk::new(&TalkArgs::default()).error(&error);
+            Console::new(&ConsoleArgs::default()).error(&error);
             return Exit::Usage;
         }
     };
@@ -70,22 +70,22 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
             return if error.use_stderr() { Exit::Usage } else { Exit::Done };
         }
     };
-    let talk = Talk::new(&cli.talk);
-    if let Some(threads) = cli.talk.threads {
+    let console = Console::new(&cli.console);
+    if let Some(threads) = cli.console.threads {
         // Refused when there is a pool already: the demo runs several commands in one process.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
     }
     let start = Instant::now();
-    match dispatch(&cli.verb, &cli.talk, &talk) {
+    match dispatch(&cli.verb, &cli.console, &console) {
         Ok(exit) => {
             match cli.verb {
                 Verb::Info(_) | Verb::Demo(_) => {}
-                _ => summary::tell_cost(start, &talk),
+                _ => summary::print_cost(start, &console),
             }
             exit
         }
         Err(error) => {
-            talk.error(&error);
+            console.error(&error);
             match error.kind() {
                 Kind::Usage => Exit::Usage,
                 Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io | Kind::Canceled => Exit::Failed,
@@ -94,17 +94,17 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     }
 }
 
-fn dispatch(verb: &Verb, how: &TalkArgs, talk: &Talk) -> Result<Exit> {
+fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
-        Verb::Info(args) => info::run(args, talk),
-        Verb::Points(args) => points::run(args, talk),
-        Verb::Tin(args) => tin::run(args, talk),
-        Verb::Triangulate(args) => triangulate::run(args, talk),
-        Verb::Dem(args) => dem::run(args, talk),
-        Verb::Contour(args) => contour::run(args, talk),
-        Verb::Hillshade(args) => hillshade::run(args, talk),
-        Verb::Check(args) => check::run(args, talk),
-        Verb::Demo(args) => demo::run(args, how, talk),
+        Verb::Info(args) => info::run(args, console),
+        Verb::Points(args) => points::run(args, console),
+        Verb::Tin(args) => tin::run(args, console),
+        Verb::Triangulate(args) => triangulate::run(args, console),
+        Verb::Dem(args) => dem::run(args, console),
+        Verb::Contour(args) => contour::run(args, console),
+        Verb::Hillshade(args) => hillshade::run(args, console),
+        Verb::Check(args) => check::run(args, console),
+        Verb::Demo(args) => demo::run(args, how, console),
     }
 }
 

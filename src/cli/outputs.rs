@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::args::OutputArgs;
+use super::console::Console;
 use super::inputs::identity;
 use super::plan::SurfacePlan;
 use super::summary::describe;
-use super::talk::Talk;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
 use crate::io::formats::{self, Product};
@@ -84,12 +84,17 @@ impl<F> Outputs<F> {
     ///
     /// # Errors
     /// If they cannot fit, however well they are compressed.
-    pub(super) fn announce(&self, cells: &CellProduct, cell_bytes: impl Fn(&F) -> u64, talk: &Talk) -> Result<()> {
+    pub(super) fn announce(
+        &self,
+        cells: &CellProduct,
+        cell_bytes: impl Fn(&F) -> u64,
+        console: &Console,
+    ) -> Result<()> {
         let frame = cells.frame();
         let a_cell: u64 = self.targets.iter().map(|target| cell_bytes(&target.kind)).sum();
         let of = |cells: f64| (cells * a_cell as f64) as u64;
         let most = of(frame.width as f64 * frame.height as f64);
-        talk.line(format_args!("raster      {}, {} before compression", describe(&frame, cells.crs()), bytes(most)));
+        console.line(format_args!("raster      {}, {} before compression", describe(&frame, cells.crs()), bytes(most)));
         let Some((free, target)) = self.free_space().filter(|(free, _)| *free < most) else { return Ok(()) };
         let likely = most.min(of(cells.covered()));
         let room = format!("{} are free on the disk", bytes(free));
@@ -102,7 +107,7 @@ impl<F> Outputs<F> {
             .cure("choose larger cells (--resolution), a part (--te), or another disk"));
         }
         if likely > free {
-            talk.warning(format_args!("it may not fit: {} before compression, {room}", bytes(likely)));
+            console.warning(format_args!("it may not fit: {} before compression, {room}", bytes(likely)));
         }
         Ok(())
     }
@@ -111,8 +116,8 @@ impl<F> Outputs<F> {
     ///
     /// # Errors
     /// If one cannot; then none does.
-    pub(super) fn commit(self, talk: &Talk) -> Result<()> {
-        self.set.commit()?.iter().for_each(|path| tell(path, talk));
+    pub(super) fn commit(self, console: &Console) -> Result<()> {
+        self.set.commit()?.iter().for_each(|path| print_written(path, console));
         Ok(())
     }
 }
@@ -274,20 +279,22 @@ fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
 }
 
 /// Says that a file cannot tell edges on lines from others, if there are any.
-pub(super) fn tell_lost(file: &Path, edges: usize, cure: &str, talk: &Talk) {
+pub(super) fn note_lost_edges(file: &Path, edges: usize, cure: &str, console: &Console) {
     if edges > 0 {
         let path = file.display();
-        talk.note(format_args!(
+        console.note(format_args!(
             "{path}: {edges} edges on breaklines or clip lines are edges like all others here; {cure}"
         ));
     }
 }
 
 /// Says that a file was written.
-fn tell(file: &Path, talk: &Talk) {
+fn print_written(file: &Path, console: &Console) {
     let path = file.display();
     match std::fs::metadata(file) {
-        Ok(data) if data.is_file() => talk.line(format_args!("written     {path} ({} kB)", data.len().div_ceil(1000))),
-        _ => talk.line(format_args!("written     {path}")),
+        Ok(data) if data.is_file() => {
+            console.line(format_args!("written     {path} ({} kB)", data.len().div_ceil(1000)))
+        }
+        _ => console.line(format_args!("written     {path}")),
     }
 }

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::args::{CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, OnCrossingArg, SurfaceArgs};
+use super::console::Console;
 use super::inputs;
-use super::talk::Talk;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::run::{
@@ -27,8 +27,8 @@ impl SurfacePlan {
     ///
     /// # Errors
     /// If files are missing, kinds of input are mixed or options do not go together.
-    pub(super) fn resolve(args: &SurfaceArgs, talk: &Talk) -> Result<Self> {
-        let files = inputs::expand(&args.inputs, talk)?;
+    pub(super) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
+        let files = inputs::expand(&args.inputs, console)?;
         let systems = SystemOptions {
             assign: system("--a-srs", args.a_srs.as_deref())?,
             target: system("--t-srs", args.t_srs.as_deref())?,

@@ -1,6 +1,6 @@
 use super::args::PointsArgs;
-use super::summary::{counted, tell_place};
-use super::talk::Talk;
+use super::console::Console;
+use super::summary::{counted, print_extent};
 use super::{Exit, inputs, outputs};
 use crate::error::{Error, Result};
 use crate::io::formats::Product;
@@ -8,8 +8,8 @@ use crate::io::las::Rounding;
 use crate::run::{PointsRequest, Withheld, write_points};
 
 /// Selects, clips and merges points.
-pub(super) fn run(args: &PointsArgs, talk: &Talk) -> Result<Exit> {
-    let files = inputs::expand(&args.inputs, talk)?;
+pub(super) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
+    let files = inputs::expand(&args.inputs, console)?;
     inputs::require(&args.boundary)?;
     let all: Vec<_> = files.iter().chain(&args.boundary).cloned().collect();
     let outputs = outputs::resolve(&args.output, &outputs::formats_of(Product::Points, |_| ()), &all)?;
@@ -28,7 +28,7 @@ pub(super) fn run(args: &PointsArgs, talk: &Talk) -> Result<Exit> {
         boundary: args.boundary.clone(),
         rounding: if args.round { Rounding::Nearest } else { Rounding::Refuse },
     };
-    let report = write_points(&request, target.within(&outputs.set), &talk.context())?;
+    let report = write_points(&request, target.within(&outputs.set), &console.context())?;
     let left_out = [
         (report.withheld, "withheld"),
         (report.other_class, "of other classes"),
@@ -38,8 +38,8 @@ pub(super) fn run(args: &PointsArgs, talk: &Talk) -> Result<Exit> {
     let left_out = left_out.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!(", {count} {why}"));
     let left_out: String = left_out.collect();
     let count = counted(report.written.count, "point");
-    talk.line(format_args!("points      {count} of {}{left_out}", report.read));
-    tell_place(report.written.bounds, report.crs.as_ref(), talk);
-    outputs.commit(talk)?;
+    console.line(format_args!("points      {count} of {}{left_out}", report.read));
+    print_extent(report.written.bounds, report.crs.as_ref(), console);
+    outputs.commit(console)?;
     Ok(Exit::Done)
 }

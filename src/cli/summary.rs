@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::talk::Talk;
+use super::console::Console;
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, Frame};
 use crate::run::units::{Units, neat, number};
@@ -10,37 +10,37 @@ use crate::run::{BuildReport, Model, SurfaceFacts, SurfaceProduct};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// Says what went into a surface, what was dropped and what came out.
-pub(super) fn tell_surface(product: &SurfaceProduct, talk: &Talk) {
+pub(super) fn print_surface(product: &SurfaceProduct, console: &Console) {
     let (triangles, extent) = match (&product.built, &product.model) {
         (Some(built), _) => {
-            talk.line(format_args!("points      {}", points_line(&built.points, built.sources)));
+            console.line(format_args!("points      {}", points_line(&built.points, built.sources)));
             if !built.columns.is_empty() {
-                talk.line(format_args!("columns     {}", columns_line(&built.columns)));
+                console.line(format_args!("columns     {}", columns_line(&built.columns)));
             }
-            tell_tin(built, talk);
+            print_tin(built, console);
             (format!("{}{}", built.tin.triangles, left_out(&built.tin)), built.tin.extent)
         }
         (None, Model::Raster(grid)) => {
-            talk.line(format_args!("raster      {}", describe(&grid.frame, grid.crs.as_ref())));
-            return tell_place(grid.extent(), grid.crs.as_ref(), talk);
+            console.line(format_args!("raster      {}", describe(&grid.frame, grid.crs.as_ref())));
+            return print_extent(grid.extent(), grid.crs.as_ref(), console);
         }
         (None, Model::Mesh(_) | Model::Tin(_)) => {
             let Ok(surface) = product.triangles() else { return };
             let facts = SurfaceFacts::of(surface);
             for (name, edges) in [("breaklines", facts.breaklines), ("clip lines", facts.clips)] {
                 if edges > 0 {
-                    talk.line(format_args!("{name}  {edges} edges"));
+                    console.line(format_args!("{name}  {edges} edges"));
                 }
             }
-            talk.line(format_args!("vertices    {}", facts.vertices));
+            console.line(format_args!("vertices    {}", facts.vertices));
             (facts.triangles.to_string(), facts.extent)
         }
     };
-    talk.line(format_args!("triangles   {triangles}"));
-    tell_place(extent, product.crs(), talk);
+    console.line(format_args!("triangles   {triangles}"));
+    print_extent(extent, product.crs(), console);
 }
 
-fn tell_tin(built: &BuildReport, talk: &Talk) {
+fn print_tin(built: &BuildReport, console: &Console) {
     let tin = &built.tin;
     if tin.duplicates > 0 {
         let rule = match built.duplicates {
@@ -50,11 +50,11 @@ fn tell_tin(built: &BuildReport, talk: &Talk) {
             DuplicateRule::First => "the first is kept",
             DuplicateRule::Last => "the last is kept",
         };
-        talk.line(format_args!("            {} at the place of another point ({rule})", tin.duplicates));
+        console.line(format_args!("            {} at the place of another point ({rule})", tin.duplicates));
     }
     if tin.points_on_breaklines > 0 {
         let count = tin.points_on_breaklines;
-        talk.line(format_args!("            {count} at a breakline's vertex (whose height is taken)"));
+        console.line(format_args!("            {count} at a breakline's vertex (whose height is taken)"));
     }
     if built.breaklines > 0 {
         let crossings = match tin.crossings {
@@ -62,16 +62,16 @@ fn tell_tin(built: &BuildReport, talk: &Talk) {
             n => format!(", {n} crossings between vertices"),
         };
         let (lines, edges, vertices) = (built.breaklines, tin.constrained_edges, tin.breakline_vertices);
-        talk.line(format_args!("breaklines  {lines} in, {edges} edges out, {vertices} vertices{crossings}"));
+        console.line(format_args!("breaklines  {lines} in, {edges} edges out, {vertices} vertices{crossings}"));
     }
     let parts = [
         (tin.vertices_beyond_max_edge, "left out with triangles at the rim"),
         (tin.vertices_clipped, "clipped"),
         (tin.vertices_cut, "added by the clip"),
     ];
-    talk.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
+    console.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
     if tin.clip_edges > 0 {
-        talk.line(format_args!("clip lines  {} edges", tin.clip_edges));
+        console.line(format_args!("clip lines  {} edges", tin.clip_edges));
     }
 }
 
@@ -102,18 +102,18 @@ fn listed(parts: &[(usize, &str)]) -> String {
 }
 
 /// Where something is, and in which coordinate system.
-pub(super) fn tell_place(extent: Bounds, crs: Option<&Crs>, talk: &Talk) {
+pub(super) fn print_extent(extent: Bounds, crs: Option<&Crs>, console: &Console) {
     if !extent.is_empty() {
         // Millimetres will do where there are metres; degrees are small.
         let is_wide = (0..2).any(|i| extent.max[i] - extent.min[i] > 10.0);
-        let tell = if is_wide { thousandths } else { neat };
-        let axis = |i: usize| format!("{} .. {}", tell(extent.min[i]), tell(extent.max[i]));
+        let shown = if is_wide { thousandths } else { neat };
+        let axis = |i: usize| format!("{} .. {}", shown(extent.min[i]), shown(extent.max[i]));
         let heights = if extent.min[2] <= extent.max[2] { format!(", z {}", axis(2)) } else { String::new() };
-        talk.line(format_args!("extent      x {}, y {}{heights}", axis(0), axis(1)));
+        console.line(format_args!("extent      x {}, y {}{heights}", axis(0), axis(1)));
     }
     match crs {
-        Some(crs) => talk.line(format_args!("CRS         {}", crs.describe())),
-        None => talk.line("CRS         not known"),
+        Some(crs) => console.line(format_args!("CRS         {}", crs.describe())),
+        None => console.line("CRS         not known"),
     }
 }
 
@@ -171,11 +171,11 @@ fn thousandths(value: f64) -> String {
 }
 
 /// Says how long it took and how much memory it took.
-pub(super) fn tell_cost(start: Instant, talk: &Talk) {
+pub(super) fn print_cost(start: Instant, console: &Console) {
     let time = format!("{:.2} s", start.elapsed().as_secs_f64());
     match peak_memory() {
-        Some(bytes) => talk.line(format_args!("done in {time}, peak memory {} MB", number(bytes as f64 / 1e6))),
-        None => talk.line(format_args!("done in {time}")),
+        Some(bytes) => console.line(format_args!("done in {time}, peak memory {} MB", number(bytes as f64 / 1e6))),
+        None => console.line(format_args!("done in {time}")),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Triangle's files in, and out.
 
 use super::args::{KernelArg, TriangulateArgs};
+use super::console::Console;
 use super::outputs::{self, Format, Target};
-use super::talk::Talk;
 use super::{Exit, inputs};
 use crate::error::{Error, Result};
 use crate::io::{Destination, OutputSet};
@@ -42,7 +42,7 @@ const fn formats(beside_ele: &'static [&'static str]) -> [Format<Family>; 8] {
 }
 
 /// Triangulates what a `.node` or `.poly` file holds.
-pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
+pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     let path = &args.input;
     inputs::require([path])?;
     let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
@@ -51,7 +51,7 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
     let mut read = vec![path.clone()];
     read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
     let outputs = outputs::resolve(&args.output, formats, &read)?;
-    let product = run::triangulate(path, &options(args), &talk.context())?;
+    let product = run::triangulate(path, &options(args), &console.context())?;
     if product.report.triangles_built == 0
         && let Some(mesh) = outputs.targets.iter().find(|target| target.kind == Family::Mesh)
     {
@@ -60,9 +60,9 @@ pub(super) fn run(args: &TriangulateArgs, talk: &Talk) -> Result<Exit> {
             .cure("add a vertex beside the line; .node, .poly and .ele hold vertices without triangles, too"));
     }
     let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
-    write(&outputs.set, &meshes, &files, &product, talk)?;
-    tell(&product, args.max_added, talk);
-    outputs.commit(talk)?;
+    write(&outputs.set, &meshes, &files, &product, console)?;
+    print_report(&product, args.max_added, console);
+    outputs.commit(console)?;
     Ok(Exit::Done)
 }
 
@@ -101,40 +101,41 @@ fn write(
     meshes: &[Target<Family>],
     files: &[Target<Family>],
     product: &TriangulateProduct,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<()> {
     if !meshes.is_empty() {
         let mesh = product.to_mesh()?;
         for target in meshes {
-            let written = run::write_mesh(&mesh, target.within(outputs), &talk.context())?;
-            outputs::tell_lost(&target.path, written.lost_edges, ".ply and .poly keep them", talk);
+            let written = run::write_mesh(&mesh, target.within(outputs), &console.context())?;
+            outputs::note_lost_edges(&target.path, written.lost_edges, ".ply and .poly keep them", console);
         }
     }
     let files: Vec<Destination> = files.iter().map(|file| file.within(outputs)).collect();
-    product.write(&files, &talk.context())
+    product.write(&files, &console.context())
 }
 
 /// Says what went in and what came out.
-fn tell(product: &TriangulateProduct, max_added: Option<usize>, talk: &Talk) {
+fn print_report(product: &TriangulateProduct, max_added: Option<usize>, console: &Console) {
     let (report, triangulated) = (&product.report, &product.triangulated);
     let (given, between) = (report.vertices_given, report.vertices_for_quality);
     let refined = if between > 0 { format!(", {between} for angles and areas") } else { String::new() };
-    talk.line(format_args!(
+    console.line(format_args!(
         "vertices    {} ({given} in, {} added where segments cross{refined})",
         triangulated.nodes.points.len(),
         report.vertices_at_crossings
     ));
     if report.duplicates > 0 {
-        talk.line(format_args!("            {} at the place of an earlier one, without a triangle", report.duplicates));
+        console
+            .line(format_args!("            {} at the place of an earlier one, without a triangle", report.duplicates));
     }
     let edges = triangulated.segments.len();
-    talk.line(format_args!(
+    console.line(format_args!(
         "segments    {} in, {edges} constrained edges out, the boundary among them",
         report.segments_given
     ));
     let (all, kept) = (report.triangles_built, triangulated.triangles.len());
-    let eaten = if kept < all { format!(" ({} outside or in holes eaten away)", all - kept) } else { String::new() };
-    talk.line(format_args!("triangles   {kept}{eaten}"));
+    let left_out = if kept < all { format!(" ({} outside or in holes eaten away)", all - kept) } else { String::new() };
+    console.line(format_args!("triangles   {kept}{left_out}"));
     let limit = format!("left when {} vertices had been added (--max-added)", max_added.unwrap_or_default());
     for (why, text) in [
         (Shortfall::SmallAngle, "at small angles between segments"),
@@ -143,10 +144,10 @@ fn tell(product: &TriangulateProduct, max_added: Option<usize>, talk: &Talk) {
     ] {
         let count = report.shortfall.iter().filter(|&&other| other == why).count();
         if count > 0 {
-            talk.warning(format_args!("{count} triangles are not as asked for: {text}"));
+            console.warning(format_args!("{count} triangles are not as asked for: {text}"));
         }
     }
     if all == 0 {
-        talk.warning("all vertices are on one line or at one place: there is no triangle");
+        console.warning("all vertices are on one line or at one place: there is no triangle");
     }
 }

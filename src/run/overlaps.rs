@@ -60,11 +60,11 @@ pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
     let sides = data::corners(surface).flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
     let border: Vec<(u32, [u32; 3], usize)> =
         sides.filter(|&(face, _, i)| surface.neighbor(face, i).is_none()).collect();
-    let place = |vertex: u32| {
+    let position = |vertex: u32| {
         let [x, y, _] = surface.position(vertex);
         [x + 0.0, y + 0.0]
     };
-    let ends: Vec<[f64; 2]> = border.iter().flat_map(|&(_, c, i)| [place(c[ccw(i)]), place(c[cw(i)])]).collect();
+    let ends: Vec<[f64; 2]> = border.iter().flat_map(|&(_, c, i)| [position(c[ccw(i)]), position(c[cw(i)])]).collect();
     let sides: Vec<[u32; 2]> = (0..border.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
     let Ok((t, vertices)) = ConstrainedDelaunay::from_lines(Plane::<Wide>::default(), &ends, &sides, OnCrossing::Split)
     else {

@@ -87,7 +87,7 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     for path in &request.files {
         let source = open(path)?;
         let info = source.info().clone();
-        tell(&journal, path, &info.warnings);
+        note_warnings(&journal, path, &info.warnings);
         one_system(&mut crs, info.crs.as_ref(), path)?;
         infos.push(info);
         let keep = request.files.len() <= MOST_OPEN || is_read_once(path);
@@ -114,7 +114,7 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
             sink.write(&batch).map_err(|e| e.in_file(path))?;
             work.add(count)?;
         }
-        tell(&journal, path, source.warnings());
+        note_warnings(&journal, path, source.warnings());
     }
     if report.read == report.withheld + report.other_class + report.other_return + report.outside {
         return Err(nothing_left(&report, &request.files));
@@ -126,7 +126,7 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     Ok(report)
 }
 
-fn tell(journal: &Journal, path: &Path, warnings: &[String]) {
+fn note_warnings(journal: &Journal, path: &Path, warnings: &[String]) {
     warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
 }
 
@@ -171,7 +171,7 @@ fn boundary(request: &PointsRequest, crs: Option<&Crs>, journal: &Journal) -> Re
     let mut polygons = Vec::new();
     for path in &request.boundary {
         let layer = open::layer(path)?;
-        tell(journal, path, &layer.warnings);
+        note_warnings(journal, path, &layer.warnings);
         one_system(&mut crs.cloned(), layer.crs.as_ref(), path)?;
         polygons.extend(lines::polygons(&layer, path)?);
     }

@@ -70,8 +70,8 @@ fn ends(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
     line.first().copied().into_iter().chain(line.last().copied())
 }
 
-fn key(place: [f64; 2]) -> Key {
-    place.map(f64::to_bits)
+fn key(p: [f64; 2]) -> Key {
+    p.map(f64::to_bits)
 }
 
 fn distance([x, y]: [f64; 2], p: [f64; 2]) -> f64 {

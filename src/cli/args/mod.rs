@@ -25,14 +25,14 @@ pub(super) use verbs::{
 ///
 /// Reads lidar (LAS, LAZ, COPC), text and shapefile points, builds a TIN in which every breakline
 /// holds, and writes meshes, rasters and contours of it. Lengths are in the units of the coordinate
-/// system and printed with them. Data goes to files (`info`: to stdout), talk to stderr.
+/// system and printed with them. Data goes to files (`info`: to stdout), messages to stderr.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong usage.
 #[derive(Debug, Parser)]
 #[command(name = "breakline", version, max_term_width = 100, after_long_help = examples())]
 pub(super) struct Cli {
     #[command(flatten)]
-    pub(super) talk: TalkArgs,
+    pub(super) console: ConsoleArgs,
     #[command(subcommand)]
     pub(super) verb: Verb,
 }
@@ -56,7 +56,7 @@ fn examples() -> String {
 /// How much is said, and how many cores work.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "General")]
-pub(super) struct TalkArgs {
+pub(super) struct ConsoleArgs {
     /// Print warnings and errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(super) quiet: bool,

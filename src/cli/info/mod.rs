@@ -13,30 +13,30 @@ use std::path::{Path, PathBuf};
 
 use self::sheet::Sheet;
 use super::args::InfoArgs;
-use super::talk::Talk;
+use super::console::Console;
 use super::{Exit, escape, inputs, print};
 use crate::error::Result;
 use crate::io::formats;
 use crate::run::{self, Facts};
 
 /// Tells what is in files. A file that cannot be read does not keep the others from being told.
-pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
-    let mut files = inputs::expand(&args.files, talk)?;
-    drop_parts(&mut files, talk);
+pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
+    let mut files = inputs::expand(&args.files, console)?;
+    drop_parts(&mut files, console);
     let options = args.read.options();
     let mut exit = Exit::Done;
     let mut objects = Vec::new();
     for (i, path) in files.iter().enumerate() {
         let name = path.display().to_string();
-        let sheet = match run::facts(path, options, &talk.context()) {
+        let sheet = match run::facts(path, options, &console.context()) {
             Ok(facts) => sheet(path, &facts),
             Err(error) => {
-                talk.error(&error.in_file(path));
+                console.error(&error.in_file(path));
                 exit = Exit::Failed;
                 continue;
             }
         };
-        sheet.warnings.iter().for_each(|text| talk.warning(format_args!("{name}: {text}")));
+        sheet.warnings.iter().for_each(|text| console.warning(format_args!("{name}: {text}")));
         if args.json {
             objects.push(sheet.to_json(&name));
         } else {
@@ -51,7 +51,7 @@ pub(super) fn run(args: &InfoArgs, talk: &Talk) -> Result<Exit> {
 }
 
 /// `FOLDER/*` names the parts of shapefiles and the like, too; they are told with the `.shp`.
-fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
+fn drop_parts(files: &mut Vec<PathBuf>, console: &Console) {
     // Names are compared in lower case: `A.SHP` has `A.DBF`.
     let lower = |path: &Path| path.to_string_lossy().to_lowercase();
     let mut parts: HashSet<String> = HashSet::new();
@@ -62,7 +62,7 @@ fn drop_parts(files: &mut Vec<PathBuf>, talk: &Talk) {
     files.retain(|path| {
         let is_part = parts.contains(&lower(path));
         if is_part {
-            talk.detail(format_args!("{} is part of another file", path.display()));
+            console.detail(format_args!("{} is part of another file", path.display()));
         }
         !is_part
     });

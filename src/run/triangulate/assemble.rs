@@ -9,7 +9,7 @@ use crate::io::triangle::{Edge, LineGraph, Nodes, Triangulated};
 pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attributes: &[f64]) -> Triangulated {
     let mut nodes = graph.nodes.clone();
     let node_of = number_nodes(graph, built, &mut nodes);
-    let markers = mark_walls(graph, built);
+    let markers = segment_markers(graph, built);
     let marker_of = |ends: [u32; 2]| markers.get(&sorted(ends)).copied().unwrap_or(0);
 
     let mut new_number = vec![None; is_kept.len()];
@@ -37,7 +37,7 @@ pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attri
                 edge.marker = if edge.marker == 0 { 1 } else { edge.marker };
             }
             triangulated.edges.push(edge);
-            if this.is_wall[i] || beside.is_none() {
+            if this.is_constrained[i] || beside.is_none() {
                 triangulated.segments.push(edge);
             }
         }
@@ -98,19 +98,19 @@ fn attributes_within(nodes: &Nodes, built: &Built, node_of: &[Option<u32>], vert
     attributes
 }
 
-/// Linear between two vertices, at a place on the way.
+/// Returns the attributes at a position between two vertices, linear in the distance.
 fn attributes_between(nodes: &Nodes, [a, b]: [usize; 2], at: [f64; 2]) -> Vec<f64> {
     let (from, to) = (nodes.points[a], nodes.points[b]);
-    // Halves, so that no way is longer than a double can say.
-    let way = [0, 1].map(|axis| to[axis] / 2.0 - from[axis] / 2.0);
-    let axis = usize::from(way[1].abs() > way[0].abs());
-    let along = ((at[axis] / 2.0 - from[axis] / 2.0) / way[axis]).clamp(0.0, 1.0);
+    // Halves, so that no difference is larger than a double can hold.
+    let half = [0, 1].map(|axis| to[axis] / 2.0 - from[axis] / 2.0);
+    let axis = usize::from(half[1].abs() > half[0].abs());
+    let along = ((at[axis] / 2.0 - from[axis] / 2.0) / half[axis]).clamp(0.0, 1.0);
     let values = nodes.attributes_of(a).iter().zip(nodes.attributes_of(b));
     values.map(|(from, to)| if from == to { *from } else { from * (1.0 - along) + to * along }).collect()
 }
 
 /// The marker of each piece of a segment: that of the first segment through it that has one.
-fn mark_walls(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
+fn segment_markers(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
     let mut markers = HashMap::new();
     for (segment, chain) in graph.segments.iter().zip(&built.chains).filter(|(segment, _)| segment.marker != 0) {
         for pair in chain.windows(2) {
@@ -122,12 +122,12 @@ fn mark_walls(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
 
 /// Without triangles all segments are kept; each piece once.
 fn collinear_segments(built: &Built, node_of: &[u32], marker_of: &impl Fn([u32; 2]) -> i32) -> Vec<Edge> {
-    let mut pieces: Vec<[u32; 2]> =
+    let mut sub_constraints: Vec<[u32; 2]> =
         built.chains.iter().flat_map(|chain| chain.windows(2).map(|pair| sorted([pair[0], pair[1]]))).collect();
-    pieces.sort_unstable();
-    pieces.dedup();
+    sub_constraints.sort_unstable();
+    sub_constraints.dedup();
     let edge = |ends: [u32; 2]| Edge { ends: ends.map(|v| node_of[v as usize]), marker: marker_of(ends) };
-    pieces.into_iter().map(edge).collect()
+    sub_constraints.into_iter().map(edge).collect()
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {

@@ -20,7 +20,7 @@ pub(super) struct Built {
     /// The vertices along each segment.
     pub(super) chains: Vec<Vec<u32>>,
     /// Where each place that was asked for lies.
-    pub(super) places: Vec<Place>,
+    pub(super) seeds: Vec<SeedLocation>,
     /// Of added vertices that are not where segments cross: the corners of the triangle around each as it was before,
     /// and the weights of these there.
     pub(super) between: HashMap<u32, ([u32; 3], [f64; 3])>,
@@ -34,29 +34,29 @@ pub(super) struct Face {
     /// Counter-clockwise.
     pub(super) corners: [u32; 3],
     pub(super) neighbors: [Option<u32>; 3],
-    pub(super) is_wall: [bool; 3],
+    pub(super) is_constrained: [bool; 3],
 }
 
 /// Where a place lies among the walls of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum SeedLocation {
     /// In this face, or on an edge or a vertex of it that is on no wall.
     Face(u32),
     /// On a wall: it is not told which side is meant.
-    Wall,
+    Constraint,
     Outside,
 }
 
-/// Triangulates points and segments between them, refines them if that is asked for, and finds where places lie. Each
+/// Triangulates points and segments between them, refines them if that is asked for, and finds where seeds lie. Each
 /// segment is a line of the triangulation, by its position.
 pub(super) fn build<K: Kernel>(
     points: &[[f64; 2]],
     segments: &[[u32; 2]],
-    places: &[[f64; 2]],
+    seeds: &[[f64; 2]],
     on_crossing: OnCrossing,
     quality: Option<&Quality<'_>>,
 ) -> Result<Built, InputError> {
-    // Zero has one sign only: places are compared bit by bit when sorted.
+    // Zero has one sign only: seeds are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
     let (coarse, vertices) =
         ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
@@ -78,14 +78,14 @@ pub(super) fn build<K: Kernel>(
     let face = |cell: &CellId| Face {
         corners: t.tds().corners(*cell).map(|v| number(&v)),
         neighbors: [0, 1, 2].map(|i| face_of[t.tds().neighbor(*cell, i).index()]),
-        is_wall: [0, 1, 2].map(|i| t.is_constrained(*cell, i)),
+        is_constrained: [0, 1, 2].map(|i| t.is_constrained(*cell, i)),
     };
     Ok(Built {
         vertices: t.tds().vertices().map(|v| *t.point(v)).collect(),
         vertex_of: vertices.iter().map(number).collect(),
         faces: cells.iter().map(face).collect(),
         chains: chains.iter().map(|chain| chain.iter().map(number).collect()).collect(),
-        places: places.iter().map(|p| place(t, &face_of, p.map(|x| x + 0.0))).collect(),
+        seeds: seeds.iter().map(|p| locate_seed(t, &face_of, p.map(|x| x + 0.0))).collect(),
         between: refined
             .iter()
             .flat_map(|refined| refined.added())
@@ -112,23 +112,23 @@ fn weights<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, p: &[f64; 2]) -> Option
     Some((corners, [twice_area(b, c, *p), twice_area(c, a, *p), twice_area(a, b, *p)].map(|part| part / whole)))
 }
 
-fn place<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], p: [f64; 2]) -> Place {
+fn locate_seed<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], p: [f64; 2]) -> SeedLocation {
     if t.dimension() < 2 {
-        return Place::Outside;
+        return SeedLocation::Outside;
     }
-    let in_face = |cell: CellId| face_of[cell.index()].map_or(Place::Outside, Place::Face);
+    let in_face = |cell: CellId| face_of[cell.index()].map_or(SeedLocation::Outside, SeedLocation::Face);
     match t.locate(&p, None) {
-        Location::Vertex(v) if t.constrained_around(v).next().is_some() => Place::Wall,
+        Location::Vertex(v) if t.constrained_around(v).next().is_some() => SeedLocation::Constraint,
         Location::Vertex(v) => {
-            t.tds().around(v).find_map(|cell| face_of[cell.index()]).map_or(Place::Outside, Place::Face)
+            t.tds().around(v).find_map(|cell| face_of[cell.index()]).map_or(SeedLocation::Outside, SeedLocation::Face)
         }
         Location::Cell { cell, touching } => {
             match (0..3).any(|i| touching >> i & 1 == 1 && t.is_constrained(cell, i)) {
-                true => Place::Wall,
+                true => SeedLocation::Constraint,
                 false => in_face(cell),
             }
         }
         // What lies nowhere is further out, or nearer to zero, than any vertex.
-        Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => Place::Outside,
+        Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => SeedLocation::Outside,
     }
 }

@@ -2,12 +2,12 @@
 
 mod assemble;
 mod build;
-mod eaten;
+mod carve;
 
 use std::path::Path;
 
-use self::build::{Built, Place};
-use self::eaten::Outside;
+use self::build::{Built, SeedLocation};
+use self::carve::Outside;
 use super::check;
 use super::context::{Context, Journal, Size, Stage};
 use super::notice::{Notice, Seed, SeedFlaw};
@@ -108,9 +108,10 @@ pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context)
     note_seeds(&built, &graph, path, &journal);
     let keeps_hull = options.convex || graph.segments.is_empty();
     // Refined, the hull is a constraint, beyond which there may be less than a rounding.
-    let outside = if keeps_hull && quality(options, &graph, context).is_none() { Outside::Keep } else { Outside::Eat };
-    let is_kept = eaten::kept(&built, &graph, outside);
-    let attributes = eaten::attributes(&built, &graph, &is_kept);
+    let outside =
+        if keeps_hull && quality(options, &graph, context).is_none() { Outside::Keep } else { Outside::Remove };
+    let is_kept = carve::kept(&built, &graph, outside);
+    let attributes = carve::attributes(&built, &graph, &is_kept);
     let triangulated = assemble::assemble(&graph, &built, &is_kept, &attributes);
     if triangulated.triangles.is_empty() && !built.faces.is_empty() {
         return Err(Error::format("no triangle is left: all can be reached from outside or from a hole")
@@ -269,11 +270,11 @@ fn refuse_flaws(built: &Built, context: &Context) -> Result<()> {
 fn note_seeds(built: &Built, graph: &LineGraph, path: &Path, journal: &Journal) {
     let holes = graph.holes.iter().map(|hole| (Seed::Hole, hole.line));
     let listed = holes.chain(graph.regions.iter().map(|region| (Seed::Region, region.line)));
-    for ((seed, line), place) in listed.zip(&built.places) {
-        let why = match place {
-            Place::Face(_) => continue,
-            Place::Wall => SeedFlaw::OnSegment,
-            Place::Outside => SeedFlaw::OutsideHull,
+    for ((seed, line), location) in listed.zip(&built.seeds) {
+        let why = match location {
+            SeedLocation::Face(_) => continue,
+            SeedLocation::Constraint => SeedFlaw::OnSegment,
+            SeedLocation::Outside => SeedFlaw::OutsideHull,
         };
         journal.add(Notice::SeedUnused { path: path.to_path_buf(), line, seed, why });
     }

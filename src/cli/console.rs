@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use indicatif::{MultiProgress, ProgressDrawTarget};
 
-use super::args::TalkArgs;
+use super::args::ConsoleArgs;
 use super::escape;
 use super::notices;
 use super::progress::Bar;
@@ -24,14 +24,14 @@ enum Level {
 
 /// The voice of a run. Notes and warnings are said once each.
 #[derive(Debug)]
-pub(super) struct Talk {
+pub(super) struct Console {
     level: Level,
     bars: MultiProgress,
     said: Mutex<HashSet<String>>,
 }
 
-impl Talk {
-    pub(super) fn new(args: &TalkArgs) -> Self {
+impl Console {
+    pub(super) fn new(args: &ConsoleArgs) -> Self {
         let level = match (args.quiet, args.verbose) {
             (true, _) => Level::Quiet,
             (_, true) => Level::Verbose,
@@ -42,7 +42,7 @@ impl Talk {
             // Hides itself where stderr is no terminal.
             _ => ProgressDrawTarget::stderr(),
         };
-        Talk { level, bars: MultiProgress::with_draw_target(target), said: Mutex::default() }
+        Console { level, bars: MultiProgress::with_draw_target(target), said: Mutex::default() }
     }
 
     /// The error, and its cure on a line of its own.
@@ -99,7 +99,7 @@ impl Talk {
     }
 }
 
-impl Monitor for Talk {
+impl Monitor for Console {
     fn start(&self, stage: Stage, size: Size) -> Box<dyn Progress> {
         Box::new(Bar::new(&self.bars, stage, size))
     }

@@ -1,40 +1,40 @@
 //! Which triangles are kept: what can be reached from outside, or from a hole, without crossing a segment
 //! is eaten away.
 
-use super::build::{Built, Face, Place};
+use super::build::{Built, Face, SeedLocation};
 use crate::io::triangle::LineGraph;
 
 /// Whether the concavities of the outer boundary are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outside {
     Keep,
-    Eat,
+    Remove,
 }
 
 /// For each face whether it is kept.
 pub(super) fn kept(built: &Built, graph: &LineGraph, outside: Outside) -> Vec<bool> {
     let faces = &built.faces;
     let mut is_kept = vec![true; faces.len()];
-    let is_open = |face: &Face| (0..3).any(|i| face.neighbors[i].is_none() && !face.is_wall[i]);
-    let rim = (0u32..).zip(faces).filter(|(_, face)| outside == Outside::Eat && is_open(face)).map(|(f, _)| f);
-    let holes = built.places[..graph.holes.len()].iter().filter_map(|place| match place {
-        Place::Face(face) => Some(*face),
-        Place::Wall | Place::Outside => None,
+    let is_open = |face: &Face| (0..3).any(|i| face.neighbors[i].is_none() && !face.is_constrained[i]);
+    let rim = (0u32..).zip(faces).filter(|(_, face)| outside == Outside::Remove && is_open(face)).map(|(f, _)| f);
+    let holes = built.seeds[..graph.holes.len()].iter().filter_map(|seed| match seed {
+        SeedLocation::Face(face) => Some(*face),
+        SeedLocation::Constraint | SeedLocation::Outside => None,
     });
     flood(faces, rim.chain(holes), |face| std::mem::replace(&mut is_kept[face as usize], false));
     is_kept
 }
 
 /// The attribute of the region that each kept face lies in, 0 outside of all; nothing if there are no
-/// regions. Of two places in one region the later counts.
+/// regions. Of two seeds in one region the later counts.
 pub(super) fn attributes(built: &Built, graph: &LineGraph, is_kept: &[bool]) -> Vec<f64> {
     if graph.regions.is_empty() {
         return Vec::new();
     }
     let mut attributes = vec![0.0; built.faces.len()];
     let mut last_region = vec![usize::MAX; built.faces.len()];
-    for (region, place) in built.places[graph.holes.len()..].iter().enumerate() {
-        let Place::Face(start) = *place else { continue };
+    for (region, seed) in built.seeds[graph.holes.len()..].iter().enumerate() {
+        let SeedLocation::Face(start) = *seed else { continue };
         flood(&built.faces, std::iter::once(start), |face| {
             let face = face as usize;
             attributes[face] = graph.regions[region].attribute;
@@ -50,8 +50,8 @@ fn flood(faces: &[Face], starts: impl Iterator<Item = u32>, mut takes: impl FnMu
     let mut open: Vec<u32> = starts.collect();
     while let Some(face) = open.pop() {
         if takes(face) {
-            let Face { neighbors, is_wall, .. } = faces[face as usize];
-            open.extend((0..3).filter(|&i| !is_wall[i]).filter_map(|i| neighbors[i]));
+            let Face { neighbors, is_constrained, .. } = faces[face as usize];
+            open.extend((0..3).filter(|&i| !is_constrained[i]).filter_map(|i| neighbors[i]));
         }
     }
 }
@@ -76,8 +76,8 @@ mod tests {
             regions: regions.iter().enumerate().map(region).collect(),
             ..LineGraph::default()
         };
-        let places = [holes, regions].concat();
-        (build::<Adaptive>(&points, &segments, &places, OnCrossing::Split, None).unwrap(), graph)
+        let seeds = [holes, regions].concat();
+        (build::<Adaptive>(&points, &segments, &seeds, OnCrossing::Split, None).unwrap(), graph)
     }
 
     #[test]
@@ -86,14 +86,14 @@ mod tests {
             let (built, graph) = squares(holes, &[]);
             kept(&built, &graph, outside).into_iter().filter(|&kept| kept).count()
         };
-        for outside in [Outside::Keep, Outside::Eat] {
+        for outside in [Outside::Keep, Outside::Remove] {
             assert_eq!(count(&[], outside), 10);
             assert_eq!(count(&[[0.0, 0.5]], outside), 8);
             assert_eq!(count(&[[2.0, 2.0], [0.1, 0.0]], outside), 0);
             assert_eq!(count(&[[1.0, 1.0], [1.0, 0.0], [9.0, 9.0]], outside), 10, "on a wall, or outside");
         }
         let (built, graph) = squares(&[[2.0, 0.0]], &[[2.0, 0.0], [0.0, 0.0], [0.5, 0.5]]);
-        let is_kept = kept(&built, &graph, Outside::Eat);
+        let is_kept = kept(&built, &graph, Outside::Remove);
         let attributes = attributes(&built, &graph, &is_kept);
         let inner: Vec<f64> = is_kept.iter().zip(&attributes).filter(|(kept, _)| **kept).map(|(_, &a)| a).collect();
         assert_eq!(inner, [3.0, 3.0]);
