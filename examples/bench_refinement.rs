@@ -4,8 +4,8 @@
 //! bench_refinement FILE.poly [DEGREES [AREA]]
 //! ```
 //!
-//! The best of 200 runs in one process, or of as many as a few seconds take, from coordinates in memory to the finished
-//! mesh; 20.7 degrees and no bound on areas if nothing is said.
+//! The best of 200 runs in one process, or of as many as a few seconds take, from coordinates in
+//! memory to the finished mesh; 20.7 degrees and no bound on areas if nothing is said.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 

@@ -1,8 +1,9 @@
 //! Makes the fixtures: `cargo run --release --example make_fixtures -- fixtures`.
 //!
-//! A little valley with a stream, a road with kerbs, a lake and a cliff, as lidar, breaklines, a boundary and a
-//! raster. The same bytes every time. They are written by the crates that everybody uses and by nothing of
-//! breakline, so that a mistake in a writer here cannot hide a mistake in the reader for the same format.
+//! A little valley with a stream, a road with kerbs, a lake and a cliff, as lidar, breaklines, a
+//! boundary and a raster. The same bytes every time. They are written by the crates that everybody
+//! uses and by nothing of breakline, so that a mistake in a writer here cannot hide a mistake in
+//! the reader for the same format.
 
 mod fixtures;
 

@@ -1,21 +1,24 @@
-//! Arithmetic against point location: incremental insertion of points in random order, in the manner of the table in
-//! *Triangulations in CGAL* (Boissonnat, Devillers, Pion, Teillaud and Yvinec 2002).
+//! Arithmetic against point location: incremental insertion of points in random order, in the
+//! manner of the table in *Triangulations in CGAL* (Boissonnat, Devillers, Pion, Teillaud and
+//! Yvinec 2002).
 //!
 //! ```text
 //! cargo run --release --example table1 -- [--points N] [FILE.laz | FILE.xy ...]
 //! ```
 //!
-//! A row is a kernel, a column a strategy that finds where a point lies; what is printed are seconds. The points of the
-//! table are made: 100 000 whole numbers in a square of 2^24; 120 658 as airborne lidar leaves them on the ground, in
-//! scan lines and steps of a centimeter; 100 000 fractions on a parabola. They are inserted in an order that looks
-//! random, the same in every run; a kernel that does not take the coordinates has no times. The times that the paper
-//! prints are not beside them: no copy of it was at hand.
+//! A row is a kernel, a column a strategy that finds where a point lies; what is printed are
+//! seconds. The points of the table are made: 100 000 whole numbers in a square of 2^24; 120 658 as
+//! airborne lidar leaves them on the ground, in scan lines and steps of a centimeter; 100 000
+//! fractions on a parabola. They are inserted in an order that looks random, the same in every run;
+//! a kernel that does not take the coordinates has no times. The times that the paper prints are
+//! not beside them: no copy of it was at hand.
 //!
-//! Files, if there are any, take the place of these: LAS or LAZ, of which the ground is thinned evenly to the number of
-//! the table's terrain, or pairs of coordinates, as little-endian 64-bit floating point. `--points` takes some of the
-//! points only: exact arithmetic without a filter takes long. The walk is that of `Near`: from the last insertion, and
-//! on from a nearer vertex if it takes more than 64 steps. Under each kernel walks go by rounded numbers first; the
-//! kernel is asked where these end.
+//! Files, if there are any, take the place of these: LAS or LAZ, of which the ground is thinned
+//! evenly to the number of the table's terrain, or pairs of coordinates, as little-endian 64-bit
+//! floating point. `--points` takes some of the points only: exact arithmetic without a filter
+//! takes long. The walk is that of `Near`: from the last insertion, and on from a nearer vertex if
+//! it takes more than 64 steps. Under each kernel walks go by rounded numbers first; the kernel is
+//! asked where these end.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 

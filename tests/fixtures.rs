@@ -1,4 +1,5 @@
-//! The committed fixtures are what `examples/make_fixtures.rs` makes, and what `fixtures/README.md` says.
+//! The committed fixtures are what `examples/make_fixtures.rs` makes, and what `fixtures/README.md`
+//! says.
 
 #[path = "../examples/fixtures/mod.rs"]
 mod fixtures;
@@ -21,7 +22,8 @@ fn assert_stated(what: &str, value: impl std::fmt::Display) {
 
 #[test]
 fn the_program_makes_the_same_bytes() {
-    // Sets of lines that broke something once are kept beside: triangulation/tests/lines_that_went_wrong.rs.
+    // Sets of lines that broke something once are kept beside:
+    // triangulation/tests/lines_that_went_wrong.rs.
     let mut expected = BTreeSet::from(["README.md".to_owned(), "constraints".to_owned()]);
     let mut total = 0;
     for (name, bytes) in fixtures::files().unwrap() {
@@ -97,14 +99,15 @@ fn the_breaklines_lie_on_the_ground() {
 /// Naive and exact: every pair of segments, in whole millimetres.
 #[test]
 fn the_breaklines_touch_at_vertices_only() {
-    type Place = [i64; 2];
+    type Corner = [i64; 2];
     let millimetres = |x: f64| (x * 1000.0).round() as i64;
-    let mut segments = Vec::<[Place; 2]>::new();
+    let mut segments = Vec::<[Corner; 2]>::new();
     for (_, line) in fixtures::breaklines() {
         let places: Vec<_> = line.iter().map(|[u, v, _]| [millimetres(*u), millimetres(*v)]).collect();
         segments.extend(places.windows(2).map(|pair| [pair[0], pair[1]]));
     }
-    let side = |[a, b]: [Place; 2], p: Place| ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])).signum();
+    let side =
+        |[a, b]: [Corner; 2], p: Corner| ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])).signum();
     for (i, &s) in segments.iter().enumerate() {
         assert_ne!(s[0], s[1], "a segment without length");
         for &t in &segments[i + 1..] {

@@ -1,4 +1,5 @@
-//! The table of formats: what it says is what the documentation and the program say, and rows do not hide each other.
+//! The table of formats: what it says is what the documentation and the program say, and rows do
+//! not hide each other.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The triangulation is a function of the set of points: whatever their order, the number of threads, and whether they came at
-//! once or one by one.
+//! The triangulation is a function of the set of points: whatever their order, the number of
+//! threads, and whether they came at once or one by one.
 
 use breakline::data::PointBatch;
 use breakline::triangulation::geometry::Plane;

@@ -54,8 +54,8 @@ fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summ
 
 /// The facts of the shared folder, by path.
 ///
-/// Fractions are kept as text: the JSON reader rounds some of them wrongly, and Python wrote NaN and
-/// Infinity, which JSON does not have.
+/// Fractions are kept as text: the JSON reader rounds some of them wrongly, and Python wrote NaN
+/// and Infinity, which JSON does not have.
 fn facts() -> BTreeMap<String, Value> {
     let text = std::fs::read_to_string(testkit::shared("FACTS.json")).unwrap();
     let mut quoted = String::with_capacity(text.len());
@@ -287,10 +287,7 @@ fn every_broken_file_has_its_fate() {
                 assert!(error.to_string().contains(words), "{error}");
                 assert_eq!(error.path(), Some(path.as_path()));
                 let text = error.to_string();
-                assert!(
-                    ["byte ", "record ", "chunk "].iter().any(|place| text.contains(&format!(": {place}"))),
-                    "{text}"
-                );
+                assert!(["byte ", "record ", "chunk "].iter().any(|at| text.contains(&format!(": {at}"))), "{text}");
                 assert!(error.cure_text().is_some(), "{text}");
             }
             (_, Ok(found)) => panic!("{name}: read {} points, {:?}", found.count, found.warnings),
@@ -446,8 +443,8 @@ fn changed_bytes_do_not_bring_it_down() {
             let mut changed = bytes.clone();
             for _ in 0..=random() % 4 {
                 // Two of three rounds change the head, where one byte means most.
-                let place = if round % 3 == 0 { random() % changed.len() } else { random() % 600 };
-                changed[place] = random() as u8;
+                let at = if round % 3 == 0 { random() % changed.len() } else { random() % 600 };
+                changed[at] = random() as u8;
             }
             if round % 7 == 0 {
                 changed.truncate(random() % bytes.len());

@@ -257,22 +257,22 @@ fn points_are_selected() {
     assert_eq!(report.withheld, 20);
 
     // The border of a triangle and of a box is in them: whole steps from the offset.
-    let place = |i: usize| [(i * 7) % 1000, (i * 13) % 1000];
+    let column_and_row = |i: usize| [(i * 7) % 1000, (i * 13) % 1000];
     let corners = [[0, 0], [700, 0], [0, 700], [0, 0]].map(|p: [i32; 2]| p.map(|c| 500_000.0 + f64::from(c) * 0.01));
     let ring: Vec<String> = corners.iter().map(|[x, y]| format!("[{x},{y}]")).collect();
     let polygon = folder.path().join("p.geojson");
     fs::write(&polygon, format!(r#"{{"type":"Polygon","coordinates":[[{}]]}}"#, ring.join(","))).unwrap();
     let (records, report) = run(PointsRequest { boundary: vec![polygon], ..all() });
-    let strictly = kept(&whole, |i| place(i)[0] + place(i)[1] < 700).len();
+    let strictly = kept(&whole, |i| column_and_row(i)[0] + column_and_row(i)[1] < 700).len();
     assert!(records.len() >= strictly && report.outside > 0);
-    let within = |i: usize| place(i)[0] + place(i)[1] <= 700;
+    let within = |i: usize| column_and_row(i)[0] + column_and_row(i)[1] <= 700;
     assert!(records.len() <= kept(&whole, within).len());
     let bounds = breakline::data::Bounds {
         min: [500_001.0, 500_000.0, f64::NEG_INFINITY],
         max: [500_005.0, 500_009.0, f64::INFINITY],
     };
     let (records, _) = run(PointsRequest { bounds: Some(bounds), ..all() });
-    assert!(records == kept(&whole, |i| (100..=500).contains(&place(i)[0]) && place(i)[1] <= 900));
+    assert!(records == kept(&whole, |i| (100..=500).contains(&column_and_row(i)[0]) && column_and_row(i)[1] <= 900));
 
     let error = copy(&PointsRequest { classes: vec![77], ..all() }, &folder.path().join("none.las")).unwrap_err();
     assert!(error.to_string().contains("no point is left of 200 read"), "{error}");

@@ -19,8 +19,8 @@ pub(crate) fn contain<T>(decode: impl FnOnce() -> T) -> Option<T> {
     result.ok()
 }
 
-/// Returns true while the calling thread runs a decoder of another crate whose panic becomes an error: a program's panic
-/// hook need not print it. The library installs no hook.
+/// Returns true while the calling thread runs a decoder of another crate whose panic becomes an
+/// error: a program's panic hook need not print it. The library installs no hook.
 ///
 /// ```
 /// let print = std::panic::take_hook();

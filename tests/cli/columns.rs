@@ -20,7 +20,7 @@ fn numbers_of_points_are_not_taken_for_coordinates() {
     let guessed = ["p.csv: ", "counts up by one", "northing, easting and height (PNEZD)", "hint: ", "--columns PNEZD"];
     run_in(&folder, &["tin", "p.csv", "-o", "t.ply"]).fails(1, &guessed);
     run_in(&folder, &["info", "p.csv"]).fails(1, &guessed);
-    let place = serde_json::json!([688_001.0, 5_261_002.1, 801.0]);
+    let expected = serde_json::json!([688_001.0, 5_261_002.1, 801.0]);
     let taken = serde_json::json!({"x": 3, "y": 2, "z": 4, "class": null});
     for named in [
         &["p.csv", "--columns", "PNEZD"][..],
@@ -29,7 +29,7 @@ fn numbers_of_points_are_not_taken_for_coordinates() {
         &["h.csv"],
         &["h.csv", "--columns", "pneZd"],
     ] {
-        assert_eq!(extent(&folder, named), (place.clone(), taken.clone()), "{named:?}");
+        assert_eq!(extent(&folder, named), (expected.clone(), taken.clone()), "{named:?}");
     }
     let text = run_in(&folder, &["info", "h.csv"]).stdout;
     assert!(text.contains("  columns    x 3, y 2, z 4\n"), "{text}");

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// Two features that cross at (1.5, 1.5), one of two parts, at heights 20 and 30.5; the second's other part meets the
-/// first's vertex at (3, 3), which lies at 20, with 21.
+/// Two features that cross at (1.5, 1.5), one of two parts, at heights 20 and 30.5; the second's
+/// other part meets the first's vertex at (3, 3), which lies at 20, with 21.
 const CROSSING: [&str; 2] = [
     r#"{"type":"LineString","coordinates":[[0,0,20],[3,3,20]]}"#,
     r#"{"type":"MultiLineString","coordinates":[[[3,0,30],[0,3,31]],[[3,3,21],[2.5,3,21]]]}"#,

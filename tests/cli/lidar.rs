@@ -19,7 +19,7 @@ pub(crate) fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
     file.extend([0.01f64; 3].map(f64::to_le_bytes).concat());
     file.extend([0.0f64; 3].map(f64::to_le_bytes).concat());
     for axis in 0..3 {
-        let values = || points.iter().map(|(place, _)| place[axis]);
+        let values = || points.iter().map(|(position, _)| position[axis]);
         file.extend(values().fold(f64::MIN, f64::max).to_le_bytes());
         file.extend(values().fold(f64::MAX, f64::min).to_le_bytes());
     }
@@ -33,8 +33,8 @@ pub(crate) fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
         file.extend(keys.iter().flat_map(|key| key.to_le_bytes()));
     }
     assert_eq!(file.len(), points_start as usize);
-    for (place, class) in points {
-        file.extend(place.map(|value| ((value * 100.0).round() as i32).to_le_bytes()).concat());
+    for (position, class) in points {
+        file.extend(position.map(|value| ((value * 100.0).round() as i32).to_le_bytes()).concat());
         file.extend([0, 0, 0x09, *class, 0, 0, 0, 0]);
     }
     file

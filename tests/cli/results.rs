@@ -229,10 +229,10 @@ fn breaklines_far_beyond_the_points_are_told() {
 fn summaries_of_rasters_and_meshes_tell_what_they_hold() {
     let folder = folder_with(&[]);
     let dem = fixture("dem.tif");
-    let place = "x 688000 .. 688400, y 5261000 .. 5261300, z 796.669 .. 883.985\nCRS         EPSG:25832";
-    run_in(&folder, &["hillshade", &dem, "-o", "s.png"]).works(&["200 x 150 cells of 2 m", place]);
+    let extent = "x 688000 .. 688400, y 5261000 .. 5261300, z 796.669 .. 883.985\nCRS         EPSG:25832";
+    run_in(&folder, &["hillshade", &dem, "-o", "s.png"]).works(&["200 x 150 cells of 2 m", extent]);
     let run = run_in(&folder, &["contour", &dem, "--interval", "1", "--threads", "1", "-o", "c.shp"]);
-    run.works(&[place, "304 lines (43 closed) from 797 m to 883 m"]);
+    run.works(&[extent, "304 lines (43 closed) from 797 m to 883 m"]);
     assert!(!run.stderr.contains("drawing"), "progress is for terminals: {}", run.stderr);
     run_in(&folder, &["contour", &dem, "--interval", "1", "--threads", "3", "-o", "d.shp"]).works(&[]);
     assert!(bytes(&folder, "c.shp") == bytes(&folder, "d.shp"), "contours depend on the number of threads");
@@ -341,11 +341,11 @@ fn the_demo_runs_every_verb_and_prints_each_command() {
     ]);
     assert!(!run.stderr.contains("warning: "), "{}", run.stderr);
     assert!(run.stdout.contains("62776 points") && run.stdout.contains("no flaw found"), "{}", run.stdout);
-    let made = files_of(&folder.path().join("a valley"));
+    let files = files_of(&folder.path().join("a valley"));
     for name in
         ["ground.ply", "ground.obj", "ground.tif", "hillshade.png", "contours.shp", "contours.prj", "contours.geojson"]
     {
-        assert!(made.iter().any(|file| file == name), "{name} is not in {made:?}");
+        assert!(files.iter().any(|file| file == name), "{name} is not in {files:?}");
     }
     // Once more, over what is there.
     run_in(&folder, &["demo", "a valley", "-q"]).works(&[]);

@@ -229,7 +229,8 @@ fn info_reads_whatever_the_program_writes() {
             .iter()
             .for_each(|fact| assert!(info.stdout.contains(fact), "{file}: expected `{fact}` in {}", info.stdout));
     }
-    // Parts go with their main files; without a system there is no auxiliary file, nor is an old one left.
+    // Parts go with their main files; without a system there is no auxiliary file, nor is an old
+    // one left.
     let info = run("info s.png s.pgw s.png.aux.xml c.shp c.prj c.dbf t.stl t.stl.origin.txt");
     assert_eq!((info.code, info.stdout.matches("  format ").count()), (0, 3), "{}{}", info.stdout, info.stderr);
     run("hillshade a.xyz --overwrite -o s.png").works(&[]);

@@ -1,5 +1,5 @@
-//! The program as it is run, in a temporary folder. Not a part of `mod.rs`, which the fuzzer takes in, too: there is no
-//! program there.
+//! The program as it is run, in a temporary folder. Not a part of `mod.rs`, which the fuzzer takes
+//! in, too: there is no program there.
 #![allow(dead_code)]
 
 use std::path::Path;

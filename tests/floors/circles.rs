@@ -1,16 +1,18 @@
 //! No circles: what a folder holds uses each other in one direction.
 //!
-//! The rule: in each folder, its files and subfolders are nodes; a subfolder stands for all that it holds. One node has
-//! an arrow to another if a path in its text leads there, through re-exports to where the item is defined. Not judged are
-//! paths between a `mod.rs` and what its folder holds, because the folder is that module's text, divided; and tests, which
-//! may build what they need by modules above. Methods that are called without a path are not seen.
+//! The rule: in each folder, its files and subfolders are nodes; a subfolder stands for all that it
+//! holds. One node has an arrow to another if a path in its text leads there, through re-exports to
+//! where the item is defined. Not judged are paths between a `mod.rs` and what its folder holds,
+//! because the folder is that module's text, divided; and tests, which may build what they need by
+//! modules above. Methods that are called without a path are not seen.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A module's path from the root of its crate.
 type Module = Vec<String>;
 
-/// Circles that are still there. An entry that no longer occurs fails the test, so that the list only shrinks.
+/// Circles that are still there. An entry that no longer occurs fails the test, so that the list
+/// only shrinks.
 const KNOWN: [&str; 4] = [
     "cli/args: surface, verbs",
     "terrain: builder, clip, cut, tin",
@@ -48,7 +50,8 @@ fn circles_are_found() {
     assert_eq!(in_room("fn f(x: super::b::Second) -> super::X", "fn f(x: crate::y::X) -> super::b::Z"), none, "itself");
 }
 
-/// The circles among files, given as paths below the folder `src` and texts: "folder: node, node", in order.
+/// The circles among files, given as paths below the folder `src` and texts: "folder: node, node",
+/// in order.
 pub(crate) fn circles<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Vec<String> {
     let files = files
         .iter()

@@ -1,7 +1,8 @@
 //! The floors of the house: a file uses lower floors and its own folder, nothing else.
 //!
-//! Inside a folder, see [`circles`]. `docs/architecture.md` says why. What is read is the source text, so a path has to be written out
-//! (`crate::data::Grid`) or imported with `use crate::...`, also inside braces.
+//! Inside a folder, see [`circles`]. `docs/architecture.md` says why. What is read is the source
+//! text, so a path has to be written out (`crate::data::Grid`) or imported with `use crate::...`,
+//! also inside braces.
 
 mod circles;
 
@@ -11,7 +12,8 @@ use std::path::Path;
 /// Where the rooms are, of both crates: one house.
 const SOURCES: [&str; 2] = ["src", "triangulation/src"];
 
-/// Rooms from the ground up. Rooms on one floor do not know each other, except as [`NEIGHBORS`] says.
+/// Rooms from the ground up. Rooms on one floor do not know each other, except as [`NEIGHBORS`]
+/// says.
 const FLOORS: [&[&str]; 7] = [
     &["error", "num", "parallel"],
     &["kernel", "crs", "data"],
@@ -22,8 +24,8 @@ const FLOORS: [&[&str]; 7] = [
     &["cli"],
 ];
 
-/// `(user, used)` on the same floor: records carry the coordinate system that they are in, and a mesh
-/// asks which way its faces turn.
+/// `(user, used)` on the same floor: records carry the coordinate system that they are in, and a
+/// mesh asks which way its faces turn.
 const NEIGHBORS: [(&str, &str); 2] = [("data", "crs"), ("data", "kernel")];
 
 /// Rooms of the crate of triangulations below what stands at its root.

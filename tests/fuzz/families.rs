@@ -29,13 +29,15 @@ pub(crate) const FAMILIES: [Family; 6] = [
     Family { name: "crossings", draw: crossings },
 ];
 
-/// From 3 to 60, small numbers far more often: they break things as well, and a million sets take minutes.
+/// From 3 to 60, small numbers far more often: they break things as well, and a million sets take
+/// minutes.
 fn count(random: &mut Random) -> usize {
     let most = random.pick(&[5, 5, 5, 5, 6, 6, 6, 8, 8, 10, 10, 12, 12, 20, 40, 60]);
     3 + random.index(most - 2)
 }
 
-/// Lines through given points: segments, polylines, spikes and rings, some of them again; `count` segments.
+/// Lines through given points: segments, polylines, spikes and rings, some of them again; `count`
+/// segments.
 fn connect(random: &mut Random, points: Vec<Point>, count: usize) -> Case {
     let mut case = Case { points, lines: Vec::new() };
     let mut left = count;
@@ -103,14 +105,14 @@ fn one_ulp_apart(random: &mut Random) -> Case {
     let points = (0..2 * count)
         .map(|i| {
             let middle = [0.5 * (x + others[0]), 0.5 * (y + others[1])];
-            let place = if random.below(8) == 0 {
+            let center = if random.below(8) == 0 {
                 middle
             } else if i % 2 == 0 {
                 [x, y]
             } else {
                 others
             };
-            near(random, place)
+            near(random, center)
         })
         .collect();
     if random.below(3) == 0 {

@@ -1,5 +1,5 @@
-//! Hostile points and lines from seeds, in families; all that holds for a constrained triangulation is checked, and
-//! what fails is made small. `docs/fuzzing.md` tells how to use it for longer runs:
+//! Hostile points and lines from seeds, in families; all that holds for a constrained triangulation
+//! is checked, and what fails is made small. `docs/fuzzing.md` tells how to use it for longer runs:
 //!
 //! ```text
 //! cargo test --release --test fuzz -- --family bundles --seeds 0..1000000

@@ -34,10 +34,10 @@ pub(crate) fn run(family: &Family, seeds: Range<u64>) -> bool {
     let next = AtomicU64::new(seeds.start);
     let total = Mutex::new(Tally::default());
     let failures = Mutex::new(Vec::new());
-    let under_way: Vec<Mutex<Option<(u64, Instant)>>> = (0..threads).map(|_| Mutex::new(None)).collect();
+    let running: Vec<Mutex<Option<(u64, Instant)>>> = (0..threads).map(|_| Mutex::new(None)).collect();
     let is_done = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        let workers: Vec<_> = under_way
+        let workers: Vec<_> = running
             .iter()
             .map(|mine| {
                 scope.spawn(|| {
@@ -64,7 +64,7 @@ pub(crate) fn run(family: &Family, seeds: Range<u64>) -> bool {
         let watch = scope.spawn(|| {
             while !is_done.load(Ordering::Relaxed) {
                 std::thread::park_timeout(Duration::from_secs(5));
-                for (seed, since) in under_way.iter().filter_map(|at| *at.lock().unwrap()) {
+                for (seed, since) in running.iter().filter_map(|at| *at.lock().unwrap()) {
                     if since.elapsed() > PATIENCE {
                         eprintln!("{} seed {seed} hangs\n{}", family.name, family.case(seed).to_poly());
                         std::process::exit(1);

@@ -64,15 +64,15 @@ fn without_lines(mut best: Case, still: Still) -> Case {
 fn without_points(mut best: Case, still: Still) -> Case {
     let is_free = |case: &Case, i: usize| !case.lines.iter().flatten().any(|&at| at as usize == i);
     let drop = |case: &Case, keep: &dyn Fn(usize) -> bool| {
-        let mut place = Vec::new();
+        let mut new_index = Vec::new();
         let mut points = Vec::new();
         for (i, &p) in case.points.iter().enumerate() {
-            place.push(points.len() as u32);
+            new_index.push(points.len() as u32);
             if keep(i) {
                 points.push(p);
             }
         }
-        let lines = case.lines.iter().map(|line| line.iter().map(|&i| place[i as usize]).collect()).collect();
+        let lines = case.lines.iter().map(|line| line.iter().map(|&i| new_index[i as usize]).collect()).collect();
         Case { points, lines }
     };
     let bare = drop(&best, &|i| !is_free(&best, i));

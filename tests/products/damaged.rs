@@ -1,5 +1,6 @@
-//! Damaged files, through the program, in bounded time and memory. What becomes of each of them is in the tables of
-//! `tests/points.rs`, `tests/rasters.rs` and `tests/layers.rs`; here it is that nothing worse can happen.
+//! Damaged files, through the program, in bounded time and memory. What becomes of each of them is
+//! in the tables of `tests/points.rs`, `tests/rasters.rs` and `tests/layers.rs`; here it is that
+//! nothing worse can happen.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -27,10 +28,10 @@ fn files(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
 #[track_caller]
 fn survive(file: &Path, args: &[&str]) -> i32 {
     let name = file.to_str().unwrap();
-    let place = folder();
+    let work = folder();
     let args: Vec<&str> = args.iter().map(|arg| if *arg == "FILE" { name } else { arg }).collect();
     let output = Command::new("sh")
-        .current_dir(place.path())
+        .current_dir(work.path())
         .args(["-c", "ulimit -v \"$0\" && exec \"$@\"", MEMORY])
         .arg(program())
         .args(&args)
@@ -42,7 +43,7 @@ fn survive(file: &Path, args: &[&str]) -> i32 {
     let code = output.status.code().unwrap_or_else(|| panic!("{name}: killed ({})\n{said}", output.status));
     assert!(code == 0 || code == 1, "{name}: exit code {code}\n{said}");
     assert!(!said.contains("panicked"), "{name}:\n{said}");
-    let left: Vec<_> = std::fs::read_dir(place.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> = std::fs::read_dir(work.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     if code == 1 {
         let error = said.lines().find(|line| line.starts_with("error: ")).unwrap_or_else(|| panic!("{name}: {said}"));
         // A boundary that is somewhere else is no fault of one file.

@@ -1,4 +1,5 @@
-//! The products as files: the program is run as it is typed, and what it leaves behind is read by others.
+//! The products as files: the program is run as it is typed, and what it leaves behind is read by
+//! others.
 //!
 //! | file | law |
 //! |---|---|

@@ -1,4 +1,5 @@
-//! One answer: the same bytes whatever the order of points, lines and files, and the number of threads.
+//! One answer: the same bytes whatever the order of points, lines and files, and the number of
+//! threads.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,8 +13,8 @@ type Lines = Vec<Vec<[f64; 3]>>;
 const WEST: f64 = 688_000.0;
 const SOUTH: f64 = 5_261_000.0;
 
-/// Points on a lattice of half a metre, so that most circles go through four or more, with gaps and with places that
-/// have two, three or four heights.
+/// Points on a lattice of half a metre, so that most circles go through four or more, with gaps and
+/// with places that have two, three or four heights.
 fn ground() -> Points {
     let mut random = Random(7);
     let mut points = Vec::new();
@@ -31,7 +32,8 @@ fn ground() -> Points {
     points
 }
 
-/// Lines that cross, touch, overlap and repeat each other, run through points, and share vertices at other heights.
+/// Lines that cross, touch, overlap and repeat each other, run through points, and share vertices
+/// at other heights.
 fn breaklines() -> Lines {
     let line = |places: &[[f64; 3]]| places.iter().map(|[x, y, z]| [WEST + x, SOUTH + y, 800.0 + z]).collect();
     vec![
@@ -56,18 +58,18 @@ fn products_with(
     write_lines: impl FnOnce(&Path),
     extra: &[&str],
 ) -> BTreeMap<String, Vec<u8>> {
-    let place = folder();
+    let work = folder();
     for (name, content) in inputs {
-        std::fs::write(place.path().join(name), content).unwrap();
+        std::fs::write(work.path().join(name), content).unwrap();
     }
-    write_lines(&place.path().join(lines));
-    let out = place.path().join("out");
+    write_lines(&work.path().join(lines));
+    let out = work.path().join("out");
     std::fs::create_dir(&out).unwrap();
     let mut surface: Vec<&str> = inputs.iter().map(|(name, _)| *name).collect();
     surface.extend(["--breaklines", lines, "--a-srs", "EPSG:25832", "-q"]);
     surface.extend(extra);
     let frame = ["--resolution", "0.25"];
-    let run = |verb: &str, more: &[&str]| breakline(place.path(), &[&[verb], &surface[..], more].concat());
+    let run = |verb: &str, more: &[&str]| breakline(work.path(), &[&[verb], &surface[..], more].concat());
     run("tin", &["-o", "out/t.ply", "-o", "out/t.obj", "-o", "out/t.stl"]);
     run("dem", &[&["-o", "out/d.tif"], &frame[..]].concat());
     run("contour", &["--interval", "0.25", "-o", "out/c.shp", "-o", "out/c.geojson"]);
@@ -174,17 +176,17 @@ fn the_format_of_the_lines_makes_no_difference() {
 
 #[test]
 fn the_fixtures_give_the_same_bytes_on_one_thread_and_on_two() {
-    let place = folder();
+    let work = folder();
     let (points, lines, rim) = (fixture("valley.laz"), fixture("breaklines.shp"), fixture("boundary.shp"));
     let run = |threads: &str, verb: &str, more: &[&str]| {
         let surface = [points.as_str(), "--breaklines", &lines, "--boundary", &rim, "--threads", threads];
-        breakline(place.path(), &[&[verb], &surface[..], more].concat());
+        breakline(work.path(), &[&[verb], &surface[..], more].concat());
     };
     for (verb, name) in [("tin", "t.ply"), ("dem", "d.tif"), ("contour", "c.shp"), ("hillshade", "h.png")] {
         let [one, two] = [format!("1{name}"), format!("2{name}")];
         run("1", verb, &["-o", &one]);
         run("2", verb, &["-o", &two]);
-        let read = |name: &str| std::fs::read(place.path().join(name)).unwrap();
+        let read = |name: &str| std::fs::read(work.path().join(name)).unwrap();
         assert!(read(&one) == read(&two), "{name}");
     }
 }

@@ -1,4 +1,5 @@
-//! Surfaces that are known: what comes out of the files is the plane, the cone and the input's own heights.
+//! Surfaces that are known: what comes out of the files is the plane, the cone and the input's own
+//! heights.
 
 use std::f64::consts::TAU;
 use std::fs::File;
@@ -30,7 +31,8 @@ impl Line {
     }
 }
 
-/// The contours of a shapefile, read by the crate `shapefile`, and of a GeoJSON file, which are the same.
+/// The contours of a shapefile, read by the crate `shapefile`, and of a GeoJSON file, which are the
+/// same.
 fn contours(shp: &Path, geojson: &Path) -> Vec<Line> {
     let mut from_shp = Vec::new();
     for pair in shapefile::Reader::from_path(shp).unwrap().iter_shapes_and_records_as::<shapefile::PolylineZ, _>() {
@@ -67,7 +69,8 @@ fn raster(path: &Path) -> ([usize; 2], [f64; 2], Vec<f32>) {
 const RINGS: usize = 20;
 const SPOKES: usize = 64;
 
-/// A cone of rings a metre apart, 64 points each; each ring is one metre lower, or higher, than the one within.
+/// A cone of rings a metre apart, 64 points each; each ring is one metre lower, or higher, than the
+/// one within.
 fn cone(center: [f64; 2], slope: f64) -> Vec<[f64; 3]> {
     let mut points = vec![[center[0], center[1], 100.0]];
     for ring in 1..=RINGS {
@@ -81,11 +84,11 @@ fn cone(center: [f64; 2], slope: f64) -> Vec<[f64; 3]> {
 }
 
 fn contours_of(points: &[[f64; 3]], options: &[&str]) -> Vec<Line> {
-    let place = folder();
-    std::fs::write(place.path().join("a.xyz"), text(points)).unwrap();
+    let work = folder();
+    std::fs::write(work.path().join("a.xyz"), text(points)).unwrap();
     let outputs = ["contour", "a.xyz", "-o", "c.shp", "-o", "c.geojson"];
-    breakline(place.path(), &[&outputs[..], options].concat());
-    contours(&place.path().join("c.shp"), &place.path().join("c.geojson"))
+    breakline(work.path(), &[&outputs[..], options].concat());
+    contours(&work.path().join("c.shp"), &work.path().join("c.geojson"))
 }
 
 /// Far from the origin, where a coordinate is known to 1e-9.
@@ -108,7 +111,8 @@ fn contours_of_a_cone_are_circles() {
             let distances: Vec<f64> = line.points.iter().map(|p| (p[0] - CENTER[0]).hypot(p[1] - CENTER[1])).collect();
             let on_ring = distances.iter().filter(|d| (**d - radius).abs() < 1e-6).count() - 1;
             assert_eq!(on_ring, SPOKES, "radius {radius}: {distances:?}");
-            // Between two spokes a level between rings meets the diagonal of the quadrangle, in its middle.
+            // Between two spokes a level between rings meets the diagonal of the quadrangle, in its
+            // middle.
             let others: Vec<f64> = distances.iter().copied().filter(|d| (d - radius).abs() >= 1e-6).collect();
             if radius.fract() == 0.0 || radius < 1.0 {
                 assert!(others.is_empty(), "radius {radius}: {others:?}");
@@ -148,10 +152,10 @@ fn plane_points() -> Vec<[f64; 3]> {
 
 #[test]
 fn the_dem_of_a_plane_is_the_plane() {
-    let place = folder();
-    std::fs::write(place.path().join("a.xyz"), text(&plane_points())).unwrap();
-    breakline(place.path(), &["dem", "a.xyz", "--resolution", "0.25", "-o", "d.tif"]);
-    let ([width, height], [west, north], cells) = raster(&place.path().join("d.tif"));
+    let work = folder();
+    std::fs::write(work.path().join("a.xyz"), text(&plane_points())).unwrap();
+    breakline(work.path(), &["dem", "a.xyz", "--resolution", "0.25", "-o", "d.tif"]);
+    let ([width, height], [west, north], cells) = raster(&work.path().join("d.tif"));
     assert_eq!(([width, height], [west, north]), ([160, 120], [500_000.0, 5_400_030.0]));
     for (i, cell) in cells.into_iter().enumerate() {
         let x = west + 0.25 * ((i % width) as f64 + 0.5);
@@ -176,11 +180,11 @@ fn cells_on_points_have_their_heights_and_a_ply_gives_the_same_bytes() {
             }
         }
     }
-    let place = folder();
-    std::fs::write(place.path().join("a.xyz"), text(&points)).unwrap();
-    let run = |args: &[&str]| breakline(place.path(), args);
+    let work = folder();
+    std::fs::write(work.path().join("a.xyz"), text(&points)).unwrap();
+    let run = |args: &[&str]| breakline(work.path(), args);
     run(&["dem", "a.xyz", "-o", "d.tif"]);
-    let ([width, height], [west, north], cells) = raster(&place.path().join("d.tif"));
+    let ([width, height], [west, north], cells) = raster(&work.path().join("d.tif"));
     assert_eq!(([width, height], [west, north]), ([50, 40], [500_000.0, 5_400_040.0]));
     let mut met = 0;
     for [x, y, z] in points {
@@ -202,7 +206,7 @@ fn cells_on_points_have_their_heights_and_a_ply_gives_the_same_bytes() {
     }
     run(&["contour", "a.xyz", "-o", "d.shp"]);
     run(&["hillshade", "a.xyz", "-o", "d.png"]);
-    let read = |name: &str| std::fs::read(place.path().join(name)).unwrap();
+    let read = |name: &str| std::fs::read(work.path().join(name)).unwrap();
     for kind in ["ply", "obj"] {
         for extension in ["tif", "shp", "shx", "dbf", "png"] {
             let name = format!("{kind}.{extension}");
@@ -211,18 +215,19 @@ fn cells_on_points_have_their_heights_and_a_ply_gives_the_same_bytes() {
     }
 }
 
-/// Both are straight lines from edge to edge: the TIN ends at its outermost points, the DEM at its outermost centers.
+/// Both are straight lines from edge to edge: the TIN ends at its outermost points, the DEM at its
+/// outermost centers.
 #[test]
 fn contours_of_a_plane_agree_whether_from_the_tin_or_from_the_dem() {
-    let place = folder();
-    std::fs::write(place.path().join("a.xyz"), text(&plane_points())).unwrap();
-    let run = |args: &[&str]| breakline(place.path(), args);
+    let work = folder();
+    std::fs::write(work.path().join("a.xyz"), text(&plane_points())).unwrap();
+    let run = |args: &[&str]| breakline(work.path(), args);
     run(&["dem", "a.xyz", "--resolution", "0.5", "-o", "d.tif"]);
     for (input, inset) in [("a.xyz", 0.0), ("d.tif", 0.25)] {
         // Levels that miss the corners.
         let options = ["--base", "0.3", "--interval", "0.5", "-o", "c.shp", "-o", "c.geojson", "--overwrite"];
         run(&[&["contour", input], &options[..]].concat());
-        let lines = contours(&place.path().join("c.shp"), &place.path().join("c.geojson"));
+        let lines = contours(&work.path().join("c.shp"), &work.path().join("c.geojson"));
         let (low, high) = ([500_000.0 + inset, 5_400_000.0 + inset], [500_040.0 - inset, 5_400_030.0 - inset]);
         let (bottom, top) = (plane(low[0], low[1]), plane(high[0], high[1]));
         let mut levels: Vec<f64> = lines.iter().map(|line| line.level).collect();
@@ -236,7 +241,8 @@ fn contours_of_a_plane_agree_whether_from_the_tin_or_from_the_dem() {
                 // A float keeps heights around 100 to 4e-6, and 1 m of height is 4 m of plan.
                 assert!((plane(*x, *y) - z).abs() < 1e-5, "{input}: {x} {y} {z}");
             }
-            // High ground lies to the north-east, on the right of who goes from the south-east to the north-west.
+            // High ground lies to the north-east, on the right of who goes from the south-east to
+            // the north-west.
             let rise = 8.0 * (line.level - 100.0);
             let on_west = [low[0], 5_400_000.0 + rise - 2.0 * (low[0] - 500_000.0)];
             let on_north = [500_000.0 + (rise - (high[1] - 5_400_000.0)) / 2.0, high[1]];

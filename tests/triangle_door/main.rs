@@ -39,12 +39,12 @@ fn triangles(folder: &TempDir, name: &str) -> Vec<[[f64; 2]; 3]> {
     let elements = table(folder, &format!("{name}.ele"));
     assert_eq!((nodes[0][0], elements[0][0]), (nodes.len() as f64 - 1.0, elements.len() as f64 - 1.0));
     let first = nodes.get(1).map_or(0.0, |row| row[0]);
-    let place = |number: f64| {
+    let site = |number: f64| {
         let row = &nodes[1 + (number - first) as usize];
         assert_eq!(row[0], number);
         [row[1], row[2]]
     };
-    elements[1..].iter().map(|row| [place(row[1]), place(row[2]), place(row[3])]).collect()
+    elements[1..].iter().map(|row| [site(row[1]), site(row[2]), site(row[3])]).collect()
 }
 
 /// A square with a square hole, as Triangle's page on `.poly` files has it.

@@ -334,8 +334,8 @@ fn nothing_is_replaced_unasked() {
     assert_eq!(files_of(folder.path()), ["a.node", "box.poly", "box.txt"]);
 }
 
-/// Small grids, where ties, contacts and crossings are the rule: valid by `check`, of the right area, and every
-/// segment covered by its pieces (where none is rounded).
+/// Small grids, where ties, contacts and crossings are the rule: valid by `check`, of the right
+/// area, and every segment covered by its pieces (where none is rounded).
 #[test]
 fn random_grids() {
     let mut random = Random(11);
@@ -365,17 +365,17 @@ fn random_grids() {
             crossed += 1;
             continue;
         }
-        let place = |number: f64| [nodes[1 + number as usize - first][1], nodes[1 + number as usize - first][2]];
+        let site = |number: f64| [nodes[1 + number as usize - first][1], nodes[1 + number as usize - first][2]];
         let poly = table(&folder, "g.1.poly");
-        let pieces: Vec<[[f64; 2]; 2]> =
-            poly[2..2 + poly[1][0] as usize].iter().map(|row| [place(row[1]), place(row[2])]).collect();
+        let parts: Vec<[[f64; 2]; 2]> =
+            poly[2..2 + poly[1][0] as usize].iter().map(|row| [site(row[1]), site(row[2])]).collect();
         for row in segments.lines() {
             let words: Vec<f64> = row.split(' ').map(|word| word.parse().unwrap()).collect();
-            let [a, b] = [place(words[1]), place(words[2])];
+            let [a, b] = [site(words[1]), site(words[2])];
             let length = |[p, q]: [[f64; 2]; 2]| (p[0] - q[0]).abs() + (p[1] - q[1]).abs();
             let is_on =
                 |p: &[f64; 2]| twice_area([a, b, *p]) == 0.0 && length([a, *p]) + length([*p, b]) == length([a, b]);
-            let covered: f64 = pieces.iter().filter(|piece| piece.iter().all(is_on)).map(|&piece| length(piece)).sum();
+            let covered: f64 = parts.iter().filter(|part| part.iter().all(is_on)).map(|&part| length(part)).sum();
             assert_eq!(covered, if a == b { 0.0 } else { length([a, b]) }, "case {case}: {a:?} {b:?}\n{text}");
         }
     }
@@ -429,7 +429,8 @@ fn switches_of_triangle_refine() {
         assert!(areas.iter().all(|&area| area <= largest), "{switches}");
         assert!((areas.iter().sum::<f64>() - 8.0).abs() < 1e-9, "{switches}: the hole stays one");
     }
-    // Without segments the hull is refined; attributes, here the sum of the coordinates, are those of the place.
+    // Without segments the hull is refined; attributes, here the sum of the coordinates, are those
+    // of the place.
     run(&folder, "triangulate -a0.05 plain.node -o fine.ele").ends(0, &["for angles and areas"]);
     assert!(shapes(&folder, "fine").1.iter().all(|&area| area <= 0.05));
     for row in &table(&folder, "fine.node")[1..] {
@@ -442,7 +443,8 @@ fn switches_of_triangle_refine() {
     }
 }
 
-/// An angle that cannot be reached: an error that tells how far it came, or what is there at the limit that was given.
+/// An angle that cannot be reached: an error that tells how far it came, or what is there at the
+/// limit that was given.
 #[test]
 fn refinement_without_an_end_stops_at_its_limit() {
     let points = "8 2 0 0\n1 0 0\n2 10 0\n3 10 10\n4 0 10\n5 3 4\n6 7 2\n7 8 7\n8 2 8\n";
@@ -457,7 +459,8 @@ fn refinement_without_an_end_stops_at_its_limit() {
         assert_eq!(table(&folder, "e.1.node").len(), 1 + 508);
         assert_eq!(run(&folder, "check e.1.ele").code, 0);
     }
-    // A limit that is not reached says nothing; none at all is a triangulation without added vertices.
+    // A limit that is not reached says nothing; none at all is a triangulation without added
+    // vertices.
     run(&folder, "triangulate -q30S500 eight.node -o f.ele").works(&["for angles and areas"]);
     assert!(!run(&folder, "triangulate -q30S500 eight.node -o g.ele").stderr.contains("warning"));
     run(&folder, "triangulate -q30S eight.node -o h.ele").works(&["left when 0 vertices had been added"]);

@@ -1,4 +1,5 @@
-//! Guides for those who know another package: their calls and ours side by side, with an example that runs.
+//! Guides for those who know another package: their calls and ours side by side, with an example
+//! that runs.
 
 #[doc = include_str!("../docs/from-cgal.md")]
 pub mod from_cgal {}

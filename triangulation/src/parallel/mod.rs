@@ -1,7 +1,8 @@
 //! Work on many threads or on one: what the algorithms use of rayon, and a serial twin of it.
 //!
-//! With the feature `parallel` these are rayon's own items. Without it, `serial` has the same names, so that the
-//! algorithms have one text. Results do not depend on the number of threads, so both give the same bits.
+//! With the feature `parallel` these are rayon's own items. Without it, `serial` has the same
+//! names, so that the algorithms have one text. Results do not depend on the number of threads, so
+//! both give the same bits.
 
 #[cfg(feature = "parallel")]
 pub(crate) use rayon::{current_num_threads, join, prelude::*};

@@ -25,7 +25,8 @@ pub(crate) fn on_threads<T>(_: usize, work: impl FnOnce() -> T) -> T {
 
 /// An iterator whose methods have rayon's names and signatures.
 ///
-/// Not an extension of [`Iterator`], because rayon's `reduce` has other arguments than the standard one.
+/// Not an extension of [`Iterator`], because rayon's `reduce` has other arguments than the standard
+/// one.
 pub(crate) struct Serial<I>(I);
 
 impl<I: Iterator> Serial<I> {

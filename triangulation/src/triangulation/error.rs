@@ -14,8 +14,8 @@ pub(super) const MAX_VERTICES: usize = VertexId::LIMIT / 2;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PointError {
-    /// A coordinate is not finite, or its magnitude is outside of what the arithmetic is proven for (see
-    /// [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
+    /// A coordinate is not finite, or its magnitude is outside of what the arithmetic is proven for
+    /// (see [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
     Coordinate,
     /// There are as many vertices as 32-bit numbers can count with their cells: 2^31 - 2.
     TooMany,
@@ -34,15 +34,18 @@ impl fmt::Display for PointError {
 
 impl Error for PointError {}
 
-/// Why many points or lines cannot be triangulated. Points and lines are named by their positions in the input.
+/// Why many points or lines cannot be triangulated. Points and lines are named by their positions
+/// in the input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum InputError {
-    /// The point at this position has a coordinate that is not finite, or whose magnitude is outside of what the
-    /// arithmetic is proven for (see [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
+    /// The point at this position has a coordinate that is not finite, or whose magnitude is
+    /// outside of what the arithmetic is proven for (see
+    /// [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
     Coordinate(usize),
-    /// The point at this position lies before the one before it in [`spatial_order`](crate::spatial_order), or on the
-    /// same site, where points have to come in order.
+    /// The point at this position lies before the one before it in
+    /// [`spatial_order`](crate::spatial_order), or on the same site, where points have to come in
+    /// order.
     Unsorted(usize),
     /// There are more points than 32-bit numbers can count with their cells: the limit is 2^31 - 2.
     TooMany,
@@ -120,7 +123,8 @@ impl Error for GapError {}
 pub enum RemovalError {
     /// There is no such vertex.
     NoVertex,
-    /// A constraint ends in it or runs through it, or there would be no triangles to hold one that is elsewhere.
+    /// A constraint ends in it or runs through it, or there would be no triangles to hold one that
+    /// is elsewhere.
     Constraint,
     /// This line was given by it.
     Line(LineId),

@@ -116,7 +116,8 @@ impl<'a> Grain<'a> {
     }
 }
 
-/// A flag that ends work early, and whether a thread has seen it: the flag alone may be cleared again.
+/// A flag that ends work early, and whether a thread has seen it: the flag alone may be cleared
+/// again.
 #[derive(Debug)]
 pub(crate) struct Stop<'a> {
     flag: &'a AtomicBool,

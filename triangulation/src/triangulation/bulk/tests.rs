@@ -321,8 +321,8 @@ fn certain_answers_are_right() {
     assert!(certain > 10_000 && open > 10_000, "{certain} {open}");
 }
 
-/// A flag that is set before or while many ranges are built leaves nothing half built; one that is never set changes
-/// nothing.
+/// A flag that is set before or while many ranges are built leaves nothing half built; one that is
+/// never set changes nothing.
 #[test]
 fn canceled_work_ends_without_a_result() {
     use std::sync::atomic::{AtomicBool, Ordering};

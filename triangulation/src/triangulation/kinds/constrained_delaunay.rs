@@ -70,8 +70,8 @@ impl<C: Default> ConstrainedEdges<C> {
 /// close. Each line keeps an [id](crate::LineId), which gives its [chain](Self::chain) of vertices.
 /// A line that passes through a vertex is split there. Where two lines cross, a vertex is added at
 /// the crossing, rounded; [`Crossing`] makes its point. Lines bend no further than the
-/// [rounding](Rounding) requires: the [arrangement](crate::arrangement) describes how, and what is
-/// proven.
+/// [rounding](crate::Rounding) requires: the [arrangement](crate::arrangement) describes how, and
+/// what is proven.
 ///
 /// Vertices have payloads `V`. Triangles, the infinite ones included, have payloads `C`, read with
 /// [`cell_data`](Triangulation::cell_data). Each triangle around a new vertex inherits the payload

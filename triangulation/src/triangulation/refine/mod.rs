@@ -121,7 +121,8 @@ pub struct Quality<'a> {
     /// The largest number of vertices to insert; those that are removed again count, too. An angle
     /// that cannot be reached uses up the limit, and about 350 bytes for each vertex.
     pub max_added: usize,
-    /// Set to true by any thread, it ends the refinement early, with what is there, like `max_added`.
+    /// Set to true by any thread, it ends the refinement early, with what is there, like
+    /// `max_added`.
     pub cancel: Option<&'a AtomicBool>,
 }
 
