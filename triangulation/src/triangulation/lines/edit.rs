@@ -142,7 +142,9 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     fn insert_owned(&mut self, points: &[G::Point]) -> (Vec<VertexId>, Result<(), NotLocal>) {
         let mut vertices = vec![VertexId::INFINITE; points.len()];
         let mut near = None;
-        let mut is_known = if self.lines.is_few(points.len()) { Ok(()) } else { Err(NotLocal) };
+        // The first triangles have to hold all that was stored without them.
+        let is_local = self.dimension() == 2 && self.lines.is_few(points.len());
+        let mut is_known = if is_local { Ok(()) } else { Err(NotLocal) };
         for i in order_of_insertion(&self.inner.geometry, points) {
             let (count, p) = (self.vertex_count(), points[i as usize]);
             let vertex = self.lines.insert_point(&mut self.inner, p, near);
