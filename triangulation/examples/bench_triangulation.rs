@@ -164,7 +164,10 @@ fn asked() -> [u64; 4] {
     [0, 1, 2, 3].map(|stage: usize| ASKED[stage].load(Relaxed))
 }
 
-fn plane<K: Kernel>(points: &[[f64; 2]], one_by_one: bool) -> Result<(Delaunay<Plane<K>, 3>, usize), Box<dyn Error>> {
+/// A triangulation, and the number of points.
+type Built<K> = (Delaunay<Plane<K>, 3>, usize);
+
+fn plane<K: Kernel>(points: &[[f64; 2]], one_by_one: bool) -> Result<Built<K>, Box<dyn Error>> {
     if !one_by_one {
         let (t, vertices) = Delaunay::from_points(Plane::default(), points)?;
         return Ok((t, vertices.len()));

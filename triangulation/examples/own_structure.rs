@@ -11,6 +11,8 @@
 //!            \  hull/            edge at b ghost k + 1.
 //! ```
 
+#![allow(clippy::print_stdout, reason = "what it is for")]
+
 use std::collections::HashMap;
 use std::convert::Infallible;
 

@@ -135,6 +135,10 @@ pub fn vertices_around<T: Complex<3>>(
     }))
 }
 
+/// An edge of the plane with a direction: the cell on its left, and the index of the vertex
+/// opposite.
+pub type DirectedEdge = (CellId, usize);
+
 /// Returns the edges that start at a vertex, counter-clockwise, each as the cell on its left and
 /// the index of the vertex opposite. On a line the cell is the edge, and the index is 2, which is
 /// no vertex of it.
@@ -144,7 +148,7 @@ pub fn vertices_around<T: Complex<3>>(
 pub fn edges_around<T: Complex<3>>(
     complex: &T,
     vertex: VertexId,
-) -> Result<impl DoubleEndedIterator<Item = Result<(CellId, usize), T::Error>> + '_, T::Error> {
+) -> Result<impl DoubleEndedIterator<Item = Result<DirectedEdge, T::Error>> + '_, T::Error> {
     Ok(Star::new(complex, vertex, 1)?.map(|cell| {
         let (cell, i) = cell?;
         Ok((cell, if complex.dimension() == 1 { 2 } else { cw(i) }))
