@@ -2,9 +2,9 @@
 //!
 //! | file | known by | read by |
 //! |---|---|---|
-//! | LAS, LAZ, COPC | first bytes `LASF`; `.las`, `.laz` | [`las`] |
+//! | LAS, LAZ, COPC | first bytes `LASF`; `.las`, `.laz` | [`las`](super::las) |
 //! | shapefile of points | first bytes; `.shp` | [`from_layer`] |
-//! | text | any other text: `.xyz`, `.txt`, `.csv`, `.asc`, `.pts` | [`text`] |
+//! | text | any other text: `.xyz`, `.txt`, `.csv`, `.asc`, `.pts` | [`text`](super::text) |
 
 use std::fs::File;
 use std::io::{self, Read};
