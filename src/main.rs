@@ -9,7 +9,8 @@ fn main() -> ExitCode {
     breakline::cli::run(std::env::args_os()).into()
 }
 
-/// A panic of a decoder that becomes an error is not printed as well.
+/// Installs a panic hook that prints nothing for a decoder's panic that is caught and becomes an
+/// error.
 fn hold_back_contained_panics() {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
@@ -19,7 +20,7 @@ fn hold_back_contained_panics() {
     }));
 }
 
-/// A program that is asked to end removes its temporary files first.
+/// Removal of temporary files when a signal ends the program.
 #[cfg(unix)]
 mod signals {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXFSZ};
@@ -27,18 +28,19 @@ mod signals {
     use signal_hook::low_level::emulate_default_handler;
     use std::sync::Arc;
 
-    /// Removes temporary files at SIGINT, SIGTERM, SIGQUIT and SIGHUP, and then ends as the signal would have it: a shell sees the
-    /// status 128 + the signal's number, and a loop in a script ends, too.
+    /// Handles SIGINT, SIGTERM, SIGQUIT and SIGHUP: removes temporary files, then ends the process
+    /// as the signal would have done. A shell sees the status 128 + the signal's number, and a loop
+    /// in a script ends, too.
     pub(super) fn clean_up() {
-        // A file larger than the user may write is then an error like a full disk.
+        // Ignored, so that a file beyond the user's size limit is an error like a full disk.
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
         let heeded = [SIGINT, SIGTERM, SIGQUIT, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
-        // Without it, only temporary files would stay.
+        // If this fails, the worst is that temporary files stay.
         let Ok(mut signals) = Signals::new(heeded) else { return };
         std::thread::spawn(move || {
             let Some(signal) = signals.forever().next() else { return };
             let _nothing_appears_now = breakline::io::abandon_outputs();
-            // No signal ends the first process of a container.
+            // The first process of a container is not ended by signals.
             if std::process::id() != 1 {
                 let _ = emulate_default_handler(signal);
             }
@@ -46,7 +48,8 @@ mod signals {
         });
     }
 
-    /// Returns true for a signal that the parent had ignored, as `nohup` does; where the system tells.
+    /// Returns true if the parent process had ignored the signal, as `nohup` does; false if the
+    /// system does not say.
     fn is_ignored(signal: i32) -> bool {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

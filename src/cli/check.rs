@@ -7,7 +7,7 @@ use super::{Exit, print};
 use crate::error::Result;
 use crate::run::{self, CheckProduct, SurfaceFacts};
 
-/// Lists the flaws of a TIN, or of a mesh that may be none.
+/// Lists the flaws of a TIN, or of a mesh that may not be a surface.
 pub(super) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;

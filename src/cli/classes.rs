@@ -1,4 +1,4 @@
-//! Classes of lidar points by name, as LAS 1.4 has them.
+//! Names of the classes of lidar points, from LAS 1.4.
 
 const NAMES: [&str; 23] = [
     "never classified",
@@ -26,20 +26,18 @@ const NAMES: [&str; 23] = [
     "temporal exclusion",
 ];
 
-/// What a class means.
+/// Returns the name of a class.
 pub(super) fn name(class: usize) -> &'static str {
     NAMES.get(class).copied().unwrap_or(if class < 64 { "reserved" } else { "user-defined" })
 }
 
-/// A class as typed: `2`, `ground`, `low-vegetation`.
+/// Parses a class: `2`, `ground`, `low-vegetation`.
 pub(super) fn parse(text: &str) -> Result<u8, String> {
     let plain = text.trim().replace(['-', '_'], " ").to_ascii_lowercase();
     let by_name = || NAMES.iter().position(|name| *name == plain).map(|class| class as u8);
-    plain
-        .parse()
-        .ok()
-        .or_else(by_name)
-        .ok_or_else(|| format!("`{text}` is no class: expected 0 to 255, or a name as `ground` or `low-vegetation`"))
+    plain.parse().ok().or_else(by_name).ok_or_else(|| {
+        format!("`{text}` is not a class: expected 0 to 255, or a name such as `ground` or `low-vegetation`")
+    })
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What is said on stderr: errors, warnings, notes, the summary, and progress on a terminal.
+//! Output on stderr: errors, warnings, notes, the summary, and progress on a terminal.
 
 use std::collections::HashSet;
 use std::fmt::Display;
@@ -14,7 +14,7 @@ use super::progress::Bar;
 use crate::error::Error;
 use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
 
-/// How much is said.
+/// How much is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Quiet,
@@ -22,7 +22,7 @@ enum Level {
     Verbose,
 }
 
-/// The voice of a run. Notes and warnings are said once each.
+/// Prints the messages of a run to stderr. Equal notes and warnings are printed once.
 #[derive(Debug)]
 pub(super) struct Console {
     level: Level,
@@ -39,13 +39,13 @@ impl Console {
         };
         let target = match level {
             Level::Quiet => ProgressDrawTarget::hidden(),
-            // Hides itself where stderr is no terminal.
+            // Hidden by itself if stderr is not a terminal.
             _ => ProgressDrawTarget::stderr(),
         };
         Console { level, bars: MultiProgress::with_draw_target(target), said: Mutex::default() }
     }
 
-    /// The error, and its cure on a line of its own.
+    /// Prints an error, and its hint on a line of its own.
     pub(super) fn error(&self, error: &Error) {
         self.print(&format!("error: {error}"));
         if let Some(cure) = error.cure_text() {
@@ -53,33 +53,34 @@ impl Console {
         }
     }
 
-    /// Something that is probably not as it should be.
+    /// Prints a warning: something is probably not as intended.
     pub(super) fn warning(&self, text: impl Display) {
         self.once(format!("warning: {text}"));
     }
 
-    /// A choice that was made, or something worth knowing.
+    /// Prints a note, unless the run is quiet: a choice that was made for the user, or something
+    /// worth knowing.
     pub(super) fn note(&self, text: impl Display) {
         if self.level > Level::Quiet {
             self.once(format!("note: {text}"));
         }
     }
 
-    /// What only some want to know.
+    /// Prints a line if the run is verbose.
     pub(super) fn detail(&self, text: impl Display) {
         if self.level == Level::Verbose {
             self.print(&text.to_string());
         }
     }
 
-    /// A line of the summary.
+    /// Prints a line of the summary, unless the run is quiet.
     pub(super) fn line(&self, text: impl Display) {
         if self.level > Level::Quiet {
             self.print(&text.to_string());
         }
     }
 
-    /// What a run needs: notices and progress are shown here.
+    /// Returns the context of a run that shows its notices and progress here.
     pub(super) fn context(&self) -> Context<'_> {
         Context { monitor: self, ..Context::default() }
     }
@@ -91,7 +92,7 @@ impl Console {
         }
     }
 
-    /// Prints one line. A closed stderr is no reason to stop.
+    /// Prints one line. A closed stderr is ignored.
     fn print(&self, text: &str) {
         self.bars.suspend(|| {
             let _ = writeln!(std::io::stderr(), "{}", escape::line(text));

@@ -16,7 +16,7 @@ pub(super) fn run(args: &ContourArgs, console: &Console) -> Result<Exit> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Contours, |_| ()), &plan)?;
     let options = ContourOptions { interval: args.interval, base: args.base, levels: args.levels.clone() };
-    // What is wrong with them is known before anything is read.
+    // Wrong levels are an error before anything is read.
     options.to_levels()?;
     let product = run::surface(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;

@@ -9,7 +9,7 @@ use crate::io::formats::Product;
 use crate::run;
 use crate::run::units::Units;
 
-/// Writes heights of a TIN as a raster.
+/// Writes the heights of a TIN as a raster.
 pub(super) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     let frame = plan.add_frame(&args.frame)?;

@@ -8,7 +8,7 @@ use super::console::Console;
 use crate::error::{Error, Result};
 use crate::io::Output;
 
-/// The data that comes with the program; `fixtures/README.md` says what is in it.
+/// The data that is part of the program, described in `fixtures/README.md`.
 const FIXTURES: &[(&str, &[u8])] = &[
     ("valley.laz", include_bytes!("../../fixtures/valley.laz")),
     ("breaklines.shp", include_bytes!("../../fixtures/breaklines.shp")),
@@ -24,7 +24,7 @@ const FIXTURES: &[(&str, &[u8])] = &[
     ("dem.tif", include_bytes!("../../fixtures/dem.tif")),
 ];
 
-/// What is run; `@` stands for the folder.
+/// The commands of the demo; `@` stands for the folder.
 const COMMANDS: &[&[&str]] = &[
     &["info", "@valley.laz", "@breaklines.shp", "@boundary.shp", "@dem.tif"],
     &[
@@ -46,7 +46,7 @@ const COMMANDS: &[&[&str]] = &[
     &["contour", "@ground.ply", "--interval", "2", "-o", "@contours.shp", "-o", "@contours.geojson", "--overwrite"],
 ];
 
-/// Writes the data and runs everything on it, as if it were typed.
+/// Writes the data and runs each command on it, as if it were typed.
 pub(super) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     let folder = &args.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::from(e).in_file(folder))?;
@@ -56,7 +56,7 @@ pub(super) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Resu
         output.write_all(bytes).map_err(|e| Error::from(e).in_file(&path))?;
         output.commit()?;
     }
-    console.line(format_args!("A small valley, made up, is in {}.", folder.display()));
+    console.line(format_args!("The data of a small fictitious valley is in {}.", folder.display()));
     for command in COMMANDS {
         let words: Vec<OsString> = command.iter().map(|word| in_folder(word, folder)).collect();
         let typed: Vec<String> = words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
@@ -80,7 +80,7 @@ fn in_folder(word: &str, folder: &Path) -> OsString {
     }
 }
 
-/// As it would have to be typed in a shell.
+/// Quotes a word as a shell needs it.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=+".contains(c);
     if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }

@@ -1,19 +1,19 @@
-//! Text on the terminal: what comes out of files may hold commands for it.
+//! Escaping of text for the terminal: text from files may contain control sequences.
 
 use std::borrow::Cow;
 
-/// A line of text in which nothing is hidden: control characters, line ends and marks of the direction of writing are
-/// written as `\u{1b}`.
+/// Returns a line of text in which control characters, line ends and marks of the direction of
+/// writing are written as `\u{1b}`.
 pub(super) fn line(text: &str) -> Cow<'_, str> {
     escaped(text, |c| c.escape_default().collect())
 }
 
-/// Several lines of such text.
+/// Like [`line`], for text of several lines.
 pub(super) fn lines(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Lines of JSON, which mean what they meant.
+/// Escapes lines of JSON by JSON's own escapes, so that their values do not change.
 pub(super) fn json(text: &str) -> String {
     let json = |line| escaped(line, |c| format!("\\u{:04x}", u32::from(c)));
     text.split('\n').map(json).collect::<Vec<_>>().join("\n")
@@ -34,8 +34,8 @@ fn escaped(text: &str, escape: impl Fn(char) -> String) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// Whether a character is not seen as what it is: C0, DEL and C1, line ends of any kind, marks and overrides of the
-/// direction, the byte order mark.
+/// Returns true for characters that are invisible or change how others appear: C0, DEL and C1, line
+/// ends of any kind, marks and overrides of the direction, the byte order mark.
 fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')

@@ -1,4 +1,5 @@
-//! What users of GDAL and LAStools type by habit, in the words of this program. `docs/from-gdal.md` is the table for them.
+//! Translation of what users of GDAL and LAStools type by habit; `docs/from-gdal.md` has the table
+//! for them.
 
 use std::collections::VecDeque;
 use std::ffi::{OsStr, OsString};
@@ -10,34 +11,34 @@ use super::args::{Cli, expand_switches, finite};
 use crate::error::{Error, Result};
 use crate::io::formats::{self, Product};
 
-/// A word, and what it means.
+/// Words that are typed by habit, and what they mean.
 struct Habit {
     typed: &'static [&'static str],
-    /// For these verbs; for all but `triangulate` if there is none.
+    /// The verbs it applies to; all but `triangulate` if empty.
     verbs: &'static [&'static str],
     meaning: Meaning,
 }
 
-/// What a word means. Named are our options.
+/// What a word means, in options of this program.
 #[derive(Clone, Copy)]
 enum Meaning {
-    /// An option, with as many values as ours has.
+    /// An option with the same values.
     Same(&'static str),
-    /// An option with one number; two are the same if they are equal.
+    /// An option with one number; two equal numbers count as one.
     Square(&'static str),
-    /// An option with four numbers, which may stand apart.
+    /// An option with four numbers, which may be separate words.
     Corners(&'static str),
     /// An option with all numbers that follow.
     List(&'static str),
-    /// What follows is an input; a number is the value of an option.
+    /// The next word is an input; if it is a number, it is the value of this option.
     Input(Option<&'static str>),
-    /// The name of a format, which the extension of the output has to confirm.
+    /// The name of a format, which must agree with the extension of the output.
     Format,
-    /// `NAME=VALUE` of how a GeoTIFF is written.
+    /// A creation option of GeoTIFF, `NAME=VALUE`.
     Creation,
-    /// What is so anyway.
+    /// What this program does anyway.
     Nothing,
-    /// Cannot be done; what can.
+    /// Not possible; the hint says what is.
     Refused(&'static str),
 }
 
@@ -47,7 +48,7 @@ const RASTERS: &[&str] = &["dem", "hillshade"];
 const CONTOUR: &[&str] = &["contour"];
 const SHADE: &[&str] = &["hillshade"];
 
-/// The first that fits counts.
+/// The habits; the first that fits applies.
 #[rustfmt::skip]
 const HABITS: &[Habit] = &[
     Habit { typed: &["--resolution", "-tr", "--tr", "-step", "--step"], verbs: RASTERS, meaning: Square("--resolution") },
@@ -59,9 +60,9 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-ts", "-outsize"], verbs: &[], meaning: Refused("--resolution LENGTH is the size of a cell") },
     Habit { typed: &["-a_srs", "--a_srs", "-s_srs", "--s_srs", "--s-srs", "-s-srs", "-a-srs"], verbs: &[], meaning: Same("--a-srs") },
     Habit { typed: &["-t_srs", "--t_srs", "-t-srs"], verbs: &[], meaning: Same("--t-srs") },
-    Habit { typed: &["--crs", "-crs"], verbs: &[], meaning: Refused("--a-srs says what the coordinates are in, --t-srs transforms them") },
+    Habit { typed: &["--crs", "-crs"], verbs: &[], meaning: Refused("--a-srs states the system of the input, --t-srs reprojects to another") },
     Habit { typed: &["-odir", "-odix", "-otif", "-opng", "-oasc", "-obil", "-olaz", "-olas"], verbs: &[],
-        meaning: Refused("-o FILE names the output, and by its extension the format") },
+        meaning: Refused("-o FILE names the output; its extension selects the format") },
     Habit { typed: &["-of", "--of", "-f"], verbs: &[], meaning: Format },
     Habit { typed: &["-co", "--co"], verbs: &[], meaning: Creation },
     Habit { typed: &["-overwrite"], verbs: &[], meaning: Same("--overwrite") },
@@ -70,7 +71,7 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-i"], verbs: CONTOUR, meaning: Input(Some("--interval")) },
     Habit { typed: &["-i", "--input"], verbs: &[], meaning: Input(None) },
     Habit { typed: &["-keep_class", "--keep_class", "-keep_classification"], verbs: &[], meaning: List("--class") },
-    Habit { typed: &["-drop_class", "--drop_class"], verbs: &[], meaning: Refused("--class N,.. names the classes to use") },
+    Habit { typed: &["-drop_class", "--drop_class"], verbs: &[], meaning: Refused("--class N,.. lists the classes to use") },
     Habit { typed: &["-parse", "-iparse"], verbs: &[], meaning: Same("--parse") },
     Habit { typed: &["-kill"], verbs: &[], meaning: Same("--max-edge") },
     Habit { typed: &["-fl"], verbs: CONTOUR, meaning: List("--levels") },
@@ -83,7 +84,7 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-a_nodata", "-dstnodata", "-nodata"], verbs: &[], meaning: Refused("nodata is -9999 in heights, 0 in shades") },
 ];
 
-/// Programs, and the verb that does what they do.
+/// Programs of others, and the verb that does the same.
 const VERBS: &[(&str, &str)] = &[
     ("lasmerge", "points"),
     ("las2las", "points"),
@@ -97,10 +98,10 @@ const VERBS: &[(&str, &str)] = &[
     ("ogrinfo", "info"),
 ];
 
-/// What `gdaldem` makes of a raster, and this program does not.
+/// Modes of `gdaldem` that this program does not have.
 const OF_RASTERS: &[&str] = &["slope", "aspect", "color-relief", "roughness", "TRI", "TPI"];
 
-/// How a GeoTIFF is written whatever is asked for.
+/// Creation options that describe how a GeoTIFF is always written.
 const AS_WRITTEN: &[&str] = &[
     "TILED=YES",
     "COMPRESS=DEFLATE",
@@ -114,10 +115,11 @@ const AS_WRITTEN: &[&str] = &[
     "NUM_THREADS=ALL_CPUS",
 ];
 
-/// Says in our words what was typed, as far as it is certain what is meant; all else is left as it is.
+/// Translates habits to options of this program where the meaning is certain; leaves all other
+/// words as they are.
 ///
 /// # Errors
-/// If a habit cannot be followed, with what to type instead.
+/// If a habit has no equivalent; the hint says what to type instead.
 pub(super) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
     let mut args: Vec<OsString> = args.into_iter().collect();
     let Some(at) = verb_position(&args) else { return Ok(args) };
@@ -135,7 +137,7 @@ pub(super) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec
     Ok(args)
 }
 
-/// Where the verb stands, if anywhere.
+/// Returns the position of the verb, if there is one.
 fn verb_position(args: &[OsString]) -> Option<usize> {
     let is_value = |i: usize| i > 0 && args[i - 1] == "--threads";
     let is_verb = |&i: &usize| !is_value(i) && !args[i].to_string_lossy().starts_with('-');
@@ -149,18 +151,18 @@ fn verb(typed: &OsStr) -> Result<String> {
         return Ok((*ours).to_owned());
     }
     if !is_ours && OF_RASTERS.contains(&&*word) {
-        return Err(Error::usage(format!("`{word}` is no verb")).cure(format!(
+        return Err(Error::usage(format!("`{word}` is not a verb")).cure(format!(
             "write heights with `breakline dem ... -o dem.tif`, then `gdaldem {word} dem.tif OUT.tif`"
         )));
     }
     if !is_ours && (Path::new(typed).extension().is_some() || Path::new(typed).exists()) {
-        return Err(Error::usage(format!("`{word}` stands in the place of a verb"))
-            .cure(format!("`breakline info {word}` tells what is in it; `breakline --help` lists the verbs")));
+        return Err(Error::usage(format!("expected a verb, found `{word}`"))
+            .cure(format!("`breakline info {word}` shows what is in it; `breakline --help` lists the verbs")));
     }
     Ok(word.into_owned())
 }
 
-/// The words behind the verb in ours, and the formats that were named.
+/// Returns the translated words after the verb, and the names of formats among them.
 fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<String>)> {
     let mut rest: VecDeque<OsString> = words.into();
     let (mut ours, mut formats) = (Vec::with_capacity(rest.len()), Vec::new());
@@ -217,14 +219,14 @@ fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<St
                 let value = value();
                 if !AS_WRITTEN.iter().any(|known| known.eq_ignore_ascii_case(&value)) {
                     return Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
-                        "leave it out: a GeoTIFF is tiled, DEFLATE with predictor 3, BigTIFF where it has to be; \
-                         `gdal_translate -co` makes others of it",
+                        "leave it out: a GeoTIFF is tiled, DEFLATE with predictor 3, BigTIFF if necessary; \
+                         `gdal_translate -co` converts it",
                     ));
                 }
             }
             Nothing => {}
             Refused(cure) => {
-                return Err(Error::usage(format!("{name} is no option of `breakline {verb}`")).cure(cure));
+                return Err(Error::usage(format!("{name} is not an option of `breakline {verb}`")).cure(cure));
             }
         }
     }
@@ -232,15 +234,16 @@ fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<St
     Ok((ours, formats))
 }
 
-/// Takes the numbers that come next, up to so many.
+/// Removes and returns the numbers at the front, at most `most`.
 fn numbers(rest: &mut VecDeque<OsString>, most: usize) -> Vec<String> {
     let is_number = |word: &&OsString| word.to_str().is_some_and(|text| finite(text).is_ok());
     let count = rest.iter().take(most).take_while(is_number).count();
     rest.drain(..count).map(|word| word.to_string_lossy().into_owned()).collect()
 }
 
-/// The words, and the outputs among them. Where none is named, the last file is one if it is of a format that the verb
-/// writes and is not there, as in `gdal_contour IN OUT`.
+/// Returns the words, and the outputs among them. If none is named, the last file is the output if
+/// it does not exist and has the extension of a format that the verb writes, as in
+/// `gdal_contour IN OUT`.
 fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<PathBuf>)> {
     let command = Cli::command();
     let options: Vec<&clap::Arg> = command
@@ -257,7 +260,7 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
     while i < words.len() && words[i] != "--" {
         let text = words[i].to_string_lossy();
         let is_short = text.len() > 1 && text.starts_with('-') && !text.starts_with("--") && finite(&text).is_err();
-        // The letter of a value, and what of the word is the value.
+        // The letter of an option with a value, and the part of the word that is the value.
         let mut of_value = None;
         if is_short {
             let letters = text.char_indices().skip(1).collect::<Vec<_>>();
@@ -268,9 +271,8 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
                 }
                 let is_known = options.iter().any(|option| option.get_short() == Some(letter));
                 if letters.len() > 1 && !is_known {
-                    return Err(Error::usage(format!("{text} is no option of `breakline {verb}`")).cure(format!(
-                        "names of options begin with two dashes: `breakline {verb} --help` lists them"
-                    )));
+                    return Err(Error::usage(format!("{text} is not an option of `breakline {verb}`"))
+                        .cure(format!("long options begin with two dashes: `breakline {verb} --help` lists them")));
                 }
             }
         }
@@ -298,7 +300,7 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
             if path.exists() && !words.iter().any(|word| word == "--overwrite") {
                 let name = path.display();
                 return Err(Error::usage("no output is named")
-                    .cure(format!("if it is {name}, which exists: -o {name} --overwrite")));
+                    .cure(format!("to replace {name}, which exists: -o {name} --overwrite")));
             }
             words.insert(*last, "-o".into());
             targets.push(path);
@@ -307,7 +309,7 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
     Ok((words, targets))
 }
 
-/// The extensions of what a verb writes.
+/// Returns the extensions of the formats that a verb writes.
 fn written(verb: &str) -> Vec<&'static str> {
     match verb {
         "points" => formats::extensions(Product::Points),
@@ -319,7 +321,7 @@ fn written(verb: &str) -> Vec<&'static str> {
     }
 }
 
-/// Makes sure that the outputs are of a format.
+/// Returns an error unless there are outputs and all have the extension of this format.
 fn confirm(format: &str, targets: &[PathBuf]) -> Result<()> {
     let is_named = |known: &&formats::Format| known.gdal_name.is_some_and(|name| name.eq_ignore_ascii_case(format));
     let extensions = formats::FORMATS.iter().find(is_named).map_or(&[][..], |known| known.extensions);
@@ -329,8 +331,8 @@ fn confirm(format: &str, targets: &[PathBuf]) -> Result<()> {
     if !targets.is_empty() && targets.iter().all(is_of) {
         return Ok(());
     }
-    Err(Error::usage(format!("-of {format}: the format is that of the extension of the output"))
-        .cure("leave -of out, and name the output with the extension, as -o dem.tif"))
+    Err(Error::usage(format!("-of {format}: the extension of the output selects the format"))
+        .cure("leave -of out, and give the output the extension, as in -o dem.tif"))
 }
 
 #[cfg(test)]
@@ -374,7 +376,7 @@ mod tests {
                 "b hillshade -az 300 -alt 30 -z 2 a.tif s.png",
                 "b hillshade --azimuth 300 --altitude 30 --z-factor 2 a.tif -o s.png",
             ),
-            // Outputs of another verb, outputs that are named, inputs alone.
+            // Outputs of another verb, outputs with an option, inputs alone.
             ("b tin a.xyz b.tif", "b tin a.xyz b.tif"),
             ("b tin a.xyz b.ply -oc.ply", "b tin a.xyz b.ply -oc.ply"),
             ("b contour a.shp", "b contour a.shp"),
@@ -391,20 +393,20 @@ mod tests {
     fn what_is_not_certain_is_answered_with_our_words() {
         for (typed, message, cure) in [
             ("b dem -tr 1 2 a.laz -o b.tif", "-tr 1 2: cells are square", "--resolution 1, or --resolution 2"),
-            ("b tin -te 1 2 3 4 a.laz", "-te is no option of `breakline tin`", "--bounds"),
-            ("b dem -of AAIGrid a.laz -o b.tif", "-of AAIGrid: the format is that", "-o dem.tif"),
-            ("b dem -of PNG a.laz -o b.tif", "-of PNG: the format is that", "-o dem.tif"),
+            ("b tin -te 1 2 3 4 a.laz", "-te is not an option of `breakline tin`", "--bounds"),
+            ("b dem -of AAIGrid a.laz -o b.tif", "-of AAIGrid: the extension", "-o dem.tif"),
+            ("b dem -of PNG a.laz -o b.tif", "-of PNG: the extension", "-o dem.tif"),
             (
                 "b dem -co COMPRESS=LZW a.laz -o b.tif",
                 "-co COMPRESS=LZW: there are no creation options",
                 "gdal_translate",
             ),
-            ("b slope dem.tif", "`slope` is no verb", "gdaldem slope dem.tif"),
-            ("b a.laz -o b.tif", "`a.laz` stands in the place of a verb", "breakline info a.laz"),
-            ("b dem -drop_class 7 a.laz", "-drop_class is no option", "--class N"),
-            ("b dem -odir out a.laz", "-odir is no option", "-o FILE"),
-            ("b dem a.laz -o b.tif -hillshade", "-hillshade is no option", "two dashes"),
-            ("b dem a.laz --crs EPSG:1 -o b.tif", "--crs is no option", "--a-srs"),
+            ("b slope dem.tif", "`slope` is not a verb", "gdaldem slope dem.tif"),
+            ("b a.laz -o b.tif", "expected a verb, found `a.laz`", "breakline info a.laz"),
+            ("b dem -drop_class 7 a.laz", "-drop_class is not an option", "--class N"),
+            ("b dem -odir out a.laz", "-odir is not an option", "-o FILE"),
+            ("b dem a.laz -o b.tif -hillshade", "-hillshade is not an option", "two dashes"),
+            ("b dem a.laz --crs EPSG:1 -o b.tif", "--crs is not an option", "--a-srs"),
             ("b triangulate -tr 1 1 x.poly", "`-tr`: of Triangle's switches", "two dashes"),
         ] {
             let error = words(typed).unwrap_err();

@@ -37,7 +37,7 @@ pub(super) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exit> {
         }
     }
     match &product.model {
-        // Its cells were announced.
+        // The size of the raster is printed already.
         Model::Raster(grid) => print_extent(grid.extent(), grid.crs.as_ref(), console),
         Model::Tin(_) | Model::Mesh(_) => print_surface(&product, console),
     }
@@ -45,7 +45,7 @@ pub(super) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// What a cell takes before compression.
+/// Returns the bytes of a cell before compression.
 fn cell_bytes(format: &ShadeFormat) -> u64 {
     match format {
         ShadeFormat::GeoTiff => 1,

@@ -1,4 +1,4 @@
-//! From what is typed as input to a list of files.
+//! Expansion of the inputs as typed to a list of files.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,8 @@ use super::console::Console;
 use crate::error::{Error, Result};
 use crate::run::STDIN;
 
-/// Expands globs and lists, in order. A file that is named twice is used once, with a note.
+/// Returns the files that globs, lists and names stand for, in order. A file that is named twice is
+/// used once, and a note says so.
 ///
 /// # Errors
 /// If a glob matches nothing, a list cannot be read or a file does not exist.
@@ -33,13 +34,14 @@ pub(super) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf
     Ok(found)
 }
 
-/// What tells two names of one file from two files.
+/// Returns a path that is the same for all names of one file.
 pub(super) fn identity(path: &Path) -> PathBuf {
     let file = file_of(path).unwrap_or(path);
     file.canonicalize().unwrap_or_else(|_| file.to_path_buf())
 }
 
-/// The file that is there, whether a field or a layer follows its name (`FILE:FIELD`) or not.
+/// Returns the path of an existing file, without the field or layer that may follow its name
+/// (`FILE:FIELD`).
 fn file_of(path: &Path) -> Option<&Path> {
     if path.exists() {
         return Some(path);
@@ -48,10 +50,10 @@ fn file_of(path: &Path) -> Option<&Path> {
     Some(Path::new(file)).filter(|file| file.exists())
 }
 
-/// Makes sure that files named by options are there before the work starts.
+/// Makes sure, before the work starts, that the files that options name exist.
 ///
 /// # Errors
-/// If one is not.
+/// If one does not.
 pub(super) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
     match paths.into_iter().find(|path| file_of(path).is_none()) {
         Some(path) => Err(no_such_file(path)),
@@ -63,7 +65,7 @@ pub(super) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Resul
 fn no_such_file(path: &Path) -> Error {
     let error = Error::from(std::io::Error::new(std::io::ErrorKind::NotFound, "no such file")).in_file(path);
     match path.to_str().is_some_and(|text| text.parse::<f64>().is_ok()) {
-        true => error.cure("several values of one option have commas between them, as in --class 2,8"),
+        true => error.cure("separate several values of one option by commas, as in --class 2,8"),
         false => error,
     }
 }
@@ -72,7 +74,7 @@ fn no_such_file(path: &Path) -> Error {
 fn folder(path: &Path) -> Error {
     Error::from(std::io::Error::new(std::io::ErrorKind::IsADirectory, "this is a folder"))
         .in_file(path)
-        .cure(format!("name its files, as in {}", path.join("*.laz").display()))
+        .cure(format!("name the files in it, as in {}", path.join("*.laz").display()))
 }
 
 fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
@@ -84,7 +86,7 @@ fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
             continue;
         }
         expand_one(&folder.join(entry), found).map_err(|e| match e.path() {
-            // The file that is missing says more than the list that names it.
+            // The missing file says more than the list that names it.
             Some(_) => e,
             None => e.in_file(list).at(format!("line {number}")),
         })?;
@@ -94,7 +96,7 @@ fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
 
 fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
     if path.as_os_str() == STDIN || file_of(path).is_some() {
-        // A folder with an extension may be a data set of GDAL, as `.gdb`.
+        // A folder with an extension may be a data set of GDAL, such as `.gdb`.
         if path.is_dir() && path.extension().is_none() {
             return Err(folder(path));
         }
@@ -108,7 +110,8 @@ fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 fn expand_glob(pattern: &str, found: &mut Vec<PathBuf>) -> Result<()> {
-    let matches = glob::glob(pattern).map_err(|e| Error::usage(format!("`{pattern}` is no valid glob: {}", e.msg)))?;
+    let matches =
+        glob::glob(pattern).map_err(|e| Error::usage(format!("`{pattern}` is not a valid glob: {}", e.msg)))?;
     let before = found.len();
     for path in matches {
         let path = path.map_err(|e| {

@@ -1,8 +1,8 @@
 //! The command line: one file per verb.
 //!
-//! What is typed (`args`) and what it means (`plan`, `outputs`) are kept apart. A verb hands a request to
-//! [`run`](crate::run), writes the product and says what came out. Data goes to files or stdout, messages (`console`) to
-//! stderr.
+//! The options as typed (`args`) are kept apart from their meaning (`plan`, `outputs`). A verb
+//! passes a request to [`run`](crate::run), writes the product and prints a summary. Data goes to
+//! files or stdout, messages (`console`) go to stderr.
 
 mod args;
 mod check;
@@ -39,11 +39,11 @@ use crate::error::{Kind, Result};
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
-    /// All is done.
+    /// The work is done.
     Done = 0,
     /// Something failed, or a check found flaws.
     Failed = 1,
-    /// What was asked for makes no sense.
+    /// The command line is wrong.
     Usage = 2,
 }
 
@@ -53,7 +53,8 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Runs the program with these arguments, the first of which is its name.
+/// Runs the program with the given arguments and returns how it ended. The first argument is the
+/// program's name.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     let words = match habits::understood(args) {
         Ok(words) => words,
@@ -65,14 +66,14 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     let cli = match Cli::try_parse_from(words) {
         Ok(cli) => cli,
         Err(error) => {
-            // Help goes to stdout and is no failure; a closed pipe is none either.
+            // Help goes to stdout and is not a failure; neither is a closed pipe.
             let _ = error.print();
             return if error.use_stderr() { Exit::Usage } else { Exit::Done };
         }
     };
     let console = Console::new(&cli.console);
     if let Some(threads) = cli.console.threads {
-        // Refused when there is a pool already: the demo runs several commands in one process.
+        // Fails if a pool exists already: the demo runs several commands in one process.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
     }
     let start = Instant::now();
@@ -108,7 +109,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     }
 }
 
-/// Writes data to stdout. A reader that went away (`| head`) wants no more of it.
+/// Writes data to stdout. A closed pipe (`| head`) is not an error.
 fn print(text: &str) -> Result<()> {
     match std::io::stdout().write_all(escape::lines(text).as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),

@@ -1,16 +1,16 @@
-//! Notices in words.
+//! The texts of notices.
 
 use crate::run::units::{bytes, neat, number};
 use crate::run::{CrossingNote, Notice, Quantity, Seed, SeedFlaw};
 
-/// The text of a notice, and lines that are printed below it.
+/// Returns the text of a notice, then the lines that are printed below it.
 pub(super) fn lines(notice: &Notice) -> Vec<String> {
     let mut lines = vec![text(notice)];
     if let Notice::CrossingHeights { count, first, .. } = notice {
         lines.extend(first.iter().map(|CrossingNote { at, low, high, chosen }| {
             let [x, y] = at.map(neat);
             let [low, high] = [low, high].map(|(z, line)| format!("{} of {line}", neat(*z)));
-            format!("            {x} {y}: {low}, {high}; {} stands", neat(*chosen))
+            format!("            {x} {y}: {low}, {high}; {} is used", neat(*chosen))
         }));
         if *count > first.len() {
             lines.push(format!("            and {} more (--crossing-report FILE.csv)", count - first.len()));
@@ -27,7 +27,7 @@ fn text(notice: &Notice) -> String {
         Notice::PointsRead(path, count) => format!("{}: {count} points read", path.display()),
         Notice::Reader(path, text) => format!("{}: {text}", path.display()),
         Notice::LittleMemory { need, left, limit } => format!(
-            "memory may not suffice: if all points are used they take about {}, and {} are left {limit}",
+            "memory may not suffice: if all points are used they take about {}, and {} are free {limit}",
             bytes(*need),
             bytes(*left)
         ),
@@ -39,26 +39,28 @@ fn text(notice: &Notice) -> String {
                 }
                 None => "it has none".to_owned(),
             };
-            format!("{}: no point of it is used: {why}", path.display())
+            format!("{}: none of its points is used: {why}", path.display())
         }
-        Notice::NoPointOfClass(class) => format!("no point is of class {class}"),
-        Notice::GroundUsed => "class 2 (ground) is used".to_owned(),
-        Notice::PointsWithoutClassUsed(count) => format!("{count} points of files without classes are used too"),
-        Notice::AllClassesUsed => "no point is of class 2 (ground): all classes are used (--class chooses)".to_owned(),
+        Notice::NoPointOfClass(class) => format!("no point has class {class}"),
+        Notice::GroundUsed => "points of class 2 (ground) are used".to_owned(),
+        Notice::PointsWithoutClassUsed(count) => format!("{count} points from files without classes are used, too"),
+        Notice::AllClassesUsed => {
+            "no point has class 2 (ground): all classes are used (choose with --class)".to_owned()
+        }
         Notice::Reassigned { path, stated, assigned } => {
-            format!("{} states {stated}; {assigned} is taken, as --a-srs says", path.display())
+            format!("{} states {stated}; {assigned} is used, as given by --a-srs", path.display())
         }
         Notice::SystemOfOthers(path, crs) => {
-            format!("{} states no coordinate system; {crs} is taken, as in the others", path.display())
+            format!("{} states no coordinate system; {crs} is used, as in the other files", path.display())
         }
         Notice::NoSystem => "no coordinate system is stated: lengths are in the units of the data".to_owned(),
         Notice::DifferentUnits(plan, height) => {
-            format!("the plan is in units of the {plan}, heights are in units of the {height}")
+            format!("x and y are in units of the {plan}, heights in units of the {height}")
         }
         Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}"),
         Notice::Transform(text) => text.clone(),
         Notice::FarApart(before, after, gap) => format!(
-            "{} and {} are {gap} apart, with nothing between them: are their coordinates in one system?",
+            "{} and {} are {gap} apart, with nothing between them: are they in the same coordinate system?",
             before.display(),
             after.display()
         ),
@@ -66,10 +68,10 @@ fn text(notice: &Notice) -> String {
             format!("the breaklines lie {gap} away from the points: are they in the same coordinate system?")
         }
         Notice::BreaklinesBeyond(reach) => format!(
-            "breaklines reach {reach} beyond the points: the surface there rests on them alone (--bounds clips it)"
+            "breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with --bounds)"
         ),
         Notice::EdgeLimit(length) => {
-            format!("triangles at the rim with edges over {length} are left out (--max-edge)")
+            format!("triangles at the rim with edges longer than {length} are left out (--max-edge)")
         }
         Notice::NoEdgeLimit => "the whole convex hull is kept (--max-edge none)".to_owned(),
         Notice::BoundsBuffer(buffer) => {
@@ -77,30 +79,29 @@ fn text(notice: &Notice) -> String {
                 None => "all points are used".to_owned(),
                 Some(buffer) => format!("points up to {buffer} outside of the bounds are used"),
             };
-            format!("{how_far}, so that the surface within is that of all points")
+            format!("{how_far}, so that the surface inside is the same as with all points")
         }
         Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()),
         Notice::Uncertain(count, buffer) => {
-            format!("{count} triangles within the bounds may change with points further out than {buffer}")
+            format!("{count} triangles within the bounds may depend on points further out than {buffer}")
         }
         Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid),
         Notice::CrossingHeights { count, largest, at, .. } => {
-            let places = if *count == 1 { "1 place" } else { &format!("{count} places") };
+            let points = if *count == 1 { "1 point" } else { &format!("{count} points") };
             let [x, y] = at.map(neat);
-            format!("breaklines meet with different heights at {places}, by up to {largest} (at {x} {y})")
+            format!("breaklines meet with different heights at {points}, by up to {largest} (at {x} {y})")
         }
         Notice::ExtentApart => "the rectangle of --te does not touch the surface".to_owned(),
         Notice::DefaultResolution(width) => format!("cells are {width} wide (--resolution)"),
         Notice::DefaultInterval(height) => format!("contours are {height} apart (--interval)"),
         Notice::HeightFactor(factor) => {
-            format!("heights are multiplied by {} to match the plan (--z-factor)", number(*factor))
+            format!("heights are multiplied by {} to match the units of x and y (--z-factor)", number(*factor))
         }
-        Notice::DelaunayUnchecked(path) => format!(
-            "{}: the format does not tell breaklines from other edges: the Delaunay law is not checked",
-            path.display()
-        ),
+        Notice::DelaunayUnchecked(path) => {
+            format!("{}: the format does not store breaklines: the Delaunay law is not checked", path.display())
+        }
         Notice::RegionAreasUnused(path) => {
-            format!("{}: largest areas of regions are not used: no vertex is added for them without -a", path.display())
+            format!("{}: the largest areas of its regions are ignored: add -a to use them", path.display())
         }
         Notice::SeedUnused { path, line, seed, why } => {
             let what = match seed {
@@ -108,7 +109,7 @@ fn text(notice: &Notice) -> String {
                 Seed::Region => "region",
             };
             let why = match why {
-                SeedFlaw::OnSegment => "lies on a segment, and which side is meant cannot be told",
+                SeedFlaw::OnSegment => "lies on a segment, so that its side is ambiguous",
                 SeedFlaw::OutsideHull => "lies outside of the convex hull",
             };
             format!("{}: line {line}: the {what} {why}; it is not used", path.display())
@@ -119,8 +120,8 @@ fn text(notice: &Notice) -> String {
 fn rounded([x, y]: &[Quantity; 2], on_grid: bool) -> String {
     let unit = if x == y { x.to_string() } else { format!("{x} in x and {y} in y") };
     let bound = match on_grid {
-        true => "no line is moved by more than half of that on each axis",
-        false => "some vertices are finer, so that no bound is proven where lines cross close by them",
+        true => "no line moves by more than half of that on each axis",
+        false => "some vertices are not on this grid, so that no bound is proven for lines that cross near them",
     };
     format!("crossings of breaklines are rounded to {unit}; {bound}")
 }

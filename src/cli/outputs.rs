@@ -1,4 +1,4 @@
-//! Where results go, checked before the work starts.
+//! The files of results, checked before the work starts.
 
 use std::path::{Path, PathBuf};
 
@@ -22,11 +22,11 @@ const BEST_COMPRESSION: f64 = 10.0;
 pub(super) struct Format<F: 'static> {
     pub(super) extension: &'static str,
     pub(super) kind: F,
-    /// Extensions of the files that are written beside it.
+    /// Extensions of the files that are written with it.
     pub(super) companions: &'static [&'static str],
 }
 
-/// The formats that a product is written in, one for each extension.
+/// Returns the formats that a product can be written in, one for each extension.
 pub(super) fn formats_of<F>(product: Product, kind: impl Fn(&formats::Format) -> F) -> Vec<Format<F>> {
     let formats = formats::FORMATS.iter().filter(|format| format.writes(product));
     let by_extension = formats.flat_map(|format| format.extensions.iter().map(move |extension| (format, extension)));
@@ -40,18 +40,18 @@ pub(super) fn formats_of<F>(product: Product, kind: impl Fn(&formats::Format) ->
 pub(super) struct Target<F> {
     pub(super) path: PathBuf,
     pub(super) kind: F,
-    /// Of its format, whatever the path says.
+    /// The extension of its format, whatever the path says.
     pub(super) extension: &'static str,
 }
 
 impl<F> Target<F> {
-    /// Where a writer is to put it.
+    /// Returns the destination for a writer.
     pub(super) fn within<'a>(&'a self, set: &'a OutputSet) -> Destination<'a> {
         set.at(&self.path).in_format(self.extension)
     }
 }
 
-/// What a run writes: all of it appears at its end, or nothing.
+/// The files that a run writes; all appear at its end, or none.
 #[derive(Debug)]
 pub(super) struct Outputs<F> {
     pub(super) targets: Vec<Target<F>>,
@@ -59,14 +59,14 @@ pub(super) struct Outputs<F> {
 }
 
 impl<F> Outputs<F> {
-    /// The least space that is left on a disk that is written to, in bytes, and the file to be written there; where the
-    /// system tells.
+    /// Returns the smallest free space, in bytes, of the disks that are written to, and a file that
+    /// goes there; `None` if the system does not report it.
     fn free_space(&self) -> Option<(u64, &Path)> {
         let files = self.targets.iter().map(|target| target.path.as_path()).filter(|path| !io::is_stream(path));
         files.filter_map(|path| Some((free_in(folder_of(path))?, path))).min_by_key(|(free, _)| *free)
     }
 
-    /// Adds the table of crossings, where one was asked for.
+    /// Adds the table of crossings, if one was requested.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -79,11 +79,12 @@ impl<F> Outputs<F> {
         Ok(())
     }
 
-    /// Makes sure that the disk has room for cells, and says how large the outputs will be that hold them. `cell_bytes`
-    /// tells what a cell takes before compression. Of a surface, only what it covers counts.
+    /// Prints the size of the raster, and makes sure that the disk has room for its cells.
+    /// `cell_bytes` returns the bytes of a cell before compression. Of a surface, only the cells
+    /// that it covers count.
     ///
     /// # Errors
-    /// If they cannot fit, however well they are compressed.
+    /// If the cells cannot fit, however well they are compressed.
     pub(super) fn announce(
         &self,
         cells: &CellProduct,
@@ -104,25 +105,25 @@ impl<F> Outputs<F> {
                 bytes(likely)
             ))
             .in_file(target)
-            .cure("choose larger cells (--resolution), a part (--te), or another disk"));
+            .cure("choose larger cells (--resolution), a smaller extent (--te), or another disk"));
         }
         if likely > free {
-            console.warning(format_args!("it may not fit: {} before compression, {room}", bytes(likely)));
+            console.warning(format_args!("the output may not fit: {} before compression, {room}", bytes(likely)));
         }
         Ok(())
     }
 
-    /// Lets all files appear, and says which.
+    /// Makes all files appear, and prints their names.
     ///
     /// # Errors
-    /// If one cannot; then none does.
+    /// If one cannot appear; then none does.
     pub(super) fn commit(self, console: &Console) -> Result<()> {
         self.set.commit()?.iter().for_each(|path| print_written(path, console));
         Ok(())
     }
 }
 
-/// What becomes of a file that is in the way.
+/// What happens to a file that exists at the path of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Existing {
     Keep,
@@ -137,7 +138,7 @@ impl Existing {
 
 const REPORTS: &[Format<()>] = &[Format { extension: "csv", kind: (), companions: &[] }];
 
-/// Sorts the outputs by format and makes sure that nothing is lost that should stay.
+/// Finds the format of each output and makes sure that no file is lost that should be kept.
 ///
 /// # Errors
 /// If an extension is not among the formats, an output is an input or named twice, its folder does
@@ -156,10 +157,11 @@ pub(super) fn resolve<F: Copy>(args: &OutputArgs, formats: &[Format<F>], inputs:
     Ok(Outputs { targets, set: OutputSet::default() })
 }
 
-/// The same for a verb that makes a surface, and reports its crossings where that is wished.
+/// Like [`resolve`], for a verb that builds a surface; also checks the path of the crossing report,
+/// if any.
 ///
 /// # Errors
-/// As [`resolve`].
+/// Those of [`resolve`], for the report as well.
 pub(super) fn resolve_with_report<F: Copy>(
     args: &OutputArgs,
     formats: &[Format<F>],
@@ -174,10 +176,10 @@ pub(super) fn resolve_with_report<F: Copy>(
     }
 }
 
-/// The same for the report of crossings alone.
+/// Like [`resolve`], for a verb whose only output is the crossing report, if any.
 ///
 /// # Errors
-/// As [`resolve`].
+/// Those of [`resolve`].
 pub(super) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<Outputs<()>> {
     if let Some(report) = &plan.crossing_report {
         require_free(report, find(report, REPORTS)?, existing, &plan.inputs)?;
@@ -196,7 +198,7 @@ fn free_in(_folder: &Path) -> Option<u64> {
     None
 }
 
-/// Returns true for two names of one file, there or to be.
+/// Returns true if two paths name the same file, whether it exists or not.
 fn is_same(path: &Path, other: &Path) -> bool {
     let [path, other] = [path, other].map(|path| {
         let folder = identity(folder_of(path));
@@ -209,7 +211,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Makes sure that a file and what is written beside it can be written without a loss.
+/// Makes sure that a file and its companions can be written, and that nothing is lost by it.
 fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: &[PathBuf]) -> Result<()> {
     let folder = folder_of(path);
     if !folder.is_dir() {
@@ -232,7 +234,7 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
     Ok(())
 }
 
-/// The files that come with a target, and then itself.
+/// Returns the companions of a target, then the target itself.
 pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
     let format = formats.iter().find(|format| format.extension == target.extension);
     let companions = format.map_or(&[][..], |format| format.companions);
@@ -241,7 +243,7 @@ pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Ve
     files.into_iter().map(|(path, extension)| Target { path, kind: target.kind, extension }).collect()
 }
 
-/// A file and those that are written beside it, each with the extension of its format.
+/// Returns a file and its companions, each with the extension of its format.
 fn with_companions(
     path: &Path,
     extension: &'static str,
@@ -249,7 +251,7 @@ fn with_companions(
 ) -> Vec<(PathBuf, &'static str)> {
     let beside = companions.iter().map(|&companion| {
         let path = match companion.strip_prefix(extension) {
-            // What is put behind the whole name, whatever its case: `A.PNG.aux.xml`.
+            // Appended to the whole name, whatever its case: `A.PNG.aux.xml`.
             Some(behind) => {
                 let mut name = path.as_os_str().to_owned();
                 name.push(behind);
@@ -271,24 +273,24 @@ fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
     formats.iter().find(named).or_else(default).ok_or_else(|| {
         let known: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension)).collect();
         let found = match extension {
-            "" => "the output has no extension to tell its format by".to_owned(),
-            _ => format!("`.{extension}` is no format that can be written here"),
+            "" => "the output has no extension, which would select its format".to_owned(),
+            _ => format!("`.{extension}` is not a format that can be written here"),
         };
         Error::usage(found).in_file(path).cure(format!("use one of {}", known.join(", ")))
     })
 }
 
-/// Says that a file cannot tell edges on lines from others, if there are any.
+/// Prints a note if a format does not store which edges are on lines, and there are any.
 pub(super) fn note_lost_edges(file: &Path, edges: usize, cure: &str, console: &Console) {
     if edges > 0 {
         let path = file.display();
         console.note(format_args!(
-            "{path}: {edges} edges on breaklines or clip lines are edges like all others here; {cure}"
+            "{path}: {edges} edges on breaklines or clip lines are not marked in this format; {cure}"
         ));
     }
 }
 
-/// Says that a file was written.
+/// Prints the name and size of a file that was written.
 fn print_written(file: &Path, console: &Console) {
     let path = file.display();
     match std::fs::metadata(file) {

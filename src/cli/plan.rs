@@ -1,4 +1,4 @@
-//! What the options of a surface mean.
+//! From the options of a surface to a request.
 
 use std::path::PathBuf;
 
@@ -12,18 +12,18 @@ use crate::run::{
 };
 use crate::terrain::{Classes, CrossingRule, DuplicateRule};
 
-/// A surface as it was asked for, and the files that belong to it.
+/// The request for a surface, and the files that belong to it.
 #[derive(Debug)]
 pub(super) struct SurfacePlan {
     pub(super) request: SurfaceRequest,
     /// All files that are read.
     pub(super) inputs: Vec<PathBuf>,
-    /// The table of crossings that is written on the way.
+    /// The table of crossings that is written with the results.
     pub(super) crossing_report: Option<PathBuf>,
 }
 
 impl SurfacePlan {
-    /// Works out what was typed.
+    /// Returns the request that the options mean.
     ///
     /// # Errors
     /// If files are missing, kinds of input are mixed or options do not go together.
@@ -49,10 +49,10 @@ impl SurfacePlan {
         Ok(SurfacePlan { request, inputs, crossing_report: args.crossing_report.clone() })
     }
 
-    /// What was typed about a raster; the one to align to is an input.
+    /// Returns the frame of a raster, and adds the raster to align to, if any, to the inputs.
     ///
     /// # Errors
-    /// If that does not exist.
+    /// If that raster does not exist.
     pub(super) fn add_frame(&mut self, args: &FrameArgs) -> Result<FrameOptions> {
         inputs::require(&args.align_to)?;
         self.inputs.extend(args.align_to.clone());
@@ -61,7 +61,7 @@ impl SurfacePlan {
     }
 }
 
-/// A coordinate system as it was typed for an option.
+/// Parses the coordinate system of an option.
 fn system(option: &str, typed: Option<&str>) -> Result<Option<Crs>> {
     let Some(text) = typed else { return Ok(None) };
     Crs::from_user(text).map(Some).map_err(|e| {
@@ -112,10 +112,10 @@ fn tin_request(points: Vec<Input<MemoryPoints>>, building: TinRequest, args: &Su
     }
 }
 
-/// A surface that is there already is taken as it is.
+/// Returns the path of an input that is a surface already.
 ///
 /// # Errors
-/// If an option was typed that is for building.
+/// If an option was typed that is only for building a TIN.
 fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
     let given = [
         (!args.breaklines.is_empty(), "--breaklines"),
@@ -135,9 +135,9 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
     ];
     match given.iter().find(|(is_given, _)| *is_given) {
         Some((_, option)) => {
-            Err(Error::usage(format!("{option} is for building a TIN, but the input is a whole surface"))
+            Err(Error::usage(format!("{option} is for building a TIN, but the input is a surface already"))
                 .in_file(path)
-                .cure("leave the option out, or give the points that the surface was made of"))
+                .cure("leave the option out, or pass the points that the surface was built from"))
         }
         None => Ok(path),
     }

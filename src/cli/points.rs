@@ -15,7 +15,7 @@ pub(super) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     let outputs = outputs::resolve(&args.output, &outputs::formats_of(Product::Points, |_| ()), &all)?;
     let [target] = outputs.targets.as_slice() else {
         return Err(
-            Error::usage("several outputs are named, but points are read once").cure("run it once for each output")
+            Error::usage("several outputs are given, but points are read once").cure("run it once for each output")
         );
     };
     let request = PointsRequest {

@@ -1,4 +1,4 @@
-//! How far the work has come: bars on a terminal.
+//! Progress bars on a terminal.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use indicatif::{HumanCount, MultiProgress, ProgressBar, ProgressState, ProgressS
 
 use crate::run::{Progress, Size, Stage};
 
-/// Work that is shown while it goes on; dropped, it is gone from the terminal.
+/// A progress bar; it disappears from the terminal when it is dropped.
 #[derive(Debug)]
 pub(super) struct Bar(ProgressBar);
 
@@ -37,7 +37,7 @@ impl Progress for Bar {
     }
 }
 
-/// What is written before a bar.
+/// Returns the text before a bar.
 fn title(stage: Stage) -> &'static str {
     match stage {
         Stage::ReadingPoints => "reading points",
@@ -50,8 +50,8 @@ fn title(stage: Stage) -> &'static str {
         Stage::WritingFaces => "writing faces",
         Stage::WritingCells => "writing cells",
         Stage::ShadingCells => "shading cells",
-        Stage::FindingContours => "looking for contours",
-        Stage::DrawingContours => "drawing pieces of contours",
+        Stage::FindingContours => "finding contours",
+        Stage::DrawingContours => "drawing contours",
         Stage::Writing => "writing",
     }
 }
@@ -62,7 +62,7 @@ impl Drop for Bar {
     }
 }
 
-/// Whole items a second.
+/// Items per second, as a whole number.
 #[derive(Clone)]
 struct Rate;
 
@@ -76,7 +76,7 @@ impl ProgressTracker for Rate {
     fn reset(&mut self, _: &ProgressState, _: std::time::Instant) {}
 
     fn write(&self, state: &ProgressState, out: &mut dyn Write) {
-        // The text is shown or not; there is nobody to tell.
+        // There is nobody to whom a failure could be reported.
         let _ = write!(out, "{}/s", HumanCount(state.per_sec() as u64));
     }
 }

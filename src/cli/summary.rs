@@ -1,4 +1,4 @@
-//! The summary that a run ends with.
+//! The summary at the end of a run.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use crate::run::units::{Units, neat, number};
 use crate::run::{BuildReport, Model, SurfaceFacts, SurfaceProduct};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
-/// Says what went into a surface, what was dropped and what came out.
+/// Prints what a surface was built of, what was left out, and its size and extent.
 pub(super) fn print_surface(product: &SurfaceProduct, console: &Console) {
     let (triangles, extent) = match (&product.built, &product.model) {
         (Some(built), _) => {
@@ -46,15 +46,15 @@ fn print_tin(built: &BuildReport, console: &Console) {
         let rule = match built.duplicates {
             DuplicateRule::Lowest => "the lowest is kept",
             DuplicateRule::Highest => "the highest is kept",
-            DuplicateRule::Mean => "their mean is taken",
+            DuplicateRule::Mean => "their mean is used",
             DuplicateRule::First => "the first is kept",
             DuplicateRule::Last => "the last is kept",
         };
-        console.line(format_args!("            {} at the place of another point ({rule})", tin.duplicates));
+        console.line(format_args!("            {} at the position of another point ({rule})", tin.duplicates));
     }
     if tin.points_on_breaklines > 0 {
         let count = tin.points_on_breaklines;
-        console.line(format_args!("            {count} at a breakline's vertex (whose height is taken)"));
+        console.line(format_args!("            {count} at a breakline's vertex (whose height is used)"));
     }
     if built.breaklines > 0 {
         let crossings = match tin.crossings {
@@ -83,7 +83,8 @@ fn left_out(tin: &TinReport) -> String {
     ])
 }
 
-/// The columns that were taken of text: "x 3, y 2, z 4", and of how many files if they differ.
+/// Returns the columns of text files, such as "x 3, y 2, z 4"; with the number of files of each if
+/// they differ.
 fn columns_line(columns: &[(Columns, u64)]) -> String {
     match columns {
         [(columns, _)] => columns.to_string(),
@@ -94,17 +95,17 @@ fn columns_line(columns: &[(Columns, u64)]) -> String {
     }
 }
 
-/// ` (5 clipped, 2 added)`, without what there is none of.
+/// Formats counts as ` (5 clipped, 2 added)`, without those that are zero.
 fn listed(parts: &[(usize, &str)]) -> String {
     let parts: Vec<String> =
         parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
     if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
 }
 
-/// Where something is, and in which coordinate system.
+/// Prints an extent and its coordinate system.
 pub(super) fn print_extent(extent: Bounds, crs: Option<&Crs>, console: &Console) {
     if !extent.is_empty() {
-        // Millimetres will do where there are metres; degrees are small.
+        // Three decimals are enough for metres; small extents, as in degrees, get all.
         let is_wide = (0..2).any(|i| extent.max[i] - extent.min[i] > 10.0);
         let shown = if is_wide { thousandths } else { neat };
         let axis = |i: usize| format!("{} .. {}", shown(extent.min[i]), shown(extent.max[i]));
@@ -146,7 +147,7 @@ fn points_line(report: &SelectionReport, files: usize) -> String {
     text
 }
 
-/// `400 x 300 cells of 1 m`
+/// Formats the size of a raster as `400 x 300 cells of 1 m`.
 pub(super) fn describe(frame: &Frame, crs: Option<&Crs>) -> String {
     let t = frame.transform;
     let (across, down) = (t[1].hypot(t[4]), t[2].hypot(t[5]));
@@ -159,18 +160,18 @@ pub(super) fn describe(frame: &Frame, crs: Option<&Crs>) -> String {
     format!("{} x {} cells of {size}", frame.width, frame.height)
 }
 
-/// `1 point`, `2 points`
+/// Formats a count as `1 point`, `2 points`.
 pub(super) fn counted(count: u64, noun: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
     format!("{count} {noun}{ending}")
 }
 
-/// A number with three decimals at most.
+/// Formats a number with at most three decimals.
 fn thousandths(value: f64) -> String {
     neat((value * 1e3).round() / 1e3)
 }
 
-/// Says how long it took and how much memory it took.
+/// Prints the time and the peak memory of the run.
 pub(super) fn print_cost(start: Instant, console: &Console) {
     let time = format!("{:.2} s", start.elapsed().as_secs_f64());
     match peak_memory() {
@@ -179,7 +180,7 @@ pub(super) fn print_cost(start: Instant, console: &Console) {
     }
 }
 
-/// The most memory that this process held, where the system tells.
+/// Returns the peak memory of this process in bytes; `None` if the system does not report it.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -19,7 +19,7 @@ pub(super) fn run(args: &TinArgs, console: &Console) -> Result<Exit> {
         outputs::note_lost_edges(&target.path, written.lost_edges, ".ply keeps them", console);
         if let Some(([x, y, z], beside)) = written.origin {
             let (mesh, beside) = (target.path.display(), beside.display());
-            console.note(format_args!("{mesh}: coordinates are relative to {x} {y} {z}, as {beside} says"));
+            console.note(format_args!("{mesh}: coordinates are relative to {x} {y} {z}, see {beside}"));
         }
     }
     print_surface(&product, console);

@@ -1,4 +1,4 @@
-//! Triangle's files in, and out.
+//! Triangulation of Triangle's files.
 
 use super::args::{KernelArg, TriangulateArgs};
 use super::console::Console;
@@ -9,7 +9,7 @@ use crate::io::{Destination, OutputSet};
 use crate::run::{self, Arithmetic, TriangulateOptions, TriangulateProduct};
 use crate::triangulation::refine::Shortfall;
 
-/// Whose format an output has.
+/// The family of formats that an output belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Family {
     Triangle,
@@ -22,7 +22,7 @@ const MESHES: [Format<Family>; 3] = [
     Format { extension: "ply", kind: Family::Mesh, companions: &[] },
 ];
 
-/// What is written of a `.poly`: as Triangle does, an `.ele` comes with the segments.
+/// Formats for a `.poly`: as with Triangle, an `.ele` is written with the segments.
 const OF_POLY: &[Format<Family>] = &formats(&["node", "poly"]);
 const OF_NODE: &[Format<Family>] = &formats(&["node"]);
 
@@ -41,13 +41,13 @@ const fn formats(beside_ele: &'static [&'static str]) -> [Format<Family>; 8] {
     ]
 }
 
-/// Triangulates what a `.node` or `.poly` file holds.
+/// Triangulates a `.node` or `.poly` file.
 pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     let path = &args.input;
     inputs::require([path])?;
     let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
     let formats = if is_poly { OF_POLY } else { OF_NODE };
-    // A .poly may have its vertices beside it.
+    // The vertices of a .poly may be in the .node next to it.
     let mut read = vec![path.clone()];
     read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
     let outputs = outputs::resolve(&args.output, formats, &read)?;
@@ -55,9 +55,9 @@ pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     if product.report.triangles_built == 0
         && let Some(mesh) = outputs.targets.iter().find(|target| target.kind == Family::Mesh)
     {
-        return Err(Error::format("all vertices are on one line or at one place: there is no triangle to write")
+        return Err(Error::format("all vertices are on one line or at one position: there is no triangle to write")
             .in_file(&mesh.path)
-            .cure("add a vertex beside the line; .node, .poly and .ele hold vertices without triangles, too"));
+            .cure("add a vertex off the line; .node, .poly and .ele can also store vertices without triangles"));
     }
     let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
     write(&outputs.set, &meshes, &files, &product, console)?;
@@ -82,7 +82,7 @@ fn options(args: &TriangulateArgs) -> TriangulateOptions {
     }
 }
 
-/// All files of a family that are written, with what comes with them; each once.
+/// Returns the files of a family that are written, with their companions, each once.
 fn files(targets: &[Target<Family>], formats: &'static [Format<Family>], family: Family) -> Vec<Target<Family>> {
     let mut files: Vec<Target<Family>> = Vec::new();
     for target in targets.iter().filter(|target| target.kind == family) {
@@ -95,7 +95,7 @@ fn files(targets: &[Target<Family>], formats: &'static [Format<Family>], family:
     files
 }
 
-/// Adds all files to the outputs.
+/// Writes the files of all families as outputs.
 fn write(
     outputs: &OutputSet,
     meshes: &[Target<Family>],
@@ -114,7 +114,7 @@ fn write(
     product.write(&files, &console.context())
 }
 
-/// Says what went in and what came out.
+/// Prints the counts of the input and of the result.
 fn print_report(product: &TriangulateProduct, max_added: Option<usize>, console: &Console) {
     let (report, triangulated) = (&product.report, &product.triangulated);
     let (given, between) = (report.vertices_given, report.vertices_for_quality);
@@ -125,29 +125,31 @@ fn print_report(product: &TriangulateProduct, max_added: Option<usize>, console:
         report.vertices_at_crossings
     ));
     if report.duplicates > 0 {
-        console
-            .line(format_args!("            {} at the place of an earlier one, without a triangle", report.duplicates));
+        console.line(format_args!(
+            "            {} at the position of an earlier one, without a triangle",
+            report.duplicates
+        ));
     }
     let edges = triangulated.segments.len();
     console.line(format_args!(
-        "segments    {} in, {edges} constrained edges out, the boundary among them",
+        "segments    {} in, {edges} constrained edges out, including the boundary",
         report.segments_given
     ));
     let (all, kept) = (report.triangles_built, triangulated.triangles.len());
-    let left_out = if kept < all { format!(" ({} outside or in holes eaten away)", all - kept) } else { String::new() };
+    let left_out = if kept < all { format!(" ({} outside or in holes removed)", all - kept) } else { String::new() };
     console.line(format_args!("triangles   {kept}{left_out}"));
     let limit = format!("left when {} vertices had been added (--max-added)", max_added.unwrap_or_default());
     for (why, text) in [
         (Shortfall::SmallAngle, "at small angles between segments"),
         (Shortfall::Limit, &limit),
-        (Shortfall::Coordinates, "too small for the coordinates to tell more vertices"),
+        (Shortfall::Coordinates, "too small for the coordinates to resolve more vertices"),
     ] {
         let count = report.shortfall.iter().filter(|&&other| other == why).count();
         if count > 0 {
-            console.warning(format_args!("{count} triangles are not as asked for: {text}"));
+            console.warning(format_args!("{count} triangles are not as requested: {text}"));
         }
     }
     if all == 0 {
-        console.warning("all vertices are on one line or at one place: there is no triangle");
+        console.warning("all vertices are on one line or at one position: there is no triangle");
     }
 }

@@ -57,7 +57,7 @@ fn lines_that_differ_in_height_are_told_by_file_and_feature() {
     let run = run_in(&folder, &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"]);
     run.works(&[
         "note: crossings of breaklines are rounded to 4.4e-16 m; no line is moved by more than half of that",
-        "warning: breaklines meet with different heights at 2 places, by up to 10.5 m (at 1.5 1.5)",
+        "warning: breaklines meet with different heights at 2 points, by up to 10.5 m (at 1.5 1.5)",
         "1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1; 20 stands",
         "3 3: 20 of l.geojson fid 0, 21 of l.geojson fid 1, part 2; 20 stands",
         "1 crossings between vertices",
@@ -119,7 +119,7 @@ fn what_is_refused_names_both_lines_and_leaves_nothing() {
     assert_eq!(files_of(folder.path()), before);
     run(&["--crossing-z", "error", "--crossing-tolerance", "11"]).works(&[]);
     run_in(&folder, &["check", "t.ply", "--crossing-z", "mean"]).fails(2, &["--crossing-z is for building a TIN"]);
-    run_in(&folder, &["check", "p.xyz", "--crossing-report", "r.txt"]).fails(2, &["`.txt` is no format", ".csv"]);
+    run_in(&folder, &["check", "p.xyz", "--crossing-report", "r.txt"]).fails(2, &["`.txt` is not a format", ".csv"]);
     run_in(&folder, &["check", "p.xyz", "--crossing-report", "no/r.csv"]).fails(1, &["the folder does not exist"]);
 }
 

@@ -36,10 +36,10 @@ fn what_cannot_be_done_names_what_can() {
         ("dem -of AAIGrid a.xyz -o d.asc", "hint: leave -of out"),
         ("dem -co COMPRESS=LZW a.xyz -o d.tif", "hint: leave it out: a GeoTIFF is tiled"),
         ("slope d.tif", "`gdaldem slope dem.tif OUT.tif`"),
-        ("a.xyz", "hint: `breakline info a.xyz` tells what is in it"),
-        ("tin a.xyz b.ply", "hint: if it is b.ply, which exists: -o b.ply --overwrite"),
+        ("a.xyz", "hint: `breakline info a.xyz` shows what is in it"),
+        ("tin a.xyz b.ply", "hint: to replace b.ply, which exists: -o b.ply --overwrite"),
         ("triangulate -tr 1 1 a.poly -o t.ele", "an option of this program has two dashes"),
-        ("tin a.xyz -o t.ply --class gras", "`gras` is no class"),
+        ("tin a.xyz -o t.ply --class gras", "`gras` is not a class"),
     ] {
         run(line).fails(2, &["error: ", hint]);
     }

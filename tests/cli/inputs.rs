@@ -13,7 +13,7 @@ fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {
     write("utm.las", 2, Some(25832));
     write("trees.las", 5, Some(25833));
     std::fs::write(folder.path().join("none.las"), las(&[], Some(3005))).unwrap();
-    let silent = "warning: trees.las: no point of it is used: it has none of class 2";
+    let silent = "warning: trees.las: none of its points is used: it has none of class 2";
     let tin = |files: &[&str], said: &[&str]| {
         let run = run_in(&folder, &[&["tin", "-o", "t.ply", "--overwrite"], files].concat());
         run.works(said);
@@ -23,14 +23,14 @@ fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {
         tin(&order, &[silent, "CRS         not known", "32 read from 2 files, 16 used"]);
     }
     // Two systems are none if one of them is nobody's.
-    tin(&["utm.las", "trees.las", "none.las"], &[silent, "warning: none.las: no point of it is used", "EPSG:25832"]);
+    tin(&["utm.las", "trees.las", "none.las"], &[silent, "warning: none.las: none of its points is used", "EPSG:25832"]);
     let run = run_in(&folder, &["tin", "utm.las", "trees.las", "--class", "2,5", "-o", "u.ply"]);
     run.fails(1, &["two coordinate systems"]);
     // Where no file has ground, all give points.
-    let said = tin(&["trees.las", "text.xyz"], &["warning: no point is of class 2 (ground): all classes", "25833"]);
-    assert!(!said.contains("no point of it is used"), "{said}");
-    let said = tin(&["trees.las"], &["warning: no point is of class 2"]);
-    assert!(!said.contains("no point of it is used"), "{said}");
+    let said = tin(&["trees.las", "text.xyz"], &["warning: no point has class 2 (ground): all classes", "25833"]);
+    assert!(!said.contains("none of its points is used"), "{said}");
+    let said = tin(&["trees.las"], &["warning: no point has class 2"]);
+    assert!(!said.contains("none of its points is used"), "{said}");
     assert!(!tin(&["utm.las", "ground.las"], &[]).contains("warning: "));
 }
 
@@ -94,7 +94,7 @@ fn sums_of_vertices_add_up() {
         let said = |what: &str| number_before(&run.stderr, what);
         let vertices = run.stderr.split("\nvertices    ").nth(1).unwrap();
         let count: i64 = vertices.split([' ', '\n']).next().unwrap().parse().unwrap();
-        let sum = said(" used;") - said(" at the place of another point") - said(" at a breakline's vertex")
+        let sum = said(" used;") - said(" at the position of another point") - said(" at a breakline's vertex")
             + said(" vertices, ").max(said(" vertices\n"))
             + said(" crossings between vertices")
             - said(" left out with triangles at the rim")

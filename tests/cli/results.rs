@@ -8,11 +8,11 @@ fn a_run_ends_with_a_summary_on_stderr_and_nothing_on_stdout() {
     let (points, lines) = (fixture("valley.laz"), fixture("breaklines.shp"));
     let run = run_in(&folder, &["tin", &points, "--breaklines", &lines, "--max-edge", "none", "-o", "t.ply"]);
     run.works(&[
-        "note: class 2 (ground) is used",
+        "note: points of class 2 (ground) are used",
         "62776 read, 59177 used",
         "40 withheld",
         "5: 2925, 6: 180, 9: 454",
-        "25 at the place of another point (the lowest is kept)",
+        "25 at the position of another point (the lowest is kept)",
         "9 in, 1334 edges out",
         "vertices    60492",
         "triangles   120954",
@@ -44,7 +44,7 @@ fn classes_are_chosen() {
     let run = run_in(&folder, &["tin", &points, "--class", "5,6", "-o", "t.ply"]);
     run.works(&["3105 used", "2: 59177, 9: 454"]);
     let run = run_in(&folder, &["tin", &points, "--class", "11", "-o", "u.ply"]);
-    run.fails(1, &["warning: no point is of class 11", "no point is left of 62776 read", "hint: ", "2, 5, 6, 9"]);
+    run.fails(1, &["warning: no point has class 11", "no point is left of 62776 read", "hint: ", "2, 5, 6, 9"]);
     // Text has no classes.
     run_in(&folder, &["tin", "a.xyz", "--class", "2", "-o", "v.ply"]).works(&["16 read, 16 used"]);
 }
@@ -62,7 +62,7 @@ fn the_longest_edge_is_100_metres_in_any_unit_and_said_so() {
     run.fails(1, &["no triangle is left: 18 have edges over 0.5 units", "--max-edge none"]);
     let run = run_in(&folder, &["tin", "a.xyz", "--a-srs", "EPSG:4326", "--force-degrees", "-o", "d.ply"]);
     // The points are a degree apart.
-    run.fails(1, &["18 have edges over 0.000898 degrees", "note: the plan is in units of the degree, heights"]);
+    run.fails(1, &["18 have edges over 0.000898 degrees", "note: x and y are in units of the degree, heights"]);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn duplicates_go_by_the_rule() {
     let folder = folder_with(&[("a.xyz", &doubled)]);
     for (rule, height) in [("lowest", "5"), ("highest", "20"), ("mean", "11"), ("first", "11"), ("last", "8")] {
         let run = run_in(&folder, &["tin", "a.xyz", "--duplicates", rule, "-o", "t.obj", "--overwrite"]);
-        run.works(&["3 at the place of another point"]);
+        run.works(&["3 at the position of another point"]);
         let text = String::from_utf8(bytes(&folder, "t.obj")).unwrap();
         assert!(text.lines().any(|line| line == format!("v 1 1 {height}")), "{rule}:\n{text}");
     }
@@ -91,7 +91,7 @@ fn a_breakline_height_wins_and_lines_come_from_attributes_and_rings() {
     let text = String::from_utf8(bytes(&folder, "t.obj")).unwrap();
     assert!(text.contains("v 1 1 11.5\n") && text.contains("v 2 2 11.5\n"), "{text}");
     let run = run_in(&folder, &["tin", "a.xyz", "--breaklines", "ring.geojson", "-o", "r.obj"]);
-    let lost = "note: r.obj: 3 edges on breaklines or clip lines are edges like all others here; .ply keeps them";
+    let lost = "note: r.obj: 3 edges on breaklines or clip lines are not marked in this format; .ply keeps them";
     run.works(&["1 in, 3 edges out", lost]);
     run_in(&folder, &["check", "r.obj"]).works(&["the Delaunay law is not checked"]);
 }
@@ -284,9 +284,7 @@ fn a_flaw_is_listed_and_ends_with_1() {
     let flaw = "face 0, edge 1: the vertex beyond lies in the circumcircle, at (8 0) (0 0)\n";
     assert_eq!(run.stdout, format!("{flaw}4 vertices, 2 triangles, 0 constrained edges: 1 flaws\n"));
     let run = run_in(&folder, &["check", "kite.obj"]);
-    run.works(&[
-        "note: kite.obj: the format does not tell breaklines from other edges: the Delaunay law is not checked",
-    ]);
+    run.works(&["note: kite.obj: the format does not store breaklines: the Delaunay law is not checked"]);
     let run = run_in(&folder, &["check", "turned.obj"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
     assert!(

@@ -45,7 +45,7 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
         (&["dem", "a.xyz", "-o", "t.tif", "--resolution", "1", "--align-to", "a.tif"], "cannot be used with"),
         (&["contour", "a.xyz", "-o", "t.shp", "--levels", "1,2", "--interval", "1"], "cannot be used with"),
         (&["hillshade", "a.xyz", "-o", "t.png", "--altitude", "91"], "between 0"),
-        (&["tin", "a.xyz", "-o", "a.xyz"], "no format that can be written"),
+        (&["tin", "a.xyz", "-o", "a.xyz"], "not a format that can be written"),
         (
             &["contour", "a.xyz", "--breaklines", "lines.geojson", "-o", "lines.geojson", "--overwrite"],
             "one of the inputs",
@@ -92,7 +92,7 @@ fn a_glob_or_a_name_without_a_file_is_an_error() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
     run_in(&folder, &["tin", "a.xyz", "tiles/*.laz", "-o", "t.ply"]).fails(1, &["no file matches `tiles/*.laz`"]);
     run_in(&folder, &["tin", "a.xyz", "b.xyz", "-o", "t.ply"]).fails(1, &["b.xyz: no such file"]);
-    run_in(&folder, &["tin", "[", "-o", "t.ply"]).fails(2, &["no valid glob"]);
+    run_in(&folder, &["tin", "[", "-o", "t.ply"]).fails(2, &["not a valid glob"]);
     let run = run_in(&folder, &["tin", "a.xyz", "--breaklines", "no.shp:Z", "-o", "t.ply"]);
     run.fails(1, &["no.shp:Z: no such file"]);
     assert_eq!(files_of(folder.path()), ["a.xyz"]);

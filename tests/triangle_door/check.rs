@@ -85,7 +85,7 @@ fn meshes_that_are_no_surface_are_listed_and_told_by_info() {
     run(&folder, "check a.off").ends(1, &[folded, "4 vertices, 2 triangles, 0 constrained edges: 1 flaws"]);
     run(&folder, "check b.obj").ends(1, &["vertex 2: a coordinate is not finite"]);
     run(&folder, "check c.ply").ends(1, &["the constrained edge 1 3 is not an edge of any face"]);
-    run(&folder, "info a.off").ends(0, &["triangles  2", "warning: a.off: this is no surface: ", folded]);
+    run(&folder, "info a.off").ends(0, &["triangles  2", "warning: a.off: this is not a surface: ", folded]);
     // Other verbs refuse it, with the same words.
     run(&folder, "dem a.off -o d.tif").ends(1, &["error: a.off: ", folded]);
 }

@@ -14,7 +14,7 @@ fn the_box_of_the_manual() {
         &[
             "vertices    8 (8 in, 0 added",
             "segments    8 in, 8 constrained edges out",
-            "triangles   8 (2 outside or in holes eaten away)",
+            "triangles   8 (2 outside or in holes removed)",
             "written     box.1.ele",
             "written     box.1.node",
             "written     box.1.poly",
@@ -211,7 +211,7 @@ fn contacts_are_no_crossings() {
 fn the_first_of_two_at_one_place_stands() {
     let text = "6 2\n1 0 0\n2 4 0\n3 4 0\n4 4 4\n5 0 4\n6 -0.0 0\n5\n1 6 3\n2 3 4\n3 4 5\n4 5 1\n5 2 3\n0\n";
     let folder = folder_with(&[("d.poly", text)]);
-    run(&folder, "triangulate d.poly -o d.1.ele").ends(0, &["2 at the place of an earlier one, without a triangle"]);
+    run(&folder, "triangulate d.poly -o d.1.ele").ends(0, &["2 at the position of an earlier one, without a triangle"]);
     let nodes = table(&folder, "d.1.node");
     assert_eq!((nodes[0][0], nodes[6][1].is_sign_negative()), (6.0, true));
     let used: BTreeSet<i32> =
@@ -246,7 +246,7 @@ fn regions_give_their_attribute_to_triangles() {
     let halves = "6 2\n1 0 0\n2 2 0\n3 4 0\n4 4 4\n5 2 4\n6 0 4\n\
                   7\n1 1 2\n2 2 3\n3 3 4\n4 4 5\n5 5 6\n6 6 1\n7 2 5\n0\n2\n1 1 1 2.5 0.1\n2 2 2 9\n";
     let folder = folder_with(&[("r.poly", halves)]);
-    let said = ["line 19: the region lies on a segment", "largest areas of regions are not used"];
+    let said = ["line 19: the region lies on a segment", "the largest areas of its regions are ignored"];
     run(&folder, "triangulate r.poly -o r.1.ele").ends(0, &said);
     let elements = table(&folder, "r.1.ele");
     assert_eq!(elements[0], [4.0, 3.0, 1.0]);
@@ -325,7 +325,7 @@ fn nothing_is_replaced_unasked() {
     let folder = folder_with(&[("box.poly", BOX), ("a.node", "mine")]);
     run(&folder, "triangulate box.poly -o a.ele").ends(1, &["error: a.node: the file exists", "--overwrite"]);
     run(&folder, "triangulate box.poly -o box.ele").ends(2, &["box.poly: the output is one of the inputs"]);
-    run(&folder, "triangulate box.poly -o b.dxf").ends(2, &["no format that can be written", ".node, .ele, .poly"]);
+    run(&folder, "triangulate box.poly -o b.dxf").ends(2, &["not a format that can be written", ".node, .ele, .poly"]);
     run(&folder, "triangulate box.txt -o b.ele").ends(1, &["box.txt: no such file"]);
     std::fs::write(folder.path().join("box.txt"), BOX).unwrap();
     run(&folder, "triangulate box.txt -o b.ele").ends(2, &["no file of Triangle", "hint: use .node or .poly"]);
@@ -455,7 +455,7 @@ fn refinement_without_an_end_stops_at_its_limit() {
     assert_eq!(files_of(folder.path()), ["eight.node"]);
     for switches in ["-q45S500", "-q45 --max-added 500"] {
         let bounded = run(&folder, &format!("triangulate {switches} eight.node -o e.1.ele --overwrite"));
-        bounded.works(&["triangles are not as asked for: left when 500 vertices had been added (--max-added)"]);
+        bounded.works(&["triangles are not as requested: left when 500 vertices had been added (--max-added)"]);
         assert_eq!(table(&folder, "e.1.node").len(), 1 + 508);
         assert_eq!(run(&folder, "check e.1.ele").code, 0);
     }

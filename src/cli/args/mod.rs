@@ -1,4 +1,5 @@
-//! What is typed. What it means is worked out elsewhere (`super::plan`, `super::outputs`, ...).
+//! The command line as it is typed. What it means is worked out elsewhere (`super::plan`,
+//! `super::outputs`, ...).
 
 mod parse;
 mod reading;
@@ -23,9 +24,9 @@ pub(super) use verbs::{
 
 /// Lidar and breaklines to TIN, DEM, contours and mesh
 ///
-/// Reads lidar (LAS, LAZ, COPC), text and shapefile points, builds a TIN in which every breakline
-/// holds, and writes meshes, rasters and contours of it. Lengths are in the units of the coordinate
-/// system and printed with them. Data goes to files (`info`: to stdout), messages to stderr.
+/// Reads points (LAS, LAZ, COPC, text, shapefiles), builds a TIN that follows every breakline, and
+/// writes meshes, rasters and contours. Lengths are in the units of the coordinate system and are
+/// printed with their unit. Data goes to files (`info`: to stdout), messages to stderr.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong usage.
 #[derive(Debug, Parser)]
@@ -46,31 +47,31 @@ Examples:
   breakline contour ground.ply --interval 1 -o contours.shp
   breakline demo
 
-`breakline VERB --help` tells defaults, interplay and an example of each verb.";
+`breakline VERB --help` lists the options of a verb, with defaults and an example.";
 
-/// The formats of the table, and examples.
+/// Returns the end of the long help: the table of formats, then examples.
 fn examples() -> String {
     formats::help() + EXAMPLES
 }
 
-/// How much is said, and how many cores work.
+/// How much is printed, and how many threads are used.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "General")]
 pub(super) struct ConsoleArgs {
     /// Print warnings and errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(super) quiet: bool,
-    /// Print what is found and done on the way
+    /// Print details of what is read and done
     #[arg(short, long, global = true)]
     pub(super) verbose: bool,
-    /// Threads to work with [default: one a core]
+    /// Number of threads [default: one per core]
     ///
     /// The results do not depend on it.
     #[arg(long, global = true, value_name = "N")]
     pub(super) threads: Option<NonZeroUsize>,
 }
 
-/// What to do.
+/// The verb, with its options.
 #[derive(Debug, Subcommand)]
 pub(super) enum Verb {
     Info(InfoArgs),

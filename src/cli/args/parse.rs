@@ -1,10 +1,10 @@
-//! Values of options that are more than a number or a name.
+//! Parsers for the values of options.
 
 use std::str::FromStr;
 
 use crate::data::Bounds;
 
-/// `xmin,ymin,xmax,ymax`, or with blanks between them
+/// A rectangle typed as `xmin,ymin,xmax,ymax`, with commas or blanks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::cli) struct Corners {
     pub(in crate::cli) min: [f64; 2],
@@ -33,7 +33,7 @@ impl FromStr for Corners {
 }
 
 impl Corners {
-    /// The box, unbounded in z.
+    /// Returns the box of this rectangle, unbounded in z.
     pub(in crate::cli) fn bounds(self) -> Bounds {
         Bounds { min: [self.min[0], self.min[1], f64::NEG_INFINITY], max: [self.max[0], self.max[1], f64::INFINITY] }
     }
@@ -57,7 +57,7 @@ impl FromStr for EdgeLength {
     }
 }
 
-/// A finite number.
+/// Parses a finite number.
 pub(in crate::cli) fn finite(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -65,7 +65,7 @@ pub(in crate::cli) fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Degrees of a triangle's smallest angle.
+/// Parses the smallest angle that a triangle may have, in degrees: above 0, below 60.
 pub(super) fn smallest_angle(text: &str) -> Result<f64, String> {
     match positive(text)? {
         value if value < 60.0 => Ok(value),
@@ -73,7 +73,7 @@ pub(super) fn smallest_angle(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A finite number above zero.
+/// Parses a finite number above zero.
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value > 0.0 => Ok(value),
@@ -81,7 +81,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A finite number from zero up.
+/// Parses a finite number that is not negative.
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value >= 0.0 => Ok(value),
@@ -89,7 +89,7 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-/// An angle from the horizon to the zenith.
+/// Parses an angle from the horizon (0) to the zenith (90), in degrees.
 pub(super) fn altitude(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if (0.0..=90.0).contains(&value) => Ok(value),

@@ -1,4 +1,4 @@
-//! How points are read, where their files leave that open.
+//! Options of reading points, for what the files themselves leave open.
 
 use clap::Args;
 
@@ -6,40 +6,43 @@ use crate::data::Columns;
 use crate::io::las::Cut;
 use crate::io::points::Options;
 
-/// How points are read.
+/// Options of reading points.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Points")]
 pub(in crate::cli) struct ReadArgs {
-    /// Columns of points as text, as `PNEZD`, `XYZ` or `2,1,3` [default: a header, or the first three]
+    /// Columns of text files, such as `PNEZD`, `XYZ` or `2,1,3` [default: from the header, else the
+    /// first three]
     ///
-    /// A letter for each column: E or X for the easting, N or Y for the northing, Z; P (point number), D
-    /// (description) and S (anything) are skipped. Or the numbers of the columns of x, y and z, from 1 on. A header is
-    /// skipped, then. `info` and the summary say which columns were taken.
+    /// Either one letter per column: E or X is the easting, N or Y the northing, Z the height; P
+    /// (point number), D (description) and S (anything else) are skipped. Or the numbers of the
+    /// columns of x, y and z, counted from 1. With this option a header line is skipped. `info` and
+    /// the summary show which columns were used.
     #[arg(long, value_name = "PNEZD|XYZ|2,1,3", value_parser = columns, conflicts_with = "parse")]
     pub(in crate::cli) columns: Option<Columns>,
 
-    /// Columns of points as text, in the letters of LAStools, as `sxyz`
+    /// Columns of text files in the letters of LAStools, such as `sxyz`
     ///
-    /// x, y, z and c (class) are taken; s and the letters of all other fields are skipped.
+    /// x, y, z and c (class) are used; s and the letters of all other fields are skipped.
     #[arg(long, value_name = "sxyz", value_parser = las_tools)]
     pub(in crate::cli) parse: Option<Columns>,
 
-    /// Take what is left of LAS and LAZ files that were cut
+    /// Use the remaining points of truncated LAS and LAZ files
     ///
-    /// Else it is an error if a file has fewer points than its header states. A warning says how many there are.
+    /// A warning says how many points there are. Without this option it is an error if a file has
+    /// fewer points than its header states.
     #[arg(long)]
     pub(in crate::cli) partial: bool,
 }
 
 impl ReadArgs {
-    /// What readers are to be told.
+    /// Returns the options for readers of points.
     pub(in crate::cli) fn options(&self) -> Options {
         let cut = if self.partial { Cut::Accept } else { Cut::Refuse };
         Options { columns: self.columns.or(self.parse), cut, ..Options::default() }
     }
 }
 
-/// `PNEZD` or `2,1,3`
+/// Parses `PNEZD` or `2,1,3`.
 fn columns(text: &str) -> Result<Columns, String> {
     if text.contains(|c: char| c.is_ascii_digit()) {
         return numbered(text);
@@ -61,7 +64,7 @@ fn numbered(text: &str) -> Result<Columns, String> {
     }
 }
 
-/// `sxyz`
+/// Parses `sxyz`.
 fn las_tools(text: &str) -> Result<Columns, String> {
     const SKIPPED: &str = "saitrnRGBHIhgukwpedloSC0123456789";
     if let Some(unknown) = text.chars().find(|&c| !"xyzc".contains(c) && !SKIPPED.contains(c)) {
@@ -72,7 +75,8 @@ fn las_tools(text: &str) -> Result<Columns, String> {
     Ok(Columns { x: one("x", 'x')?, y: one("y", 'y')?, z: one("z", 'z')?, class })
 }
 
-/// The number of the one column with such a letter.
+/// Returns the number of the only column whose letter satisfies `is_it`; an error if there is none
+/// or more than one.
 fn find(text: &str, axis: &str, is_it: impl Fn(char) -> bool) -> Result<usize, String> {
     let mut numbers = (1..).zip(text.chars()).filter(|&(_, c)| is_it(c)).map(|(number, _)| number);
     match (numbers.next(), numbers.next()) {

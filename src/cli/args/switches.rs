@@ -1,14 +1,16 @@
-//! Triangle's switches, as its users type them: several in one word, numbers right behind the letters.
+//! Triangle's switches as its users type them: several in one word, with numbers directly after the
+//! letters.
 
 use std::ffi::OsString;
 
 use crate::error::{Error, Result};
 
-/// Writes the words behind `triangulate` that are made of Triangle's switches `p`, `q`, `a`, `c`, `S`, `Q` and `V` only,
-/// like `-pq30a0.5S9000`, as the options that they mean. `-p` says nothing that the name of the file does not.
+/// Expands words such as `-pq30a0.5S9000` after `triangulate` into options of this program. The
+/// switches `p`, `q`, `a`, `c`, `S`, `Q` and `V` of Triangle are known; `-p` is dropped, since the
+/// name of the file says the same.
 ///
 /// # Errors
-/// If a word holds other switches.
+/// If a word contains other switches.
 pub(in crate::cli) fn expand_switches(words: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
     let mut is_over = false;
     let mut expanded = Vec::new();
@@ -28,13 +30,14 @@ pub(in crate::cli) fn expand_switches(words: impl IntoIterator<Item = OsString>)
     Ok(expanded)
 }
 
-/// Whether a word begins with one dash and a letter, but for those that are options of this program: `-o`, `-v` and `-h`.
+/// Returns true if a word begins with one dash and a letter, and is not one of this program's own
+/// options `-o`, `-v` and `-h`.
 fn is_switches(word: &str) -> bool {
     let first = word.strip_prefix('-').and_then(|rest| rest.chars().next());
     first.is_some_and(|first| first.is_ascii_alphabetic() && !matches!(first, 'o' | 'v' | 'h'))
 }
 
-/// What switches mean; `None` if one is something else.
+/// Returns the options that the switches mean; `None` if one is not known.
 fn options_of(mut rest: &str) -> Option<Vec<String>> {
     let mut options = Vec::new();
     while let Some(switch) = rest.chars().next() {
@@ -57,7 +60,7 @@ fn options_of(mut rest: &str) -> Option<Vec<String>> {
     Some(options)
 }
 
-/// The digits behind a switch, with an exponent if there is one, and what follows.
+/// Splits off the number at the start of a text, including its exponent if any, from what follows.
 fn split_number(text: &str) -> (&str, &str) {
     let digits = |text: &str| text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let mut end = digits(text);

@@ -7,51 +7,53 @@ use super::{ReadArgs, SurfaceArgs};
 use crate::cli::classes;
 use crate::triangulation::OnCrossing;
 
-/// Where the result goes.
+/// The files to write.
 #[derive(Debug, Clone, Args)]
 pub(in crate::cli) struct OutputArgs {
     /// File to write, format by extension (repeatable)
     ///
-    /// All files of a run appear at its end, or none. Pipes and devices, such as `/dev/stdout`, are written directly.
+    /// The files of a run appear together at its end, or not at all. Pipes and devices, such as
+    /// `/dev/stdout`, are written directly.
     #[arg(short, long, required = true, value_name = "OUT")]
     pub(in crate::cli) output: Vec<PathBuf>,
 
     /// Replace files that exist
     ///
-    /// They keep their mode; a symbolic link is followed, a read-only file refused.
+    /// The new files keep the mode of the old ones. A symbolic link is followed; a read-only file
+    /// is refused.
     #[arg(long)]
     pub(in crate::cli) overwrite: bool,
 }
 
-/// Size and place of a raster.
+/// Size and position of a raster.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Raster")]
 pub(in crate::cli) struct FrameArgs {
     /// Size of a cell [default: 1]
     ///
-    /// In the units of the coordinate system. Cells start at multiples of it, so that neighboring
-    /// rasters fit together.
+    /// In the units of the coordinate system. Cells start at multiples of this size, so that
+    /// neighboring rasters fit together.
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     pub(in crate::cli) resolution: Option<f64>,
 
     /// Extent of the raster [default: that of the surface]
     ///
-    /// Grown outward to whole cells. With commas or blanks between the values.
+    /// Enlarged to whole cells. The values are separated by commas or blanks.
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true)]
     pub(in crate::cli) te: Option<Corners>,
 
-    /// Raster whose cells are to be matched
+    /// Raster whose grid of cells is used
     ///
-    /// The cells are those of its grid, continued beyond its edges; the extent is that of the
-    /// surface, or of `--te`.
+    /// The grid continues beyond the edges of that raster; the extent is that of the surface, or
+    /// `--te`.
     #[arg(long, value_name = "RASTER", conflicts_with = "resolution")]
     pub(in crate::cli) align_to: Option<PathBuf>,
 }
 
-/// Tell what is in files: counts, bounds, classes, coordinate system, defects
+/// Show what is in files: counts, bounds, classes, coordinate system, defects
 ///
-/// Points, vector layers, rasters and meshes, each read to its end. A file that cannot be read is
-/// reported, the others are shown all the same, and the exit code is 1.
+/// Reads points, vector layers, rasters and meshes to their end. If a file cannot be read, that is
+/// reported, the other files are still shown, and the exit code is 1.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -62,7 +64,7 @@ pub(in crate::cli) struct InfoArgs {
     #[arg(required = true, value_name = "FILE")]
     pub(in crate::cli) files: Vec<PathBuf>,
 
-    /// Print a JSON array, one object a file, with exact numbers
+    /// Print a JSON array with one object per file and exact numbers
     #[arg(long)]
     pub(in crate::cli) json: bool,
 
@@ -70,13 +72,14 @@ pub(in crate::cli) struct InfoArgs {
     pub(in crate::cli) read: ReadArgs,
 }
 
-/// Select, clip and merge points, with all that their files say of them
+/// Select, clip and merge points, with all their attributes
 ///
-/// Points come in the order of the files. From LAS and LAZ to LAS and LAZ every byte of a point record stays: times, colors,
-/// extra bytes; coordinate system and other records of the first file come along. Files of different point formats, extra
-/// bytes, kinds of GPS time or coordinate systems do not go into one, nor do waveforms. Of different scales and offsets the
-/// first is taken that has the points of all; where there is none, `--round` is needed. To .xyz, .txt and .csv go the
-/// coordinates, to .csv the class, too.
+/// Points are written in the order of the files. From LAS and LAZ to LAS and LAZ every byte of a
+/// point record is kept: times, colors, extra bytes. The coordinate system and the other records
+/// come from the first file. Files with different point formats, extra bytes, kinds of GPS time or
+/// coordinate systems cannot be merged, nor can waveforms. If scales and offsets differ, the first
+/// that can represent all points exactly is used; if none can, `--round` is needed. Text (.xyz,
+/// .txt, .csv) gets the coordinates, .csv also the class.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -85,39 +88,41 @@ Example:
 pub(in crate::cli) struct PointsArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
-    /// Points from LAS, LAZ, COPC, text (x y z) and vector layers; LAS and LAZ are written from LAS, LAZ and COPC only.
+    /// Points from LAS, LAZ, COPC, text (x y z) and vector layers. LAS and LAZ can be written only
+    /// from LAS, LAZ and COPC.
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) output: OutputArgs,
 
-    /// Classes to write, as `2,8` or `ground` [default: all]
+    /// Classes to write, such as `2,8` or `ground` [default: all]
     ///
     /// Points of formats without classes are always written.
     #[arg(long, value_name = "CLASS,..", value_parser = classes::parse, value_delimiter = ',', help_heading = "Selection")]
     pub(in crate::cli) class: Vec<u8>,
 
-    /// Return numbers to write, as `1,2` [default: all]
+    /// Return numbers to write, such as `1,2` [default: all]
     #[arg(long = "return", value_name = "N,..", value_delimiter = ',', help_heading = "Selection")]
     pub(in crate::cli) returns: Vec<u8>,
 
-    /// Leave out points that are marked as withheld
+    /// Leave out points that are flagged as withheld
     #[arg(long, help_heading = "Selection")]
     pub(in crate::cli) drop_withheld: bool,
 
-    /// Clip to a rectangle, its border included
+    /// Clip to a rectangle, including its border
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Selection")]
     pub(in crate::cli) bounds: Option<Corners>,
 
-    /// Clip to polygons, their borders included (repeatable)
+    /// Clip to polygons, including their borders (repeatable)
     ///
-    /// What is inside of any polygon stays. Lines are taken for one polygon if they close to rings.
+    /// Points inside any of the polygons are kept. Lines that close to rings count as one polygon.
     #[arg(long, value_name = "FILE", help_heading = "Selection")]
     pub(in crate::cli) boundary: Vec<PathBuf>,
 
-    /// Move coordinates to the nearest step of the first file's scale
+    /// Round coordinates to the nearest step of the first file's scale
     ///
-    /// For files whose scales and offsets do not go together; by half a step at most.
+    /// For files whose scales and offsets do not fit together. No coordinate moves by more than
+    /// half a step.
     #[arg(long, help_heading = "Selection")]
     pub(in crate::cli) round: bool,
 
@@ -127,10 +132,10 @@ pub(in crate::cli) struct PointsArgs {
 
 /// Build a TIN of points and breaklines
 ///
-/// Every breakline is there, edge by edge; between them the triangulation is Delaunay, and the same
-/// whatever the order of the input. Formats: .ply (binary, with breaklines and coordinate system;
-/// what `dem`, `contour`, `hillshade`, `check` and `info` read back), .obj, .off, .stl (from a local
-/// origin, which is printed and written beside it).
+/// Every breakline becomes edges of the TIN; everywhere else the triangulation is Delaunay, and it
+/// does not depend on the order of the input. Formats: .ply (binary, with breaklines and coordinate
+/// system; `dem`, `contour`, `hillshade`, `check` and `info` can read it), .obj, .off, and .stl
+/// (relative to a local origin, which is printed and written to a file next to it).
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -142,15 +147,17 @@ pub(in crate::cli) struct TinArgs {
     pub(in crate::cli) output: OutputArgs,
 }
 
-/// Triangulate points and segments of the plane, with Triangle's files
+/// Triangulate points and segments in the plane, in Triangle's file formats
 ///
-/// Reads a .node or .poly file of Triangle (Shewchuk) and writes its constrained Delaunay triangulation;
-/// points are added only where segments cross, unless angles or areas are asked for. Of a .poly with segments, what is outside of its outer
-/// boundary or in a hole is eaten away; regional attributes go to the triangles. Vertices keep their
-/// numbers, attributes and markers; those at the place of an earlier one have no triangle.
+/// Reads a .node or .poly file of Triangle (Shewchuk) and writes its constrained Delaunay
+/// triangulation. Points are added only where segments cross, unless a smallest angle or a largest
+/// area is given. If a .poly has segments, triangles outside of its outer boundary or in a hole are
+/// removed, and each triangle gets the attribute of its region. Vertices keep their numbers,
+/// attributes and markers; a vertex at the position of an earlier one has no triangle.
 ///
-/// An .ele comes with its .node (and, of a .poly, its .poly) beside it, as Triangle writes them; .poly
-/// and .edge come with their .node. Of x.poly, write x.1.ele: inputs are never replaced.
+/// As with Triangle, an .ele is written together with its .node (and, if the input is a .poly, its
+/// .poly); .poly and .edge are written together with their .node. For x.poly, write x.1.ele: inputs
+/// are never replaced.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -167,7 +174,7 @@ pub(in crate::cli) struct TriangulateArgs {
 
     /// Keep the whole convex hull
     ///
-    /// Holes are eaten away all the same. Without segments the hull is always kept.
+    /// Holes are still removed. Without segments the hull is always kept.
     #[arg(long, help_heading = "Triangulation")]
     pub(in crate::cli) convex: bool,
 
@@ -177,9 +184,10 @@ pub(in crate::cli) struct TriangulateArgs {
 
     /// Add vertices until no angle is smaller (also `-q[DEGREES]`: 20)
     ///
-    /// Up to 20.7 degrees are always reached, up to about 33 nearly always; not where segments meet at
-    /// small angles. Triangles that fall short are counted. `-q`, `-a`, `-S`, `-p` and `-c` are written as
-    /// for Triangle, alone or in one word: `-pq30a0.5`; they are not `--quiet` here, which is `-Q`.
+    /// Up to 20.7 degrees are always reached, up to about 33 nearly always, except where segments
+    /// meet at small angles. Triangles with smaller angles are counted. `-q`, `-a`, `-S`, `-p` and
+    /// `-c` are typed as for Triangle, alone or in one word: `-pq30a0.5`. `-q` is not `--quiet`
+    /// here; that is `-Q`.
     #[arg(long, value_name = "DEGREES", value_parser = smallest_angle, help_heading = "Quality")]
     pub(in crate::cli) min_angle: Option<f64>,
 
@@ -187,18 +195,19 @@ pub(in crate::cli) struct TriangulateArgs {
     #[arg(long, value_name = "AREA", value_parser = positive, help_heading = "Quality")]
     pub(in crate::cli) max_area: Option<f64>,
 
-    /// Keep to the largest areas of the .poly's regions (also `-a`)
+    /// Apply the largest areas of the .poly's regions (also `-a`)
     #[arg(long, help_heading = "Quality")]
     pub(in crate::cli) region_areas: bool,
 
-    /// Stop after so many added vertices, and write what is there (also `-S[COUNT]`: 0)
+    /// Stop after this many added vertices, and write the result so far (also `-S[COUNT]`: 0)
     ///
-    /// Triangles that fall short are counted, then. Without this option it is an error if 1 000 000 are not
-    /// enough, and nothing is written: some angles are never reached, whatever the number.
+    /// Triangles that do not meet the limits are then counted. Without this option it is an error
+    /// if 1 000 000 vertices are not enough, and nothing is written: some angles are never reached,
+    /// however many vertices are added.
     #[arg(long, value_name = "COUNT", help_heading = "Quality")]
     pub(in crate::cli) max_added: Option<usize>,
 
-    /// The arithmetic that decides on which side a point lies
+    /// The arithmetic that decides on which side of a line a point lies
     #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]
     pub(in crate::cli) kernel: KernelArg,
 }
@@ -228,16 +237,16 @@ pub(in crate::cli) enum KernelArg {
     /// Exact, as fast as floating point where that is certain
     #[default]
     Adaptive,
-    /// Exact, with numbers of any length, and slow
+    /// Exact, with numbers of any length; slow
     Exact,
-    /// Plain floating point, for experiments: a wrong result is an error, and it may not come to an end
+    /// Plain floating point, for experiments: a wrong result is an error, and the run may not end
     Fast,
 }
 
 /// Write a DEM: heights of the TIN at the centers of cells
 ///
-/// Linear on the triangles; nodata (-9999) where there is none. GeoTIFF, Float32, tiled, DEFLATE.
-/// Written block by block by all cores, so that its size is not limited by memory.
+/// Heights are linear on each triangle, and nodata (-9999) where there is none. GeoTIFF, Float32,
+/// tiled, DEFLATE. It is computed block by block on all cores and may be larger than memory.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -255,8 +264,9 @@ pub(in crate::cli) struct DemArgs {
 
 /// Draw contours of a TIN or of a DEM
 ///
-/// Straight from the triangles (of a DEM: between the centers of its cells), joined as long as they
-/// go, high ground on the right. .shp (PolyLineZ with field ELEV) or .geojson.
+/// Contours are drawn exactly on the triangles (of a DEM: between the centers of its cells), joined
+/// to the longest possible lines, with higher ground on the right. .shp (PolyLineZ with field ELEV)
+/// or .geojson.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -274,11 +284,11 @@ pub(in crate::cli) struct ContourArgs {
     #[arg(long, value_name = "HEIGHT", value_parser = positive, allow_negative_numbers = true, help_heading = "Levels")]
     pub(in crate::cli) interval: Option<f64>,
 
-    /// A height that contours are counted from
+    /// A height at which there is a contour; the others follow from the interval
     #[arg(long, value_name = "HEIGHT", value_parser = finite, default_value = "0", allow_hyphen_values = true, help_heading = "Levels")]
     pub(in crate::cli) base: f64,
 
-    /// These heights instead of an interval, as `100,105.5`
+    /// These heights instead of an interval, such as `100,105.5`
     #[arg(
         long,
         value_name = "HEIGHT,..",
@@ -293,8 +303,8 @@ pub(in crate::cli) struct ContourArgs {
 
 /// Shade a TIN or a DEM as the sun would
 ///
-/// Brightness 1 to 255, 0 where there is no surface. GeoTIFF (.tif) or .png. A DEM keeps its cells:
-/// `--resolution`, `--te` and `--align-to` are for TINs.
+/// Brightness is 1 to 255, and 0 where there is no surface. GeoTIFF (.tif) or .png. The hillshade
+/// of a DEM has the same cells: `--resolution`, `--te` and `--align-to` are for TINs.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -308,27 +318,28 @@ pub(in crate::cli) struct HillshadeArgs {
     #[command(flatten)]
     pub(in crate::cli) frame: FrameArgs,
 
-    /// Where the light comes from, in degrees clockwise from north
+    /// Direction that the light comes from, in degrees clockwise from north
     #[arg(long, value_name = "DEGREES", value_parser = finite, default_value = "315", allow_hyphen_values = true, help_heading = "Light")]
     pub(in crate::cli) azimuth: f64,
 
-    /// How high the light stands above the horizon, in degrees
+    /// Angle of the light above the horizon, in degrees
     #[arg(long, value_name = "DEGREES", value_parser = altitude, allow_negative_numbers = true, default_value = "45", help_heading = "Light")]
     pub(in crate::cli) altitude: f64,
 
-    /// What heights are multiplied by [default: 1, or what brings them to the units of the plan]
+    /// Factor for heights [default: 1, or what converts them to the units of x and y]
     ///
-    /// Heights in feet over a plan in metres count 0.3048 unless this says otherwise.
+    /// By default, heights in feet over coordinates in metres are multiplied by 0.3048.
     #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Light")]
     pub(in crate::cli) z_factor: Option<f64>,
 }
 
-/// Prove a TIN right, or list its flaws
+/// Prove a TIN correct, or list its flaws
 ///
-/// Looks at a mesh from a file (.ply, .obj, .off, or .ele with its .node), or at the TIN of points and
-/// breaklines: links, manifold, orientation without overlaps, Delaunay between breaklines. The breaklines of an
-/// .ele are the segments of the .poly beside it; .obj and .off do not tell them, and are not asked for the Delaunay
-/// law. Flaws count vertices, faces and edges from 0 and give their places. Exit code 1 when there is any.
+/// Checks a mesh from a file (.ply, .obj, .off, or .ele with its .node), or the TIN of points and
+/// breaklines: links between neighbors, manifold, orientation, no overlaps, Delaunay between
+/// breaklines. The breaklines of an .ele are the segments of the .poly next to it; .obj and .off
+/// have no breaklines, and the Delaunay law is not checked for them. Flaws number vertices, faces
+/// and edges from 0 and give their positions. The exit code is 1 if there is any.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -338,15 +349,15 @@ pub(in crate::cli) struct CheckArgs {
     #[command(flatten)]
     pub(in crate::cli) surface: SurfaceArgs,
 
-    /// Replace a crossing report that exists
+    /// Replace an existing crossing report
     #[arg(long)]
     pub(in crate::cli) overwrite: bool,
 }
 
 /// Try everything on a small valley that comes with the program
 ///
-/// Writes the data into a folder, then runs `info`, `tin`, `dem`, `hillshade`, `contour` and `check`
-/// on it and prints each command. What is there is replaced.
+/// Writes the data to a folder, then runs `info`, `tin`, `check`, `dem`, `hillshade` and `contour`
+/// on it and prints each command. Existing files are replaced.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:

@@ -9,7 +9,7 @@ use crate::run::units::neat;
 
 pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     let MeshFacts { surface, crs, flaw } = facts;
-    let no_surface = flaw.map(|flaw| format!("this is no surface: {flaw}; `breakline check` lists all flaws"));
+    let no_surface = flaw.map(|flaw| format!("this is not a surface: {flaw}; `breakline check` lists all flaws"));
     let mut sheet = Sheet::with_warnings(no_surface.into_iter().collect());
     sheet.silent("kind", "mesh");
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
@@ -25,7 +25,7 @@ pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     sheet
 }
 
-/// STL has single triangles and no exact coordinates.
+/// Returns the facts about an STL file, which has unconnected triangles without exact coordinates.
 pub(super) fn of_solid(solid: &Solid) -> Sheet {
     let mut sheet = Sheet::default();
     sheet.silent("kind", "mesh");

@@ -1,4 +1,4 @@
-//! What is in files, told to people or to programs.
+//! The facts about files, as text or as JSON.
 
 mod layer;
 mod mesh;
@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::io::formats;
 use crate::run::{self, Facts};
 
-/// Tells what is in files. A file that cannot be read does not keep the others from being told.
+/// Prints what is in files. A file that cannot be read does not stop the others from being printed.
 pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
     let mut files = inputs::expand(&args.files, console)?;
     drop_parts(&mut files, console);
@@ -50,7 +50,8 @@ pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
     Ok(exit)
 }
 
-/// `FOLDER/*` names the parts of shapefiles and the like, too; they are told with the `.shp`.
+/// Removes files that belong to another of the files, such as the parts of shapefiles that
+/// `FOLDER/*` matches; they are read with the `.shp`.
 fn drop_parts(files: &mut Vec<PathBuf>, console: &Console) {
     // Names are compared in lower case: `A.SHP` has `A.DBF`.
     let lower = |path: &Path| path.to_string_lossy().to_lowercase();

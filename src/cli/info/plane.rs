@@ -3,7 +3,8 @@ use std::path::Path;
 use super::Sheet;
 use crate::run::PlaneFacts;
 
-/// A file of Triangle's: vertices and segments of the plane, or lists about triangles.
+/// Returns the facts about a file of Triangle: vertices and segments of the plane, or lists about
+/// triangles.
 pub(super) fn sheet(path: &Path, facts: &PlaneFacts) -> Sheet {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let mut sheet = Sheet::default();

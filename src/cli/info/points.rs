@@ -6,7 +6,7 @@ use crate::cli::summary::counted;
 use crate::data::{Columns, Lattice};
 use crate::run::PointFacts;
 
-/// The names of the flags of a point, in the order in which they are counted.
+/// Names of the flags of a point, in the order in which they are counted.
 const FLAGS: [&str; 4] = ["synthetic", "key_point", "withheld", "overlap"];
 
 pub(super) fn sheet(facts: &PointFacts) -> Sheet {

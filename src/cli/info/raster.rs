@@ -19,7 +19,7 @@ pub(super) fn sheet(facts: &RasterFacts) -> Sheet {
     sheet.crs(facts.crs.as_ref());
     match facts.nodata {
         Some(nodata) if nodata.is_finite() => sheet.plain("nodata", nodata),
-        // JSON has no such numbers.
+        // JSON has no infinity and no NaN.
         Some(nodata) => sheet.plain("nodata", nodata.to_string()),
         None => sheet.row("nodata", "not stated", Value::Null),
     }

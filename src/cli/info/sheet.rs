@@ -7,7 +7,7 @@ use crate::crs::{Crs, CrsKind};
 use crate::data::Bounds;
 use crate::run::units::neat;
 
-/// What is known of a file: every fact is stated once, for people and for programs.
+/// The facts about a file, each stated once for text and for JSON.
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
     rows: Vec<Row>,
@@ -17,23 +17,23 @@ pub(super) struct Sheet {
 #[derive(Debug)]
 struct Row {
     key: &'static str,
-    /// `None` where only programs want to know.
+    /// `None` if the fact appears only in JSON.
     text: Option<String>,
     value: Value,
 }
 
 impl Sheet {
-    /// No fact yet.
+    /// A sheet with warnings and no facts yet.
     pub(super) fn with_warnings(warnings: Vec<String>) -> Self {
         Sheet { rows: Vec::new(), warnings }
     }
 
-    /// A fact in words and as a value.
+    /// Adds a fact with a text and a value.
     pub(super) fn row(&mut self, key: &'static str, text: impl Into<String>, value: impl Into<Value>) {
         self.rows.push(Row { key, text: Some(text.into()), value: value.into() });
     }
 
-    /// A fact that reads the same for both.
+    /// Adds a fact whose text is its value.
     pub(super) fn plain(&mut self, key: &'static str, value: impl Into<Value>) {
         let value = value.into();
         let text = match &value {
@@ -44,26 +44,26 @@ impl Sheet {
         self.rows.push(Row { key, text: Some(text), value });
     }
 
-    /// A fact that only programs want to know.
+    /// Adds a fact that appears only in JSON.
     pub(super) fn silent(&mut self, key: &'static str, value: impl Into<Value>) {
         self.rows.push(Row { key, text: None, value: value.into() });
     }
 
-    /// The extent, or that there is none.
+    /// Adds the extent, or that there is none.
     pub(super) fn bounds(&mut self, bounds: Bounds) {
         if bounds.is_empty() {
             return self.row("bounds", "none", Value::Null);
         }
         let axis = |i: usize, name: &str| format!("{name} {} .. {}", neat(bounds.min[i]), neat(bounds.max[i]));
         let mut text = format!("{}, {}", axis(0, "x"), axis(1, "y"));
-        // Without a single height the box is inside out.
+        // Without any height the box is empty in z.
         if bounds.min[2] <= bounds.max[2] {
             text += &format!(", {}", axis(2, "z"));
         }
         self.row("bounds", text, json!({ "min": finite(bounds.min), "max": finite(bounds.max) }));
     }
 
-    /// The coordinate system, or that there is none.
+    /// Adds the coordinate system, or that there is none.
     pub(super) fn crs(&mut self, crs: Option<&Crs>) {
         let Some(crs) = crs else { return self.row("crs", "not stated", Value::Null) };
         let kind = match crs.kind {
@@ -84,7 +84,7 @@ impl Sheet {
         self.row("crs", crs.describe(), value);
     }
 
-    /// For people; warnings are said elsewhere.
+    /// Returns the facts as text; warnings are printed elsewhere.
     pub(super) fn to_text(&self, name: &str) -> String {
         let mut text = format!("{}\n", escape::line(name));
         for row in &self.rows {
@@ -96,7 +96,7 @@ impl Sheet {
         text
     }
 
-    /// For programs.
+    /// Returns the facts and the warnings as JSON.
     pub(super) fn to_json(&self, name: &str) -> Value {
         let mut object = Map::new();
         object.insert("file".to_owned(), json!(name));
@@ -108,7 +108,7 @@ impl Sheet {
     }
 }
 
-/// Numbers that JSON can hold; null where there is none.
+/// Returns coordinates as JSON numbers; null for those that are not finite.
 fn finite(values: [f64; 3]) -> [Option<f64>; 3] {
     values.map(|value| Some(value).filter(|value| value.is_finite()))
 }
