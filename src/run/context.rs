@@ -1,4 +1,4 @@
-//! What surrounds a run: who is told of progress and notices, and the flag that ends it early.
+//! The context of a run: the monitor of its progress and notices, and the flag that cancels it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -6,20 +6,22 @@ use std::sync::{Mutex, PoisonError};
 use super::notice::Notice;
 use crate::error::{Error, Result};
 
-/// A flag that nobody sets.
+/// A flag that is never set.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// The monitor of a run and the flag that ends it early. By default nothing is reported, and a run goes on to its end.
+/// The monitor of a run and the flag that cancels it. By default nothing is reported and nothing is
+/// canceled.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
-    /// Told of progress and of notices, as they come.
+    /// Receives progress and notices as they occur.
     pub monitor: &'a dyn Monitor,
-    /// Set to true by any thread, it ends a run within a fraction of a second, with an error of the kind
-    /// [`Canceled`](crate::error::Kind::Canceled) and without an output.
+    /// The flag that cancels the run. When any thread sets it to true, the run returns within a
+    /// fraction of a second an error of the kind [`Canceled`](crate::error::Kind::Canceled), and
+    /// nothing is written.
     pub cancel: &'a AtomicBool,
 }
 
-/// Receives what a run reports on the way.
+/// Receives progress and notices while a run works.
 ///
 /// ```
 /// use breakline::run::{Monitor, Notice, Progress, Size, Stage};
@@ -38,16 +40,18 @@ pub struct Context<'a> {
 /// }
 /// ```
 pub trait Monitor: Sync {
-    /// Called when a stage of the work begins. What is returned counts its items, and is dropped at its end.
+    /// Called when a stage of the work begins. The returned value counts the items of the stage,
+    /// and is dropped when the stage ends.
     fn start(&self, stage: Stage, size: Size) -> Box<dyn Progress>;
 
-    /// Called with everything that was assumed or looks odd, as it is found.
+    /// Called for everything that is assumed or looks wrong, as soon as it is found.
     fn notice(&self, notice: &Notice);
 }
 
-/// Counts the items of a stage that are done. `()` counts nothing.
+/// Counts the items of a stage. `()` counts nothing.
 pub trait Progress: Send + Sync {
-    /// Adds items that are done; called from many threads, some times a second to some thousand times.
+    /// Adds items that are done. Called from many threads, between a few and some thousand times a
+    /// second.
     fn add(&self, items: u64);
 }
 
@@ -55,42 +59,42 @@ pub trait Progress: Send + Sync {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Points are read; counted in points.
+    /// Points are read, counted in points.
     ReadingPoints,
-    /// Points are read and written; counted in points read.
+    /// Points are read and written, counted in points read.
     WritingPoints,
     /// A raster is read.
     ReadingCells,
     /// A mesh is read.
     ReadingTriangles,
-    /// A file is read of which no items are counted.
+    /// A file is read, without a count.
     Reading,
     /// Points and lines are triangulated.
     Triangulating,
-    /// The surface is checked; counted in faces, once for each law.
+    /// The surface is checked, counted in faces, once for each law.
     CheckingFaces,
-    /// A mesh is written; counted in faces.
+    /// A mesh is written, counted in faces.
     WritingFaces,
-    /// A raster is computed and written; counted in cells.
+    /// A raster is computed and written, counted in cells.
     WritingCells,
-    /// A hillshade is computed and written; counted in cells.
+    /// A hillshade is computed and written, counted in cells.
     ShadingCells,
-    /// The triangles that contours cross are found.
+    /// The triangles that contours cross are searched.
     FindingContours,
-    /// Contours are drawn and written; counted in edges of contours.
+    /// Contours are drawn and written, counted in edges of contours.
     DrawingContours,
-    /// Files are written of which no items are counted.
+    /// Files are written, without a count.
     Writing,
 }
 
-/// The number of items of a stage, as far as it is known when it begins.
+/// The number of items of a stage, if it is known when the stage begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Size {
-    /// So many items.
+    /// This many items.
     Items(u64),
-    /// Items are counted, but how many come is not known.
+    /// Items are counted, but their number is not known.
     Unknown,
-    /// Nothing is counted.
+    /// No items are counted.
     Uncounted,
 }
 
@@ -131,21 +135,21 @@ impl<'a> Context<'a> {
         if self.cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) }
     }
 
-    /// Begins a stage, unless the run was canceled before.
+    /// Begins a stage; returns an error if the run is canceled.
     pub(super) fn start(&self, stage: Stage, size: Size) -> Result<Work<'a>> {
         self.check()?;
         Ok(Work { progress: self.monitor.start(stage, size), context: *self })
     }
 }
 
-/// A stage that goes on until this is dropped.
+/// A stage in progress; it ends when this is dropped.
 pub(super) struct Work<'a> {
     progress: Box<dyn Progress>,
     context: Context<'a>,
 }
 
 impl<'a> Work<'a> {
-    /// A stage that nobody is told of.
+    /// A stage that is not reported.
     pub(super) fn silent(context: &Context<'a>) -> Self {
         Work { progress: Box::new(()), context: *context }
     }
@@ -173,7 +177,7 @@ impl<'a> Journal<'a> {
         Journal { context: *context, notices: Mutex::default() }
     }
 
-    /// Hands a notice to the monitor and keeps it.
+    /// Passes a notice to the monitor and keeps it.
     pub(super) fn add(&self, notice: Notice) {
         self.context.monitor.notice(&notice);
         self.notices.lock().unwrap_or_else(PoisonError::into_inner).push(notice);
@@ -184,7 +188,7 @@ impl<'a> Journal<'a> {
         self.context.start(stage, size)
     }
 
-    /// The notices so far; leaves none.
+    /// Removes and returns the notices so far.
     pub(super) fn take(&self) -> Vec<Notice> {
         std::mem::take(&mut self.notices.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -200,7 +204,7 @@ mod tests {
     };
     use std::path::Path;
 
-    /// Cancels when a stage begins, and notes which there were.
+    /// Cancels when a given stage begins, and lists the stages.
     struct Canceler {
         cancel: AtomicBool,
         at: Option<Stage>,

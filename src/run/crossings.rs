@@ -1,4 +1,4 @@
-//! Breaklines that meet with different heights: notices, and a table.
+//! Notices and a table of breaklines that meet with different heights.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use super::units::Units;
 use crate::terrain::{CrossingHeights, TinReport};
 use crate::triangulation::Rounding;
 
-/// So many crossings are in a notice.
+/// The number of crossings in a notice.
 const LISTED: usize = 5;
 
 /// Names of the lines of a surface: file, feature id and part.
@@ -20,7 +20,7 @@ pub struct LineNames {
     lines: Vec<LineName>,
 }
 
-/// Several lines may come from one, at the border of a window.
+/// Several lines of the surface may come from one line, at the border of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct LineName {
     file: usize,
@@ -38,15 +38,17 @@ impl LineNames {
         self.lines.push(LineName { file, fid: line.fid, part: line.part });
     }
 
-    /// The name of a line, as "edges.shp fid 12, part 2"; empty if there is no such line.
+    /// Returns the name of a line, such as "edges.shp fid 12, part 2"; empty if there is no such
+    /// line.
     pub fn name(&self, line: usize) -> String {
         let Some(LineName { file, fid, part }) = self.lines.get(line) else { return String::new() };
         let part = part.map(|part| format!(", part {part}")).unwrap_or_default();
         format!("{} fid {fid}{part}", self.files[*file].display())
     }
 
-    /// Writes the points where lines meet with different heights as a table, comma separated: for each point a row for
-    /// every line above the lowest. Numbers read back are the same doubles.
+    /// Writes a comma separated table of the points where lines meet with different heights. Each
+    /// point has one row for every line above the lowest. Numbers are written such that reading
+    /// them gives the same doubles.
     ///
     /// # Errors
     /// If `out` cannot be written to.
@@ -66,20 +68,20 @@ impl LineNames {
         Ok(())
     }
 
-    /// `edges.shp,12,2`
+    /// Formats a line as `edges.shp,12,2`.
     fn columns(&self, line: usize) -> String {
         let Some(LineName { file, fid, part }) = self.lines.get(line) else { return ",,".to_owned() };
         format!("{},{fid},{}", quoted(&self.files[*file]), part.unwrap_or(1))
     }
 }
 
-/// A name as a field of a table.
+/// Formats a name as a field of a table, in quotes if necessary.
 fn quoted(path: &Path) -> String {
     let text = path.to_string_lossy();
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into_owned() }
 }
 
-/// Adds notices of crossings that were rounded, and of lines that meet with different heights.
+/// Adds notices about rounded crossings, and about lines that meet with different heights.
 pub(super) fn note(report: &TinReport, names: &LineNames, units: &Units, journal: &Journal) {
     if let Some(Rounding { unit, on_grid }) = report.rounding {
         journal.add(Notice::CrossingsRounded { unit: unit.map(|unit| units.length(unit)), on_grid });

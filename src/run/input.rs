@@ -1,4 +1,4 @@
-//! Where input comes from: files, or memory.
+//! Input from files or from memory.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -10,16 +10,16 @@ use crate::error::{Error, Result};
 /// The name that stands for the standard input.
 pub const STDIN: &str = "-";
 
-/// Points that are handed over at a time.
+/// Points per batch.
 const BATCH: usize = 1 << 16;
 
 /// Input from a file, or from memory. Cheap to clone.
 #[derive(Debug, Clone)]
 pub enum Input<T> {
-    /// A file of any format that is read; `-` is the standard input, where points are read. Of a vector layer
-    /// `FILE:FIELD` takes the heights from an attribute.
+    /// A file of any readable format. `-` reads points from the standard input; `FILE:FIELD` takes
+    /// the heights of a vector layer from an attribute.
     File(PathBuf),
-    /// What is in memory already.
+    /// Data in memory.
     Memory(Arc<T>),
 }
 
@@ -42,7 +42,7 @@ impl<T> From<&str> for Input<T> {
 }
 
 impl<T> Input<T> {
-    /// The path of the file; for memory, a name for messages.
+    /// Returns the path of the file; for memory, a name for messages.
     pub fn path(&self) -> &Path {
         match self {
             Input::File(path) => path,
@@ -50,7 +50,7 @@ impl<T> Input<T> {
         }
     }
 
-    /// Returns true if it can be read only once.
+    /// Returns true if the input can be read only once.
     pub(super) fn is_read_once(&self) -> bool {
         match self {
             Input::File(path) => is_read_once(path),
@@ -74,7 +74,7 @@ pub struct MemoryPoints {
 }
 
 impl Input<MemoryPoints> {
-    /// Points in memory, without classes.
+    /// An input of points in memory, without classes.
     pub fn of_points(points: &[[f64; 3]], crs: Option<Crs>) -> Self {
         let axis = |i: usize| points.iter().map(|p| p[i]).collect();
         let points = PointBatch { x: axis(0), y: axis(1), z: axis(2), ..PointBatch::default() };
@@ -90,6 +90,8 @@ pub(super) struct MemorySource {
 }
 
 impl MemorySource {
+    /// A stream of these points.
+    ///
     /// # Errors
     /// If columns differ in length.
     pub(super) fn new(points: Arc<MemoryPoints>) -> Result<Self> {

@@ -1,7 +1,8 @@
-//! What a verb does between reading and writing: from a request to a product, without a command line.
+//! The verbs as functions: from a request to a product, without a command line.
 //!
-//! The program, bindings for other languages and viewers call this. A request is a struct of options, each with a
-//! documented default; a product is a value that the caller keeps, asks or writes.
+//! The program, bindings for other languages and viewers call these functions. A request is a
+//! struct of options, each with a documented default. A product is a value that the caller can
+//! keep, query or write.
 //!
 //! | verb | request | function | product |
 //! |---|---|---|---|
@@ -12,7 +13,7 @@
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`] | [`PointsReport`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
-//! | tell what is in a file | a path | [`facts()`] | [`Facts`] |
+//! | count what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate Triangle's files | [`TriangulateOptions`] | [`triangulate()`] | [`TriangulateProduct`] |
 //!
 //! # A DEM of points in memory
@@ -25,7 +26,7 @@
 //! let tin = TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() };
 //! let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
 //!
-//! let context = Context::default(); // nothing is reported, nobody cancels
+//! let context = Context::default(); // nothing is reported or canceled
 //! let surface = run::triangles(&request, &context)?;
 //! let cells = run::dem(&surface, &FrameOptions { resolution: Some(5.0), ..FrameOptions::default() }, &context)?;
 //! let grid = cells.collect(&context)?;
@@ -56,9 +57,10 @@
 //!
 //! # Progress, notices, cancellation
 //!
-//! Every function takes a [`Context`]: a [`Monitor`], which is told of progress and of everything that is assumed or
-//! looks odd (a typed [`Notice`]), and a flag that ends the work early. A canceled run returns an error of the kind
-//! [`Canceled`](crate::error::Kind::Canceled), and nothing is written.
+//! Every function takes a [`Context`]. It contains a [`Monitor`], which receives progress and a
+//! typed [`Notice`] for everything that is assumed or looks wrong, and a flag that cancels the run.
+//! A canceled run returns an error of the kind [`Canceled`](crate::error::Kind::Canceled), and
+//! nothing is written.
 
 mod cells;
 mod check;

@@ -1,4 +1,4 @@
-//! What was assumed, and what looks odd, as data.
+//! Notices: what was assumed and what looks wrong, as data.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -6,11 +6,12 @@ use std::time::Duration;
 use super::units::Quantity;
 use crate::crs::Crs;
 
-/// Something that was assumed, or that looks odd. The command line has a text for each; other callers can have others.
+/// Something that was assumed or that looks wrong. The command line has a text for each; other
+/// callers can use their own.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Notice {
-    /// A file of points was opened; its format.
+    /// A file of points was opened; with its format.
     Opened(PathBuf, String),
     /// A file among several has no classes: all of its points are used.
     WithoutClasses(PathBuf),
@@ -23,51 +24,51 @@ pub enum Notice {
         /// Its records.
         records: usize,
     },
-    /// All points of a file were read; how many.
+    /// All points of a file were read; with their number.
     PointsRead(PathBuf, u64),
-    /// A reader has something to say about a file.
+    /// A warning of a reader about a file.
     Reader(PathBuf, String),
     /// All points may not fit into memory.
     LittleMemory {
         /// Bytes that they would take.
         need: u64,
-        /// Bytes that are left.
+        /// Bytes that are free.
         left: u64,
-        /// What sets the limit: "on this machine".
+        /// What sets the limit, such as "on this machine".
         limit: &'static str,
     },
-    /// No point of a file is used, among several; the classes that are used, if not all are.
+    /// One of several files has no point that is used; with the classes that are used, if not all.
     NoPointUsed(PathBuf, Option<Vec<u8>>),
-    /// No point has this class, which was asked for.
+    /// No point has this class, which was requested.
     NoPointOfClass(u8),
     /// Ground points (class 2) were found and are used alone.
     GroundUsed,
-    /// So many points from files without classes are used beside ground points.
+    /// This many points from files without classes are used in addition to ground points.
     PointsWithoutClassUsed(u64),
     /// There are no ground points: all classes are used.
     AllClassesUsed,
-    /// A file states another coordinate system than the one that was assigned.
+    /// A file states a coordinate system that differs from the assigned one.
     Reassigned {
         /// The file.
         path: PathBuf,
-        /// What it states.
+        /// The system that the file states.
         stated: Box<Crs>,
-        /// What is taken.
+        /// The system that is used.
         assigned: Box<Crs>,
     },
-    /// A file states no coordinate system: that of the others is taken.
+    /// A file states no coordinate system: that of the other files is used.
     SystemOfOthers(PathBuf, Box<Crs>),
     /// No coordinate system is known: lengths are in the units of the data.
     NoSystem,
-    /// Coordinates in the plane and heights have different units; their names.
+    /// Coordinates in the plane and heights have different units; with the names of both.
     DifferentUnits(String, String),
-    /// Points or lines are reprojected, from one system to the other.
+    /// Points or lines are reprojected, from the first system to the second.
     Reprojecting(Box<Crs>, Box<Crs>),
-    /// A transform has something to say: the operation, how good it is.
+    /// A message about a transform: the operation and its accuracy.
     Transform(String),
-    /// Two files have a gap between them that is far wider than any of them.
+    /// The gap between two files is far wider than any file.
     FarApart(PathBuf, PathBuf, Quantity),
-    /// The breaklines lie this far from all points.
+    /// The breaklines are this far from all points.
     BreaklinesApart(Quantity),
     /// Breaklines reach this far beyond the points.
     BreaklinesBeyond(Quantity),
@@ -75,41 +76,42 @@ pub enum Notice {
     EdgeLimit(Quantity),
     /// No triangle at the rim is left out.
     NoEdgeLimit,
-    /// How far outside of the bounds points are used; `None` where all points are used.
+    /// Points are used up to this distance from the bounds; `None` if all points are used.
     BoundsBuffer(Option<Quantity>),
-    /// Triangulated, in this time.
+    /// The triangulation took this time.
     Triangulated(Duration),
-    /// So many triangles within the bounds may change with points further out than this.
+    /// This many triangles within the bounds may depend on points further out than this distance.
     Uncertain(usize, Quantity),
     /// Crossings of breaklines were rounded.
     CrossingsRounded {
         /// The step of the grid that they were rounded to, in x and y.
         unit: [Quantity; 2],
-        /// Whether all vertices lie on that grid, so that no line is moved by more than half a step on each axis.
+        /// True if all vertices lie on that grid, so that no line moves by more than half a step on
+        /// each axis.
         on_grid: bool,
     },
     /// Breaklines meet with different heights.
     CrossingHeights {
-        /// At how many points.
+        /// The number of points where they do.
         count: usize,
         /// The largest difference.
         largest: Quantity,
-        /// Where that is.
+        /// Where that difference is.
         at: [f64; 2],
-        /// The first of them, up to five.
+        /// The first of these points, at most five.
         first: Vec<CrossingNote>,
     },
     /// The given extent of a raster does not touch the surface.
     ExtentApart,
-    /// The default size of cells is taken.
+    /// The default size of cells is used.
     DefaultResolution(Quantity),
-    /// The default distance of contours is taken.
+    /// The default interval of contours is used.
     DefaultInterval(Quantity),
     /// Heights are multiplied by this, to match the units of the plane.
     HeightFactor(f64),
-    /// The format cannot tell breaklines from other edges: the Delaunay law is not checked.
+    /// The format does not store breaklines: the Delaunay law is not checked.
     DelaunayUnchecked(PathBuf),
-    /// Largest areas of regions are in a file, and were not asked for.
+    /// A file has largest areas of regions, but they were not requested.
     RegionAreasUnused(PathBuf),
     /// A hole or a region is not used.
     SeedUnused {
@@ -117,7 +119,7 @@ pub enum Notice {
         path: PathBuf,
         /// Its line in the file.
         line: usize,
-        /// What it is.
+        /// A hole or a region.
         seed: Seed,
         /// Why it is not used.
         why: SeedFlaw,
@@ -149,7 +151,7 @@ pub enum Seed {
 /// Why a hole or a region is not used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SeedFlaw {
-    /// It lies on a segment: which side is meant is not known.
+    /// It lies on a segment, so that its side is ambiguous.
     OnSegment,
     /// It lies outside of the convex hull.
     OutsideHull,
@@ -158,16 +160,16 @@ pub enum SeedFlaw {
 /// How much a notice matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// For those who want to know everything.
+    /// A detail, for verbose output.
     Detail,
-    /// A choice that was made, or something worth knowing.
+    /// A choice that was made for the user, or something worth knowing.
     Note,
-    /// Something that is probably not as it should be.
+    /// Something is probably not as intended.
     Warning,
 }
 
 impl Notice {
-    /// How much it matters.
+    /// Returns how much the notice matters.
     pub fn severity(&self) -> Severity {
         match self {
             Notice::Opened(..)

@@ -1,4 +1,4 @@
-//! Files of any kind, opened by their first bytes and extension.
+//! Opening files of any kind, by their first bytes and extension.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -25,19 +25,19 @@ pub(super) fn is_lidar(path: &Path) -> bool {
     format(path).is_some_and(|format| format.can_hold(Holding::Attributes))
 }
 
-/// What the first bytes and the extension say. What neither knows are points: text comes under any
-/// name.
+/// Returns the content that the first bytes and the extension indicate. If neither is known, it is
+/// points: text can have any name.
 pub(super) fn content(path: &Path) -> Content {
     format(path).map_or(Content::Points, |format| format.content)
 }
 
 fn format(path: &Path) -> Option<&'static Format> {
     let file = layer::split(&path.to_string_lossy()).0;
-    // What is not there yet is known by its name.
+    // A file that does not exist yet is known by its name.
     formats::detect_file(&file).unwrap_or_else(|_| formats::of_name(&file))
 }
 
-/// Points in memory, or of a file of any format.
+/// Opens points, in memory or in a file of any format.
 pub(super) fn points(input: &Input<MemoryPoints>, options: Options) -> Result<Box<dyn PointSource + Send>> {
     match input {
         Input::File(path) => points_of_file(path, options),
@@ -45,15 +45,15 @@ pub(super) fn points(input: &Input<MemoryPoints>, options: Options) -> Result<Bo
     }
 }
 
-/// Points of any format; of a vector layer, with the heights of an attribute where the name ends in
-/// `:FIELD`.
+/// Opens points of any format. If the name of a vector layer ends in `:FIELD`, heights come from
+/// that attribute.
 pub(super) fn points_of_file(path: &Path, options: Options) -> Result<Box<dyn PointSource + Send>> {
     let of_layer = || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path)?)?)) };
     match content(path) {
         Content::Layer => of_layer(),
         Content::Points | Content::Raster | Content::Mesh | Content::Picture | Content::Plane => {
             points::open_with(path, options).or_else(|error| match gdal_may_help(&error) {
-                // What GDAL says of a file that it does not know either is less exact.
+                // If GDAL does not know the file either, its error is less exact.
                 true => of_layer().map_err(|_| error),
                 false => Err(error),
             })
@@ -61,7 +61,7 @@ pub(super) fn points_of_file(path: &Path, options: Options) -> Result<Box<dyn Po
     }
 }
 
-/// A vector layer, in memory or of a file.
+/// Returns a vector layer, from memory or from a file.
 pub(super) fn layer_of(input: &Input<Layer>) -> Result<Cow<'_, Layer>> {
     match input {
         Input::File(path) => layer(path).map(Cow::Owned),
@@ -69,8 +69,8 @@ pub(super) fn layer_of(input: &Input<Layer>) -> Result<Cow<'_, Layer>> {
     }
 }
 
-/// A vector layer, with the heights of an attribute where the name ends in `:FIELD`; of formats that
-/// GDAL reads, the layer of that name.
+/// Reads a vector layer. If the name ends in `:FIELD`, heights come from that attribute; for
+/// formats that GDAL reads, it names a layer.
 pub(super) fn layer(path: &Path) -> Result<Layer> {
     let Some(spec) = path.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
@@ -84,12 +84,12 @@ pub(super) fn layer(path: &Path) -> Result<Layer> {
     })
 }
 
-/// Returns true if a file that is not read here may be one for GDAL.
+/// Returns true if GDAL may be able to read a file that this crate cannot.
 fn gdal_may_help(error: &Error) -> bool {
     cfg!(feature = "gdal") && error.kind() == Kind::Unsupported
 }
 
-/// A raster that is open.
+/// An open raster.
 pub(super) enum Raster {
     GeoTiff(Box<GeoTiffReader>),
     Gdal(Box<gdal::Raster>),
@@ -105,7 +105,7 @@ impl Raster {
     }
 }
 
-/// A raster, whole, and the warnings of its reader.
+/// Reads a whole raster; returns it with the warnings of its reader.
 pub(super) fn raster(path: &Path, journal: &Journal) -> Result<(Grid, Vec<String>)> {
     let _reading = journal.start(Stage::ReadingCells, Size::Uncounted)?;
     match Raster::open(path)? {
@@ -124,7 +124,7 @@ fn require_memory(frame: Frame) -> Result<()> {
     memory::require_for_cells(frame.width as u64 * frame.height as u64)
 }
 
-/// The frame of a raster and its coordinate system; no cell is read.
+/// Returns the frame of a raster and its coordinate system, without reading cells.
 pub(super) fn raster_frame(path: &Path) -> Result<(Frame, Option<Crs>)> {
     match Raster::open(path)? {
         Raster::GeoTiff(reader) => Ok((reader.frame(), reader.info().crs.clone())),
@@ -132,7 +132,7 @@ pub(super) fn raster_frame(path: &Path) -> Result<(Frame, Option<Crs>)> {
     }
 }
 
-/// A mesh that is a surface.
+/// Reads a mesh; an error if it is not a surface.
 pub(super) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
     memory::require_for_mesh(path)?;
     let reading = journal.start(Stage::ReadingTriangles, Size::Uncounted)?;
@@ -141,32 +141,33 @@ pub(super) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// The triangles of a mesh, whether they are a surface or not, linked as far as they can be; and the flaws of the links.
+/// Reads a mesh that may not be a surface: its triangles, linked where possible, and the flaws of
+/// the links.
 pub(super) fn linked_mesh(path: &Path) -> Result<(Mesh, Vec<LinkFlaw>)> {
     Mesh::link(mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
 }
 
-/// What an STL file holds; `None` if it is another mesh.
+/// Reads an STL file; `None` if the mesh has a different format.
 pub(super) fn solid(path: &Path) -> Option<Result<Solid>> {
     mesh::describe_solid(path)
 }
 
-/// What a picture is, and where it lies.
+/// Reads the format and the position of a picture.
 pub(super) fn picture(path: &Path) -> Result<Picture> {
     png::describe(path)
 }
 
-/// How many edges or neighborhoods a file of Triangle's lists.
+/// Returns the number of edges or of neighborhoods in a file of Triangle.
 pub(super) fn listed(path: &Path) -> Result<usize> {
     triangle::count(path)
 }
 
-/// What a `.node` or a `.poly` file holds.
+/// Reads a `.node` or a `.poly` file.
 pub(super) fn line_graph(path: &Path) -> Result<LineGraph> {
     triangle::read(path)
 }
 
-/// The triangles of a mesh, as the file lists them.
+/// Reads the triangles of a mesh, in the order of the file.
 pub(super) fn mesh_triangles(path: &Path, journal: &Journal) -> Result<Triangles> {
     let reading = journal.start(Stage::ReadingTriangles, Size::Uncounted)?;
     let triangles = mesh::read_triangles(path)?;

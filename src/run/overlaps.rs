@@ -1,9 +1,10 @@
-//! Whether faces overlap where they do not meet in an edge.
+//! Search for faces that overlap without sharing an edge.
 //!
-//! Faces that all turn counter-clockwise and are linked edge by edge cover a place as often as their border winds
-//! around it. The border is triangulated: if all of its edges come out whole, they do not cross, and
-//! the winding numbers of all places follow from the outside, where it is 0, by counting the edges on
-//! the way.
+//! If all faces are counter-clockwise and linked edge by edge, the number of faces that cover a
+//! point is the winding number of the border around it. The border is triangulated with its edges
+//! as constraints. If none of them is split, they do not cross, and the winding number of every
+//! triangle follows by walking in from the outside, where it is 0, and counting the border edges
+//! that are crossed.
 
 use std::collections::HashMap;
 
@@ -13,27 +14,28 @@ use crate::triangulation::kernel::Wide;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
-/// A place where the faces of a surface do not fit beside each other.
+/// A position where faces of a surface overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Overlap {
-    /// The edge opposite this corner of the face has no neighbor, and another such edge or its end lies on it.
+    /// The edge opposite this corner of the face has no neighbor, and another such edge or its end
+    /// lies on it.
     Border {
-        /// The face.
+        /// The face that has the edge.
         face: u32,
-        /// Its corner.
+        /// The corner opposite the edge.
         corner: usize,
     },
-    /// Near this place, faces lie over each other.
+    /// Several faces cover the same area.
     Covered {
-        /// How many.
+        /// The number of faces.
         times: i64,
-        /// In plan.
+        /// A point in that area, in plan.
         near: [f64; 2],
     },
 }
 
 impl Overlap {
-    /// The vertices at which it shows, if any.
+    /// Returns the vertices of the edge; none for covered areas.
     pub(super) fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         let Overlap::Border { face, corner } = *self else { return Vec::new() };
         surface.face(face).into_iter().flat_map(|corners| [corners[ccw(corner)], corners[cw(corner)]]).collect()
@@ -46,13 +48,13 @@ impl std::fmt::Display for Overlap {
             Overlap::Border { face, corner } => {
                 write!(f, "face {face}, edge {corner}: meets the border of other faces between its ends")
             }
-            Overlap::Covered { times, near: [x, y] } => write!(f, "{times} faces lie over each other near {x} {y}"),
+            Overlap::Covered { times, near: [x, y] } => write!(f, "{times} faces overlap near {x} {y}"),
         }
     }
 }
 
-/// All overlaps of a surface whose faces are counter-clockwise and linked: those of its border, else one for each
-/// part of the plane that is covered more than once.
+/// Returns the overlaps of a surface whose faces are counter-clockwise and linked: those of its
+/// border; if there are none, one for each area that is covered more than once.
 ///
 /// # Complexity
 /// O(n log n) in the edges without a neighbor.
@@ -80,7 +82,7 @@ pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
     covered_twice(&t, &vertices)
 }
 
-/// The parts of the plane that directed edges wind around more than once, one place for each.
+/// Returns one overlap for each area that the directed edges wind around more than once.
 fn covered_twice(t: &ConstrainedDelaunay<Plane<Wide>>, edges: &[VertexId]) -> Vec<Overlap> {
     // By how much the winding number grows from the right of an edge to its left.
     let mut steps: HashMap<[VertexId; 2], i64> = HashMap::new();
@@ -99,7 +101,7 @@ fn covered_twice(t: &ConstrainedDelaunay<Plane<Wide>>, edges: &[VertexId]) -> Ve
             if winding[beyond.index()].is_some() {
                 continue;
             }
-            // Seen from the other side the edge runs the other way.
+            // From the other side, the edge has the opposite direction.
             let edge = [tds.vertex(cell, cw(i)), tds.vertex(cell, ccw(i))];
             let step = steps.get(&edge).copied().unwrap_or(0);
             winding[beyond.index()] = Some(times + step);
@@ -149,11 +151,11 @@ mod tests {
         let within = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [1.0, 1.0], [2.0, 1.0], [1.0, 2.0]];
         let found = overlaps_of(&within, &[[0, 1, 2], [3, 4, 5]]);
         assert_eq!(found.len(), 1);
-        assert!(found[0].starts_with("2 faces lie over each other near 1.3333"), "{found:?}");
+        assert!(found[0].starts_with("2 faces overlap near 1.3333"), "{found:?}");
         // The same face twice, as two triples of vertices.
         let twice = [within[0], within[1], within[2], within[0], within[1], within[2]];
         assert_eq!(overlaps_of(&twice, &[[0, 1, 2], [3, 4, 5]]).len(), 1);
-        // A vertex in the middle of an edge that does not know it.
+        // A vertex in the middle of an edge that is not split there.
         let hanging = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [2.0, 0.0], [1.0, -3.0]];
         assert_eq!(overlaps_of(&hanging, &[[0, 1, 2], [0, 4, 3]]).len(), 1);
         // A fan that winds twice around its middle, all edges linked within.

@@ -1,28 +1,28 @@
-//! Rings of lines: a boundary may come as several lines.
+//! Joining lines to rings: a boundary may consist of several lines.
 
 use std::collections::HashMap;
 
 use super::units::neat;
 use crate::error::Error;
 
-/// A point, to be compared bit by bit.
+/// A point whose coordinates are compared bit by bit.
 type Key = [u64; 2];
 
-/// An end at which no other line goes on.
+/// An end of a line at which no other line continues.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gap {
     /// The position of the line that ends there.
     pub(super) line: usize,
     end: [f64; 2],
-    /// The nearest other end at which no line goes on.
+    /// The nearest other end at which no line continues.
     nearest: Option<[f64; 2]>,
 }
 
-/// Joins lines that meet end to end, in exactly the same point, to rings. Where more than two meet it does not matter
-/// which go together: by the even-odd rule all choices bound the same area.
+/// Joins lines that meet end to end, in exactly the same point, to rings. If more than two meet,
+/// any two can be joined: by the even-odd rule all choices bound the same area.
 ///
 /// # Errors
-/// If there is a gap.
+/// If an end of a line meets no other.
 ///
 /// # Complexity
 /// Linear.
@@ -43,7 +43,8 @@ pub(super) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> 
         return Err(Gap { line, end, nearest });
     }
 
-    // An even number of ends everywhere: who goes on as long as there is a line left ends where they began.
+    // Every point has an even number of ends, so following lines while there are any leads back to
+    // the start.
     let mut used = vec![false; flat.len()];
     let mut rings = Vec::new();
     for first in 0..flat.len() {
@@ -79,14 +80,14 @@ fn distance([x, y]: [f64; 2], p: [f64; 2]) -> f64 {
 }
 
 impl Gap {
-    /// The error that names both ends and the distance between them.
+    /// Returns the error, which names both ends and the distance between them.
     #[cold]
     pub(super) fn error(self) -> Error {
         let [x, y] = self.end;
         let far = |p| neat(distance(self.end, p));
         let next = self.nearest.map(|p| format!(", the next loose end is {} away, at {} {}", far(p), p[0], p[1]));
         Error::format(format!("the boundary is not closed: a line ends at {x} {y}{}", next.unwrap_or_default()))
-            .cure("close the gap, so that lines end where others begin, or give polygons")
+            .cure("close the gap, so that lines end where others begin, or use polygons")
     }
 }
 
@@ -99,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn pieces_in_any_order_and_direction_make_rings() {
+    fn lines_in_any_order_and_direction_make_rings() {
         let [a, b, c, d] = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
         assert_eq!(rings(&[&[a, b, c], &[a, d], &[c, d]]).unwrap(), [vec![a, b, c, d, a]]);
         let hole = [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0], [1.0, 1.0]];
@@ -115,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_is_told_with_both_ends_and_its_width() {
+    fn a_gap_is_reported_with_both_ends_and_its_width() {
         let error = rings(&[&[[0.0, 0.0], [4.0, 0.0]], &[[4.0, 0.5], [0.0, 4.0]], &[[0.0, 4.0], [0.0, 0.0]]]);
         assert_eq!(
             error.unwrap_err().error().to_string(),

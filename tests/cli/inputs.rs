@@ -23,7 +23,10 @@ fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {
         tin(&order, &[silent, "CRS         not known", "32 read from 2 files, 16 used"]);
     }
     // Two systems are none if one of them is nobody's.
-    tin(&["utm.las", "trees.las", "none.las"], &[silent, "warning: none.las: none of its points is used", "EPSG:25832"]);
+    tin(
+        &["utm.las", "trees.las", "none.las"],
+        &[silent, "warning: none.las: none of its points is used", "EPSG:25832"],
+    );
     let run = run_in(&folder, &["tin", "utm.las", "trees.las", "--class", "2,5", "-o", "u.ply"]);
     run.fails(1, &["two coordinate systems"]);
     // Where no file has ground, all give points.
