@@ -1,4 +1,4 @@
-//! Rasters of a surface: heights, and their shade.
+//! Rasters of a surface: heights and hillshades.
 
 use super::context::{Context, Journal, Stage};
 use super::frame::{self, FrameOptions};
@@ -15,11 +15,11 @@ use crate::terrain::{Dem, Hillshade, Light};
 /// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightOptions {
-    /// Where the light comes from, in degrees clockwise from north.
+    /// The direction that the light comes from, in degrees clockwise from north.
     pub azimuth: f64,
-    /// How high it stands above the horizon, in degrees.
+    /// The angle of the light above the horizon, in degrees.
     pub altitude: f64,
-    /// What heights are multiplied by; if it is `None`, what brings them to the units of the plane.
+    /// The factor for heights; if `None`, what converts them to the units of the plane.
     pub z_factor: Option<f64>,
 }
 
@@ -30,29 +30,32 @@ impl Default for LightOptions {
     }
 }
 
-/// How a surface is shaded.
+/// Options of a hillshade.
 #[derive(Debug, Clone, Default)]
 pub struct HillshadeOptions {
     /// Size and position of the cells; a raster keeps its own.
     pub frame: FrameOptions,
-    /// Where the light comes from.
+    /// The light.
     pub light: LightOptions,
 }
 
-/// The cells of a raster, computed when they are asked for: so it may be larger than memory.
+/// The cells of a raster. They are computed on demand, so that the raster may be larger than
+/// memory.
 pub struct CellProduct<'a> {
     source: Box<dyn BlockSource + 'a>,
-    /// The triangles that cells are computed from, if they are.
+    /// The triangles that cells are computed from; `None` for cells of a raster.
     surface: Option<&'a dyn Surface>,
     cells: CellFormat,
-    /// What was assumed and what looks odd, in the order in which it was found.
+    /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
 
-/// Prepares a DEM: the heights of a surface at the centers of cells, linear on its triangles, NaN where there is none.
+/// Prepares a DEM: the heights of a surface at the centers of cells, linear on its triangles, NaN
+/// where there is none.
 ///
 /// # Errors
-/// If the surface is a raster, the frame cannot be chosen (see [`FrameOptions`]), or the run is canceled.
+/// If the surface is a raster, the frame cannot be chosen (see [`FrameOptions`]), or the run is
+/// canceled.
 ///
 /// # Complexity
 /// Linear in the triangles.
@@ -63,11 +66,12 @@ pub fn dem<'a>(product: &'a SurfaceProduct, options: &FrameOptions, context: &Co
     Ok(CellProduct { source, surface: Some(surface), cells: CellFormat::Heights, notices: journal.take() })
 }
 
-/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (facing the light), NaN where there is no height.
+/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (facing the light), NaN where there is
+/// no height.
 ///
 /// # Errors
-/// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; if a number of the light is not
-/// finite, or the run is canceled.
+/// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; if a number of
+/// the light is not finite, or the run is canceled.
 ///
 /// # Complexity
 /// Linear in the triangles.
@@ -122,7 +126,7 @@ fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light 
 }
 
 impl CellProduct<'_> {
-    /// The number of cells that have a value, about. Of a raster, all count.
+    /// Returns about how many cells have a value; for a raster, the number of all cells.
     ///
     /// # Complexity
     /// Linear in the triangles.
@@ -132,7 +136,7 @@ impl CellProduct<'_> {
         self.surface.map_or(all, |surface| all.min(frame::cells_on(surface, &self.frame())))
     }
 
-    /// Computes all cells, by all cores.
+    /// Computes all cells, on all cores.
     ///
     /// # Errors
     /// If they do not fit into memory, or the run is canceled.
@@ -140,7 +144,8 @@ impl CellProduct<'_> {
         Grid::collect(&self.watched(context)?)
     }
 
-    /// Computes all cells, by all cores, and writes them as GeoTIFF: heights as 32-bit floats, shades as bytes.
+    /// Computes all cells, on all cores, and writes them as GeoTIFF: heights as 32-bit floats,
+    /// shades as bytes.
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
@@ -148,7 +153,7 @@ impl CellProduct<'_> {
         geotiff::write(target, &self.watched(context)?, WriteOptions { cells: self.cells, progress: None })
     }
 
-    /// Computes all cells, by all cores, and writes them as a gray picture in PNG, 0 to 255.
+    /// Computes all cells, on all cores, and writes them as a gray PNG, 0 to 255.
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
@@ -165,7 +170,7 @@ impl CellProduct<'_> {
     }
 }
 
-/// Counts no progress, and goes on when the run is canceled.
+/// Reports no progress, and is not stopped when the run is canceled.
 impl BlockSource for CellProduct<'_> {
     fn frame(&self) -> Frame {
         self.source.frame()

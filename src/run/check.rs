@@ -1,4 +1,4 @@
-//! Flaws of a surface, and where they are.
+//! Flaws of a surface and their positions.
 
 use std::fmt;
 use std::path::Path;
@@ -14,12 +14,12 @@ use crate::data::{LinkFlaw, Mesh, Surface, Triangles};
 use crate::error::Result;
 use crate::terrain::{self, SurfaceFlaw};
 
-/// A flaw of a surface, and where it shows.
+/// A flaw of a surface and its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocatedFlaw {
     /// What is wrong.
     pub flaw: FlawKind,
-    /// The vertices at which it shows, in plan; none where it is about no vertex.
+    /// The vertices concerned, in plan; may be empty.
     pub at: Vec<[f64; 2]>,
 }
 
@@ -31,7 +31,7 @@ pub enum FlawKind {
     Link(LinkFlaw),
     /// A law that faces break.
     Surface(SurfaceFlaw),
-    /// Faces that lie over each other.
+    /// Faces that overlap.
     Overlap(Overlap),
 }
 
@@ -45,7 +45,7 @@ impl fmt::Display for FlawKind {
     }
 }
 
-/// As `face 3: clockwise, at (0 0) (1 0) (0 1)`.
+/// Formats the flaw as `face 3: clockwise, at (0 0) (1 0) (0 1)`.
 impl fmt::Display for LocatedFlaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.flaw.fmt(f)?;
@@ -61,17 +61,17 @@ impl fmt::Display for LocatedFlaw {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct CheckProduct {
-    /// The surface; a mesh as far as it can be linked.
+    /// The surface; a mesh is linked where possible.
     pub product: SurfaceProduct,
-    /// Its flaws, none if it is sound.
+    /// Its flaws; empty if it is correct.
     pub flaws: Vec<LocatedFlaw>,
 }
 
-/// Checks a surface: links, orientation, overlaps, and Delaunay between lines. Coordinates in degrees are allowed, since
-/// nothing that is checked is a length.
+/// Checks a surface: links between faces, orientation, overlaps, and the Delaunay law between
+/// lines. Coordinates in degrees are allowed, since no lengths are checked.
 ///
 /// # Errors
-/// Those of [`triangles`](surface::triangles), except for a mesh that is no surface.
+/// Those of [`triangles`](surface::triangles), except for a mesh that is not a surface.
 pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct> {
     let systems = SystemOptions { degrees: Degrees::Allow, ..request.systems.clone() };
     if let Source::Mesh(path) = &request.source {
@@ -90,7 +90,7 @@ fn check_mesh(path: &Path, systems: &SystemOptions, context: &Context) -> Result
     if !keeps_lines {
         journal.add(Notice::DelaunayUnchecked(path.to_path_buf()));
     }
-    // Formats that keep no lines are not asked for the Delaunay law.
+    // The Delaunay law cannot be checked without the lines.
     let find = if keeps_lines { terrain::surface_flaws } else { terrain::shape_flaws };
     let triangles = open::mesh_triangles(path, &journal)?;
     let (mesh, flaws) = flaws_by(find, triangles, context).map_err(|e| e.in_file(path))?;
@@ -98,7 +98,7 @@ fn check_mesh(path: &Path, systems: &SystemOptions, context: &Context) -> Result
     Ok(CheckProduct { product: SurfaceProduct { model, built: None, notices: journal.take() }, flaws })
 }
 
-/// The first flaw of triangles in memory.
+/// Returns the first flaw of triangles in memory.
 pub(super) fn first_flaw(triangles: Triangles, context: &Context) -> Result<Option<LocatedFlaw>> {
     Ok(flaws_by(terrain::surface_flaws, triangles, context)?.1.into_iter().next())
 }
@@ -117,12 +117,14 @@ fn flaws_by(
     Ok((mesh, flaws))
 }
 
-/// The surface, for a check that asks for its faces once for each of five laws, and for overlaps.
+/// Returns the surface with progress, for a check that visits its faces once for each of five laws
+/// and once for overlaps.
 fn checked<'a>(surface: &'a dyn Surface, context: &Context<'a>) -> Result<Watched<'a, dyn Surface + 'a>> {
     Watched::faces(surface, 6, Stage::CheckingFaces, context)
 }
 
-/// What was found, and overlaps, where these can be told: of faces that are linked and turn the right way.
+/// Returns the flaws that were found, and overlaps if these are defined: if faces are linked and
+/// counter-clockwise.
 fn flaws_beside(links: &[LinkFlaw], found: &[SurfaceFlaw], surface: &dyn Surface) -> Vec<LocatedFlaw> {
     let of_surface = |flaw: &SurfaceFlaw| located(FlawKind::Surface(*flaw), &flaw.vertices(surface), surface);
     let mut flaws: Vec<LocatedFlaw> = found.iter().map(of_surface).collect();

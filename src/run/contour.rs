@@ -11,22 +11,23 @@ use crate::io::Destination;
 use crate::io::contours::{self, ContourSummary};
 use crate::terrain::{self, GridSurface, Levels};
 
-/// Height between contours unless something else is said.
+/// The default height between contours.
 const DEFAULT_INTERVAL: f64 = 1.0;
 
-/// The heights at which contours are drawn, in the units of the heights. By default every whole unit.
+/// The heights at which contours are drawn, in the units of the heights. By default, every whole
+/// unit.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContourOptions {
     /// The height between contours; 1 if it is `None`.
     pub interval: Option<f64>,
-    /// A height that contours are counted from.
+    /// A height at which there is a contour; the others follow from the interval.
     pub base: f64,
-    /// These heights instead, unless there are none.
+    /// These heights instead of an interval, unless empty.
     pub levels: Vec<f64>,
 }
 
 impl ContourOptions {
-    /// The heights as a rule.
+    /// Returns the heights as a rule for drawing.
     ///
     /// # Errors
     /// Those of [`Levels::every`] and [`Levels::listed`].
@@ -38,7 +39,7 @@ impl ContourOptions {
     }
 }
 
-/// The contours of a surface, drawn when they are asked for.
+/// The contours of a surface. They are drawn on demand.
 #[derive(Debug)]
 pub struct ContourProduct<'a> {
     product: &'a SurfaceProduct,
@@ -47,10 +48,10 @@ pub struct ContourProduct<'a> {
     pub notices: Vec<Notice>,
 }
 
-/// Prepares contours: straight from the triangles; of a raster, between the centers of its cells.
+/// Prepares contours, exact on the triangles; for a raster, between the centers of its cells.
 ///
 /// # Errors
-/// If a level or the interval is no height, or the run is canceled.
+/// If a level or the interval is not a valid height, or the run is canceled.
 pub fn contour<'a>(
     product: &'a SurfaceProduct,
     options: &ContourOptions,
@@ -66,7 +67,7 @@ pub fn contour<'a>(
 }
 
 impl ContourProduct<'_> {
-    /// Draws all lines, by level and then by their points; high ground is on the right.
+    /// Returns all lines, sorted by level and then by their points. Higher ground is on the right.
     ///
     /// # Errors
     /// If there are too many levels (see [`Levels::within`]), or the run is canceled.
@@ -74,8 +75,8 @@ impl ContourProduct<'_> {
         self.draw(context, |lines, _| Ok(lines.collect()))
     }
 
-    /// Draws all lines and writes them as they come, in the format that the extension of `target` names: `.shp`,
-    /// `.geojson` or `.json`.
+    /// Draws all lines and writes them one after another, in the format that the extension of
+    /// `target` names: `.shp`, `.geojson` or `.json`.
     ///
     /// # Errors
     /// If there are too many levels or lines, the file cannot be written, or the run is canceled.
@@ -100,7 +101,7 @@ impl ContourProduct<'_> {
     }
 }
 
-/// Hands the lines to `take`, with the number of their edges.
+/// Calls `take` for the lines, with the number of their edges.
 fn draw<S: Surface + ?Sized, T>(
     surface: &S,
     levels: &Levels,

@@ -1,4 +1,4 @@
-//! Notices about files and lines that lie apart.
+//! Notices about files and lines that are far apart.
 
 use std::path::Path;
 
@@ -7,10 +7,11 @@ use super::notice::Notice;
 use super::units::Units;
 use crate::data::Bounds;
 
-/// Files are far apart if the gap is so many times as wide as the widest file.
+/// Files are far apart if the gap is this many times as wide as the widest file.
 const FAR: f64 = 100.0;
 
-/// Adds a notice if files lie far apart, on two continents, say: one of them is perhaps in another coordinate system.
+/// Adds a notice if files are far apart, for example on two continents: one of them may be in a
+/// different coordinate system.
 pub(super) fn compare_files(files: &[&Path], extents: &[Bounds], units: &Units, journal: &Journal) {
     let width = |bounds: &Bounds| (bounds.max[0] - bounds.min[0]).hypot(bounds.max[1] - bounds.min[1]);
     let mut known: Vec<(&Path, &Bounds)> =
@@ -31,8 +32,9 @@ pub(super) fn compare_files(files: &[&Path], extents: &[Bounds], units: &Units, 
     }
 }
 
-/// Adds a notice if lines lie apart from the points, or reach far beyond them, as those of a whole district over the
-/// points of one tile: the extent is then not what one expects. How far lines may reach beyond the points is given by `buffer`.
+/// Adds a notice if lines are far from the points, or reach more than `buffer` beyond them, as the
+/// lines of a whole district do with the points of one tile: the extent of the surface may then be
+/// unexpected.
 pub(super) fn compare_lines(points: &[[f64; 3]], lines: Bounds, buffer: f64, units: &Units, journal: &Journal) {
     let mut extent = Bounds::default();
     points.iter().for_each(|&point| extent.add(point));

@@ -13,7 +13,7 @@ use crate::io::mesh::Solid;
 use crate::io::png::Picture;
 use crate::io::points;
 
-/// What is in a file, by its kind.
+/// The contents of a file, by its kind.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Facts {
@@ -27,20 +27,20 @@ pub enum Facts {
     Mesh(Box<MeshFacts>),
     /// An STL file: triangles without exact coordinates.
     Solid(Box<Solid>),
-    /// A picture: shades, but no heights.
+    /// A picture: it has shades but no heights.
     Picture(Box<Picture>),
-    /// A file of Triangle's without triangles.
+    /// A file of Triangle without triangles.
     Plane(Box<PlaneFacts>),
 }
 
 /// Counts over all points of a file.
 #[derive(Debug, Clone)]
 pub struct PointFacts {
-    /// What the header states.
+    /// The information in the header.
     pub info: PointInfo,
     /// Points in the file.
     pub count: u64,
-    /// The box around them.
+    /// The box around these points.
     pub bounds: Bounds,
     /// Points with a coordinate that is not finite.
     pub not_finite: u64,
@@ -48,9 +48,10 @@ pub struct PointFacts {
     pub classes: [u64; 256],
     /// Points of each return number.
     pub returns: [u64; 256],
-    /// Points with each of the flags [`PointFlags::SYNTHETIC`], `KEY_POINT`, `WITHHELD` and `OVERLAP`.
+    /// Points with each of the flags [`PointFlags::SYNTHETIC`], `KEY_POINT`, `WITHHELD` and
+    /// `OVERLAP`.
     pub flags: [u64; 4],
-    /// What came up while points were read.
+    /// Warnings of the reader.
     pub warnings: Vec<String>,
 }
 
@@ -75,32 +76,32 @@ pub struct LayerFacts {
     pub crs: Option<Crs>,
     /// Names of the attributes.
     pub fields: Vec<String>,
-    /// What the reader has to say.
+    /// Warnings of the reader.
     pub warnings: Vec<String>,
 }
 
-/// The header of a raster, and what its cells say together.
+/// The header of a raster, and counts over its cells.
 #[derive(Debug, Clone)]
 pub struct RasterFacts {
     /// As the reader calls it: "GeoTIFF, float32, 1 band, compression DEFLATE, tiles of 256 x 256".
     pub format: String,
-    /// The type of a cell, as "float32", unless the format says it.
+    /// The type of a cell, such as "float32", unless it is part of the format.
     pub sample: Option<String>,
     /// Size and position.
     pub frame: Frame,
     /// The coordinate system, if the file states one.
     pub crs: Option<Crs>,
-    /// The value of cells without one, before scale and offset.
+    /// The nodata value, before scale and offset.
     pub nodata: Option<f64>,
-    /// What stored values are multiplied by.
+    /// The factor for stored values.
     pub scale: f64,
-    /// What is added then.
+    /// The number that is added after multiplying by the scale.
     pub offset: f64,
     /// Cells with a value.
     pub valid: u64,
     /// The smallest and the largest value.
     pub range: Option<[f64; 2]>,
-    /// What the reader has to say.
+    /// Warnings of the reader.
     pub warnings: Vec<String>,
 }
 
@@ -111,16 +112,16 @@ pub struct MeshFacts {
     pub surface: SurfaceFacts,
     /// The coordinate system, if the file states one.
     pub crs: Option<Crs>,
-    /// Why it is no surface, if it is none: the first flaw of its links.
+    /// The first flaw of its links, if it is not a surface.
     pub flaw: Option<LinkFlaw>,
 }
 
-/// What is in a file of Triangle's that has no triangles.
+/// The contents of a file of Triangle that has no triangles.
 #[derive(Debug, Clone)]
 pub enum PlaneFacts {
-    /// An `.edge` file with so many edges.
+    /// An `.edge` file, with the number of its edges.
     Edges(usize),
-    /// A `.neigh` file with so many triangles.
+    /// A `.neigh` file, with the number of its triangles.
     Neighbors(usize),
     /// A `.node` or a `.poly` file.
     Graph {
@@ -128,7 +129,7 @@ pub enum PlaneFacts {
         vertices: usize,
         /// Attributes of each vertex.
         attributes: usize,
-        /// The box around the vertices; without heights.
+        /// The box around the vertices, without heights.
         bounds: Bounds,
         /// Segments.
         segments: usize,
@@ -136,7 +137,7 @@ pub enum PlaneFacts {
         holes: usize,
         /// Regions.
         regions: usize,
-        /// What the reader has to say.
+        /// Warnings of the reader.
         warnings: Vec<String>,
     },
 }
@@ -144,7 +145,7 @@ pub enum PlaneFacts {
 /// Reads a file to its end and counts what is in it.
 ///
 /// # Errors
-/// If it cannot be read, or the run is canceled.
+/// If the file cannot be read, or the run is canceled.
 pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Facts> {
     let content = open::content(path);
     if content == Content::Points {

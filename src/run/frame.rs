@@ -10,32 +10,34 @@ use crate::crs::Crs;
 use crate::data::{self, Bounds, Frame, Surface};
 use crate::error::{Error, Result};
 
-/// Cells are this large unless something else is said.
+/// The default size of a cell.
 const DEFAULT_RESOLUTION: f64 = 1.0;
 
-/// Rasters of fewer cells may be as empty as they like.
+/// Rasters with fewer cells are never refused as mostly empty.
 const MANY_CELLS: f64 = 1e8;
 
-/// The share of cells on the surface below which a large raster is taken for a mistake.
+/// The share of cells with a value below which a large raster is refused as a mistake.
 const MOSTLY_EMPTY: f64 = 0.01;
 
-/// Size and position of a raster. By default cells are 1 unit wide and start at multiples of it, so that neighboring
-/// rasters fit together, and cover the surface.
+/// Size and position of a raster. By default cells are 1 unit wide, start at multiples of that, so
+/// that neighboring rasters fit together, and cover the surface.
 #[derive(Debug, Clone, Default)]
 pub struct FrameOptions {
-    /// The width of a cell, in the units of the coordinate system; 1 if it is `None`. There is no default in degrees.
+    /// The width of a cell, in the units of the coordinate system; `None` is 1, or an error in
+    /// degrees.
     pub resolution: Option<f64>,
-    /// The extent, grown outward to whole cells; heights are ignored. That of the surface if it is `None`.
+    /// The extent, enlarged to whole cells; heights are ignored. `None` is the extent of the
+    /// surface.
     pub extent: Option<Bounds>,
-    /// A raster whose cells are matched, continued beyond its edges. The resolution is ignored then.
+    /// A raster whose grid of cells is used, also beyond its edges. The resolution is then ignored.
     pub align_to: Option<PathBuf>,
 }
 
 /// Chooses the frame of a raster over a surface.
 ///
 /// # Errors
-/// If the raster to align to cannot be read or is in another system, no cell would be there, or nearly all of very many
-/// would be empty and no extent is given.
+/// If the raster to align to cannot be read or is in a different coordinate system, if there would
+/// be no cell, or if the raster would be large and nearly empty and no extent is given.
 pub(super) fn choose(
     options: &FrameOptions,
     surface: &dyn Surface,
@@ -62,12 +64,12 @@ fn mostly_empty(frame: &Frame, share: f64, extent: &Bounds) -> Error {
         number(100.0 * share)
     ))
     .cure(format!(
-        "leave out files that lie far away (`breakline info` tells the extent of each), or write a part with --te; \
-         --te {x0},{y0},{x1},{y1} writes it all the same"
+        "leave out files that are far away (`breakline info` shows the extent of each), or write a part with --te; \
+         --te {x0},{y0},{x1},{y1} writes the whole raster"
     ))
 }
 
-/// The number of cells that the surface covers, about; those outside of the frame count, too.
+/// Returns about how many cells the surface covers, including those outside of the frame.
 pub(super) fn cells_on(surface: &dyn Surface, frame: &Frame) -> f64 {
     let doubled = data::corners(surface).map(|(_, corners)| {
         let [[ax, ay, _], [bx, by, _], [cx, cy, _]] = corners.map(|vertex| surface.position(vertex));

@@ -1,4 +1,4 @@
-//! Breaklines and boundaries out of vector layers.
+//! Breaklines and boundaries from vector layers.
 
 use std::path::Path;
 
@@ -6,20 +6,20 @@ use super::rings;
 use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
 
-/// A polygon in plan: its rings.
+/// The rings of a polygon, in plan.
 pub(super) type Rings = Vec<Vec<[f64; 2]>>;
 
-/// A line of a layer, and where it was found.
+/// A line of a layer, with its record and part.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Drawn {
-    /// The position of its record, counted from 0 as GIS count feature ids.
+    /// The position of its record, counted from 0 like the feature ids of GIS.
     pub(super) fid: usize,
-    /// Which part or ring of several, counted from 1.
+    /// The number of the part or ring, counted from 1, if there are several.
     pub(super) part: Option<usize>,
     pub(super) points: Vec<[f64; 3]>,
 }
 
-/// The lines of a layer, and the rings of its polygons, each with a height at every vertex.
+/// Returns the lines of a layer and the rings of its polygons, each with a height at every vertex.
 ///
 /// # Errors
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
@@ -37,12 +37,13 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
     if lines.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
             .in_file(path)
-            .cure("give a layer of lines or polygons; points are inputs without an option"));
+            .cure("pass a layer of lines or polygons; points are inputs without an option"));
     }
     Ok(lines)
 }
 
-/// The polygons of a layer, and one more of all its lines, if it has any, joined to rings.
+/// Returns the polygons of a layer; its lines, if any, are joined to rings and form one more
+/// polygon.
 ///
 /// # Errors
 /// If there are none, a coordinate is not finite, or the lines leave a gap.
@@ -71,12 +72,12 @@ pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
     if polygons.is_empty() {
         return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
             .in_file(path)
-            .cure("a boundary is made of polygons, or of lines that close"));
+            .cure("a boundary consists of polygons, or of lines that close"));
     }
     Ok(polygons)
 }
 
-/// The parts that are lines, with their numbers.
+/// Returns the parts that are lines, with their numbers.
 fn drawn(parts: &[Vec<[f64; 3]>], fid: usize) -> impl Iterator<Item = Drawn> {
     let is_one_of_many = parts.len() > 1;
     let lines = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
@@ -97,7 +98,7 @@ fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer) -> Result<()> {
 }
 
 fn cure(layer: &Layer) -> String {
-    let cure = "name the attribute that holds them: --breaklines FILE:FIELD";
+    let cure = "name the attribute with the heights: --breaklines FILE:FIELD";
     match layer.fields.as_slice() {
         [] => format!("{cure} (this layer has no attributes)"),
         fields => format!("{cure} (the attributes are {})", fields.join(", ")),
@@ -110,10 +111,10 @@ fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
     let number = vertex + 1;
     if z.is_nan() && x.is_finite() && y.is_finite() {
         return Error::format(format!("vertex {number} at {x} {y} has no height, though others have"))
-            .cure("give it one, or take the record out");
+            .cure("add a height, or remove the record");
     }
     Error::format(format!("vertex {number} at {x} {y} {z}: expected finite coordinates"))
-        .cure("repair the record or take it out")
+        .cure("repair or remove the record")
 }
 
 fn at_record(error: Error, path: &Path, record: usize) -> Error {

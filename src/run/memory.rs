@@ -1,4 +1,4 @@
-//! How much memory is left, asked before large work.
+//! The free memory, checked before large work.
 
 use std::path::{Path, PathBuf};
 
@@ -6,54 +6,55 @@ use super::notice::Notice;
 use super::units::bytes;
 use crate::error::{Error, Result};
 
-/// What a point takes while a TIN is made of it and written, its coordinates not counted: measured is 65 to 75.
+/// Bytes per point while a TIN is built and written, without the coordinates; measured: 65 to 75.
 const BYTES_A_POINT: u64 = 72;
 
-/// The same with its coordinates.
+/// Bytes per point, including the coordinates.
 const BYTES_A_POINT_READ: u64 = BYTES_A_POINT + 24;
 
-/// What a byte of a mesh file takes while it is read, with the triangles that it becomes.
+/// Bytes per byte of a mesh file while it is read, including the triangles.
 const BYTES_A_MESH_BYTE: u64 = 3;
 
-/// Below that nothing is asked.
+/// A need below this is not checked.
 const LITTLE: u64 = 64 << 20;
 
-/// What is left, and what sets the limit.
+/// The free memory, and what limits it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Left {
     bytes: u64,
     of: &'static str,
 }
 
-/// Returns an error if there is no room to make a TIN of so many points, which are in memory.
+/// Returns an error if there is not enough memory to build a TIN of this many points, which are in
+/// memory already.
 ///
 /// # Errors
-/// Names the need, what there is, and the cure.
+/// Names the memory needed, the free memory, and what to do.
 pub(super) fn require_for_points(count: usize) -> Result<()> {
     require(count as u64 * BYTES_A_POINT, &format!("a surface of {count} points"))
         .map_err(|e| e.cure("use fewer points: a part of the area (--bounds), a class (--class), or tiles one by one"))
 }
 
-/// Returns an error if there is no room for a raster of so many cells.
+/// Returns an error if there is not enough memory for a raster of this many cells.
 ///
 /// # Errors
-/// As [`require_for_points`].
+/// Those of [`require_for_points`].
 pub(super) fn require_for_cells(count: u64) -> Result<()> {
     require(count.saturating_mul(8), &format!("a raster of {count} cells"))
         .map_err(|e| e.cure("use a part of it: gdal_translate -srcwin or -projwin cuts one out"))
 }
 
-/// Returns an error if there is no room for the mesh in a file.
+/// Returns an error if there is not enough memory for the mesh in a file.
 ///
 /// # Errors
-/// As [`require_for_points`].
+/// Those of [`require_for_points`].
 pub(super) fn require_for_mesh(path: &Path) -> Result<()> {
     let length = std::fs::metadata(path).map_or(0, |data| data.len());
     require(length.saturating_mul(BYTES_A_MESH_BYTE), &format!("a mesh in a file of {}", bytes(length)))
-        .map_err(|e| e.in_file(path).cure("make it of fewer points, or in parts"))
+        .map_err(|e| e.in_file(path).cure("build it from fewer points, or in parts"))
 }
 
-/// A notice if all of so many points would take more than there is.
+/// Returns a notice if this many points, all used, would need more than the free memory.
 pub(super) fn excess_of(points: u64) -> Option<Notice> {
     let need = points.saturating_mul(BYTES_A_POINT_READ);
     let left = left().filter(|left| need > LITTLE && need > left.bytes)?;
@@ -66,7 +67,7 @@ fn require(need: u64, what: &str) -> Result<()> {
     }
     match left() {
         Some(left) if need > left.bytes => Err(Error::limit(format!(
-            "{what} takes about {} of memory, and {} are left {}",
+            "{what} takes about {} of memory, and {} are free {}",
             bytes(need),
             bytes(left.bytes),
             left.of
@@ -75,7 +76,7 @@ fn require(need: u64, what: &str) -> Result<()> {
     }
 }
 
-/// The least that is left, of all limits that the system tells.
+/// Returns the smallest free memory of all limits that the system reports.
 fn left() -> Option<Left> {
     let limits = [
         (of_machine(), "on this machine"),
@@ -85,13 +86,13 @@ fn left() -> Option<Left> {
     limits.into_iter().filter_map(|(bytes, of)| Some(Left { bytes: bytes?, of })).min_by_key(|left| left.bytes)
 }
 
-/// Memory that is free or can be freed, and swap.
+/// Returns the memory that is free or can be freed, including swap.
 fn of_machine() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     Some(kilobytes(&text, "MemAvailable:")? + kilobytes(&text, "SwapFree:").unwrap_or(0))
 }
 
-/// A value like `MemFree:  1234 kB`, in bytes.
+/// Parses a value such as `MemFree:  1234 kB`; returns bytes.
 fn kilobytes(text: &str, key: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(key))?;
     rest.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
@@ -128,7 +129,8 @@ const VERSION_1: GroupFiles = GroupFiles {
 const VERSION_2: GroupFiles =
     GroupFiles { root: "/sys/fs/cgroup", limit: "memory.max", used: "memory.current", cache: "inactive_file" };
 
-/// The least that is left to the control group of this process and to those around it.
+/// Returns the smallest free memory of the control group of this process and of those that contain
+/// it.
 fn of_groups() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/cgroup").ok()?;
     let (files, path) = text.lines().find_map(group)?;
@@ -137,7 +139,7 @@ fn of_groups() -> Option<u64> {
     groups.filter_map(|folder| files.left(folder)).min()
 }
 
-/// `0::/user.slice` or `5:cpu,memory:/docker/12ab`.
+/// Parses a line such as `0::/user.slice` or `5:cpu,memory:/docker/12ab`.
 fn group(line: &str) -> Option<(&'static GroupFiles, &str)> {
     let mut parts = line.splitn(3, ':');
     let (number, names, path) = (parts.next()?, parts.next()?, parts.next()?);
@@ -154,7 +156,7 @@ impl GroupFiles {
         let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
         // "max" where there is no limit.
         let (limit, used) = (number(self.limit)?, number(self.used)?);
-        // Copies of files are given up when memory is needed.
+        // Cached files are dropped when memory is needed.
         let statistics = read("memory.stat").unwrap_or_default();
         let cache = statistics.lines().find_map(|line| line.strip_prefix(self.cache)?.trim().parse::<u64>().ok());
         Some(limit.saturating_sub(used.saturating_sub(cache.unwrap_or(0))))

@@ -1,4 +1,4 @@
-//! Files of points: opened, asked for their systems, then read.
+//! Files of points: opened, then asked for their coordinate systems, then read.
 
 use super::context::{Journal, Size, Stage};
 use super::input::{Input, MemoryPoints};
@@ -15,10 +15,10 @@ use crate::terrain::{Classes, Selection};
 /// The class of ground points in LAS.
 const GROUND: u8 = 2;
 
-/// More files than this are opened a second time rather than kept open.
+/// If there are more files than this, they are not kept open but opened a second time.
 const FILES_KEPT_OPEN: usize = 100;
 
-/// Memory is asked about whenever so many points more are to be used.
+/// The free memory is checked each time that this many further points are to be used.
 const ASK_EVERY: usize = 1 << 20;
 
 /// A file of points.
@@ -32,7 +32,7 @@ struct PointFile {
 }
 
 impl PointFile {
-    /// Returns true if the file has points of these classes; read until one is found.
+    /// Returns true if the file has a point of these classes. Reads until one is found.
     fn has_any(&self, options: Options, classes: &Classes, journal: &Journal) -> Result<bool> {
         let path = self.input.path();
         let mut source = self.reopen(options)?;
@@ -60,7 +60,7 @@ pub(super) struct PointFiles {
 }
 
 impl PointFiles {
-    /// Opens them all, with notices of what they are.
+    /// Opens all files and adds a notice about the format of each.
     pub(super) fn open(inputs: &[Input<MemoryPoints>], options: Options, journal: &Journal) -> Result<Self> {
         let mut files = Vec::with_capacity(inputs.len());
         for input in inputs {
@@ -89,10 +89,14 @@ impl PointFiles {
         self.files.len()
     }
 
-    /// The system of each file. A file of several that gives no points states none: it is not asked.
+    /// Returns the coordinate system of each file; `None` for one of several files that has no
+    /// point to use.
+    ///
+    /// To find out, files that state different systems are read until a point is found that is
+    /// used.
     ///
     /// # Errors
-    /// If a file cannot be read; all are read on until a point of it is used, if they state different systems.
+    /// If a file cannot be read.
     pub(super) fn stated(&self, classes: &Classes, journal: &Journal) -> Result<Vec<Option<Stated>>> {
         let mut stated: Vec<Option<Stated>> = self.files.iter().map(|file| Some(file.stated.clone())).collect();
         let is_same = |a: &Option<Crs>, b: &Option<Crs>| match (a, b) {
@@ -101,7 +105,7 @@ impl PointFiles {
             _ => false,
         };
         let is_one = self.files.iter().all(|file| is_same(&file.stated.crs, &self.files[0].stated.crs));
-        // What comes through a pipe is read once.
+        // A pipe can be read only once.
         if is_one || self.files.iter().any(|file| file.input.is_read_once()) {
             return Ok(stated);
         }
@@ -123,7 +127,7 @@ impl PointFiles {
         Ok(stated)
     }
 
-    /// The columns that were taken of text, and of how many files.
+    /// Returns the columns used of text files, each with the number of files.
     pub(super) fn columns(&self) -> Vec<(Columns, u64)> {
         let mut counts: Vec<(Columns, u64)> = Vec::new();
         for columns in self.files.iter().filter_map(|file| file.columns) {
@@ -135,8 +139,8 @@ impl PointFiles {
         counts
     }
 
-    /// Reads them all; their points in the system of the result go to the selection. Returns the extents of the files, if
-    /// they are several.
+    /// Reads all files and adds their points, in the coordinate system of the result, to the
+    /// selection. Returns the extents of the files if there are several.
     pub(super) fn read(
         &mut self,
         by_file: &[Option<usize>],

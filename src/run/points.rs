@@ -1,4 +1,4 @@
-//! Points from files to a file: selected, clipped, merged.
+//! Selecting, clipping and merging points from files to a file.
 
 use std::path::{Path, PathBuf};
 
@@ -14,46 +14,46 @@ use crate::io::las::Rounding;
 use crate::io::points::{self, Options};
 use crate::terrain::Inside;
 
-/// Most files that are open at a time; of more, each is opened twice.
+/// The largest number of files that are open at a time; if there are more, each is opened twice.
 const MOST_OPEN: usize = 100;
 
-/// Which points of which files are written; all of them, unless something is said.
+/// The files to read and the points to write. By default all points are written.
 #[derive(Debug, Clone, Default)]
 pub struct PointsRequest {
     /// Files of points, in the order of the output.
     pub files: Vec<PathBuf>,
-    /// How they are read.
+    /// Options of reading them.
     pub read: Options,
-    /// Classes to write; all if there is none. Points of formats without classes are always written.
+    /// Classes to write; all if empty. Points of formats without classes are always written.
     pub classes: Vec<u8>,
-    /// Return numbers to write; all if there is none. Points of formats without returns are always written.
+    /// Return numbers to write; all if empty. Points of formats without returns are always written.
     pub returns: Vec<u8>,
-    /// What becomes of points that are marked as withheld.
+    /// What to do with points that are flagged as withheld.
     pub withheld: Withheld,
-    /// The box in plan that points are in, its border included.
+    /// The box in plan to clip to, including its border.
     pub bounds: Option<Bounds>,
-    /// Layers with polygons that points are in, as `FILE`, their borders included.
+    /// Layers with polygons to clip to, including their borders.
     pub boundary: Vec<PathBuf>,
-    /// What becomes of coordinates that the lattice of a LAS output does not have.
+    /// What to do with coordinates that are not on the lattice of a LAS output.
     pub rounding: Rounding,
 }
 
-/// What becomes of points that are marked as withheld.
+/// What to do with points that are flagged as withheld.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Withheld {
-    /// They are written, with their mark.
+    /// They are written, with their flag.
     #[default]
     Keep,
     /// They are left out.
     Drop,
 }
 
-/// What was written, and what was not.
+/// Counts of the points that were written and of those that were left out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PointsReport {
     /// Points read.
     pub read: u64,
-    /// Points written, and the box around them.
+    /// The points written: their number and the box around them.
     pub written: PointSummary,
     /// Points left out because they are withheld.
     pub withheld: u64,
@@ -65,18 +65,18 @@ pub struct PointsReport {
     pub outside: u64,
     /// The coordinate system of all files.
     pub crs: Option<Crs>,
-    /// What was assumed and what looks odd, in the order in which it was found.
+    /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
 
-/// Reads points file after file, and writes those that are asked for, in their order.
+/// Reads points file after file, and writes the selected ones in the same order.
 ///
-/// Memory is that of some chunks of points, whatever the size of the files.
+/// Needs memory for some chunks of points only, however large the files are.
 ///
 /// # Errors
-/// If a file cannot be read, the files are in different coordinate systems, their points cannot be written together
-/// without a loss (see [`las::create`](crate::io::las::create)), none is left, or the run is canceled. There is no output
-/// then.
+/// If a file cannot be read, the files are in different coordinate systems, their points cannot be
+/// written together without a loss (see [`las::create`](crate::io::las::create)), no point is left,
+/// or the run is canceled. Nothing is written then.
 pub fn write_points(request: &PointsRequest, target: Destination, context: &Context) -> Result<PointsReport> {
     let journal = Journal::new(context);
     let options = Options { detail: points::detail_for(target)?, ..request.read };
@@ -130,7 +130,7 @@ fn note_warnings(journal: &Journal, path: &Path, warnings: &[String]) {
     warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
 }
 
-/// Leaves out what is not asked for, and counts it.
+/// Removes the points that are not selected from a batch, and counts them.
 fn select(batch: &mut PointBatch, request: &PointsRequest, inside: Option<&Inside>, report: &mut PointsReport) {
     let is_listed = |list: &[u8], column: &[u8], i: usize| {
         list.is_empty() || column.get(i).is_none_or(|value| list.contains(value))
@@ -166,7 +166,7 @@ fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {
     (0..2).all(|k| bounds.min[k] <= p[k] && p[k] <= bounds.max[k])
 }
 
-/// The polygons that points are clipped to, in the system of the points.
+/// Returns the polygons that points are clipped to, in the coordinate system of the points.
 fn boundary(request: &PointsRequest, crs: Option<&Crs>, journal: &Journal) -> Result<Option<Inside>> {
     let mut polygons = Vec::new();
     for path in &request.boundary {
@@ -178,13 +178,14 @@ fn boundary(request: &PointsRequest, crs: Option<&Crs>, journal: &Journal) -> Re
     Ok((!request.boundary.is_empty()).then(|| Inside::new(&polygons)))
 }
 
-/// Points are not reprojected: that would round them.
+/// Returns an error if a file is in a different coordinate system than those before it. Points are
+/// not reprojected: that would round them.
 fn one_system(all: &mut Option<Crs>, stated: Option<&Crs>, path: &Path) -> Result<()> {
     match (&all, stated) {
         (Some(known), Some(stated)) if !known.is_same(stated) => {
             Err(Error::usage(format!("the file is in {stated}, the files before it are in {known}"))
                 .in_file(path)
-                .cure("bring all files into one coordinate system first: `points` does not reproject"))
+                .cure("convert all files to one coordinate system first: `points` does not reproject"))
         }
         (None, Some(stated)) => {
             *all = Some(stated.clone());

@@ -1,4 +1,4 @@
-//! Surfaces: built from points, or read as they are.
+//! Surfaces, built from points or read from a file.
 
 use std::path::{Path, PathBuf};
 
@@ -16,38 +16,39 @@ use crate::io::Destination;
 use crate::io::mesh::{self, MeshSummary};
 use crate::terrain::Tin;
 
-/// The surface that a verb works on.
+/// The surface that a verb works on, and its coordinate system.
 #[derive(Debug, Clone, Default)]
 pub struct SurfaceRequest {
-    /// Where it comes from.
+    /// What the surface is built or read from.
     pub source: Source,
-    /// How coordinate systems are brought together.
+    /// Options of coordinate systems.
     pub systems: SystemOptions,
 }
 
-/// Where a surface comes from.
+/// What a surface is built or read from.
 #[derive(Debug, Clone)]
 pub enum Source {
-    /// It is built from points and lines.
+    /// Points and lines, which it is built from.
     Points(Box<TinRequest>),
-    /// It is read from a file of triangles, as it is.
+    /// A file of triangles, which is read.
     Mesh(PathBuf),
-    /// It is read from a raster of heights, as it is.
+    /// A raster of heights, which is read.
     Raster(PathBuf),
 }
 
 impl Default for Source {
-    /// Points, of which there are none.
+    /// No points.
     fn default() -> Self {
         Source::Points(Box::default())
     }
 }
 
 impl Source {
-    /// Files of points, or one file that is a mesh or a raster: their first bytes and extensions decide.
+    /// Returns the source for files of points, or for one file that is a mesh or a raster. Their
+    /// kind follows from the first bytes and the extension.
     ///
     /// # Errors
-    /// If a mesh or a raster is given with other files.
+    /// If a mesh or a raster is given together with other files.
     pub fn of_files(files: &[PathBuf]) -> Result<Self> {
         let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));
         match ready {
@@ -56,9 +57,9 @@ impl Source {
                 Ok(Source::Points(Box::new(TinRequest { points, ..TinRequest::default() })))
             }
             Some(path) if files.len() > 1 => {
-                Err(Error::usage("the file is a whole surface, and other files are given with it")
+                Err(Error::usage("the file is a surface, and cannot be combined with other files")
                     .in_file(path)
-                    .cure("give one .ply or one raster alone, or points only"))
+                    .cure("pass one .ply or one raster alone, or points only"))
             }
             Some(path) if content(path) == Content::Mesh => Ok(Source::Mesh(path.clone())),
             Some(path) => Ok(Source::Raster(path.clone())),
@@ -66,15 +67,15 @@ impl Source {
     }
 }
 
-/// A surface, and how it came to be.
+/// A surface, with the report of how it was built.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SurfaceProduct {
     /// The surface.
     pub model: Model,
-    /// What it was built of; `None` if it was read as it is.
+    /// The report of building it; `None` if it was read from a file.
     pub built: Option<Box<BuildReport>>,
-    /// What was assumed and what looks odd, in the order in which it was found.
+    /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
 
@@ -90,7 +91,7 @@ pub enum Model {
 }
 
 impl SurfaceProduct {
-    /// The triangles.
+    /// Returns the triangles.
     ///
     /// # Errors
     /// If the surface is a raster.
@@ -102,7 +103,7 @@ impl SurfaceProduct {
         }
     }
 
-    /// The coordinate system, if it is known.
+    /// Returns the coordinate system, if it is known.
     pub fn crs(&self) -> Option<&Crs> {
         match &self.model {
             Model::Tin(tin) => tin.crs(),
@@ -111,7 +112,8 @@ impl SurfaceProduct {
         }
     }
 
-    /// The box around the surface; of a raster around all cells, with the heights of those that have one.
+    /// Returns the box around the surface; for a raster, around all cells, with the range of their
+    /// heights.
     ///
     /// # Complexity
     /// Linear, unless the surface is a TIN.
@@ -124,14 +126,15 @@ impl SurfaceProduct {
     }
 }
 
-/// Writes a mesh, in the format that the extension of `target` names: `.ply`, `.obj`, `.off` or `.stl`.
+/// Writes a mesh, in the format that the extension of `target` names: `.ply`, `.obj`, `.off` or
+/// `.stl`.
 ///
 /// # Errors
-/// If the extension names no such format, the surface is too large for it, the file cannot be written, or the run is
-/// canceled.
+/// If the extension names no such format, the surface is too large for it, the file cannot be
+/// written, or the run is canceled.
 pub fn write_mesh(surface: &dyn Surface, target: Destination, context: &Context) -> Result<MeshSummary> {
     target.put_whole(|target| {
-        // Numbered, then listed.
+        // Once to number the vertices, once to list the faces.
         let watched = Watched::faces(surface, 2, Stage::WritingFaces, context)?;
         let written = mesh::write(target, &watched);
         watched.end()?;
@@ -139,7 +142,7 @@ pub fn write_mesh(surface: &dyn Surface, target: Destination, context: &Context)
     })
 }
 
-/// Reads what the request names, and builds the TIN where there is none yet.
+/// Reads the input of a request, and builds the TIN if the input is points.
 ///
 /// # Errors
 /// If something cannot be read or is refused, or the run is canceled.
@@ -167,7 +170,7 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
 /// Like [`surface`], for verbs that need triangles.
 ///
 /// # Errors
-/// Those of [`surface`]; also if the input is a raster, which is not read then.
+/// Those of [`surface`], and if the input is a raster, which is not read then.
 pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
     if let Source::Raster(path) = &request.source {
         return Err(Error::usage("the input is a raster; points or a .ply are needed")
@@ -177,7 +180,7 @@ pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceP
     surface(request, context)
 }
 
-/// A mesh under the system that it states or is assigned.
+/// Returns a mesh as a model, in the coordinate system that it states or that is assigned.
 pub(super) fn mesh_model(path: &Path, mut mesh: Mesh, options: &SystemOptions, journal: &Journal) -> Result<Model> {
     mesh.set_crs(one_system(path, mesh.crs(), options, journal)?);
     Ok(Model::Mesh(Box::new(mesh)))
@@ -188,10 +191,10 @@ fn one_system(path: &Path, crs: Option<&Crs>, options: &SystemOptions, journal: 
     Ok(systems::reconcile(&stated, options, journal)?.crs)
 }
 
-/// Counts and extent of a surface, without vertices that no face uses.
+/// Counts and extent of a surface. Vertices that no face uses do not count.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceFacts {
-    /// Vertices that a face uses.
+    /// Vertices that some face uses.
     pub vertices: usize,
     /// Triangles.
     pub triangles: usize,
@@ -204,7 +207,7 @@ pub struct SurfaceFacts {
 }
 
 impl SurfaceFacts {
-    /// Counts over all faces of a surface.
+    /// Returns the counts over all faces of a surface.
     ///
     /// # Complexity
     /// Linear.
@@ -219,7 +222,7 @@ impl SurfaceFacts {
                     EdgeKind::Clip => &mut facts.clips,
                     EdgeKind::Plain | EdgeKind::Rim => continue,
                 };
-                // An edge inside is met from both sides.
+                // An inner edge is visited from both sides.
                 *count += usize::from(surface.neighbor(face.number, i).is_none_or(|other| face.number < other));
             }
             for vertex in face.corners {

@@ -1,4 +1,4 @@
-//! Which coordinate system the input is in, and what has to be reprojected.
+//! The coordinate system of the result, and which files have to be reprojected.
 
 use std::path::{Path, PathBuf};
 
@@ -8,36 +8,37 @@ use super::units::Units;
 use crate::crs::{Crs, CrsKind};
 use crate::error::{Error, Result};
 
-/// How coordinate systems of the input are brought together. By default all files that state a system state the same,
-/// files that state none are in it, and nothing is reprojected.
+/// Options of coordinate systems. By default all files that state a system must state the same,
+/// files that state none are taken to be in it, and nothing is reprojected.
 #[derive(Debug, Clone, Default)]
 pub struct SystemOptions {
-    /// The system of all input, whatever the files state.
+    /// The coordinate system of all input, whatever the files state.
     pub assign: Option<Crs>,
-    /// The system of the result: points and lines are reprojected to it, which needs the feature `proj`.
+    /// The coordinate system of the result: points and lines are reprojected to it, which needs the
+    /// feature `proj`.
     pub target: Option<Crs>,
-    /// What becomes of coordinates in degrees.
+    /// What to do with coordinates in degrees.
     pub degrees: Degrees,
 }
 
-/// What becomes of coordinates in degrees, which are no lengths.
+/// What to do with coordinates in degrees, which are not lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Degrees {
     /// They are an error.
     #[default]
     Refuse,
-    /// They are taken as lengths.
+    /// They are used as lengths.
     Allow,
 }
 
-/// What to do about coordinates that are in the wrong system. Without PROJ, `--t-srs` is no cure.
+/// The hint for coordinates in the wrong system. Without PROJ, `--t-srs` is not available.
 const REPROJECT: &str = if cfg!(feature = "proj") {
     "reproject with --t-srs EPSG:CODE"
 } else {
     "reproject first (ogr2ogr, gdalwarp, pdal): this build is without PROJ"
 };
 
-/// A file and the system that it states.
+/// A file and the coordinate system that it states.
 #[derive(Debug, Clone)]
 pub(super) struct Stated {
     pub(super) path: PathBuf,
@@ -45,26 +46,27 @@ pub(super) struct Stated {
     pub(super) role: Role,
 }
 
-/// What a file is there for. Where all else is equal, the definition of the later one is taken:
+/// The role of a file in the input. If all else is equal, the definition of the later role is used:
 /// that of a `.prj` has shortened names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Role {
     Lines,
     Ground,
-    /// A surface that is there already; it is not reprojected.
+    /// A surface that was read; it is not reprojected.
     Whole,
 }
 
-/// The answer.
+/// The coordinate system of the result, and the one that each file is reprojected from.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Systems {
-    /// What each file is reprojected from; `None` where its coordinates are taken as they are.
+    /// The system that each file is reprojected from; `None` if its coordinates are used as they
+    /// are.
     pub(super) from: Vec<Option<Crs>>,
     /// The system of the result.
     pub(super) crs: Option<Crs>,
 }
 
-/// Brings the systems of all files together.
+/// Returns the coordinate system of the result for the systems of all files.
 ///
 /// # Errors
 /// If two files state different systems, the result would be in degrees or geocentric, or there is
@@ -82,10 +84,10 @@ pub(super) fn reconcile(files: &[Stated], options: &SystemOptions, journal: &Jou
     Ok(systems)
 }
 
-/// The same where some files are not asked; they are not reprojected.
+/// Like [`reconcile`], but ignores the files that are `None`; these are not reprojected.
 ///
 /// # Errors
-/// As [`reconcile`].
+/// Those of [`reconcile`].
 pub(super) fn reconcile_some(files: &[Option<Stated>], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
     let asked: Vec<Stated> = files.iter().flatten().cloned().collect();
     let Systems { from, crs } = reconcile(&asked, options, journal)?;
@@ -108,7 +110,7 @@ fn assigned(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Vec
         .collect()
 }
 
-/// The one system of all files that state any.
+/// Returns the common system of all files that state one.
 fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
     let mut known = files.iter().filter_map(|file| file.crs.as_ref().map(|crs| (file, crs)));
     let Some(mut best) = known.next() else { return Ok(None) };
@@ -116,7 +118,7 @@ fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
         if !crs.is_same(best.1) {
             return Err(two_systems(best, (file, crs)));
         }
-        // The most complete definition, whatever the order of the files.
+        // Choose the most complete definition, whatever the order of the files.
         if rank(file, crs) > rank(best.0, best.1) {
             best = (file, crs);
         }
@@ -138,7 +140,7 @@ fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Erro
         a.path.display(),
         b.path.display()
     ))
-    .cure(format!("{REPROJECT}; or say with --a-srs CRS what all files are in"))
+    .cure(format!("{REPROJECT}; or state the system of all files with --a-srs CRS"))
 }
 
 fn reproject(files: &[Stated], target: &Crs, journal: &Journal) -> Result<Systems> {
@@ -148,14 +150,14 @@ fn reproject(files: &[Stated], target: &Crs, journal: &Journal) -> Result<System
         let Some(crs) = file.crs.as_ref().or(common.as_ref()) else {
             return Err(Error::unsupported("the file states no coordinate system to reproject from")
                 .in_file(&file.path)
-                .cure("say what it is in with --a-srs CRS"));
+                .cure("state its system with --a-srs CRS"));
         };
         from.push(Some(crs.clone()).filter(|crs| !crs.is_same(target)));
     }
     Ok(Systems { from, crs: Some(target.clone()) })
 }
 
-/// Refuses systems whose coordinates are no lengths in a plane.
+/// Returns an error if the coordinates of a system are not lengths in a plane.
 fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, journal: &Journal) -> Result<()> {
     let file = files.iter().find(|file| file.crs.is_some());
     let in_file = |error: Error| match file {
@@ -169,18 +171,18 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, journal: &Journal) -> Re
         }
         CrsKind::Geographic if degrees == Degrees::Refuse => {
             let unit = &crs.unit.name;
-            let error = Error::unsupported(format!("{crs} is geographic: its unit, the {unit}, is no length"));
+            let error = Error::unsupported(format!("{crs} is geographic: its unit, the {unit}, is not a length"));
             let cure = match file {
                 Some(Stated { role: Role::Whole, .. }) => {
-                    "make it of points in a projected system (a raster: gdalwarp), or go on with --force-degrees"
+                    "build it from points in a projected system (a raster: gdalwarp), or continue with --force-degrees"
                         .to_owned()
                 }
-                // What the format takes for granted, where it is not what the file holds.
+                // The format implies degrees, but the file may contain something else.
                 Some(file) if is_geojson(&file.path) => format!(
                     "GeoJSON without a `crs` member is in degrees: say with --a-srs EPSG:CODE if it is not (of a local system: \
                      --a-srs 'LOCAL_CS[\"local\",UNIT[\"metre\",1]]'); if it is, {REPROJECT}"
                 ),
-                _ => format!("{REPROJECT}, to a projected system, or go on with --force-degrees"),
+                _ => format!("{REPROJECT}, to a projected system, or continue with --force-degrees"),
             };
             return Err(in_file(error).cure(cure));
         }

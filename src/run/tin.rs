@@ -1,4 +1,5 @@
-//! From points and lines to a TIN: what is read, in which system, with which defaults.
+//! From the points and lines of a request to a TIN: what is read, in which coordinate system, with
+//! which defaults.
 
 use std::path::Path;
 use std::time::Instant;
@@ -23,55 +24,54 @@ use crate::terrain::{
 };
 use crate::triangulation::OnCrossing;
 
-/// Longest edge at the rim, and width of the buffer around bounds, unless something else is said.
+/// The default longest edge at the rim, and width of the buffer around bounds.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
 
-/// Heights of breaklines that meet may differ by this, unless something else is said: what a survey of edges is good
-/// for.
+/// The default tolerance of heights where breaklines meet: the accuracy of a survey of edges.
 const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 
-/// The points and lines that a TIN is built of, and how. Lengths are in the units of the coordinate system of the
-/// result, heights in its units of heights.
+/// The points and lines that a TIN is built from, and the options of building it. Lengths are in
+/// the units of the coordinate system of the result, heights in its units of heights.
 ///
-/// By default there is no input; ground points are used (class 2; all points if there are none), triangles at the rim
-/// with edges over 100 metres are left out, of several heights the lowest stands, and breaklines are split where they
-/// cross.
+/// By default there is no input. Ground points are used (class 2; all points if there are none),
+/// triangles at the rim with edges over 100 metres are left out, the lowest of several heights is
+/// used, and breaklines are split where they cross.
 #[derive(Debug, Clone, Default)]
 pub struct TinRequest {
-    /// Points. Their order makes no difference, except to [`DuplicateRule::First`] and `Last`.
+    /// The points. Their order makes no difference, except for [`DuplicateRule::First`] and `Last`.
     pub points: Vec<Input<MemoryPoints>>,
-    /// How files of points are read, where they leave that open.
+    /// Options of reading files of points.
     pub read: points::Options,
-    /// The classes that are used. Points that are marked as withheld never are.
+    /// The classes to use. Points that are flagged as withheld are never used.
     pub classes: Classes,
-    /// Lines with heights that hold in the surface; polygons give their rings. A breakline's height wins over points
-    /// at its vertices.
+    /// Lines with heights that the surface must follow; of polygons, the rings are used. At the
+    /// vertices of a breakline its heights are used, not those of points.
     pub breaklines: Vec<Input<Layer>>,
-    /// Polygons that the finished surface is cut to; what is inside of any of them stays. The lines of a layer are
-    /// taken for one polygon if they close to rings.
+    /// Polygons that the finished surface is cut to; what is inside any of them is kept. The lines
+    /// of a layer count as one polygon if they close to rings.
     pub boundary: Vec<Input<Layer>>,
-    /// A box that the finished surface is cut to; heights are ignored. Points around it are used, too: as far as it
-    /// takes for the surface within to be that of all points.
+    /// A box that the finished surface is cut to; its heights are ignored. Points around it are
+    /// used, too, so far out that the surface inside is the same as with all points.
     pub bounds: Option<Bounds>,
     /// Triangles at the rim with longer edges are left out.
     pub max_edge: EdgeLimit,
-    /// Which height stands where points share a position.
+    /// Which height is used where points have the same position.
     pub duplicates: DuplicateRule,
     /// What to do where breaklines cross between their vertices.
     pub on_crossing: OnCrossing,
-    /// Which height stands where they do.
+    /// Which height is used where they do.
     pub crossing_heights: CrossingRule,
-    /// Heights of breaklines that meet may differ by this without a notice; 0.01 metres if it is `None`, 0.01 units
-    /// where the unit is not known.
+    /// The largest difference of heights of breaklines that meet without a notice. `None` is 0.01
+    /// metres, or 0.01 units if the unit is not known.
     pub crossing_tolerance: Option<f64>,
 }
 
 impl TinRequest {
-    /// Returns an error if a layer is a file of another kind: what is known to hold no lines or polygons is not handed to
-    /// a reader of them.
+    /// Returns an error if a file that is given as a layer is known to be of a kind without lines
+    /// or polygons, such as a raster.
     ///
     /// # Errors
-    /// Names the file and what it is.
+    /// Names the file and its kind.
     pub fn check_layers(&self) -> Result<()> {
         refuse_other_kinds("--breaklines takes lines or polygons", &self.breaklines)?;
         refuse_other_kinds("--boundary takes polygons or closed lines", &self.boundary)
@@ -94,36 +94,36 @@ fn refuse_other_kinds(wanted: &str, layers: &[Input<Layer>]) -> Result<()> {
     Ok(())
 }
 
-/// The longest edge that a triangle at the rim may have in plan. Triangles that can be reached from outside over longer
-/// edges are left out; breaklines stop it.
+/// The longest edge that a triangle at the rim may have in plan. Triangles that can be reached from
+/// outside across longer edges are left out; breaklines are not crossed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum EdgeLimit {
-    /// 100 metres, in units of the coordinate system; 100 units where none is known.
+    /// 100 metres, in units of the coordinate system; 100 units if none is known.
     #[default]
     Standard,
-    /// None: the whole convex hull is kept.
+    /// No limit: the whole convex hull is kept.
     Unlimited,
-    /// So long, in the units of the coordinate system.
+    /// This length, in the units of the coordinate system.
     Length(f64),
 }
 
-/// What a TIN was built of, and what became of it.
+/// The report of a TIN that was built: its input and what was done with it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct BuildReport {
-    /// Sources of points.
+    /// The number of sources of points.
     pub sources: usize,
-    /// What became of the points.
+    /// How many points were used, and why others were not.
     pub points: SelectionReport,
-    /// The columns that were taken of text, and of how many files.
+    /// The columns used of text files, each with the number of files.
     pub columns: Vec<(Columns, u64)>,
-    /// Breaklines read (parts and rings count one each).
+    /// The number of breaklines read; each part and each ring counts.
     pub breaklines: usize,
-    /// What became of points and lines in the TIN.
+    /// Counts of the TIN and of what was left out of it.
     pub tin: TinReport,
-    /// The rule that decided between points at one position.
+    /// The rule for points with the same position.
     pub duplicates: DuplicateRule,
-    /// Names of the breaklines, for the positions in [`TinReport::crossing_heights`].
+    /// Names of the breaklines, by their positions in [`TinReport::crossing_heights`].
     pub line_names: LineNames,
 }
 
@@ -163,7 +163,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
     builder.crs = crs;
 
-    // Lines first: they are few, and what is wrong with them is known before the points are read.
+    // Lines first: they are few, and their errors are known before the points are read.
     let mut line_count = 0;
     let mut line_extent = Bounds::default();
     let mut names = LineNames::new(breaklines.iter().map(|(path, _)| path.to_path_buf()).collect());
@@ -207,7 +207,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         match tin {
             Ok(tin) if tin.report().uncertain == 0 => break (tin, report),
             Ok(tin) => journal.add(Notice::Uncertain(tin.report().uncertain, units.length(reach.buffer))),
-            // Too few points are an error only if there are no others.
+            // Too few points are an error only if there are no more to add.
             Err(_) if reach.may_grow_into(&report) => (),
             Err(error) => {
                 return Err(match paths.as_slice() {
@@ -235,12 +235,12 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     Ok((tin, report))
 }
 
-/// A box in plan, unbounded in z, grown on all sides.
+/// Returns a box enlarged by a length on all sides in plan, and unbounded in z.
 fn grown(Bounds { min, max }: Bounds, by: f64) -> Bounds {
     Bounds { min: [min[0] - by, min[1] - by, f64::NEG_INFINITY], max: [max[0] + by, max[1] + by, f64::INFINITY] }
 }
 
-/// How far the surface may reach where nothing was measured.
+/// The limits of the surface where nothing was measured.
 struct Rim {
     max_edge: Option<f64>,
     buffer: f64,
@@ -259,7 +259,8 @@ impl Rim {
     }
 }
 
-/// How far outside of the bounds points are used: as far as it takes for the surface within to be that of all points.
+/// The buffer outside of the bounds in which points are used, so wide that the surface inside the
+/// bounds is the same as with all points.
 struct Reach {
     bounds: Option<Bounds>,
     buffer: f64,
@@ -271,13 +272,13 @@ impl Reach {
         Reach { bounds: request.bounds, buffer: if is_read_once { f64::INFINITY } else { rim.buffer } }
     }
 
-    /// Where points are used.
+    /// Returns the box in which points are used.
     fn window(&self) -> Option<Bounds> {
         self.bounds.map(|bounds| grown(bounds, self.buffer))
     }
 
-    /// Returns true if there are points that were not used, and that bounds within the extent of all points do not rule
-    /// out.
+    /// Returns true if some points were not used and the bounds overlap the extent of all points: a
+    /// wider buffer may then contain more.
     fn may_grow_into(&self, report: &SelectionReport) -> bool {
         let all = &report.extent;
         self.bounds.is_some_and(|bounds| {
@@ -298,7 +299,7 @@ impl Reach {
     }
 }
 
-/// Layers, each with its path.
+/// Reads layers; returns each with its path.
 type Layers<'a> = Vec<(&'a Path, std::borrow::Cow<'a, Layer>)>;
 
 fn layers<'a>(inputs: &'a [Input<Layer>], journal: &Journal) -> Result<Layers<'a>> {
@@ -342,7 +343,7 @@ fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
             .cure("allow longer edges with --max-edge LENGTH or --max-edge none")
         }
         _ => Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
-            .cure("`breakline info` tells the extent of each file"),
+            .cure("`breakline info` shows the extent of each file"),
     }
 }
 
@@ -354,22 +355,22 @@ fn nothing_left(report: &SelectionReport, files: &[&Path]) -> Error {
         _ => error,
     };
     if *read == 0 {
-        return named(Error::format("there is no point").cure("give files that hold points"));
+        return named(Error::format("no points in the input").cure("pass files that contain points"));
     }
     let error = named(Error::format(format!(
         "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
     )));
     if *outside > 0 {
-        return error.cure("compare --bounds with the extent that `breakline info` tells");
+        return error.cure("compare --bounds with the extent that `breakline info` shows");
     }
     if *other_class > 0 {
         let classes: Vec<String> = report.by_class.keys().map(u8::to_string).collect();
-        return error.cure(format!("the points are of class {}: choose with --class", classes.join(", ")));
+        return error.cure(format!("the points have class {}: choose with --class", classes.join(", ")));
     }
-    error.cure("withheld points are never used: take the mark off those that are good")
+    error.cure("withheld points are never used: clear the withheld flag on points that should be used")
 }
 
-/// The polygons that the surface is clipped to, as their rings.
+/// Returns the polygons that the surface is clipped to, each as its rings.
 fn clip_polygons(
     boundary: &Layers,
     by_file: &[Option<usize>],

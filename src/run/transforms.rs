@@ -1,4 +1,4 @@
-//! Reprojection of the input: the transform of each file.
+//! The transforms that reproject the files of the input.
 
 use rayon::prelude::*;
 
@@ -9,10 +9,10 @@ use crate::data::PointBatch;
 use crate::error::Result;
 use crate::io::proj;
 
-/// Points that one core reprojects at a time: enough to keep all cores at it.
+/// Points per task of reprojection: enough tasks to keep all cores busy.
 const REPROJECTED_AT_ONCE: usize = 4096;
 
-/// The transforms in use, and for each file the number of its own.
+/// The transforms in use, and for each file the index of its transform.
 pub(super) struct Transforms {
     transforms: Vec<Box<dyn Transform>>,
     pub(super) by_file: Vec<Option<usize>>,
@@ -41,7 +41,8 @@ impl Transforms {
         Ok(transforms)
     }
 
-    /// Adds the notices of the transforms: which operations, how good. Complete when they are done.
+    /// Adds the notices of the transforms: their operations and accuracy. Complete only after all
+    /// points are transformed.
     pub(super) fn warn(&self, journal: &Journal) {
         self.transforms
             .iter()

@@ -4,10 +4,10 @@ use std::fmt;
 
 use crate::crs::{Crs, CrsKind, Unit};
 
-/// Metres in a degree along a meridian, about: good enough to choose defaults with.
+/// Metres per degree along a meridian, approximately: good enough for defaults.
 const METRES_PER_DEGREE: f64 = 111_320.0;
 
-/// The units of a surface: of the plan, and of the heights.
+/// The units of a surface, in plan and of heights.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Units {
     plan: Option<Unit>,
@@ -19,7 +19,7 @@ impl Units {
     pub(crate) fn of(crs: Option<&Crs>) -> Self {
         let is_angular = crs.is_some_and(|crs| crs.kind == CrsKind::Geographic);
         let plan = crs.map(|crs| crs.unit.clone());
-        // Heights over degrees are in metres unless the definition says otherwise.
+        // With degrees in plan, heights are in metres unless the definition says otherwise.
         let height = match crs.and_then(|crs| crs.vertical_unit.clone()) {
             Some(unit) => Some(unit),
             None if is_angular => Some(Unit { name: "metre".to_owned(), factor: 1.0 }),
@@ -28,17 +28,17 @@ impl Units {
         Units { plan, height, is_angular }
     }
 
-    /// A length in the plane.
+    /// Returns a length in plan with its unit.
     pub(crate) fn length(&self, value: f64) -> Quantity {
         Quantity { value, unit: self.plan.clone() }
     }
 
-    /// A height.
+    /// Returns a height with its unit.
     pub(crate) fn height(&self, value: f64) -> Quantity {
         Quantity { value, unit: self.height.clone() }
     }
 
-    /// So many metres in units of the plan; the number itself where the unit is not known.
+    /// Converts metres to units of the plan; returns the number itself if the unit is not known.
     pub(crate) fn of_metres(&self, metres: f64) -> f64 {
         match &self.plan {
             Some(_) if self.is_angular => metres / METRES_PER_DEGREE,
@@ -47,7 +47,7 @@ impl Units {
         }
     }
 
-    /// So many metres in units of the heights; the number itself where the unit is not known.
+    /// Converts metres to units of the heights; returns the number itself if the unit is not known.
     pub(crate) fn height_of_metres(&self, metres: f64) -> f64 {
         match &self.height {
             Some(unit) if unit.factor > 0.0 => metres / unit.factor,
@@ -55,12 +55,12 @@ impl Units {
         }
     }
 
-    /// Whether the plan is in angles.
+    /// Returns true if coordinates in plan are angles.
     pub(crate) fn is_angular(&self) -> bool {
         self.is_angular
     }
 
-    /// The two names, where lengths of the plan and heights are in different units.
+    /// Returns the names of both units if lengths in plan and heights are in different units.
     pub(crate) fn disagreement(&self) -> Option<(&str, &str)> {
         match (&self.plan, &self.height) {
             (Some(plan), Some(height)) if self.is_angular || plan.factor != height.factor => {
@@ -71,16 +71,16 @@ impl Units {
     }
 }
 
-/// A length or a height with its unit, where that is known.
+/// A length or a height with its unit, if that is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantity {
     /// The number.
     pub value: f64,
-    /// Its unit; `None` where no coordinate system is known.
+    /// Its unit; `None` if no coordinate system is known.
     pub unit: Option<Unit>,
 }
 
-/// As `100 m`, `1 ftUS`, `12.5 units`: without what is beyond the second decimal.
+/// Formats as `100 m`, `1 ftUS`, `12.5 units`, rounded like [`number`].
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = number(self.value);
@@ -96,18 +96,18 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// A number for people: without what is beyond the ninth decimal.
+/// Formats a number with at most nine decimals.
 pub(crate) fn neat(value: f64) -> String {
     let text = format!("{:.9}", value + 0.0);
     match text.trim_end_matches('0').trim_end_matches('.') {
-        // Not zero, but smaller than that.
+        // Not zero, but too small for nine decimals.
         "0" | "-0" if value != 0.0 => value.to_string(),
         "-0" => "0".to_owned(),
         trimmed => trimmed.to_owned(),
     }
 }
 
-/// Two decimals for what is a measure of land, three digits for what is small, two for what is hardly there.
+/// Formats a number with at most two decimals; below 1 with three digits, below 1e-6 with two.
 pub(crate) fn number(value: f64) -> String {
     if value.abs() >= 1.0 || value == 0.0 {
         let text = format!("{value:.2}");
@@ -121,7 +121,7 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// `12 kB`, `1.5 GB`
+/// Formats a number of bytes as `12 kB`, `1.5 GB`.
 pub(crate) fn bytes(count: u64) -> String {
     match count {
         0..1_000_000 => format!("{} kB", count.div_ceil(1000)),

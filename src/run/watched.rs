@@ -1,4 +1,4 @@
-//! Sources that count what is taken from them, and give no more once the run is canceled.
+//! Sources that report progress, and that end when the run is canceled.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,14 +8,14 @@ use crate::crs::Crs;
 use crate::data::{BlockSource, EdgeKind, Face, Frame, Surface, Window};
 use crate::error::Result;
 
-/// A source whose progress shows while a writer or a check takes from it.
+/// A source that reports progress while a writer or a check reads from it.
 ///
-/// A canceled source of cells returns an error. A canceled surface has no more faces in its batches, so that whoever
-/// goes over them is soon done; [`end`](Self::end) returns the error then.
+/// When the run is canceled, a source of cells returns an error. A surface returns empty batches of
+/// faces, so that the reader soon ends; [`end`](Self::end) then returns the error.
 pub(super) struct Watched<'a, S: ?Sized> {
     source: &'a S,
     work: Work<'a>,
-    /// Kept here, so that nobody sees faces again if the flag is cleared.
+    /// Kept here, so that no faces are returned again if the flag is cleared.
     is_canceled: AtomicBool,
 }
 
@@ -27,7 +27,7 @@ impl<'a, S: ?Sized> Watched<'a, S> {
     /// Ends the stage.
     ///
     /// # Errors
-    /// If the run was canceled; what was taken is to be thrown away then.
+    /// If the run was canceled; the data read from the source is then incomplete.
     pub(super) fn end(self) -> Result<()> {
         if self.is_canceled.into_inner() { Err(crate::error::Error::canceled()) } else { self.work.end() }
     }
@@ -42,7 +42,7 @@ impl<'a, S: ?Sized> Watched<'a, S> {
 }
 
 impl<'a, S: BlockSource + ?Sized> Watched<'a, S> {
-    /// Counts cells.
+    /// A source of cells that reports progress in cells.
     pub(super) fn cells(source: &'a S, stage: Stage, context: &Context<'a>) -> Result<Self> {
         let Frame { width, height, .. } = source.frame();
         Self::new(source, stage, Size::Items(width as u64 * height as u64), context)
@@ -50,12 +50,12 @@ impl<'a, S: BlockSource + ?Sized> Watched<'a, S> {
 }
 
 impl<'a, S: Surface + ?Sized> Watched<'a, S> {
-    /// Counts faces, each of which is asked for so many times.
+    /// A surface that reports progress in faces, each of which is visited `times` times.
     pub(super) fn faces(source: &'a S, times: u64, stage: Stage, context: &Context<'a>) -> Result<Self> {
         Self::new(source, stage, Size::Items(times * source.face_count() as u64), context)
     }
 
-    /// Is part of a stage that was begun before, and counts nothing.
+    /// A surface that is part of a stage in progress and reports nothing itself.
     pub(super) fn polled(source: &'a S, context: &Context<'a>) -> Result<Self> {
         context.check()?;
         Ok(Watched { source, work: Work::silent(context), is_canceled: AtomicBool::new(false) })

@@ -77,7 +77,8 @@ fn columns_are_for_text_and_for_points() {
     }
     run_in(&folder, &["tin", "a.xyz", "--columns", "XYZ", "--parse", "xyz", "-o", "u.ply"])
         .fails(2, &["cannot be used with"]);
-    run_in(&folder, &["dem", "t.ply", "--columns", "XYZ", "-o", "d.tif"]).fails(2, &["--columns", "whole surface"]);
+    run_in(&folder, &["dem", "t.ply", "--columns", "XYZ", "-o", "d.tif"])
+        .fails(2, &["--columns", "the input is a surface already"]);
     // A column that is not there.
     run_in(&folder, &["tin", "a.xyz", "--columns", "1,2,9", "-o", "u.ply"])
         .fails(1, &["a.xyz: line 1: 3 fields separated by blanks, expected at least 9"]);

@@ -56,7 +56,7 @@ fn lines_that_differ_in_height_are_told_by_file_and_feature() {
     let folder = folder();
     let run = run_in(&folder, &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"]);
     run.works(&[
-        "note: crossings of breaklines are rounded to 4.4e-16 m; no line is moved by more than half of that",
+        "note: crossings of breaklines are rounded to 4.4e-16 m; no line moves by more than half of that",
         "warning: breaklines meet with different heights at 2 points, by up to 10.5 m (at 1.5 1.5)",
         "1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1; 20 stands",
         "3 3: 20 of l.geojson fid 0, 21 of l.geojson fid 1, part 2; 20 stands",

@@ -147,9 +147,10 @@ fn a_surface_that_is_there_takes_no_options_for_building_one() {
         ["--duplicates", "mean"],
         ["--t-srs", "EPSG:25832"],
     ] {
-        dem(&option).fails(2, &["t.ply: ", option[0], "whole surface"]);
+        dem(&option).fails(2, &["t.ply: ", option[0], "the input is a surface already"]);
     }
-    run_in(&folder, &["dem", "t.ply", "a.xyz", "-o", "d.tif"]).fails(2, &["t.ply", "other files are given with it"]);
+    run_in(&folder, &["dem", "t.ply", "a.xyz", "-o", "d.tif"])
+        .fails(2, &["t.ply", "cannot be combined with other files"]);
     let run = dem(&["--a-srs", "EPSG:25832", "--resolution", "0.5"]);
     run.works(&["6 x 6 cells of 0.5 m", "36 with a height, from 10.25 m to 12.75 m", "EPSG:25832"]);
     let info = run_in(&folder, &["info", "--json", "d.tif"]);

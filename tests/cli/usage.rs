@@ -168,7 +168,7 @@ fn degrees_and_geocentric_systems_are_refused_with_the_cure() {
     let flags = ["--a-srs", "EPSG:4326", "--max-edge", "none", "--force-degrees"];
     run_in(&folder, &[&["tin", "a.xyz", "-o", "d.ply"], &flags[..]].concat()).works(&[]);
     let run = run_in(&folder, &["contour", "d.ply", "-o", "c.shp"]);
-    run.fails(1, &["d.ply", "EPSG:4326", "hint: make it of points in a projected system", "--force-degrees"]);
+    run.fails(1, &["d.ply", "EPSG:4326", "hint: build it from points in a projected system", "--force-degrees"]);
     assert_eq!(files_of(folder.path()), ["a.xyz", "d.ply"]);
     // Nothing that is checked is a length.
     run_in(&folder, &["check", "d.ply"]).works(&[]);
@@ -285,7 +285,7 @@ fn a_feature_that_is_not_built_in_is_named() {
 fn a_raster_is_no_input_of_tin_or_dem() {
     let folder = folder_with(&[("d.tif", "II*\0"), ("a.xyz", SLOPE)]);
     run_in(&folder, &["dem", "d.tif", "-o", "e.tif"]).fails(2, &["d.tif: the input is a raster"]);
-    run_in(&folder, &["contour", "d.tif", "a.xyz", "-o", "e.shp"]).fails(2, &["d.tif", "whole surface"]);
+    run_in(&folder, &["contour", "d.tif", "a.xyz", "-o", "e.shp"]).fails(2, &["d.tif", "the file is a surface"]);
     run_in(&folder, &["contour", "d.tif", "--class", "2", "-o", "e.shp"]).fails(2, &["d.tif", "--class"]);
     run_in(&folder, &["hillshade", "d.tif", "-o", "d.tif", "--overwrite"]).fails(2, &["one of the inputs"]);
 }

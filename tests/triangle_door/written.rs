@@ -451,7 +451,7 @@ fn refinement_without_an_end_stops_at_its_limit() {
     let folder = folder_with(&[("eight.node", points)]);
     let unbounded = run(&folder, "triangulate -q45 eight.node -o e.1.ele");
     unbounded
-        .fails(1, &["eight.node: 1000000 vertices were added, and ", " are still not as asked for", "--max-added"]);
+        .fails(1, &["eight.node: 1000000 vertices were added, and ", " are still not as requested", "--max-added"]);
     assert_eq!(files_of(folder.path()), ["eight.node"]);
     for switches in ["-q45S500", "-q45 --max-added 500"] {
         let bounded = run(&folder, &format!("triangulate {switches} eight.node -o e.1.ele --overwrite"));

@@ -1,11 +1,12 @@
-//! From a triangulation to what Triangle's files hold: numbers of vertices, attributes, boundary markers.
+//! From a triangulation to the contents of Triangle's files: numbers of vertices, attributes,
+//! boundary markers.
 
 use std::collections::HashMap;
 
 use super::build::Built;
 use crate::io::triangle::{Edge, LineGraph, Nodes, Triangulated};
 
-/// Puts together what is kept.
+/// Returns the kept triangles with their vertices, edges, segments, attributes and markers.
 pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attributes: &[f64]) -> Triangulated {
     let mut nodes = graph.nodes.clone();
     let node_of = number_nodes(graph, built, &mut nodes);
@@ -28,7 +29,7 @@ pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attri
         triangulated.attributes.extend(attributes.get(face));
         for (i, beside) in neighbors.into_iter().enumerate() {
             if beside.is_some_and(|beside| Some(beside) < new_number[face]) {
-                continue; // told from the other side
+                continue; // listed from the other side
             }
             let ends = [this.corners[(i + 1) % 3], this.corners[(i + 2) % 3]];
             let mut edge = Edge { ends: ends.map(|v| node_of[v as usize]), marker: marker_of(ends) };
@@ -46,7 +47,7 @@ pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attri
         triangulated.segments = collinear_segments(built, &node_of, &marker_of);
     }
 
-    // Its own marker first, then that of a segment, then 1 on the rim.
+    // The vertex's own marker comes first, then that of a segment, then 1 on the rim.
     for (segment, chain) in graph.segments.iter().zip(&built.chains) {
         for &v in chain {
             set_if_zero(&mut nodes.markers[node_of[v as usize] as usize], segment.marker);
@@ -57,8 +58,9 @@ pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attri
     triangulated
 }
 
-/// Numbers the vertices: where points share a place, the first of them stands. Adds those that are no
-/// point of the input, with attributes as they are there on the first segment through them.
+/// Returns the number of each vertex's node; of points at the same position, the first counts. Adds
+/// nodes for vertices that are not points of the input, with attributes interpolated on the first
+/// segment through them.
 fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32> {
     let mut node_of = vec![None; built.vertices.len()];
     for (node, &vertex) in (0u32..).zip(&built.vertex_of) {
@@ -84,8 +86,8 @@ fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32>
     numbered.collect()
 }
 
-/// Linear in the triangle of the input's vertices that an added vertex lies in. Zero where one of these has none
-/// itself, where segments cross.
+/// Returns the attributes of an added vertex, linear in the triangle of the input's vertices that
+/// contains it. A corner at a crossing of segments has no attributes and counts as zero.
 fn attributes_within(nodes: &Nodes, built: &Built, node_of: &[Option<u32>], vertex: u32) -> Vec<f64> {
     let mut attributes = vec![0.0; nodes.attribute_count];
     if let Some((corners, weights)) = built.between.get(&vertex) {
@@ -109,7 +111,7 @@ fn attributes_between(nodes: &Nodes, [a, b]: [usize; 2], at: [f64; 2]) -> Vec<f6
     values.map(|(from, to)| if from == to { *from } else { from * (1.0 - along) + to * along }).collect()
 }
 
-/// The marker of each piece of a segment: that of the first segment through it that has one.
+/// Returns the marker of each constrained edge: that of the first segment through it that has one.
 fn segment_markers(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
     let mut markers = HashMap::new();
     for (segment, chain) in graph.segments.iter().zip(&built.chains).filter(|(segment, _)| segment.marker != 0) {
@@ -120,7 +122,7 @@ fn segment_markers(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
     markers
 }
 
-/// Without triangles all segments are kept; each piece once.
+/// Returns the segments of a triangulation without triangles; each constrained edge once.
 fn collinear_segments(built: &Built, node_of: &[u32], marker_of: &impl Fn([u32; 2]) -> i32) -> Vec<Edge> {
     let mut sub_constraints: Vec<[u32; 2]> =
         built.chains.iter().flat_map(|chain| chain.windows(2).map(|pair| sorted([pair[0], pair[1]]))).collect();

@@ -1,4 +1,4 @@
-//! The one place where the verb meets the triangulation.
+//! Building the triangulation for the verb, as plain lists.
 
 use std::collections::HashMap;
 
@@ -11,24 +11,24 @@ use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, Location, On
 /// A triangulation of points and segments, as plain lists. Vertices have numbers of their own.
 #[derive(Debug, Default)]
 pub(super) struct Built {
-    /// Where the vertices are.
+    /// The positions of the vertices.
     pub(super) vertices: Vec<[f64; 2]>,
-    /// The vertex of each point; points at one place share theirs.
+    /// The vertex of each point; points at the same position have the same vertex.
     pub(super) vertex_of: Vec<u32>,
-    /// The triangles; none if all points are on one line.
+    /// The triangles; empty if all points are on one line.
     pub(super) faces: Vec<Face>,
     /// The vertices along each segment.
     pub(super) chains: Vec<Vec<u32>>,
-    /// Where each place that was asked for lies.
+    /// The location of each seed.
     pub(super) seeds: Vec<SeedLocation>,
-    /// Of added vertices that are not where segments cross: the corners of the triangle around each as it was before,
-    /// and the weights of these there.
+    /// For each added vertex that is not at a crossing of segments: the corners of the triangle
+    /// that contained it before refinement, and their weights at the vertex.
     pub(super) between: HashMap<u32, ([u32; 3], [f64; 3])>,
-    /// Why triangles are not what was asked for.
+    /// The reasons why triangles are not as requested.
     pub(super) shortfall: Vec<Shortfall>,
 }
 
-/// A triangle: side `i` is opposite corner `i`.
+/// A triangle; side `i` is opposite corner `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Face {
     /// Counter-clockwise.
@@ -37,18 +37,18 @@ pub(super) struct Face {
     pub(super) is_constrained: [bool; 3],
 }
 
-/// Where a place lies among the walls of a triangulation.
+/// The location of a seed among the constraints of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SeedLocation {
-    /// In this face, or on an edge or a vertex of it that is on no wall.
+    /// In this face, or on an edge or a vertex of it that is not on a constraint.
     Face(u32),
-    /// On a wall: it is not told which side is meant.
+    /// On a constraint: its side is ambiguous.
     Constraint,
     Outside,
 }
 
-/// Triangulates points and segments between them, refines them if that is asked for, and finds where seeds lie. Each
-/// segment is a line of the triangulation, by its position.
+/// Triangulates points and segments, refines the triangulation if a quality is given, and locates
+/// the seeds. The line id of each segment is its position in the list.
 pub(super) fn build<K: Kernel>(
     points: &[[f64; 2]],
     segments: &[[u32; 2]],
@@ -56,7 +56,7 @@ pub(super) fn build<K: Kernel>(
     on_crossing: OnCrossing,
     quality: Option<&Quality<'_>>,
 ) -> Result<Built, InputError> {
-    // Zero has one sign only: seeds are compared bit by bit when sorted.
+    // Negative zero becomes zero: sites are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
     let (coarse, vertices) =
         ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
@@ -64,7 +64,7 @@ pub(super) fn build<K: Kernel>(
     let t = refined.as_deref().unwrap_or(&coarse);
     let chains: Vec<Vec<VertexId>> = (0..segments.len()).map(|i| t.chain(LineId::new(i))).collect();
 
-    // Vertices that were added and taken out again leave numbers behind.
+    // Vertices that were added and removed again leave unused numbers.
     let mut numbers = vec![u32::MAX; t.tds().vertex_slots()];
     for (number, v) in (0..).zip(t.tds().vertices()) {
         numbers[v.index()] = number;
@@ -98,11 +98,11 @@ pub(super) fn build<K: Kernel>(
     })
 }
 
-/// The corners of the triangle in which a point lies, and the part that each has in it.
+/// Returns the corners of the triangle that contains a point, and their barycentric weights.
 fn weights<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, p: &[f64; 2]) -> Option<([VertexId; 3], [f64; 3])> {
     let cell = match t.locate(p, None) {
         Location::Cell { cell, .. } => cell,
-        // By a rounding, on the hull.
+        // Outside of the hull by rounding only.
         Location::OutsideHull { cell } => t.tds().neighbor(cell, t.tds().index_of(cell, VertexId::INFINITE)?),
         Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return None,
     };
@@ -128,7 +128,7 @@ fn locate_seed<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u
                 false => in_face(cell),
             }
         }
-        // What lies nowhere is further out, or nearer to zero, than any vertex.
+        // `Nowhere` is a coordinate larger, or nearer to zero, than any vertex can have.
         Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => SeedLocation::Outside,
     }
 }

@@ -1,17 +1,16 @@
-//! Which triangles are kept: what can be reached from outside, or from a hole, without crossing a segment
-//! is eaten away.
+//! Removal of triangles that can be reached from outside or from a hole without crossing a segment.
 
 use super::build::{Built, Face, SeedLocation};
 use crate::io::triangle::LineGraph;
 
-/// Whether the concavities of the outer boundary are kept.
+/// What to do with triangles between the outer boundary and the convex hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outside {
     Keep,
     Remove,
 }
 
-/// For each face whether it is kept.
+/// Returns for each face true if it is kept.
 pub(super) fn kept(built: &Built, graph: &LineGraph, outside: Outside) -> Vec<bool> {
     let faces = &built.faces;
     let mut is_kept = vec![true; faces.len()];
@@ -25,8 +24,8 @@ pub(super) fn kept(built: &Built, graph: &LineGraph, outside: Outside) -> Vec<bo
     is_kept
 }
 
-/// The attribute of the region that each kept face lies in, 0 outside of all; nothing if there are no
-/// regions. Of two seeds in one region the later counts.
+/// Returns the attribute of the region that each kept face lies in, 0 outside of all regions; empty
+/// if there are no regions. If a region has several seeds, the last counts.
 pub(super) fn attributes(built: &Built, graph: &LineGraph, is_kept: &[bool]) -> Vec<f64> {
     if graph.regions.is_empty() {
         return Vec::new();
@@ -44,8 +43,8 @@ pub(super) fn attributes(built: &Built, graph: &LineGraph, is_kept: &[bool]) -> 
     attributes
 }
 
-/// Goes over faces from these on, as far as no wall is in the way; `takes` says of each whether to go on from it, and
-/// must say so only once.
+/// Visits the faces that can be reached from `starts` without crossing a constraint. `takes`
+/// returns true if the search continues from a face; it must do so only once for each face.
 fn flood(faces: &[Face], starts: impl Iterator<Item = u32>, mut takes: impl FnMut(u32) -> bool) {
     let mut open: Vec<u32> = starts.collect();
     while let Some(face) = open.pop() {
@@ -81,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_and_regions_end_at_walls() {
+    fn holes_and_regions_end_at_constraints() {
         let count = |holes: &[[f64; 2]], outside| {
             let (built, graph) = squares(holes, &[]);
             kept(&built, &graph, outside).into_iter().filter(|&kept| kept).count()
@@ -90,7 +89,7 @@ mod tests {
             assert_eq!(count(&[], outside), 10);
             assert_eq!(count(&[[0.0, 0.5]], outside), 8);
             assert_eq!(count(&[[2.0, 2.0], [0.1, 0.0]], outside), 0);
-            assert_eq!(count(&[[1.0, 1.0], [1.0, 0.0], [9.0, 9.0]], outside), 10, "on a wall, or outside");
+            assert_eq!(count(&[[1.0, 1.0], [1.0, 0.0], [9.0, 9.0]], outside), 10, "on a constraint, or outside");
         }
         let (built, graph) = squares(&[[2.0, 0.0]], &[[2.0, 0.0], [0.0, 0.0], [0.5, 0.5]]);
         let is_kept = kept(&built, &graph, Outside::Remove);

@@ -1,4 +1,4 @@
-//! Triangle's files in, their triangulation out.
+//! Triangulation of Triangle's files.
 
 mod assemble;
 mod build;
@@ -20,47 +20,48 @@ use crate::triangulation::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
 use crate::triangulation::refine::{Domain, Quality, Region, Shortfall};
 use crate::triangulation::{InputError, OnCrossing};
 
-/// How points and segments of the plane are triangulated. By default nothing is refined, and what lies outside of the
-/// outer boundary or in a hole is left out.
+/// Options of triangulating points and segments of the plane. By default nothing is refined, and
+/// triangles outside of the outer boundary or in a hole are left out.
 #[derive(Debug, Clone, Default)]
 pub struct TriangulateOptions {
-    /// Whether the whole convex hull is kept; holes are left out all the same.
+    /// True if the whole convex hull is kept; holes are still left out.
     pub convex: bool,
     /// What to do where segments cross between their ends.
     pub on_crossing: OnCrossing,
-    /// Vertices are added until no angle is smaller, in degrees.
+    /// The smallest angle in degrees: vertices are added until no angle is smaller.
     pub min_angle: Option<f64>,
-    /// Vertices are added until no triangle is larger.
+    /// The largest area: vertices are added until no triangle is larger.
     pub max_area: Option<f64>,
-    /// Whether triangles in a region are no larger than the region says.
+    /// True if the largest areas of regions apply to the triangles in them.
     pub region_areas: bool,
-    /// Refinement stops after so many added vertices; if it is `None`, it is an error if 1 000 000 are not enough.
+    /// The number of added vertices after which refinement stops. If `None`, it is an error if 1
+    /// 000 000 are not enough.
     pub max_added: Option<usize>,
     /// The arithmetic of the predicates.
     pub arithmetic: Arithmetic,
 }
 
-/// The arithmetic that decides on which side a point lies.
+/// The arithmetic that decides on which side of a line a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Arithmetic {
     /// Exact, as fast as floating point where that is certain.
     #[default]
     Adaptive,
-    /// Exact, with numbers of any length, and slow.
+    /// Exact, with numbers of any length; slow.
     Exact,
-    /// Plain floating point, for experiments: a wrong result is an error, and it may not come to an end.
+    /// Plain floating point, for experiments: a wrong result is an error, and the run may not end.
     Fast,
 }
 
-/// A triangulation, as Triangle's files have it.
+/// A triangulation in the form of Triangle's files.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct TriangulateProduct {
     /// Vertices, triangles, edges and segments.
     pub triangulated: Triangulated,
-    /// What went in and what came out.
+    /// Counts of the input and of the result.
     pub report: TriangulateReport,
-    /// What was assumed and what looks odd, in the order in which it was found.
+    /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
 
@@ -78,17 +79,17 @@ pub struct TriangulateReport {
     pub duplicates: usize,
     /// Segments of the input.
     pub segments_given: usize,
-    /// Triangles, those included that were left out.
+    /// Triangles, including those that were left out.
     pub triangles_built: usize,
-    /// For each triangle that is not as asked for, why.
+    /// The reason for each triangle that is not as requested.
     pub shortfall: Vec<Shortfall>,
 }
 
 /// Triangulates the points and segments of a `.node` or `.poly` file.
 ///
 /// # Errors
-/// If it cannot be read, segments cross where that is refused, a refinement does not end, no triangle is left, or the
-/// run is canceled.
+/// If the file cannot be read, segments cross and that is refused, the refinement does not end, no
+/// triangle is left, or the run is canceled.
 pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context) -> Result<TriangulateProduct> {
     let journal = Journal::new(context);
     let reading = context.start(Stage::Reading, Size::Uncounted)?;
@@ -107,7 +108,8 @@ pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context)
     }
     note_seeds(&built, &graph, path, &journal);
     let keeps_hull = options.convex || graph.segments.is_empty();
-    // Refined, the hull is a constraint, beyond which there may be less than a rounding.
+    // In a refined triangulation the hull is a constraint; triangles beyond it are only effects of
+    // rounding.
     let outside =
         if keeps_hull && quality(options, &graph, context).is_none() { Outside::Keep } else { Outside::Remove };
     let is_kept = carve::kept(&built, &graph, outside);
@@ -134,10 +136,10 @@ pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context)
 }
 
 impl TriangulateProduct {
-    /// The triangles as a surface of height 0, which can be written as a mesh.
+    /// Returns the triangles as a surface of height 0, which can be written as a mesh.
     ///
     /// # Errors
-    /// If they are no surface.
+    /// If they are not a surface.
     pub fn to_mesh(&self) -> Result<Mesh> {
         flat_mesh(&self.triangulated)
     }
@@ -153,7 +155,7 @@ impl TriangulateProduct {
     }
 }
 
-/// Triangulates with the arithmetic that was asked for.
+/// Triangulates with the selected arithmetic.
 fn build(graph: &LineGraph, options: &TriangulateOptions, path: &Path, context: &Context) -> Result<Built> {
     let triangulating = context.start(Stage::Triangulating, Size::Uncounted)?;
     let built = match options.arithmetic {
@@ -174,7 +176,8 @@ fn build(graph: &LineGraph, options: &TriangulateOptions, path: &Path, context: 
     Ok(built)
 }
 
-/// Returns true if no coordinate is so large or small that the default arithmetic would need wider numbers.
+/// Returns true if no coordinate is so large or small that the default arithmetic would need wider
+/// numbers.
 fn is_ordinary(graph: &LineGraph) -> bool {
     graph.nodes.points.as_flattened().iter().all(|&x| Adaptive::RANGE.admits(x))
 }
@@ -191,7 +194,7 @@ fn build_with<K: Kernel>(
     build::build::<K>(&graph.nodes.points, &segments, &seeds, options.on_crossing, quality.as_ref())
 }
 
-/// What triangles are to be, if anything is asked for.
+/// Returns the requested quality of triangles, if any.
 fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Context<'a>) -> Option<Quality<'a>> {
     if options.min_angle.is_none() && options.max_area.is_none() && !options.region_areas {
         return None;
@@ -210,18 +213,18 @@ fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Contex
     })
 }
 
-/// The error of a refinement that nobody had bounded, with how far it came.
+/// Returns the error of a refinement that did not end within the default number of vertices.
 #[cold]
 fn unfinished(built: &Built) -> Error {
     let (added, all, short) = (Quality::MAX_ADDED, built.faces.len(), built.shortfall.len());
-    Error::limit(format!("{added} vertices were added, and {short} of {all} triangles are still not as asked for"))
+    Error::limit(format!("{added} vertices were added, and {short} of {all} triangles are still not as requested"))
         .cure(
-            "ask for a smaller angle (33 degrees are nearly always reached) or a larger area, or set a limit with \
-             --max-added and get what is there then",
+            "use a smaller angle (33 degrees are nearly always reached) or a larger area, or set a limit with \
+             --max-added and get the result at that point",
         )
 }
 
-/// With the numbers and lines of the file.
+/// Returns an error that names vertices or segments by their numbers and lines in the file.
 #[cold]
 fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
     match error {
@@ -247,7 +250,7 @@ fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
     }
 }
 
-/// What is not exact may come out wrong.
+/// Returns an error if an inexact triangulation has a flaw.
 fn refuse_flaws(built: &Built, context: &Context) -> Result<()> {
     let triangles = Triangles {
         vertices: built.vertices.iter().map(|&[x, y]| [x, y, 0.0]).collect(),
@@ -266,7 +269,7 @@ fn refuse_flaws(built: &Built, context: &Context) -> Result<()> {
     }
 }
 
-/// Adds notices of holes and regions that are not used.
+/// Adds notices about holes and regions that are not used.
 fn note_seeds(built: &Built, graph: &LineGraph, path: &Path, journal: &Journal) {
     let holes = graph.holes.iter().map(|hole| (Seed::Hole, hole.line));
     let listed = holes.chain(graph.regions.iter().map(|region| (Seed::Region, region.line)));
@@ -280,7 +283,7 @@ fn note_seeds(built: &Built, graph: &LineGraph, path: &Path, journal: &Journal) 
     }
 }
 
-/// The triangles as a surface of height 0.
+/// Returns the triangles as a surface of height 0.
 fn flat_mesh(triangulated: &Triangulated) -> Result<Mesh> {
     let vertices = triangulated.nodes.points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
     let edges: Vec<[u32; 2]> = triangulated.segments.iter().map(|edge| edge.ends).collect();
