@@ -27,7 +27,7 @@ fn text(notice: &Notice) -> String {
         Notice::PointsRead(path, count) => format!("{}: {count} points read", path.display()),
         Notice::Reader(path, text) => format!("{}: {text}", path.display()),
         Notice::LittleMemory { need, left, limit } => format!(
-            "memory may not suffice: if all points are used they take about {}, and {} are free {limit}",
+            "memory may not suffice: if all points are used they take about {}, and {} are left {limit}",
             bytes(*need),
             bytes(*left)
         ),
@@ -71,7 +71,7 @@ fn text(notice: &Notice) -> String {
             "breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with --bounds)"
         ),
         Notice::EdgeLimit(length) => {
-            format!("triangles at the rim with edges longer than {length} are left out (--max-edge)")
+            format!("triangles at the rim with edges over {length} are left out (--max-edge)")
         }
         Notice::NoEdgeLimit => "the whole convex hull is kept (--max-edge none)".to_owned(),
         Notice::BoundsBuffer(buffer) => {

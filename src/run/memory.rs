@@ -67,7 +67,7 @@ fn require(need: u64, what: &str) -> Result<()> {
     }
     match left() {
         Some(left) if need > left.bytes => Err(Error::limit(format!(
-            "{what} takes about {} of memory, and {} are free {}",
+            "{what} takes about {} of memory, and {} are left {}",
             bytes(need),
             bytes(left.bytes),
             left.of

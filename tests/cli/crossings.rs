@@ -58,8 +58,8 @@ fn lines_that_differ_in_height_are_told_by_file_and_feature() {
     run.works(&[
         "note: crossings of breaklines are rounded to 4.4e-16 m; no line moves by more than half of that",
         "warning: breaklines meet with different heights at 2 points, by up to 10.5 m (at 1.5 1.5)",
-        "1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1; 20 stands",
-        "3 3: 20 of l.geojson fid 0, 21 of l.geojson fid 1, part 2; 20 stands",
+        "1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1; 20 is used",
+        "3 3: 20 of l.geojson fid 0, 21 of l.geojson fid 1, part 2; 20 is used",
         "1 crossings between vertices",
     ]);
     let tolerant = ["dem", "p.xyz", "--breaklines", "l.geojson", "-o", "t.tif", "--crossing-tolerance", "10.5"];
@@ -138,5 +138,5 @@ fn a_line_keeps_its_name_where_bounds_cut_it_into_runs() {
     ]);
     let lines = ["--breaklines", "a.geojson", "--breaklines", "b.geojson"];
     let run = run_in(&folder, &[&["check", "p.xyz", "--bounds", "0,0,3,3"][..], &lines].concat());
-    run.works(&["1.5 2.5: 5 of b.geojson fid 0, 9 of a.geojson fid 0; 5 stands"]);
+    run.works(&["1.5 2.5: 5 of b.geojson fid 0, 9 of a.geojson fid 0; 5 is used"]);
 }
