@@ -1,0 +1,298 @@
+//! The words of the project: one term for each thing, as the glossary in `docs/architecture.md` has it.
+//!
+//! The glossary is read: no identifier contains a word of its last column, and no comment, message or page contains a
+//! phrase of the list below it. Comments are no wider than 100 characters, so that they can be read beside code.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Where identifiers and comments are judged.
+const SOURCES: [&str; 9] = [
+    "src",
+    "tests",
+    "benches",
+    "examples",
+    "testkit/src",
+    "triangulation/src",
+    "triangulation/tests",
+    "triangulation/examples",
+    "triangulation/benches",
+];
+
+/// Where pages lie. Decisions tell of what was, in the words of their time; the changelog as well.
+const PAGES: [&str; 5] = ["README.md", "docs", "triangulation/README.md", "triangulation/docs", "fixtures"];
+
+/// The widest comment, indentation included.
+const WIDTH: usize = 100;
+
+/// Names of tests are sentences: from so many words on, a name is one.
+const SENTENCE: usize = 5;
+
+/// What the glossary forbids.
+struct Rules {
+    /// In identifiers, in lower case.
+    words: BTreeSet<String>,
+    /// In prose, in lower case.
+    phrases: Vec<String>,
+}
+
+/// A stretch of source text.
+#[derive(Debug, PartialEq, Eq, Clone, Copy)]
+enum Token<'a> {
+    Identifier(&'a str),
+    Comment(&'a str),
+    Text(&'a str),
+}
+
+#[test]
+fn identifiers_are_made_of_the_words_of_the_glossary() {
+    let rules = rules();
+    let faults = each_source(|path, text| {
+        let identifiers: BTreeSet<&str> = tokens(text)
+            .into_iter()
+            .filter_map(|token| match token {
+                Token::Identifier(name) => Some(name),
+                _ => None,
+            })
+            .collect();
+        let bad = identifiers.into_iter().filter_map(|name| {
+            let words = words_of(name);
+            let word = words.iter().find(|word| words.len() < SENTENCE && rules.words.contains(*word))?;
+            Some(format!("{}: `{name}` contains `{word}`", path.display()))
+        });
+        bad.collect()
+    });
+    assert!(faults.is_empty(), "see the glossary in docs/architecture.md\n{}", faults.join("\n"));
+}
+
+#[test]
+fn prose_uses_no_listed_phrase() {
+    let rules = rules();
+    let mut faults = each_source(|path, text| {
+        let prose = tokens(text).into_iter().filter_map(|token| match token {
+            Token::Comment(prose) | Token::Text(prose) => Some(prose),
+            Token::Identifier(_) => None,
+        });
+        let prose = prose.collect::<Vec<_>>().join("\n");
+        phrases_in(&prose, &rules).map(|phrase| format!("{}: \"{phrase}\"", path.display())).collect()
+    });
+    for path in PAGES.iter().flat_map(|page| files(Path::new(page), "md")) {
+        let text = fs::read_to_string(root().join(&path)).unwrap();
+        // The list itself stands in one of the pages.
+        let text = text.split_once(PHRASES).map_or(text.as_str(), |(before, _)| before);
+        faults.extend(phrases_in(text, &rules).map(|phrase| format!("{}: \"{phrase}\"", path.display())));
+    }
+    assert!(faults.is_empty(), "see the list in docs/architecture.md\n{}", faults.join("\n"));
+}
+
+#[test]
+fn comments_are_no_wider_than_a_hundred() {
+    let is_wide =
+        |line: &&str| line.trim_start().starts_with("//") && line.chars().count() > WIDTH && line.contains(' ');
+    let faults = each_source(|path, text| {
+        // A link or a path cannot be broken.
+        let wide = (1..).zip(text.lines()).filter(|(_, line)| is_wide(line) && !line.contains("http"));
+        wide.map(|(number, _)| format!("{}:{number}", path.display())).collect()
+    });
+    assert!(faults.is_empty(), "comments wider than {WIDTH}:\n{}", faults.join("\n"));
+}
+
+#[test]
+fn the_rules_can_fail() {
+    assert_eq!(words_of("is_wallUp2"), ["is", "wall", "up"]);
+    assert_eq!(words_of("HTTPServer"), ["http", "server"]);
+    assert_eq!(words_of("replace_LAST_PLACE"), ["replace", "last", "place"]);
+    let text = "let a = \"b \\\" // c\"; // d\nr#\"e\"f\"# 'g' 'h /* i /* j */ k */ b'l'";
+    let expected = [
+        Token::Identifier("let"),
+        Token::Identifier("a"),
+        Token::Text("b \\\" // c"),
+        Token::Comment("// d"),
+        Token::Text("e\"f"),
+        Token::Identifier("h"),
+        Token::Comment("/* i /* j */ k */"),
+    ];
+    assert_eq!(tokens(text), expected);
+    let rules = rules();
+    assert!(rules.words.contains("wall") && rules.words.len() > 10, "{:?}", rules.words);
+    assert!(rules.phrases.len() > 10, "{:?}", rules.phrases);
+    let found = |text: &str| phrases_in(text, &rules).next().map(str::to_owned);
+    assert_eq!(found("/// One is\n    /// told, at the\n/// most.").as_deref(), Some("at the most"));
+    assert_eq!(found("at most"), None);
+}
+
+/// The heading of the list of phrases.
+const PHRASES: &str = "### In prose";
+
+/// The rules, read from the glossary: the last column of its table, and the list of phrases.
+fn rules() -> Rules {
+    let page = fs::read_to_string(root().join("docs/architecture.md")).unwrap();
+    let (_, glossary) = page.split_once("## Glossary").expect("a glossary");
+    let glossary = glossary.split("\n## ").next().unwrap();
+    let (table, list) = glossary.split_once(PHRASES).expect("a list of phrases");
+    let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
+    let last = rows.filter_map(|row| row.trim_end_matches('|').rsplit('|').next());
+    let words =
+        last.flat_map(|cell| cell.split(',')).map(|word| word.trim().to_owned()).filter(|word| !word.is_empty());
+    let phrases = list.lines().filter_map(|line| line.strip_prefix("- \"")).filter_map(|line| line.split('"').next());
+    Rules { words: words.collect(), phrases: phrases.map(str::to_owned).collect() }
+}
+
+/// The phrases that a text contains, whatever its lines and its letters' case.
+fn phrases_in<'a>(text: &str, rules: &'a Rules) -> impl Iterator<Item = &'a str> {
+    let plain: String = text
+        .split_whitespace()
+        .map(|word| word.trim_start_matches(['/', '!']))
+        .filter(|word| !word.is_empty())
+        .flat_map(|word| [" ", word])
+        .collect::<String>()
+        .to_lowercase();
+    let is_there = move |phrase: &&String| {
+        plain.match_indices(phrase.as_str()).any(|(at, _)| {
+            let before = plain[..at].chars().next_back();
+            let after = plain[at + phrase.len()..].chars().next();
+            [before, after].into_iter().flatten().all(|letter| !letter.is_alphanumeric())
+        })
+    };
+    rules.phrases.iter().filter(is_there).map(String::as_str)
+}
+
+/// The words of an identifier, in lower case.
+fn words_of(name: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let letters: Vec<char> = name.chars().collect();
+    for (i, &letter) in letters.iter().enumerate() {
+        let before = i.checked_sub(1).map(|i| letters[i]);
+        let starts = match before {
+            None => true,
+            Some(before) if letter.is_uppercase() && before.is_alphabetic() => {
+                before.is_lowercase() || letters.get(i + 1).is_some_and(|after| after.is_lowercase())
+            }
+            Some(before) => !before.is_alphabetic(),
+        };
+        if !letter.is_alphabetic() {
+            continue;
+        }
+        match words.last_mut() {
+            Some(word) if !starts => word.extend(letter.to_lowercase()),
+            _ => words.push(letter.to_lowercase().collect()),
+        }
+    }
+    words
+}
+
+/// The identifiers, comments and texts of a source, in order; numbers, letters and signs are left out.
+fn tokens(text: &str) -> Vec<Token<'_>> {
+    let mut tokens = Vec::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let taken = if rest.starts_with("//") {
+            let end = rest.find('\n').unwrap_or(rest.len());
+            tokens.push(Token::Comment(&rest[..end]));
+            end
+        } else if rest.starts_with("/*") {
+            let end = end_of_block(rest);
+            tokens.push(Token::Comment(&rest[..end]));
+            end
+        } else if let Some((open, close)) = raw_marks(rest) {
+            let end = open + rest[open..].find(&close).unwrap_or(rest.len() - open);
+            tokens.push(Token::Text(&rest[open..end]));
+            (end + close.len()).min(rest.len())
+        } else if first == '"' {
+            let end = 1 + end_of_string(&rest[1..]);
+            tokens.push(Token::Text(&rest[1..end]));
+            (end + 1).min(rest.len())
+        } else if first == '\'' {
+            end_of_letter(rest)
+        } else if first.is_alphabetic() || first == '_' {
+            let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+            let is_prefix = matches!(&rest[..end], "b" | "c") && rest[end..].starts_with(['"', '\'']);
+            if !is_prefix {
+                tokens.push(Token::Identifier(&rest[..end]));
+            }
+            end
+        } else if first.is_numeric() {
+            rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len())
+        } else {
+            first.len_utf8()
+        };
+        rest = &rest[taken..];
+    }
+    tokens
+}
+
+/// Where the text of a raw string starts, and what ends it.
+fn raw_marks(rest: &str) -> Option<(usize, String)> {
+    let after = rest.strip_prefix("br").or_else(|| rest.strip_prefix('r'))?;
+    let hashes = after.len() - after.trim_start_matches('#').len();
+    after[hashes..]
+        .starts_with('"')
+        .then(|| (rest.len() - after.len() + hashes + 1, format!("\"{}", "#".repeat(hashes))))
+}
+
+fn end_of_string(rest: &str) -> usize {
+    let mut is_escaped = false;
+    for (at, letter) in rest.char_indices() {
+        match letter {
+            '"' if !is_escaped => return at,
+            '\\' => is_escaped = !is_escaped,
+            _ => is_escaped = false,
+        }
+    }
+    rest.len()
+}
+
+/// The end of a character, or that of the quote of a lifetime.
+fn end_of_letter(rest: &str) -> usize {
+    let mut letters = rest.char_indices().skip(1);
+    match letters.next() {
+        Some((_, '\\')) => rest[3..].find('\'').map_or(rest.len(), |end| end + 4),
+        Some((_, _)) if rest[1..].chars().nth(1) == Some('\'') => letters.next().map_or(rest.len(), |(at, _)| at + 1),
+        _ => 1,
+    }
+}
+
+fn end_of_block(rest: &str) -> usize {
+    let mut depth = 0;
+    let mut at = 0;
+    while at < rest.len() {
+        if rest[at..].starts_with("/*") {
+            (depth, at) = (depth + 1, at + 2);
+        } else if rest[at..].starts_with("*/") {
+            (depth, at) = (depth - 1, at + 2);
+            if depth == 0 {
+                return at;
+            }
+        } else {
+            at += rest[at..].chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    rest.len()
+}
+
+/// What is wrong with all sources.
+fn each_source(check: impl Fn(&Path, &str) -> Vec<String>) -> Vec<String> {
+    let paths = SOURCES.iter().flat_map(|folder| files(Path::new(folder), "rs"));
+    // This file quotes what it forbids.
+    let paths = paths.filter(|path| !path.ends_with("tests/words.rs"));
+    paths.flat_map(|path| check(&path, &fs::read_to_string(root().join(&path)).unwrap())).collect()
+}
+
+/// The files with an extension below a folder, or the file itself; in order.
+fn files(path: &Path, extension: &str) -> Vec<PathBuf> {
+    let full = root().join(path);
+    if path.ends_with("decisions") || !full.exists() {
+        return Vec::new();
+    }
+    if full.is_file() {
+        return if path.extension().is_some_and(|e| e == extension) { vec![path.to_owned()] } else { Vec::new() };
+    }
+    let mut entries: Vec<_> = fs::read_dir(&full).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    entries.sort();
+    entries.into_iter().flat_map(|name| files(&path.join(name), extension)).collect()
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
