@@ -149,7 +149,7 @@ const DAMAGED: &[(&str, Outcome)] = &[
             1179,
             &[
                 "its header states 50548 bytes, the file has 33698",
-                "record 70 (byte 33364): content of 784 bytes passes the end of the file",
+                "record 70 (byte 33364): content of 784 bytes extends beyond the end of the file",
                 ".dbf: 122 rows for 69 records",
             ],
         ),

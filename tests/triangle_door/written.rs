@@ -328,7 +328,8 @@ fn nothing_is_replaced_unasked() {
     run(&folder, "triangulate box.poly -o b.dxf").ends(2, &["not a format that can be written", ".node, .ele, .poly"]);
     run(&folder, "triangulate box.txt -o b.ele").ends(1, &["box.txt: no such file"]);
     std::fs::write(folder.path().join("box.txt"), BOX).unwrap();
-    run(&folder, "triangulate box.txt -o b.ele").ends(2, &["no file of Triangle", "hint: use .node or .poly"]);
+    run(&folder, "triangulate box.txt -o b.ele")
+        .ends(2, &["not that of a file of Triangle", "hint: use .node or .poly"]);
     run(&folder, "triangulate box.poly -o none/b.ele").ends(1, &["the folder does not exist"]);
     assert_eq!(std::fs::read_to_string(folder.path().join("a.node")).unwrap(), "mine");
     assert_eq!(files_of(folder.path()), ["a.node", "box.poly", "box.txt"]);
