@@ -43,7 +43,7 @@
 //! assert_eq!(*delaunay.point(vertices[2]), [1.0, 1.0]);
 //! assert!(delaunay.check(Level::Law).is_empty());
 //! # let _: &Delaunay<Plane, 3> = &delaunay;
-//! # Ok::<(), breakline::triangulation::Refused>(())
+//! # Ok::<(), breakline::triangulation::InputError>(())
 //! ```
 //!
 //! A triangulation combines three independent choices: a [geometry](triangulation::geometry) says
