@@ -58,6 +58,9 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     where
         G: Coordinates<3>,
     {
+        if start == VertexId::INFINITE {
+            return Err(Damaged::Vertex(start)); // a number that is out of range is found by the query
+        }
         query::faces_from(self, start)
     }
 

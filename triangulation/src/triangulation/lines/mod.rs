@@ -93,6 +93,11 @@ impl Lines {
         self.paths.split(a, b, at);
     }
 
+    /// Forgets splits of constrained edges that belong to no line.
+    pub(super) fn drop_stray_splits(&mut self) {
+        self.paths.drop_stray_splits();
+    }
+
     /// Returns the vertices added where segments cross, in order.
     pub(super) fn added(&self) -> &[VertexId] {
         self.added_list.get_or_init(|| self.added.iter().collect())

@@ -221,7 +221,7 @@ impl Paths {
     }
 
     /// Removes the splits of edges that are on no segment's chain.
-    pub(in super::super) fn drop_stray_splits(&mut self) {
+    pub(super) fn drop_stray_splits(&mut self) {
         let mut splits = FxHashMap::default();
         for ends in self.segments() {
             let sites = self.sites(ends);

@@ -203,7 +203,9 @@ impl<G: Crossing, V> Deref for Refined<G, V> {
 }
 
 impl<G: Crossing, V: Default> Refined<G, V> {
-    fn of(draft: Draft<G, V>, shortfall: Vec<(CellId, Shortfall)>) -> Self {
+    fn of(mut draft: Draft<G, V>, shortfall: Vec<(CellId, Shortfall)>) -> Self {
+        // Edges of the hull are constraints here that belong to no line.
+        draft.t.lines.drop_stray_splits();
         let added = draft.t.tds().vertices().filter(|&v| draft.origin(v) != Origin::Given).collect();
         Refined { t: draft.t, regions: draft.regions, added, shortfall }
     }
