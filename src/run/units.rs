@@ -80,7 +80,7 @@ pub struct Quantity {
     pub unit: Option<Unit>,
 }
 
-/// Formats as `100 m`, `1 ftUS`, `12.5 units`, rounded like [`number`].
+/// Formats as `100 m`, `1 ftUS`, `12.5 units`, rounded like the numbers of a summary.
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = number(self.value);
