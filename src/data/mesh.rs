@@ -313,8 +313,8 @@ impl EdgeTable {
         (neighbors, flaws)
     }
 
-    /// The kinds of the sides of `face_count` faces, and a flaw for each edge that is no side of
-    /// them.
+    /// Returns the kinds of the sides of `face_count` faces, and a flaw for each listed edge that
+    /// is not a side of any face.
     fn kinds(
         &self,
         face_count: usize,

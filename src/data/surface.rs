@@ -92,7 +92,8 @@ pub trait Surface: Sync {
     /// The coordinate system, if known.
     fn crs(&self) -> Option<&Crs>;
 
-    /// The coordinates of the corners of a face; `None` if there is no such [face](Self::face).
+    /// The coordinates of the corners of a face; `None` if the [face](Self::face) does not
+    /// exist.
     fn triangle(&self, face: u32) -> Option<[[f64; 3]; 3]> {
         Some(self.face(face)?.map(|v| self.position(v)))
     }

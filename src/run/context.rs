@@ -130,7 +130,7 @@ impl<'a> Context<'a> {
     /// Returns an error once the flag is set.
     ///
     /// # Errors
-    /// Of the kind [`Canceled`](crate::error::Kind::Canceled).
+    /// An error of the kind [`Canceled`](crate::error::Kind::Canceled) once the flag is set.
     pub fn check(&self) -> Result<()> {
         if self.cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) }
     }

@@ -95,7 +95,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Table of all points where breaklines meet with different heights
     ///
     /// Comma separated: position, height used, and both lines by file, feature id and part, with
-    /// their heights. The file is written even if there is no such point.
+    /// their heights. If no heights differ, the file has only its header.
     #[arg(long, value_name = "FILE.csv", help_heading = "Surface")]
     pub(in crate::cli) crossing_report: Option<PathBuf>,
 

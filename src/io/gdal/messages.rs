@@ -54,8 +54,8 @@ pub(super) fn error(path: &Path, error: GdalError) -> Error {
     failure(path).unwrap_or_else(|| Error::caused_by(Kind::Format, error).in_file(path))
 }
 
-/// Returns the error for a file that cannot be opened: usually there is no such file or GDAL has no
-/// driver for it.
+/// Returns the error for a file that cannot be opened, usually because it does not exist or GDAL
+/// has no driver for it.
 pub(super) fn cannot_open(path: &Path, what: &str, returned: GdalError) -> Error {
     // A path without a file may still be a subdataset ("NETCDF:file.nc:z") or a connection.
     if let Err(reason) = std::fs::metadata(path)

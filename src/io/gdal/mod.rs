@@ -31,7 +31,8 @@ pub use vector::read_layer;
 /// True if this build has GDAL.
 pub const IS_AVAILABLE: bool = cfg!(feature = "gdal");
 
-/// Splits `FILE:NAME` if there is no file with the whole name, but one with the first part.
+/// Splits `FILE:NAME`; returns the path as it is if a file has the whole name, or none the first
+/// part.
 fn split(path: &Path) -> (PathBuf, Option<String>) {
     let whole = (path.to_path_buf(), None);
     let (Some(text), false) = (path.to_str(), path.exists()) else {

@@ -44,7 +44,8 @@ impl Step {
     /// Returns the conversion from one lattice into another.
     ///
     /// # Errors
-    /// If there is no lattice, or it is not part of the other one and rounding is refused.
+    /// If the points do not lie on a lattice, or on one that is not part of the other and rounding
+    /// is refused.
     pub(super) fn between(from: Option<Lattice>, into: &Lattice, rounding: Rounding) -> Result<Self> {
         let from = from.ok_or_else(not_las)?;
         if from == *into {

@@ -25,8 +25,8 @@ pub(crate) fn text(crs: &Crs) -> String {
     format!("<PAMDataset>\n  <SRS dataAxisToSRSAxisMapping=\"1,2\">{wkt}</SRS>\n</PAMDataset>\n")
 }
 
-/// Reads the coordinate system from the auxiliary file of a picture; `None` if there is no such
-/// file, or it states none.
+/// Reads the coordinate system from the auxiliary file of a picture; `None` if the file
+/// does not exist or states none.
 pub(crate) fn read_beside(picture: &Path) -> Result<Option<Crs>> {
     let path = path_of(picture);
     if !path.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() < MAX_BYTES) {

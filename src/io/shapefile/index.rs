@@ -11,7 +11,7 @@ const HEADER: usize = 100;
 pub(super) struct Index {
     /// Offset and content length in bytes, in the order of the file.
     entries: Vec<(u64, u64)>,
-    /// The same entries, sorted by offset.
+    /// Offset and content length in bytes, sorted by offset.
     sorted: Vec<(u64, u64)>,
 }
 

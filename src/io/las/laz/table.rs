@@ -26,7 +26,7 @@ pub(super) struct Chunk {
 /// Reads the chunk table and checks every entry against the file.
 ///
 /// # Errors
-/// If there is no reliable table; the message says why.
+/// If the table is missing or damaged; the message says how.
 pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header) -> Result<Vec<Chunk>, String> {
     let points_start = header.layout.points_start;
     let table = find(input, points_start).ok_or("the position of the chunk table was never written")?;
