@@ -201,3 +201,17 @@ impl<G: Coordinates<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N
         spatial_order(points.len(), |i| geometry.coordinates(&points[i]))
     }
 }
+
+/// Inserts points in an order of their positions, by `insert`, and returns the vertex of each.
+pub(in super::super) fn insert_each<P: Copy>(
+    points: &[P],
+    order: Vec<u32>,
+    mut insert: impl FnMut(P) -> Result<VertexId, PointError>,
+) -> Result<Vec<VertexId>, InputError> {
+    let mut vertices = vec![VertexId::INFINITE; points.len()];
+    for position in order {
+        let i = position as usize;
+        vertices[i] = insert(points[i]).map_err(|error| error.at(i))?;
+    }
+    Ok(vertices)
+}

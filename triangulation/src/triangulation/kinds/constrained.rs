@@ -6,6 +6,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId, cw};
 
 use super::super::engine::flip::WithConstraints;
+use super::super::engine::insert::insert_each;
 use super::super::lines::trace::{Met, Scratch, Side};
 use super::super::{
     ConstrainedEdges, Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError,
@@ -343,12 +344,8 @@ impl<G: Coordinates<3>, C: Copy + Default> Constrained<G, (), C> {
     /// # Complexity
     /// Linear in the number of points if they are spread evenly.
     pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for position in self.inner.order_of_all(points)? {
-            let i = position as usize;
-            vertices[i] = self.insert(points[i]).map_err(|error| error.at(i))?;
-        }
-        Ok(vertices)
+        let order = self.inner.order_of_all(points)?;
+        insert_each(points, order, |p| self.insert(p))
     }
 }
 

@@ -4,6 +4,7 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::NoConstraints;
+use super::super::engine::insert::insert_each;
 use super::super::{
     InputError, Inserted, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
 };
@@ -173,7 +174,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
-        self.inner.insert_at(p, location, data, |t, _, _, beyond| t.in_conflict(beyond, &p), |data, _| *data)
+        self.inner.insert_at(p, location, data, takes(&p), |data, _| *data)
     }
 
     /// Returns the payload of a finite vertex, mutable.
@@ -210,12 +211,8 @@ impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C>
     /// Linear in the number of points if they are spread evenly. For an empty triangulation of the
     /// plane [`from_points`](Delaunay::from_points) is faster.
     pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for position in self.inner.order_of_all(points)? {
-            let i = position as usize;
-            vertices[i] = self.insert(points[i]).map_err(|error| error.at(i))?;
-        }
-        Ok(vertices)
+        let order = self.inner.order_of_all(points)?;
+        insert_each(points, order, |p| self.insert(p))
     }
 }
 
@@ -263,8 +260,15 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         let neighbor = self.inner.finite_neighbor(vertex);
         self.remove(vertex)?;
         let location = self.inner.locate(&p, neighbor.and_then(|v| self.tds().cell_of(v)));
-        let takes = |t: &Triangulation<G, 3, V, C>, _, _, beyond| t.in_conflict(beyond, &p);
-        let moved = self.inner.insert_again(p, location, takes, |data, _| *data);
+        let moved = self.inner.insert_again(p, location, takes(&p), |data, _| *data);
         Ok(moved.unwrap_or(vertex))
     }
+}
+
+/// Returns the test for the cells that a new point destroys: those whose circumscribed sphere
+/// contains it.
+fn takes<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
+    p: &G::Point,
+) -> impl Fn(&Triangulation<G, N, V, C>, CellId, usize, CellId) -> bool {
+    |t, _, _, beyond| t.in_conflict(beyond, p)
 }

@@ -7,6 +7,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::NoConstraints;
+use super::super::engine::insert::insert_each;
 use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
 };
@@ -440,11 +441,7 @@ impl<G: Coordinates<3>, C: Copy + Default> Regular<G, (), C> {
     /// # Complexity
     /// Linear in the number of points if they are spread evenly.
     pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
-        let mut vertices = vec![VertexId::INFINITE; points.len()];
-        for position in self.inner.order_of_all(points)? {
-            let i = position as usize;
-            vertices[i] = self.insert(points[i]).map_err(|error| error.at(i))?;
-        }
-        Ok(vertices)
+        let order = self.inner.order_of_all(points)?;
+        insert_each(points, order, |p| self.insert(p))
     }
 }
