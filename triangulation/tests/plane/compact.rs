@@ -5,7 +5,7 @@ use crate::grid::{Free, Point, build, points, site};
 use breakline_triangulation::geometry::{Plane, Terrain};
 use breakline_triangulation::tds::{CellId, Complex, VertexId};
 use breakline_triangulation::{
-    Compact, ConflictZone, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Law, Level, Location, OnCrossing,
+    Compact, CompactError, ConflictZone, Constrained, ConstrainedDelaunay, Delaunay, Law, Level, Location, OnCrossing,
     Passage, Regular, Triangulation,
 };
 use testkit::random::Random;
@@ -21,11 +21,13 @@ fn bytes(t: &Free) -> Vec<u8> {
     bytes
 }
 
-fn open(bytes: &[u8]) -> Result<Opened<'_>, Damaged> {
+fn open(bytes: &[u8]) -> Result<Opened<'_>, CompactError> {
     Compact::open(Plane::default(), bytes)
 }
 
-fn all<T>(answers: Result<impl Iterator<Item = Result<T, Damaged>>, Damaged>) -> Result<Vec<T>, Damaged> {
+fn all<T>(
+    answers: Result<impl Iterator<Item = Result<T, CompactError>>, CompactError>,
+) -> Result<Vec<T>, CompactError> {
     answers?.collect()
 }
 
@@ -110,7 +112,10 @@ fn answers_are_those_of_the_triangulation_that_was_written() {
             assert_eq!(all(compact.vertices_around(vertex)), Ok(around));
             let faces = t.faces_from(vertex).map(|cell| Dense(&t).cell(cell)).collect();
             let exists = vertex != VertexId::INFINITE;
-            assert_eq!(all(compact.faces_from(vertex)), if exists { Ok(faces) } else { Err(Damaged::Vertex(vertex)) });
+            assert_eq!(
+                all(compact.faces_from(vertex)),
+                if exists { Ok(faces) } else { Err(CompactError::Vertex(vertex)) }
+            );
         }
     }
     assert!(dimensions.iter().all(|&count| count > 20), "{dimensions:?}");
@@ -150,7 +155,7 @@ fn constraints_are_there() {
         let dense = Dense(&t);
         let [near, near_there] = dense.near();
         assert_eq!(compact.conflict_zone(&p, near_there), Ok(dense.zone(t.conflict_zone(&p, near))));
-        assert_eq!(compact.nearest(&p, None), Err(Damaged::Unanswerable(Law::ConstrainedDelaunay)));
+        assert_eq!(compact.nearest(&p, None), Err(CompactError::Unanswerable(Law::ConstrainedDelaunay)));
         for cell in t.tds().cells().filter(|_| t.dimension() == 2) {
             for i in 0..3 {
                 assert_eq!(compact.is_constrained(dense.cell(cell), i), Ok(t.is_constrained(cell, i)));
@@ -180,7 +185,7 @@ fn all_kinds_and_geometries() {
             .count(),
         2
     );
-    assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(Damaged::Unanswerable(Law::Constrained)));
+    assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(CompactError::Unanswerable(Law::Constrained)));
 
     // A hidden vertex is not written.
     let mut regular: Regular<breakline_triangulation::geometry::Weighted> = Regular::new(Default::default());
@@ -202,7 +207,7 @@ fn all_kinds_and_geometries() {
     let (t, v) = Delaunay::from_points(terrain, &heights).unwrap();
     bytes.clear();
     t.write_compact(&mut bytes).unwrap();
-    assert_eq!(open(&bytes).err(), Some(Damaged::Coordinates { expected: 2, found: 3 }));
+    assert_eq!(open(&bytes).err(), Some(CompactError::Coordinates { expected: 2, found: 3 }));
     let owned = Compact::open(terrain, bytes).unwrap();
     assert_eq!(owned.point(v[2]), Ok([5.0, 3.0, 15.0]));
     assert_eq!(owned.nearest(&[5.0, 2.0, 0.0], None), Ok(Some(v[2])));

@@ -9,7 +9,7 @@ use breakline_triangulation::kernel::{Exact, Kernel, Wide};
 use breakline_triangulation::refine::{Conformity, Domain, Quality, Region};
 use breakline_triangulation::tds::{CellId, VertexId};
 use breakline_triangulation::{
-    Basic, Buckets, Compact, Constrained, ConstrainedDelaunay, Damaged, Delaunay, Hierarchy, JumpAndWalk, Level,
+    Basic, Buckets, Compact, CompactError, Constrained, ConstrainedDelaunay, Delaunay, Hierarchy, JumpAndWalk, Level,
     LineId, Locate, Location, Mark, Near, Passage, Regular, StraightLine, Triangulation, VoronoiEdge,
 };
 
@@ -377,7 +377,7 @@ fn compact_triangulations() {
         let mut bytes = Vec::new();
         t.write_compact(&mut bytes).unwrap();
         let compact = Compact::open(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &bytes[..]).unwrap();
-        let all = |q: Point, rim: Point| -> Result<_, Damaged> {
+        let all = |q: Point, rim: Point| -> Result<_, CompactError> {
             Ok((
                 compact.nearest(&q, None)?,
                 compact.nearest_first(&q, None)?.collect::<Result<Vec<_>, _>>()?.len(),
@@ -402,13 +402,14 @@ fn compact_triangulations() {
         }
         for v in vertex_numbers(t) {
             let faces = compact.faces_from(v).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-            let expected = if t.tds().is_vertex(v) { Ok(t.faces_from(v).count()) } else { Err(Damaged::Vertex(v)) };
+            let expected =
+                if t.tds().is_vertex(v) { Ok(t.faces_from(v).count()) } else { Err(CompactError::Vertex(v)) };
             assert_eq!(faces.map(|faces| faces.len()), expected);
             let neighbors = compact.vertices_around(v).map(Iterator::count);
             let is_there = t.tds().is_vertex(v) || v == VertexId::INFINITE;
             assert_eq!(
                 neighbors,
-                if is_there || t.dimension() < 1 { Ok(t.tds().degree(v)) } else { Err(Damaged::Vertex(v)) }
+                if is_there || t.dimension() < 1 { Ok(t.tds().degree(v)) } else { Err(CompactError::Vertex(v)) }
             );
             for w in vertex_numbers(t) {
                 let _ = (compact.edge(v, w), compact.face([v, w, VertexId::INFINITE]));

@@ -4,7 +4,7 @@ use crate::tds::{CellId, Complex, Star, VertexId, plane};
 
 use super::super::Level;
 use super::super::engine::check::{is_convex, is_empty, is_positive};
-use super::{Compact, Damaged, Law};
+use super::{Compact, CompactError, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
     /// Checks all bytes, up to a level. No error means that they are a triangulation; at
@@ -13,7 +13,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// The first damage that is found.
-    pub fn check(&self, level: Level) -> Result<(), Damaged> {
+    pub fn check(&self, level: Level) -> Result<(), CompactError> {
         self.check_links()?;
         if level >= Level::Manifold {
             self.check_manifold()?;
@@ -33,7 +33,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
 
     /// Checks that every number exists, that every point is admitted, and that neighbors know each
     /// other and share their facet with opposite orientations.
-    fn check_links(&self) -> Result<(), Damaged> {
+    fn check_links(&self) -> Result<(), CompactError> {
         let vertices = plane::vertices(self).chain(self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE)));
         for vertex in vertices {
             let vertex = vertex?;
@@ -65,7 +65,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
 
     /// Checks that the cells met around each vertex are all that contain it. With Euler's formula,
     /// which the header satisfies, and the orientation check only a sphere remains.
-    fn check_manifold(&self) -> Result<(), Damaged> {
+    fn check_manifold(&self) -> Result<(), CompactError> {
         if self.dimension() < 1 {
             return Ok(());
         }
@@ -79,13 +79,13 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         if corners == self.width() * self.cell_count() {
             Ok(())
         } else {
-            Err(Damaged::Header("the cells are not connected"))
+            Err(CompactError::Header("the cells are not connected"))
         }
     }
 
     /// Checks that finite cells are counter-clockwise and the hull is convex, see
     /// [`Level::Orientation`]; on a line, that all points follow each other.
-    fn check_orientation(&self) -> Result<(), Damaged> {
+    fn check_orientation(&self) -> Result<(), CompactError> {
         for cell in self.cells().filter(|_| self.dimension() > 0) {
             let corners = self.corners(cell)?;
             let Some(infinite) = corners.iter().position(|&v| v == VertexId::INFINITE) else {
@@ -109,7 +109,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
             for vertex in plane::vertices(self) {
                 let vertex = vertex?;
                 if self.geometry.orientation([&a, &b, &self.point(vertex)?]) != Sign::Zero {
-                    return Err(Damaged::Vertex(vertex));
+                    return Err(CompactError::Vertex(vertex));
                 }
             }
         }
@@ -118,7 +118,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
 
     /// Checks that constraints are set on both sides, and that circles are empty as far as the law
     /// demands.
-    fn check_law(&self) -> Result<(), Damaged> {
+    fn check_law(&self) -> Result<(), CompactError> {
         let is_delaunay = matches!(self.law(), Law::Delaunay | Law::ConstrainedDelaunay);
         for cell in self.cells() {
             let is_finite = !self.is_infinite(cell)?;

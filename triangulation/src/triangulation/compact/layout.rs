@@ -1,6 +1,6 @@
 //! The header, and the positions of the arrays that follow from it.
 
-use super::{Damaged, Law};
+use super::{CompactError, Law};
 use crate::tds::CellId;
 
 /// The first bytes of a file. A transfer as text destroys its line ends and its control character.
@@ -58,23 +58,23 @@ impl Header {
     }
 
     /// Reads a header and checks that its numbers are consistent.
-    pub(super) fn read(mut bytes: &[u8]) -> Result<Self, Damaged> {
+    pub(super) fn read(mut bytes: &[u8]) -> Result<Self, CompactError> {
         let found = bytes.len();
         let bytes = &mut bytes;
         if taken(bytes) != MAGIC {
-            return Err(Damaged::Foreign);
+            return Err(CompactError::Foreign);
         }
         if found < HEADER {
-            return Err(Damaged::Length { expected: HEADER as u64, found: found as u64 });
+            return Err(CompactError::Length { expected: HEADER as u64, found: found as u64 });
         }
         let version = u32::from_le_bytes(taken(bytes));
         if version != VERSION {
-            return Err(Damaged::Version(version));
+            return Err(CompactError::Version(version));
         }
         let [width, doubles, law] = [0; 3].map(|_| u32::from_le_bytes(taken(bytes)));
         let [vertices, cells] = [0; 2].map(|_| u64::from_le_bytes(taken(bytes)));
         let [infinite_cell, reserved] = [0; 2].map(|_| u32::from_le_bytes(taken(bytes)));
-        let law = Law::from_number(law).ok_or(Damaged::Header("the law"))?;
+        let law = Law::from_number(law).ok_or(CompactError::Header("the law"))?;
         // On a sphere these numbers follow from each other (Euler).
         let fits = match width {
             0 => vertices == 0 && cells == 0,
@@ -84,11 +84,11 @@ impl Header {
             _ => false,
         };
         if !fits || cells >= CellId::LIMIT as u64 {
-            return Err(Damaged::Header("the dimension and the numbers of vertices and cells"));
+            return Err(CompactError::Header("the dimension and the numbers of vertices and cells"));
         }
         let is_cell = u64::from(infinite_cell) < cells || width == 0 && infinite_cell == NONE;
         if !is_cell || reserved != 0 {
-            return Err(Damaged::Header("the cell of the infinite vertex"));
+            return Err(CompactError::Header("the cell of the infinite vertex"));
         }
         Ok(Header { width, doubles, law, vertices, cells, infinite_cell })
     }

@@ -39,7 +39,8 @@ impl Law {
 
 /// The reason why a [`Compact`] triangulation has no answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Damaged {
+#[non_exhaustive]
+pub enum CompactError {
     /// The first bytes are not those of a compact triangulation.
     Foreign,
     /// The version of the format is unknown.
@@ -68,28 +69,30 @@ pub enum Damaged {
     Unanswerable(Law),
 }
 
-impl fmt::Display for Damaged {
+impl fmt::Display for CompactError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Damaged::Foreign => write!(f, "not a compact triangulation: wrong magic bytes"),
-            Damaged::Version(version) => {
+            CompactError::Foreign => write!(f, "not a compact triangulation: wrong magic bytes"),
+            CompactError::Version(version) => {
                 write!(f, "a compact triangulation of version {version}; the known version is {}", layout::VERSION)
             }
-            Damaged::Header(what) => write!(f, "the header is damaged: {what}"),
-            Damaged::Length { expected, found } => {
+            CompactError::Header(what) => write!(f, "the header is damaged: {what}"),
+            CompactError::Length { expected, found } => {
                 write!(f, "{found} bytes where the header says that there are {expected}")
             }
-            Damaged::Coordinates { expected, found } => {
+            CompactError::Coordinates { expected, found } => {
                 write!(f, "points of {found} coordinates; the geometry has {expected}")
             }
-            Damaged::Vertex(vertex) => write!(f, "vertex {vertex:?} does not exist or is damaged"),
-            Damaged::Cell(cell) => write!(f, "cell {cell:?} does not exist or is damaged"),
-            Damaged::Unanswerable(law) => write!(f, "a query for Delaunay triangulations; the law here is {law:?}"),
+            CompactError::Vertex(vertex) => write!(f, "vertex {vertex:?} does not exist or is damaged"),
+            CompactError::Cell(cell) => write!(f, "cell {cell:?} does not exist or is damaged"),
+            CompactError::Unanswerable(law) => {
+                write!(f, "a query for Delaunay triangulations; the law here is {law:?}")
+            }
         }
     }
 }
 
-impl std::error::Error for Damaged {}
+impl std::error::Error for CompactError {}
 
 /// A read-only triangulation of the plane that is used where its bytes are, without being loaded.
 ///
@@ -117,7 +120,7 @@ impl std::error::Error for Damaged {}
 /// triangles; two bytes more with constraints. The format is described in `docs/formats.md`.
 ///
 /// ```
-/// use breakline_triangulation::{geometry::Plane, Compact, Damaged, Delaunay};
+/// use breakline_triangulation::{geometry::Plane, Compact, CompactError, Delaunay};
 ///
 /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
 /// let plane: Plane = Plane::default();
@@ -128,7 +131,7 @@ impl std::error::Error for Damaged {}
 /// let compact = Compact::open(plane, &bytes[..])?;
 /// assert_eq!(compact.nearest(&[4.0, 2.0], None)?, Some(v[2]));
 /// bytes.pop();
-/// assert!(matches!(Compact::open(plane, &bytes[..]), Err(Damaged::Length { .. })));
+/// assert!(matches!(Compact::open(plane, &bytes[..]), Err(CompactError::Length { .. })));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -145,15 +148,15 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// # Errors
     /// If the header or the number of bytes is wrong, or if the points do not have the geometry's
     /// number of coordinates.
-    pub fn open(geometry: G, bytes: B) -> Result<Self, Damaged> {
+    pub fn open(geometry: G, bytes: B) -> Result<Self, CompactError> {
         let all = bytes.as_ref();
         let header = Header::read(&all[..all.len().min(HEADER)])?;
         if header.doubles as usize != D {
-            return Err(Damaged::Coordinates { expected: D, found: header.doubles as usize });
+            return Err(CompactError::Coordinates { expected: D, found: header.doubles as usize });
         }
-        let offsets = header.offsets().ok_or(Damaged::Header("more bytes than can be addressed"))?;
+        let offsets = header.offsets().ok_or(CompactError::Header("more bytes than can be addressed"))?;
         if all.len() != offsets.end {
-            return Err(Damaged::Length { expected: offsets.end as u64, found: all.len() as u64 });
+            return Err(CompactError::Length { expected: offsets.end as u64, found: all.len() as u64 });
         }
         Ok(Compact { geometry, bytes, header, offsets })
     }
@@ -188,7 +191,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// If the vertex does not exist, or the geometry does not admit its point.
-    pub fn point(&self, vertex: VertexId) -> Result<[f64; D], Damaged> {
+    pub fn point(&self, vertex: VertexId) -> Result<[f64; D], CompactError> {
         Embedded::point(self, vertex)
     }
 
@@ -196,16 +199,16 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// If the cell does not exist.
-    pub fn is_constrained(&self, cell: CellId, i: usize) -> Result<bool, Damaged> {
+    pub fn is_constrained(&self, cell: CellId, i: usize) -> Result<bool, CompactError> {
         if !self.is_used(cell) {
-            return Err(Damaged::Cell(cell));
+            return Err(CompactError::Cell(cell));
         }
         if !self.header.law.has_constraints() {
             return Ok(false);
         }
         match self.number(self.offsets.constraints + cell.index()) {
             Some([constraints]) if constraints < 8 => Ok(i < 3 && constraints >> i & 1 == 1),
-            _ => Err(Damaged::Cell(cell)),
+            _ => Err(CompactError::Cell(cell)),
         }
     }
 
@@ -217,10 +220,10 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// Returns a number from the array of cells: a vertex for slots 0 to 2, a neighbor for slots 3
     /// to 5.
     #[inline]
-    fn link(&self, cell: CellId, slot: usize) -> Result<u32, Damaged> {
+    fn link(&self, cell: CellId, slot: usize) -> Result<u32, CompactError> {
         let at = self.offsets.cells + CELL * cell.index() + 4 * slot;
         let number = self.is_used(cell).then(|| self.number(at)).flatten();
-        number.map(u32::from_le_bytes).ok_or(Damaged::Cell(cell))
+        number.map(u32::from_le_bytes).ok_or(CompactError::Cell(cell))
     }
 
     fn cell(&self, stored: u32) -> Option<CellId> {
@@ -229,7 +232,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3> for Compact<G, B> {
-    type Error = Damaged;
+    type Error = CompactError;
 
     #[inline]
     fn dimension(&self) -> i32 {
@@ -252,49 +255,49 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3
     }
 
     #[inline]
-    fn corners(&self, cell: CellId) -> Result<[VertexId; 3], Damaged> {
+    fn corners(&self, cell: CellId) -> Result<[VertexId; 3], CompactError> {
         let mut corners = [VertexId::NONE; 3];
         for (slot, corner) in corners.iter_mut().enumerate().take(self.width()) {
             *corner = match self.link(cell, slot)? {
                 layout::INFINITE => VertexId::INFINITE,
                 stored if u64::from(stored) < self.header.vertices => VertexId::new(stored as usize),
-                _ => return Err(Damaged::Cell(cell)),
+                _ => return Err(CompactError::Cell(cell)),
             };
         }
         Ok(corners)
     }
 
     #[inline]
-    fn neighbor(&self, cell: CellId, i: usize) -> Result<CellId, Damaged> {
+    fn neighbor(&self, cell: CellId, i: usize) -> Result<CellId, CompactError> {
         if i >= self.width() {
-            return Err(Damaged::Cell(cell));
+            return Err(CompactError::Cell(cell));
         }
-        self.cell(self.link(cell, 3 + i)?).ok_or(Damaged::Cell(cell))
+        self.cell(self.link(cell, 3 + i)?).ok_or(CompactError::Cell(cell))
     }
 
     #[inline]
-    fn cell_of(&self, vertex: VertexId) -> Result<Option<CellId>, Damaged> {
+    fn cell_of(&self, vertex: VertexId) -> Result<Option<CellId>, CompactError> {
         if vertex == VertexId::INFINITE {
             return Ok(self.cell(self.header.infinite_cell));
         }
         if vertex.index() >= self.vertex_slots() {
-            return Err(Damaged::Vertex(vertex));
+            return Err(CompactError::Vertex(vertex));
         }
         let stored = self.number(self.offsets.cells_of_vertices + 4 * vertex.index());
         let cell = stored.and_then(|stored| self.cell(u32::from_le_bytes(stored)));
-        cell.map(Some).ok_or(Damaged::Vertex(vertex))
+        cell.map(Some).ok_or(CompactError::Vertex(vertex))
     }
 
     #[inline]
-    fn ensure(&self, at: CellId, holds: impl FnOnce() -> bool) -> Result<(), Damaged> {
-        if holds() { Ok(()) } else { Err(Damaged::Cell(at)) }
+    fn ensure(&self, at: CellId, holds: impl FnOnce() -> bool) -> Result<(), CompactError> {
+        if holds() { Ok(()) } else { Err(CompactError::Cell(at)) }
     }
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Embedded<3> for Compact<G, B> {
     type Geometry = G;
     type Complex = Self;
-    type Error = Damaged;
+    type Error = CompactError;
     type PointRef<'a>
         = [f64; D]
     where
@@ -311,7 +314,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Embedded<
     }
 
     #[inline]
-    fn point(&self, vertex: VertexId) -> Result<[f64; D], Damaged> {
+    fn point(&self, vertex: VertexId) -> Result<[f64; D], CompactError> {
         let mut point = [f64::NAN; D];
         if vertex.index() < self.vertex_slots() {
             for (axis, x) in point.iter_mut().enumerate() {
@@ -319,7 +322,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Embedded<
                 *x = self.number(at).map_or(f64::NAN, f64::from_le_bytes);
             }
         }
-        if self.geometry.admits(&point) { Ok(point) } else { Err(Damaged::Vertex(vertex)) }
+        if self.geometry.admits(&point) { Ok(point) } else { Err(CompactError::Vertex(vertex)) }
     }
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::tds::{CellId, VertexId, plane};
 
 use super::super::Location;
 use super::super::query::{self, ConflictZone, Passage};
-use super::{Compact, Damaged, Law};
+use super::{Compact, CompactError, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
     /// Returns where a point lies; see
@@ -15,7 +15,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// If a cell or vertex that the walk meets is damaged.
-    pub fn locate(&self, q: &[f64; D], near: Option<CellId>) -> Result<Location, Damaged> {
+    pub fn locate(&self, q: &[f64; D], near: Option<CellId>) -> Result<Location, CompactError> {
         query::locate(self, q, near)
     }
 
@@ -29,7 +29,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         &self,
         ends: [&[f64; D]; 2],
         near: Option<CellId>,
-    ) -> Result<impl Iterator<Item = Result<Passage, Damaged>> + use<'_, G, B, D>, Damaged> {
+    ) -> Result<impl Iterator<Item = Result<Passage, CompactError>> + use<'_, G, B, D>, CompactError> {
         query::along(self, ends, near)
     }
 
@@ -38,7 +38,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// If a cell or vertex that is met is damaged.
-    pub fn within_rectangle(&self, corners: [&[f64; D]; 2]) -> Result<Vec<VertexId>, Damaged>
+    pub fn within_rectangle(&self, corners: [&[f64; D]; 2]) -> Result<Vec<VertexId>, CompactError>
     where
         G: Coordinates<3>,
     {
@@ -54,12 +54,12 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     pub fn faces_from(
         &self,
         start: VertexId,
-    ) -> Result<impl Iterator<Item = Result<CellId, Damaged>> + use<'_, G, B, D>, Damaged>
+    ) -> Result<impl Iterator<Item = Result<CellId, CompactError>> + use<'_, G, B, D>, CompactError>
     where
         G: Coordinates<3>,
     {
         if start == VertexId::INFINITE {
-            return Err(Damaged::Vertex(start)); // a number that is out of range is found by the query
+            return Err(CompactError::Vertex(start)); // a number that is out of range is found by the query
         }
         query::faces_from(self, start)
     }
@@ -73,7 +73,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     pub fn vertices_around(
         &self,
         vertex: VertexId,
-    ) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, Damaged>> + '_, Damaged> {
+    ) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, CompactError>> + '_, CompactError> {
         plane::vertices_around(self, vertex)
     }
 
@@ -81,7 +81,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// If a cell around the first vertex is damaged.
-    pub fn edge(&self, a: VertexId, b: VertexId) -> Result<Option<(CellId, usize)>, Damaged> {
+    pub fn edge(&self, a: VertexId, b: VertexId) -> Result<Option<(CellId, usize)>, CompactError> {
         plane::edge(self, a, b)
     }
 
@@ -89,7 +89,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// If a cell around the first vertex is damaged.
-    pub fn face(&self, corners: [VertexId; 3]) -> Result<Option<CellId>, Damaged> {
+    pub fn face(&self, corners: [VertexId; 3]) -> Result<Option<CellId>, CompactError> {
         plane::face(self, corners)
     }
 
@@ -99,13 +99,13 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     ///
     /// # Errors
     /// If a cell or vertex that is met is damaged, or if the law is not one of these two.
-    pub fn conflict_zone(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<ConflictZone>, Damaged> {
+    pub fn conflict_zone(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<ConflictZone>, CompactError> {
         match self.law() {
             Law::Delaunay | Law::ConstrainedDelaunay => {
                 let passes = |cell, i| Ok(!self.is_constrained(cell, i)?);
                 query::conflict_zone(self, q, near, passes)
             }
-            law => Err(Damaged::Unanswerable(law)),
+            law => Err(CompactError::Unanswerable(law)),
         }
     }
 }
@@ -117,7 +117,7 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
     /// # Errors
     /// If a cell or vertex that is met is damaged, or if the law is not that of a Delaunay
     /// triangulation.
-    pub fn nearest(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<VertexId>, Damaged> {
+    pub fn nearest(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<VertexId>, CompactError> {
         self.demand_delaunay()?;
         query::nearest(self, q, near)
     }
@@ -132,7 +132,7 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         &self,
         q: &[f64; D],
         near: Option<CellId>,
-    ) -> Result<impl Iterator<Item = Result<VertexId, Damaged>> + use<'_, G, B, D>, Damaged> {
+    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, D>, CompactError> {
         self.demand_delaunay()?;
         query::nearest_first(self, q, near)
     }
@@ -146,15 +146,15 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         &self,
         center: &[f64; D],
         rim: &[f64; D],
-    ) -> Result<impl Iterator<Item = Result<VertexId, Damaged>> + use<'_, G, B, D>, Damaged> {
+    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, D>, CompactError> {
         self.demand_delaunay()?;
         query::within(self, center, rim, None)
     }
 
-    fn demand_delaunay(&self) -> Result<(), Damaged> {
+    fn demand_delaunay(&self) -> Result<(), CompactError> {
         match self.law() {
             Law::Delaunay => Ok(()),
-            law => Err(Damaged::Unanswerable(law)),
+            law => Err(CompactError::Unanswerable(law)),
         }
     }
 }
