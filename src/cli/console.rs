@@ -7,7 +7,6 @@ use std::sync::{Mutex, PoisonError};
 
 use indicatif::{MultiProgress, ProgressDrawTarget};
 
-use super::args::ConsoleArgs;
 use super::escape;
 use super::notices;
 use super::progress::Bar;
@@ -15,9 +14,10 @@ use crate::error::Error;
 use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
 
 /// How much is printed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Level {
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Level {
     Quiet,
+    #[default]
     Normal,
     Verbose,
 }
@@ -31,12 +31,7 @@ pub(super) struct Console {
 }
 
 impl Console {
-    pub(super) fn new(args: &ConsoleArgs) -> Self {
-        let level = match (args.quiet, args.verbose) {
-            (true, _) => Level::Quiet,
-            (_, true) => Level::Verbose,
-            _ => Level::Normal,
-        };
+    pub(super) fn new(level: Level) -> Self {
         let target = match level {
             Level::Quiet => ProgressDrawTarget::hidden(),
             // Hidden by itself if stderr is not a terminal.

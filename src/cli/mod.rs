@@ -33,7 +33,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use self::args::{Cli, ConsoleArgs, Verb};
-use self::console::Console;
+use self::console::{Console, Level};
 use crate::error::{Kind, Result};
 
 /// How a run ended.
@@ -59,7 +59,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     let words = match habits::understood(args) {
         Ok(words) => words,
         Err(error) => {
-            Console::new(&ConsoleArgs::default()).error(&error);
+            Console::new(Level::default()).error(&error);
             return Exit::Usage;
         }
     };
@@ -71,7 +71,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
             return if error.use_stderr() { Exit::Usage } else { Exit::Done };
         }
     };
-    let console = Console::new(&cli.console);
+    let console = Console::new(cli.console.level());
     if let Some(threads) = cli.console.threads {
         // Fails if a pool exists already: the demo runs several commands in one process.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();

@@ -11,15 +11,15 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::console::Level;
 use crate::io::formats;
 
 pub(super) use parse::{EdgeLength, finite};
-pub(super) use reading::ReadArgs;
-pub(super) use surface::{CrossingZArg, DuplicatesArg, SurfaceArgs};
+pub(super) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(super) use switches::expand_switches;
 pub(super) use verbs::{
-    CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OnCrossingArg,
-    OutputArgs, PointsArgs, TinArgs, TriangulateArgs,
+    CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OutputArgs, PointsArgs,
+    TinArgs, TriangulateArgs,
 };
 
 /// Lidar and breaklines to TIN, DEM, contours and mesh
@@ -69,6 +69,17 @@ pub(super) struct ConsoleArgs {
     /// The results do not depend on it.
     #[arg(long, global = true, value_name = "N")]
     pub(super) threads: Option<NonZeroUsize>,
+}
+
+impl ConsoleArgs {
+    /// Returns how much is printed.
+    pub(in crate::cli) fn level(&self) -> Level {
+        match (self.quiet, self.verbose) {
+            (true, _) => Level::Quiet,
+            (_, true) => Level::Verbose,
+            _ => Level::Normal,
+        }
+    }
 }
 
 /// The verb, with its options.

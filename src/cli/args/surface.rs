@@ -3,8 +3,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::parse::{Corners, EdgeLength, not_negative};
-use super::{OnCrossingArg, ReadArgs};
+use super::reading::ReadArgs;
 use crate::cli::classes;
+use crate::triangulation::OnCrossing;
 
 /// Options of building or reading a surface.
 #[derive(Debug, Clone, Args)]
@@ -135,6 +136,25 @@ pub(in crate::cli) enum DuplicatesArg {
     First,
     /// The last in the order of the input
     Last,
+}
+
+/// What to do where two segments cross.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(in crate::cli) enum OnCrossingArg {
+    /// Add a vertex
+    #[default]
+    Split,
+    /// End with an error that names both
+    Reject,
+}
+
+impl From<OnCrossingArg> for OnCrossing {
+    fn from(arg: OnCrossingArg) -> Self {
+        match arg {
+            OnCrossingArg::Split => OnCrossing::Split,
+            OnCrossingArg::Reject => OnCrossing::Reject,
+        }
+    }
 }
 
 /// Which height is used where breaklines cross.

@@ -3,9 +3,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::parse::{Corners, altitude, finite, positive, smallest_angle};
-use super::{ReadArgs, SurfaceArgs};
+use super::reading::ReadArgs;
+use super::surface::{OnCrossingArg, SurfaceArgs};
 use crate::cli::classes;
-use crate::triangulation::OnCrossing;
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]
@@ -210,25 +210,6 @@ pub(in crate::cli) struct TriangulateArgs {
     /// The arithmetic that decides on which side of a line a point lies
     #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]
     pub(in crate::cli) kernel: KernelArg,
-}
-
-/// What to do where two segments cross.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(in crate::cli) enum OnCrossingArg {
-    /// Add a vertex
-    #[default]
-    Split,
-    /// End with an error that names both
-    Reject,
-}
-
-impl From<OnCrossingArg> for OnCrossing {
-    fn from(arg: OnCrossingArg) -> Self {
-        match arg {
-            OnCrossingArg::Split => OnCrossing::Split,
-            OnCrossingArg::Reject => OnCrossing::Reject,
-        }
-    }
 }
 
 /// The arithmetic of the predicates.
