@@ -12,6 +12,12 @@ use super::trace::Met;
 /// The triangulation whose constraints are those of lines.
 pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 
+/// Returns the coordinates of a vertex; negative zeros become positive.
+#[inline]
+pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
+    t.geometry.plan(t.point(vertex)).map(|x| x + 0.0)
+}
+
 impl Lines {
     /// Inserts a point that was admitted and returns its vertex; if the site is taken, the vertex
     /// that is there already. A point on a constraint splits it.

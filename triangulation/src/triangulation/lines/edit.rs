@@ -10,10 +10,10 @@ use crate::tds::VertexId;
 
 use super::super::{ConstrainedDelaunay, InputError, LineId, PointError, RemovalError};
 use super::Lines;
-use super::constrain::Mesh;
-use super::index::{Ends, position};
-use super::local_edit::{Edit, NotLocal};
-use super::paths::{LineVertices, segments_of, undirected};
+use super::constrain::{Mesh, position};
+use super::index::NotLocal;
+use super::local_edit::Edit;
+use super::paths::{Ends, LineVertices, segments_of, undirected};
 use super::rearrange::order_of_insertion;
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {

@@ -12,12 +12,13 @@ use crate::tds::VertexId;
 
 use super::super::LineId;
 use super::Lines;
-use super::constrain::Mesh;
-use super::local_edit::NotLocal;
-use super::paths::{Paths, undirected};
+use super::constrain::{Mesh, position};
+use super::paths::{Ends, Paths, undirected};
 
-/// Two vertices, the smaller first: a segment, a sub-constraint, or an edge.
-pub(super) type Ends = [VertexId; 2];
+/// The reason why an edit cannot be local: the grid changes, sub-constraints cross off the grid, or
+/// there are no triangles. All lines have to be arranged anew.
+#[derive(Debug)]
+pub(super) struct NotLocal;
 
 /// A set that has one element nearly always.
 #[derive(Debug, Clone)]
@@ -107,7 +108,7 @@ impl Index {
             index.rename(line, &[], vertices);
         }
         for segment in index.segments() {
-            index.add_chain(paths, segment);
+            paths.parts(segment, |part| index.add_part(paths, segment, part));
         }
         index
     }
@@ -216,28 +217,27 @@ impl Index {
     /// Returns true if the index has all nodes of a segment.
     pub(super) fn knows(&self, paths: &Paths, segment: Ends) -> bool {
         let mut is_known = self.has_segment(segment);
-        paths.nodes(segment, |node| is_known &= self.segments_on(paths, node).any(|other| other == segment));
+        let is_on = |node| self.segments_on(paths, node).any(|other| other == segment);
+        paths.parts(segment, |part| paths.nodes_of_part(part, |node| is_known &= is_on(node)));
         is_known
     }
 
-    /// Records the nodes of a segment, whose chain is in the tables.
-    pub(super) fn add_chain(&mut self, paths: &Paths, segment: Ends) {
-        paths.nodes(segment, |node| {
+    /// Records that a segment has the nodes of a part of its chain, which is in the tables.
+    pub(super) fn add_part(&mut self, paths: &Paths, segment: Ends, part: Ends) {
+        paths.nodes_of_part(part, |node| {
             if node != segment {
                 self.segments_on.insert(node, segment);
             }
         });
     }
 
-    /// Removes a segment from its nodes, and returns these. The node that is the segment itself
-    /// stays.
-    pub(super) fn remove_chain(&mut self, paths: &Paths, segment: Ends) -> Vec<Ends> {
-        let mut nodes = Vec::new();
-        paths.nodes(segment, |node| {
+    /// Removes a segment from the nodes of a part of its chain, and appends these to `nodes`. The
+    /// node that is the segment itself stays.
+    pub(super) fn remove_part(&mut self, paths: &Paths, segment: Ends, part: Ends, nodes: &mut Vec<Ends>) {
+        paths.nodes_of_part(part, |node| {
             self.segments_on.remove(node, segment);
             nodes.push(node);
         });
-        nodes
     }
 
     /// Records that an edge was split.
@@ -254,12 +254,6 @@ impl Index {
 /// The segments of a line, from the smaller vertex to the larger; with repetitions.
 fn segments_of_line(vertices: &[VertexId]) -> impl Iterator<Item = Ends> + '_ {
     vertices.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| undirected(pair[0], pair[1]))
-}
-
-/// Returns the coordinates of a vertex; negative zeros become positive.
-#[inline]
-pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
-    t.geometry.plan(t.point(vertex)).map(|x| x + 0.0)
 }
 
 impl Lines {

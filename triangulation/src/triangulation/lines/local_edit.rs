@@ -27,18 +27,14 @@ use crate::tds::VertexId;
 
 use super::super::Rounding;
 use super::Lines;
-use super::constrain::Mesh;
-use super::index::{Ends, position};
+use super::change::Change;
+use super::constrain::{Mesh, position};
+use super::index::NotLocal;
 use super::near_segment::{Band, near};
-use super::paths::undirected;
+use super::paths::{Ends, undirected};
 
 /// How many units around a segment or a site are searched. One would suffice, except for rounding.
 const REACH: f64 = 2.0;
-
-/// The reason why an edit cannot be local: the grid changes, sub-constraints cross off the grid, or
-/// there are no triangles. All lines have to be arranged anew.
-#[derive(Debug)]
-pub(super) struct NotLocal;
 
 /// A pending step.
 enum Step {
@@ -61,7 +57,7 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     removed: Option<Ends>,
     /// The given vertex to be removed.
     gone: Option<VertexId>,
-    /// The sites of segments that change, in no particular order; `None` for straight ones.
+    /// The sites of segments that change, in their order along them; `None` for straight ones.
     chains: FxHashMap<Ends, Option<Vec<VertexId>>>,
     hot: FxHashMap<VertexId, bool>,
     active: FxHashSet<VertexId>,
@@ -201,10 +197,14 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             return chain.as_ref().is_some_and(|sites| sites.contains(&vertex));
         }
         let Some(sites) = self.lines.paths.bent.get(&segment) else { return false };
-        let before = self.order_along(segment);
-        let key = before(vertex);
-        let at = sites.partition_point(|&site| before(site) < key);
-        sites.get(at) == Some(&vertex)
+        sites.get(self.position_along(segment, sites, vertex)) == Some(&vertex)
+    }
+
+    /// Returns how many of a segment's sites come before a vertex that is near the segment.
+    fn position_along(&self, segment: Ends, sites: &[VertexId], vertex: VertexId) -> usize {
+        let key = self.order_along(segment);
+        let limit = key(vertex);
+        sites.partition_point(|&site| key(site) < limit)
     }
 
     /// Returns keys that sort the sites of a segment from its first end to its second.
@@ -214,10 +214,23 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         move |vertex| self.rounder.along(ends, position(self.t, vertex)).map(|x| sign * x)
     }
 
+    fn sort_along(&self, segment: Ends, sites: &mut [VertexId]) {
+        let key = self.order_along(segment);
+        sites.sort_unstable_by(|&u, &v| key(u).partial_cmp(&key(v)).unwrap_or(std::cmp::Ordering::Equal));
+    }
+
     /// Returns the current sites of a segment.
     fn sites(&self, segment: Ends) -> Vec<VertexId> {
         let in_table = || self.lines.paths.bent.get(&segment).map(|sites| sites.to_vec());
         self.chains.get(&segment).cloned().unwrap_or_else(in_table).unwrap_or_default()
+    }
+
+    /// Bends a segment to one more site.
+    fn insert_site(&mut self, segment: Ends, site: VertexId) {
+        let mut sites = std::mem::take(self.sites_mut(segment));
+        let at = self.position_along(segment, &sites, site);
+        sites.insert(at, site);
+        self.chains.insert(segment, Some(sites));
     }
 
     /// Returns the sites of a bent segment, mutable.
@@ -264,7 +277,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let p = self.t.geometry.meet(center, &ends.each_ref().map(|ends| ends.each_ref()));
         self.t.admit(&p).map_err(|_| NotLocal)?;
         let count = self.t.vertex_count();
-        let near = self.t.tds.cell_of(segments[1][0]);
+        let near = self.t.tds.cell_of(segments[0][0]);
         let site = self.lines.insert_point(self.t, p, near);
         if self.t.vertex_count() > count {
             self.lines.added.insert(site);
@@ -294,7 +307,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                     }
                     for segment in self.around(site) {
                         if self.is_bent(segment) && self.meets_pixel(segment, site) && !self.has_site(segment, site) {
-                            self.sites_mut(segment).push(site);
+                            self.insert_site(segment, site);
                             if !self.is_exact(segment, site) {
                                 self.steps.push(Step::Activate(site));
                             }
@@ -337,6 +350,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                 self.make_hot(v);
             }
         }
+        self.sort_along(segment, &mut sites);
         self.chains.insert(segment, Some(sites));
     }
 
@@ -403,77 +417,38 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Changes the tables and the triangulation.
     fn carry_out(mut self) -> Result<(), NotLocal> {
-        // Phase 1: which vertices are removed, and which segments get another chain.
-        let leaves = |(&v, &is_hot): (&VertexId, &bool)| (!is_hot && self.lines.added.contains(v)).then_some(v);
-        let mut leaving: Vec<VertexId> = self.hot.iter().filter_map(leaves).collect();
-        if let Some(gone) = self.gone {
-            self.lines.owned.remove(gone);
-            if self.is_hot(gone) {
-                self.lines.added.insert(gone);
-            } else {
-                leaving.push(gone);
-            }
-        }
-        leaving.sort_unstable();
-        let through: Vec<Ends> = leaving.iter().flat_map(|&v| self.lines_at(v)).collect();
-        let mut changed: Vec<(Ends, Option<Box<[VertexId]>>)> = Vec::new();
-        for (segment, sites) in std::mem::take(&mut self.chains) {
-            let ordered = sites.map(|mut sites| {
-                let key = self.order_along(segment);
-                sites.sort_unstable_by(|&u, &v| key(u).partial_cmp(&key(v)).unwrap_or(std::cmp::Ordering::Equal));
-                sites.into_boxed_slice()
-            });
-            if Some(segment) == self.added || ordered.as_ref() != self.lines.paths.bent.get(&segment) {
-                changed.push((segment, ordered));
-            }
-        }
-        if let Some(added) = self.added
-            && !changed.iter().any(|(segment, _)| *segment == added)
-        {
-            changed.push((added, None));
-        }
-        changed.sort_unstable();
-        for segment in through {
-            if let Err(at) = changed.binary_search_by(|(other, _)| other.cmp(&segment)) {
-                changed.insert(at, (segment, self.lines.paths.bent.get(&segment).cloned()));
-            }
-        }
+        let leaving = self.leaving();
+        let changes = self.changes(&leaving);
 
-        // Phase 2: the tables.
-        let old = |segment: &Ends| Some(*segment) != self.added;
-        let rerouted: FxHashSet<Ends> =
-            changed.iter().map(|(segment, _)| *segment).filter(old).chain(self.removed).collect();
-        let mut edges: FxHashSet<Ends> = FxHashSet::default();
+        // The tables. An edge of a chain that changes is released unless another chain needs it.
         let (index, paths) = self.lines.index_and_paths();
         let index = index.ok_or(NotLocal)?;
-        rerouted.iter().for_each(|&segment| edges.extend(index.remove_chain(paths, segment)));
-        edges.retain(|&edge| index.segments_on(paths, edge).all(|segment| rerouted.contains(&segment)));
-        let mut stale = std::mem::take(&mut self.stale);
-        let paths = &mut self.lines.paths;
-        edges.retain(|edge| paths.splits.remove(edge).is_none());
-        let mut parts: Vec<Ends> = Vec::new();
-        let segments: Vec<Ends> = changed.iter().map(|(segment, _)| *segment).collect();
-        for (segment, sites) in changed {
-            let before = match &sites {
-                Some(sites) => paths.bent.insert(segment, sites.clone()),
-                None => paths.bent.remove(&segment),
-            };
-            let [before, after] = [before.unwrap_or_default(), sites.unwrap_or_default()];
-            stale.extend(difference(&before, &after));
-            let chain = paths.sites(segment);
-            parts.extend(chain.windows(2).map(|pair| undirected(pair[0], pair[1])));
+        let mut edges: Vec<Ends> = Vec::new();
+        for change in &changes {
+            change.old_parts().for_each(|part| index.remove_part(paths, change.segment, part, &mut edges));
         }
-        if let Some(removed) = self.removed {
-            stale.extend(paths.bent.remove(&removed).unwrap_or_default());
+        edges.sort_unstable();
+        edges.dedup();
+        let straight = |edge: &Ends| changes.binary_search_by(|change| change.segment.cmp(edge));
+        let is_rerouted = |edge: &Ends| straight(edge).is_ok_and(|at| changes[at].old_parts().next().is_some());
+        edges.retain(|&edge| index.segments_on(paths, edge).all(|other| other == edge && is_rerouted(&edge)));
+        edges.retain(|edge| paths.splits.remove(edge).is_none());
+        let mut stale = std::mem::take(&mut self.stale);
+        let mut parts: Vec<Ends> = Vec::new();
+        for change in &changes {
+            if change.is_bent {
+                paths.bent.insert(change.segment, change.new_sites().into());
+            } else {
+                paths.bent.remove(&change.segment);
+            }
+            stale.extend(change.sites_that_change());
+            parts.extend(change.new_parts());
         }
         parts.sort_unstable();
         parts.dedup();
 
-        // Phase 3: the triangulation. Edges removed from one segment stay if another one needs
-        // them.
-        parts.retain(|part| !edges.remove(part));
-        let mut edges: Vec<Ends> = edges.into_iter().collect();
-        edges.sort_unstable();
+        // The triangulation.
+        parts.retain(|part| edges.binary_search(part).map(|at| edges.remove(at)).is_err());
         for [a, b] in edges {
             self.lines.release(self.t, a, b);
         }
@@ -489,12 +464,13 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                 return Err(NotLocal);
             }
         }
-        for segment in segments {
-            let (index, paths) = self.lines.index_and_paths();
-            index.ok_or(NotLocal)?.add_chain(paths, segment);
+        let (index, paths) = self.lines.index_and_paths();
+        let index = index.ok_or(NotLocal)?;
+        for change in &changes {
+            change.new_parts().for_each(|part| index.add_part(paths, change.segment, part));
         }
 
-        // Phase 4: the points of vertices at which other segments cross now.
+        // The points of vertices at which other segments cross now.
         stale.sort_unstable();
         stale.dedup();
         self.added = None;
@@ -505,6 +481,58 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             is_rounded.then(|| Rounding { unit: self.rounder.unit(), on_grid: self.rounder.is_even() });
         self.lines.touch();
         Ok(())
+    }
+
+    /// Returns the vertices that are to be removed, in order.
+    fn leaving(&mut self) -> Vec<VertexId> {
+        let leaves = |(&v, &is_hot): (&VertexId, &bool)| (!is_hot && self.lines.added.contains(v)).then_some(v);
+        let mut leaving: Vec<VertexId> = self.hot.iter().filter_map(leaves).collect();
+        if let Some(gone) = self.gone {
+            self.lines.owned.remove(gone);
+            if self.is_hot(gone) {
+                self.lines.added.insert(gone);
+            } else {
+                leaving.push(gone);
+            }
+        }
+        leaving.sort_unstable();
+        leaving
+    }
+
+    /// Returns the changes of chains, ordered by segment: those of other sites, and those that a
+    /// vertex leaves, if only as one that split an edge.
+    fn changes(&mut self, leaving: &[VertexId]) -> Vec<Change> {
+        let paths = &self.lines.paths;
+        let from_end_to_end = |[a, b]: Ends, sites: &[VertexId]| [&[a], sites, &[b]].concat();
+        let mut changes: Vec<Change> = Vec::new();
+        for (segment, sites) in std::mem::take(&mut self.chains) {
+            let is_new = Some(segment) == self.added;
+            if is_new || sites.as_deref() != paths.bent.get(&segment).map(|sites| &**sites) {
+                let old = if is_new { Vec::new() } else { paths.sites(segment) };
+                let new = from_end_to_end(segment, sites.as_deref().unwrap_or_default());
+                changes.push(Change::new(segment, old, new, sites.is_some()));
+            }
+        }
+        if let Some(added) = self.added.filter(|added| !changes.iter().any(|change| change.segment == *added)) {
+            changes.push(Change::new(added, Vec::new(), added.to_vec(), false));
+        }
+        if let Some(removed) = self.removed {
+            changes.push(Change::new(removed, paths.sites(removed), Vec::new(), false));
+        }
+        changes.sort_unstable_by_key(|change| change.segment);
+        for &vertex in leaving {
+            for segment in self.lines_at(vertex) {
+                let at = changes.binary_search_by(|change| change.segment.cmp(&segment)).unwrap_or_else(|at| {
+                    let sites = self.lines.paths.sites(segment);
+                    let is_bent = self.lines.paths.bent.contains_key(&segment);
+                    changes.insert(at, Change::new(segment, sites.clone(), sites, is_bent));
+                    at
+                });
+                let part = self.position_along(segment, changes[at].old_sites(), vertex);
+                changes[at].include(part, vertex);
+            }
+        }
+        changes
     }
 
     /// Updates the point at a crossing, which the geometry computes from the segments that pass
@@ -518,12 +546,6 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             self.t.points[site.index()] = p;
         }
     }
-}
-
-/// Returns the vertices that are in one of two lists only.
-fn difference(before: &[VertexId], after: &[VertexId]) -> Vec<VertexId> {
-    let sets = [before, after].map(|sites| sites.iter().copied().collect::<FxHashSet<VertexId>>());
-    sets[0].symmetric_difference(&sets[1]).copied().collect()
 }
 
 /// Returns true if a site lies on a segment, ends included.

@@ -11,6 +11,7 @@
 //! | `build` | bulk construction from points and lines |
 //! | `edit` | insertion and removal of lines and points |
 //! | `local_edit`, `near_segment` | the consequences of one edit, in its neighborhood; what lies near a segment |
+//! | `change` | where the old and the new chain of a segment differ |
 //! | `index` | which segments run along an edge, which lines contain them |
 //! | `rearrange` | a new arrangement of all lines |
 //! | `constrain` | insertion and removal of one sub-constraint |
@@ -21,6 +22,7 @@
 //! | `vertex_set` | a set of vertices |
 
 pub(super) mod build;
+mod change;
 mod check;
 pub(super) mod constrain;
 mod corridor;

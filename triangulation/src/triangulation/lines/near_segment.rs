@@ -5,9 +5,8 @@ use rustc_hash::FxHashSet;
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
-use super::constrain::Mesh;
-use super::index::{Ends, position};
-use super::paths::undirected;
+use super::constrain::{Mesh, position};
+use super::paths::{Ends, undirected};
 
 /// The points within some distance of a segment on each axis: a hexagon; for a point, a rectangle.
 ///

@@ -82,6 +82,9 @@ impl DerefMut for LineVertices {
     }
 }
 
+/// Two vertices, the smaller first: a segment, a sub-constraint, or an edge.
+pub(super) type Ends = [VertexId; 2];
+
 /// Returns the vertices with the smaller first: one key for both directions.
 #[inline]
 pub(in super::super) fn undirected(a: VertexId, b: VertexId) -> [VertexId; 2] {
@@ -192,19 +195,23 @@ impl Paths {
         }
     }
 
-    /// Calls `visit` with each node of a segment: its sub-constraints, and the parts into which
-    /// these were split.
-    pub(super) fn nodes(&self, segment: [VertexId; 2], mut visit: impl FnMut([VertexId; 2])) {
+    /// Calls `visit` with each part of a segment's chain: its sub-constraints.
+    pub(super) fn parts(&self, segment: Ends, mut visit: impl FnMut(Ends)) {
         let mut at = segment[0];
-        let mut parts = Vec::new();
         for &site in self.bent.get(&segment).into_iter().flatten().chain([&segment[1]]) {
-            parts.push(undirected(at, site));
+            visit(undirected(at, site));
             at = site;
-            while let Some(part) = parts.pop() {
-                visit(part);
-                if let Some(&between) = self.splits.get(&part) {
-                    parts.extend(part.map(|end| undirected(end, between)));
-                }
+        }
+    }
+
+    /// Calls `visit` with each node of a part of a chain: the part, and those into which it was
+    /// split.
+    pub(super) fn nodes_of_part(&self, part: Ends, mut visit: impl FnMut(Ends)) {
+        let (mut first, mut parts) = (Some(part), Vec::new());
+        while let Some(part) = first.take().or_else(|| parts.pop()) {
+            visit(part);
+            if let Some(&between) = self.splits.get(&part) {
+                parts.extend(part.map(|end| undirected(end, between)));
             }
         }
     }
