@@ -1,29 +1,12 @@
-//! The command line: one file per verb.
+//! The command line, in three folders.
 //!
-//! The options as typed (`args`) are kept apart from their meaning (`plan`, `outputs`). A verb
-//! passes a request to [`run`](crate::run), writes the product and prints a summary. Data goes to
-//! files or stdout, messages (`console`) go to stderr.
+//! `input` has the options as typed and their meaning, `verbs` one file per verb, `report` what is
+//! printed. A verb passes a request to [`run`](crate::run), writes the product and prints a
+//! summary. Data goes to files or stdout, messages go to stderr.
 
-mod args;
-mod check;
-mod classes;
-mod console;
-mod contour;
-mod dem;
-mod demo;
-mod escape;
-mod habits;
-mod hillshade;
-mod info;
-mod inputs;
-mod notices;
-mod outputs;
-mod plan;
-mod points;
-mod progress;
-mod summary;
-mod tin;
-mod triangulate;
+mod input;
+mod report;
+mod verbs;
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
@@ -32,8 +15,10 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use self::args::{Cli, ConsoleArgs, Verb};
-use self::console::{Console, Level};
+use self::input::args::{Cli, ConsoleArgs, Verb};
+use self::input::habits;
+use self::report::console::{Console, Level};
+use self::report::{escape, summary};
 use crate::error::{Kind, Result};
 
 /// How a run ended.
@@ -97,15 +82,15 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
 
 fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
-        Verb::Info(args) => info::run(args, console),
-        Verb::Points(args) => points::run(args, console),
-        Verb::Tin(args) => tin::run(args, console),
-        Verb::Triangulate(args) => triangulate::run(args, console),
-        Verb::Dem(args) => dem::run(args, console),
-        Verb::Contour(args) => contour::run(args, console),
-        Verb::Hillshade(args) => hillshade::run(args, console),
-        Verb::Check(args) => check::run(args, console),
-        Verb::Demo(args) => demo::run(args, how, console),
+        Verb::Info(args) => verbs::info::run(args, console),
+        Verb::Points(args) => verbs::points::run(args, console),
+        Verb::Tin(args) => verbs::tin::run(args, console),
+        Verb::Triangulate(args) => verbs::triangulate::run(args, console),
+        Verb::Dem(args) => verbs::dem::run(args, console),
+        Verb::Contour(args) => verbs::contour::run(args, console),
+        Verb::Hillshade(args) => verbs::hillshade::run(args, console),
+        Verb::Check(args) => verbs::check::run(args, console),
+        Verb::Demo(args) => verbs::demo::run(args, how, console),
     }
 }
 

@@ -12,15 +12,17 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use self::sheet::Sheet;
-use super::args::InfoArgs;
-use super::console::Console;
-use super::{Exit, escape, inputs, print};
+use crate::cli::input::args::InfoArgs;
+use crate::cli::input::inputs;
+use crate::cli::report::console::Console;
+use crate::cli::report::escape;
+use crate::cli::{Exit, print};
 use crate::error::Result;
 use crate::io::formats;
 use crate::run::{self, Facts};
 
 /// Prints what is in files. A file that cannot be read does not stop the others from being printed.
-pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
     let mut files = inputs::expand(&args.files, console)?;
     drop_parts(&mut files, console);
     let options = args.read.options();

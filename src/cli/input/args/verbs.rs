@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use super::parse::{Corners, altitude, finite, positive, smallest_angle};
 use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
-use crate::cli::classes;
+use crate::cli::input::classes;
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]

@@ -1,7 +1,7 @@
 use serde_json::{Map, json};
 
 use super::Sheet;
-use crate::cli::summary::counted;
+use crate::cli::report::summary::counted;
 use crate::data::ShapeKind;
 use crate::run::LayerFacts;
 

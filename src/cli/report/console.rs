@@ -15,7 +15,7 @@ use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
 
 /// How much is printed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+pub(in crate::cli) enum Level {
     Quiet,
     #[default]
     Normal,
@@ -24,14 +24,14 @@ pub(super) enum Level {
 
 /// Prints the messages of a run to stderr. Equal notes and warnings are printed once.
 #[derive(Debug)]
-pub(super) struct Console {
+pub(in crate::cli) struct Console {
     level: Level,
     bars: MultiProgress,
     said: Mutex<HashSet<String>>,
 }
 
 impl Console {
-    pub(super) fn new(level: Level) -> Self {
+    pub(in crate::cli) fn new(level: Level) -> Self {
         let target = match level {
             Level::Quiet => ProgressDrawTarget::hidden(),
             // Hidden by itself if stderr is not a terminal.
@@ -41,7 +41,7 @@ impl Console {
     }
 
     /// Prints an error, and its hint on a line of its own.
-    pub(super) fn error(&self, error: &Error) {
+    pub(in crate::cli) fn error(&self, error: &Error) {
         self.print(&format!("error: {error}"));
         if let Some(cure) = error.cure_text() {
             self.print(&format!("hint: {cure}"));
@@ -49,34 +49,34 @@ impl Console {
     }
 
     /// Prints a warning: something is probably not as intended.
-    pub(super) fn warning(&self, text: impl Display) {
+    pub(in crate::cli) fn warning(&self, text: impl Display) {
         self.once(format!("warning: {text}"));
     }
 
     /// Prints a note, unless the run is quiet: a choice that was made for the user, or something
     /// worth knowing.
-    pub(super) fn note(&self, text: impl Display) {
+    pub(in crate::cli) fn note(&self, text: impl Display) {
         if self.level > Level::Quiet {
             self.once(format!("note: {text}"));
         }
     }
 
     /// Prints a line if the run is verbose.
-    pub(super) fn detail(&self, text: impl Display) {
+    pub(in crate::cli) fn detail(&self, text: impl Display) {
         if self.level == Level::Verbose {
             self.print(&text.to_string());
         }
     }
 
     /// Prints a line of the summary, unless the run is quiet.
-    pub(super) fn line(&self, text: impl Display) {
+    pub(in crate::cli) fn line(&self, text: impl Display) {
         if self.level > Level::Quiet {
             self.print(&text.to_string());
         }
     }
 
     /// Returns the context of a run that shows its notices and progress here.
-    pub(super) fn context(&self) -> Context<'_> {
+    pub(in crate::cli) fn context(&self) -> Context<'_> {
         Context { monitor: self, ..Context::default() }
     }
 

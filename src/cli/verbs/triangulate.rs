@@ -1,9 +1,10 @@
 //! Triangulation of Triangle's files.
 
-use super::args::{KernelArg, TriangulateArgs};
-use super::console::Console;
-use super::outputs::{self, Format, Target};
-use super::{Exit, inputs};
+use crate::cli::Exit;
+use crate::cli::input::args::{KernelArg, TriangulateArgs};
+use crate::cli::input::inputs;
+use crate::cli::input::outputs::{self, Format, Target};
+use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
 use crate::io::{Destination, OutputSet};
 use crate::run::{self, Arithmetic, TriangulateOptions, TriangulateProduct};
@@ -42,7 +43,7 @@ const fn formats(beside_ele: &'static [&'static str]) -> [Format<Family>; 8] {
 }
 
 /// Triangulates a `.node` or `.poly` file.
-pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     let path = &args.input;
     inputs::require([path])?;
     let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));

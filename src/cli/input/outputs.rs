@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::args::OutputArgs;
-use super::console::Console;
 use super::inputs::identity;
 use super::plan::SurfacePlan;
-use super::summary::describe;
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::describe;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
 use crate::io::formats::{self, Product};
@@ -19,15 +19,15 @@ const BEST_COMPRESSION: f64 = 10.0;
 
 /// A file format that a verb can write.
 #[derive(Debug)]
-pub(super) struct Format<F: 'static> {
-    pub(super) extension: &'static str,
-    pub(super) kind: F,
+pub(in crate::cli) struct Format<F: 'static> {
+    pub(in crate::cli) extension: &'static str,
+    pub(in crate::cli) kind: F,
     /// Extensions of the files that are written with it.
-    pub(super) companions: &'static [&'static str],
+    pub(in crate::cli) companions: &'static [&'static str],
 }
 
 /// Returns the formats that a product can be written in, one for each extension.
-pub(super) fn formats_of<F>(product: Product, kind: impl Fn(&formats::Format) -> F) -> Vec<Format<F>> {
+pub(in crate::cli) fn formats_of<F>(product: Product, kind: impl Fn(&formats::Format) -> F) -> Vec<Format<F>> {
     let formats = formats::FORMATS.iter().filter(|format| format.writes(product));
     let by_extension = formats.flat_map(|format| format.extensions.iter().map(move |extension| (format, extension)));
     by_extension
@@ -37,25 +37,25 @@ pub(super) fn formats_of<F>(product: Product, kind: impl Fn(&formats::Format) ->
 
 /// A file to write.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Target<F> {
-    pub(super) path: PathBuf,
-    pub(super) kind: F,
+pub(in crate::cli) struct Target<F> {
+    pub(in crate::cli) path: PathBuf,
+    pub(in crate::cli) kind: F,
     /// The extension of its format, whatever the path says.
-    pub(super) extension: &'static str,
+    pub(in crate::cli) extension: &'static str,
 }
 
 impl<F> Target<F> {
     /// Returns the destination for a writer.
-    pub(super) fn within<'a>(&'a self, set: &'a OutputSet) -> Destination<'a> {
+    pub(in crate::cli) fn within<'a>(&'a self, set: &'a OutputSet) -> Destination<'a> {
         set.at(&self.path).in_format(self.extension)
     }
 }
 
 /// The files that a run writes; all appear at its end, or none.
 #[derive(Debug)]
-pub(super) struct Outputs<F> {
-    pub(super) targets: Vec<Target<F>>,
-    pub(super) set: OutputSet,
+pub(in crate::cli) struct Outputs<F> {
+    pub(in crate::cli) targets: Vec<Target<F>>,
+    pub(in crate::cli) set: OutputSet,
 }
 
 impl<F> Outputs<F> {
@@ -70,7 +70,7 @@ impl<F> Outputs<F> {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub(super) fn add_report(&self, plan: &SurfacePlan, product: &SurfaceProduct) -> Result<()> {
+    pub(in crate::cli) fn add_report(&self, plan: &SurfacePlan, product: &SurfaceProduct) -> Result<()> {
         let (Some(path), Some(built)) = (&plan.crossing_report, &product.built) else { return Ok(()) };
         let mut output = Output::create(path)?;
         let written = built.line_names.write_table(&built.tin.crossing_heights, &mut output);
@@ -85,7 +85,7 @@ impl<F> Outputs<F> {
     ///
     /// # Errors
     /// If the cells cannot fit, however well they are compressed.
-    pub(super) fn announce(
+    pub(in crate::cli) fn announce(
         &self,
         cells: &CellProduct,
         cell_bytes: impl Fn(&F) -> u64,
@@ -117,7 +117,7 @@ impl<F> Outputs<F> {
     ///
     /// # Errors
     /// If one cannot appear; then none does.
-    pub(super) fn commit(self, console: &Console) -> Result<()> {
+    pub(in crate::cli) fn commit(self, console: &Console) -> Result<()> {
         self.set.commit()?.iter().for_each(|path| print_written(path, console));
         Ok(())
     }
@@ -125,13 +125,13 @@ impl<F> Outputs<F> {
 
 /// What happens to a file that exists at the path of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Existing {
+pub(in crate::cli) enum Existing {
     Keep,
     Replace,
 }
 
 impl Existing {
-    pub(super) fn of(overwrite: bool) -> Self {
+    pub(in crate::cli) fn of(overwrite: bool) -> Self {
         if overwrite { Existing::Replace } else { Existing::Keep }
     }
 }
@@ -143,7 +143,11 @@ const REPORTS: &[Format<()>] = &[Format { extension: "csv", kind: (), companions
 /// # Errors
 /// If an extension is not among the formats, an output is an input or named twice, its folder does
 /// not exist, or it exists and may not be replaced.
-pub(super) fn resolve<F: Copy>(args: &OutputArgs, formats: &[Format<F>], inputs: &[PathBuf]) -> Result<Outputs<F>> {
+pub(in crate::cli) fn resolve<F: Copy>(
+    args: &OutputArgs,
+    formats: &[Format<F>],
+    inputs: &[PathBuf],
+) -> Result<Outputs<F>> {
     let existing = Existing::of(args.overwrite);
     let mut targets: Vec<Target<F>> = Vec::new();
     for path in &args.output {
@@ -162,7 +166,7 @@ pub(super) fn resolve<F: Copy>(args: &OutputArgs, formats: &[Format<F>], inputs:
 ///
 /// # Errors
 /// Those of [`resolve`], for the report as well.
-pub(super) fn resolve_with_report<F: Copy>(
+pub(in crate::cli) fn resolve_with_report<F: Copy>(
     args: &OutputArgs,
     formats: &[Format<F>],
     plan: &SurfacePlan,
@@ -180,7 +184,7 @@ pub(super) fn resolve_with_report<F: Copy>(
 ///
 /// # Errors
 /// Those of [`resolve`].
-pub(super) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<Outputs<()>> {
+pub(in crate::cli) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<Outputs<()>> {
     if let Some(report) = &plan.crossing_report {
         require_free(report, find(report, REPORTS)?, existing, &plan.inputs)?;
     }
@@ -235,7 +239,7 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
 }
 
 /// Returns the companions of a target, then the target itself.
-pub(super) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
+pub(in crate::cli) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
     let format = formats.iter().find(|format| format.extension == target.extension);
     let companions = format.map_or(&[][..], |format| format.companions);
     let mut files = with_companions(&target.path, target.extension, companions);
@@ -281,7 +285,7 @@ fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
 }
 
 /// Prints a note if a format does not store which edges are on lines, and there are any.
-pub(super) fn note_lost_edges(file: &Path, edges: usize, cure: &str, console: &Console) {
+pub(in crate::cli) fn note_lost_edges(file: &Path, edges: usize, cure: &str, console: &Console) {
     if edges > 0 {
         let path = file.display();
         console.note(format_args!(

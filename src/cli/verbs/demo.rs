@@ -2,26 +2,26 @@ use std::ffi::OsString;
 use std::io::Write;
 use std::path::Path;
 
-use super::Exit;
-use super::args::{ConsoleArgs, DemoArgs};
-use super::console::Console;
+use crate::cli::Exit;
+use crate::cli::input::args::{ConsoleArgs, DemoArgs};
+use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
 use crate::io::Output;
 
 /// The data that is part of the program, described in `fixtures/README.md`.
 const FIXTURES: &[(&str, &[u8])] = &[
-    ("valley.laz", include_bytes!("../../fixtures/valley.laz")),
-    ("breaklines.shp", include_bytes!("../../fixtures/breaklines.shp")),
-    ("breaklines.shx", include_bytes!("../../fixtures/breaklines.shx")),
-    ("breaklines.dbf", include_bytes!("../../fixtures/breaklines.dbf")),
-    ("breaklines.prj", include_bytes!("../../fixtures/breaklines.prj")),
-    ("breaklines.cpg", include_bytes!("../../fixtures/breaklines.cpg")),
-    ("boundary.shp", include_bytes!("../../fixtures/boundary.shp")),
-    ("boundary.shx", include_bytes!("../../fixtures/boundary.shx")),
-    ("boundary.dbf", include_bytes!("../../fixtures/boundary.dbf")),
-    ("boundary.prj", include_bytes!("../../fixtures/boundary.prj")),
-    ("boundary.cpg", include_bytes!("../../fixtures/boundary.cpg")),
-    ("dem.tif", include_bytes!("../../fixtures/dem.tif")),
+    ("valley.laz", include_bytes!("../../../fixtures/valley.laz")),
+    ("breaklines.shp", include_bytes!("../../../fixtures/breaklines.shp")),
+    ("breaklines.shx", include_bytes!("../../../fixtures/breaklines.shx")),
+    ("breaklines.dbf", include_bytes!("../../../fixtures/breaklines.dbf")),
+    ("breaklines.prj", include_bytes!("../../../fixtures/breaklines.prj")),
+    ("breaklines.cpg", include_bytes!("../../../fixtures/breaklines.cpg")),
+    ("boundary.shp", include_bytes!("../../../fixtures/boundary.shp")),
+    ("boundary.shx", include_bytes!("../../../fixtures/boundary.shx")),
+    ("boundary.dbf", include_bytes!("../../../fixtures/boundary.dbf")),
+    ("boundary.prj", include_bytes!("../../../fixtures/boundary.prj")),
+    ("boundary.cpg", include_bytes!("../../../fixtures/boundary.cpg")),
+    ("dem.tif", include_bytes!("../../../fixtures/dem.tif")),
 ];
 
 /// The commands of the demo; `@` stands for the folder.
@@ -47,7 +47,7 @@ const COMMANDS: &[&[&str]] = &[
 ];
 
 /// Writes the data and runs each command on it, as if it were typed.
-pub(super) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     let folder = &args.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::from(e).in_file(folder))?;
     for (name, bytes) in FIXTURES {
@@ -62,7 +62,7 @@ pub(super) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Resu
         let typed: Vec<String> = words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
         console.line("");
         console.line(format_args!("$ breakline {}", typed.join(" ")));
-        let exit = super::run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)));
+        let exit = crate::cli::run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)));
 
         if exit != Exit::Done {
             return Ok(exit);

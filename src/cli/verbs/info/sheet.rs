@@ -2,7 +2,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use crate::cli::escape;
+use crate::cli::report::escape;
 use crate::crs::{Crs, CrsKind};
 use crate::data::Bounds;
 use crate::run::units::neat;

@@ -27,12 +27,12 @@ const NAMES: [&str; 23] = [
 ];
 
 /// Returns the name of a class.
-pub(super) fn name(class: usize) -> &'static str {
+pub(in crate::cli) fn name(class: usize) -> &'static str {
     NAMES.get(class).copied().unwrap_or(if class < 64 { "reserved" } else { "user-defined" })
 }
 
 /// Parses a class: `2`, `ground`, `low-vegetation`.
-pub(super) fn parse(text: &str) -> Result<u8, String> {
+pub(in crate::cli) fn parse(text: &str) -> Result<u8, String> {
     let plain = text.trim().replace(['-', '_'], " ").to_ascii_lowercase();
     let by_name = || NAMES.iter().position(|name| *name == plain).map(|class| class as u8);
     plain.parse().ok().or_else(by_name).ok_or_else(|| {

@@ -1,16 +1,16 @@
-use super::Exit;
-use super::args::DemArgs;
-use super::console::Console;
-use super::outputs;
-use super::plan::SurfacePlan;
-use super::summary::print_surface;
+use crate::cli::Exit;
+use crate::cli::input::args::DemArgs;
+use crate::cli::input::outputs;
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::print_surface;
 use crate::error::Result;
 use crate::io::formats::Product;
 use crate::run;
 use crate::run::units::Units;
 
 /// Writes the heights of a TIN as a raster.
-pub(super) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     let frame = plan.add_frame(&args.frame)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), &plan)?;

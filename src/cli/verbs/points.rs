@@ -1,14 +1,15 @@
-use super::args::PointsArgs;
-use super::console::Console;
-use super::summary::{counted, print_extent};
-use super::{Exit, inputs, outputs};
+use crate::cli::Exit;
+use crate::cli::input::args::PointsArgs;
+use crate::cli::input::{inputs, outputs};
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::{counted, print_extent};
 use crate::error::{Error, Result};
 use crate::io::formats::Product;
 use crate::io::las::Rounding;
 use crate::run::{PointsRequest, Withheld, write_points};
 
 /// Selects, clips and merges points.
-pub(super) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     let files = inputs::expand(&args.inputs, console)?;
     inputs::require(&args.boundary)?;
     let all: Vec<_> = files.iter().chain(&args.boundary).cloned().collect();

@@ -1,9 +1,9 @@
-use super::Exit;
-use super::args::HillshadeArgs;
-use super::console::Console;
-use super::outputs;
-use super::plan::SurfacePlan;
-use super::summary::{print_extent, print_surface};
+use crate::cli::Exit;
+use crate::cli::input::args::HillshadeArgs;
+use crate::cli::input::outputs;
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::{print_extent, print_surface};
 use crate::error::Result;
 use crate::io::formats::{Content, Product};
 use crate::run::{self, HillshadeOptions, LightOptions, Model};
@@ -16,7 +16,7 @@ enum ShadeFormat {
 }
 
 /// Shades a TIN or a DEM.
-pub(super) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     let frame = plan.add_frame(&args.frame)?;
     let light = LightOptions { azimuth: args.azimuth, altitude: args.altitude, z_factor: args.z_factor };

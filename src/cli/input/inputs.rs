@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::console::Console;
+use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
 use crate::run::STDIN;
 
@@ -12,7 +12,7 @@ use crate::run::STDIN;
 ///
 /// # Errors
 /// If a glob matches nothing, a list cannot be read or a file does not exist.
-pub(super) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
+pub(in crate::cli) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for path in typed {
         match path.to_str().and_then(|text| text.strip_prefix('@')) {
@@ -35,7 +35,7 @@ pub(super) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf
 }
 
 /// Returns a path that is the same for all names of one file.
-pub(super) fn identity(path: &Path) -> PathBuf {
+pub(in crate::cli) fn identity(path: &Path) -> PathBuf {
     let file = file_of(path).unwrap_or(path);
     file.canonicalize().unwrap_or_else(|_| file.to_path_buf())
 }
@@ -54,7 +54,7 @@ fn file_of(path: &Path) -> Option<&Path> {
 ///
 /// # Errors
 /// If one does not.
-pub(super) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+pub(in crate::cli) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
     match paths.into_iter().find(|path| file_of(path).is_none()) {
         Some(path) => Err(no_such_file(path)),
         None => Ok(()),

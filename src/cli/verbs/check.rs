@@ -1,14 +1,14 @@
-use super::args::CheckArgs;
-use super::console::Console;
-use super::outputs::{self, Existing};
-use super::plan::SurfacePlan;
-use super::summary::print_surface;
-use super::{Exit, print};
+use crate::cli::input::args::CheckArgs;
+use crate::cli::input::outputs::{self, Existing};
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::print_surface;
+use crate::cli::{Exit, print};
 use crate::error::Result;
 use crate::run::{self, CheckProduct, SurfaceFacts};
 
 /// Lists the flaws of a TIN, or of a mesh that may not be a surface.
-pub(super) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
     let CheckProduct { product, flaws, .. } = run::check(&plan.request, &console.context())?;

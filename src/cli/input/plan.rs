@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::args::{CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, OnCrossingArg, SurfaceArgs};
-use super::console::Console;
 use super::inputs;
+use crate::cli::report::console::Console;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::run::{
@@ -14,12 +14,12 @@ use crate::terrain::{Classes, CrossingRule, DuplicateRule};
 
 /// The request for a surface, and the files that belong to it.
 #[derive(Debug)]
-pub(super) struct SurfacePlan {
-    pub(super) request: SurfaceRequest,
+pub(in crate::cli) struct SurfacePlan {
+    pub(in crate::cli) request: SurfaceRequest,
     /// All files that are read.
-    pub(super) inputs: Vec<PathBuf>,
+    pub(in crate::cli) inputs: Vec<PathBuf>,
     /// The table of crossings that is written with the results.
-    pub(super) crossing_report: Option<PathBuf>,
+    pub(in crate::cli) crossing_report: Option<PathBuf>,
 }
 
 impl SurfacePlan {
@@ -27,7 +27,7 @@ impl SurfacePlan {
     ///
     /// # Errors
     /// If files are missing, kinds of input are mixed or options do not go together.
-    pub(super) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
+    pub(in crate::cli) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
         let files = inputs::expand(&args.inputs, console)?;
         let systems = SystemOptions {
             assign: system("--a-srs", args.a_srs.as_deref())?,
@@ -53,7 +53,7 @@ impl SurfacePlan {
     ///
     /// # Errors
     /// If that raster does not exist.
-    pub(super) fn add_frame(&mut self, args: &FrameArgs) -> Result<FrameOptions> {
+    pub(in crate::cli) fn add_frame(&mut self, args: &FrameArgs) -> Result<FrameOptions> {
         inputs::require(&args.align_to)?;
         self.inputs.extend(args.align_to.clone());
         let extent = args.te.map(|corners| corners.bounds());

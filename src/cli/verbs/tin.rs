@@ -1,15 +1,15 @@
-use super::Exit;
-use super::args::TinArgs;
-use super::console::Console;
-use super::outputs;
-use super::plan::SurfacePlan;
-use super::summary::print_surface;
+use crate::cli::Exit;
+use crate::cli::input::args::TinArgs;
+use crate::cli::input::outputs;
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::print_surface;
 use crate::error::Result;
 use crate::io::formats::Product;
 use crate::run;
 
 /// Builds a TIN and writes it as a mesh.
-pub(super) fn run(args: &TinArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &TinArgs, console: &Console) -> Result<Exit> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Surface, |_| ()), &plan)?;
     let product = run::triangles(&plan.request, &console.context())?;

@@ -1,9 +1,9 @@
-use super::Exit;
-use super::args::ContourArgs;
-use super::console::Console;
-use super::outputs;
-use super::plan::SurfacePlan;
-use super::summary::print_surface;
+use crate::cli::Exit;
+use crate::cli::input::args::ContourArgs;
+use crate::cli::input::outputs;
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::print_surface;
 use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::contours::ContourSummary;
@@ -12,7 +12,7 @@ use crate::run::units::Units;
 use crate::run::{self, ContourOptions};
 
 /// Draws contours of a TIN or of a DEM.
-pub(super) fn run(args: &ContourArgs, console: &Console) -> Result<Exit> {
+pub(in crate::cli) fn run(args: &ContourArgs, console: &Console) -> Result<Exit> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Contours, |_| ()), &plan)?;
     let options = ContourOptions { interval: args.interval, base: args.base, levels: args.levels.clone() };

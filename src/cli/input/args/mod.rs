@@ -11,13 +11,13 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::console::Level;
+use crate::cli::report::console::Level;
 use crate::io::formats;
 
-pub(super) use parse::{EdgeLength, finite};
-pub(super) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
-pub(super) use switches::expand_switches;
-pub(super) use verbs::{
+pub(in crate::cli) use parse::{EdgeLength, finite};
+pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
+pub(in crate::cli) use switches::expand_switches;
+pub(in crate::cli) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OutputArgs, PointsArgs,
     TinArgs, TriangulateArgs,
 };
@@ -31,11 +31,11 @@ pub(super) use verbs::{
 /// Exit codes: 0 done, 1 failed, 2 wrong usage.
 #[derive(Debug, Parser)]
 #[command(name = "breakline", version, max_term_width = 100, after_long_help = examples())]
-pub(super) struct Cli {
+pub(in crate::cli) struct Cli {
     #[command(flatten)]
-    pub(super) console: ConsoleArgs,
+    pub(in crate::cli) console: ConsoleArgs,
     #[command(subcommand)]
-    pub(super) verb: Verb,
+    pub(in crate::cli) verb: Verb,
 }
 
 const EXAMPLES: &str = "
@@ -57,18 +57,18 @@ fn examples() -> String {
 /// How much is printed, and how many threads are used.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "General")]
-pub(super) struct ConsoleArgs {
+pub(in crate::cli) struct ConsoleArgs {
     /// Print warnings and errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
-    pub(super) quiet: bool,
+    pub(in crate::cli) quiet: bool,
     /// Print details of what is read and done
     #[arg(short, long, global = true)]
-    pub(super) verbose: bool,
+    pub(in crate::cli) verbose: bool,
     /// Number of threads [default: one per core]
     ///
     /// The results do not depend on it.
     #[arg(long, global = true, value_name = "N")]
-    pub(super) threads: Option<NonZeroUsize>,
+    pub(in crate::cli) threads: Option<NonZeroUsize>,
 }
 
 impl ConsoleArgs {
@@ -84,7 +84,7 @@ impl ConsoleArgs {
 
 /// The verb, with its options.
 #[derive(Debug, Subcommand)]
-pub(super) enum Verb {
+pub(in crate::cli) enum Verb {
     Info(InfoArgs),
     Points(PointsArgs),
     Tin(TinArgs),

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::parse::{Corners, EdgeLength, not_negative};
 use super::reading::ReadArgs;
-use crate::cli::classes;
+use crate::cli::input::classes;
 use crate::triangulation::OnCrossing;
 
 /// Options of building or reading a surface.

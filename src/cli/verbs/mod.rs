@@ -1,0 +1,11 @@
+//! The verbs, one file each: from arguments to a request, then the report.
+
+pub(super) mod check;
+pub(super) mod contour;
+pub(super) mod dem;
+pub(super) mod demo;
+pub(super) mod hillshade;
+pub(super) mod info;
+pub(super) mod points;
+pub(super) mod tin;
+pub(super) mod triangulate;
