@@ -13,7 +13,7 @@ pub mod refine;
 mod saved;
 
 pub use bulk::spatial_order;
-pub use compact::{Compact, CompactError, Law};
+pub use compact::{Compact, CompactError, CompactSection, Law};
 pub use engine::check::{Flaw, Level};
 pub use engine::embedded::{Embedded, PointOf};
 pub use engine::insert::Inserted;

@@ -5,8 +5,8 @@ use crate::grid::{Free, Point, build, points, site};
 use breakline_triangulation::geometry::{Plane, Terrain};
 use breakline_triangulation::tds::{CellId, Complex, VertexId};
 use breakline_triangulation::{
-    Compact, CompactError, ConflictZone, Constrained, ConstrainedDelaunay, Delaunay, Law, Level, Location, OnCrossing,
-    Passage, Regular, Triangulation,
+    Compact, CompactError, CompactSection, ConflictZone, Constrained, ConstrainedDelaunay, Delaunay, Law, Level,
+    Location, OnCrossing, Passage, Regular, Triangulation,
 };
 use testkit::random::Random;
 
@@ -239,7 +239,7 @@ fn the_format() {
     let bytes = bytes(&t);
     assert_eq!(bytes.len(), HEADER + 3 * 16 + 16 + 4 * 24);
     let mut expected = b"brkTIN\n\x1a".to_vec();
-    for number in [1u32, 3, 2, 1] {
+    for number in [2u32, 3, 2, 1] {
         expected.extend(number.to_le_bytes()); // version, vertices to a cell, doubles to a point, law
     }
     expected.extend(3u64.to_le_bytes());
@@ -253,6 +253,76 @@ fn the_format() {
     for vertex in 0..3 {
         let cell = number(96 + 4 * vertex) as usize;
         assert!((0..3).any(|slot| number(112 + 24 * cell + 4 * slot) == vertex as u32));
+    }
+}
+
+/// A triangulation with some sections, of all lengths up to a multiple of 8 and beyond.
+fn with_sections(t: &Free) -> (Vec<u8>, Vec<([u8; 8], Vec<u8>)>) {
+    let sections: Vec<([u8; 8], Vec<u8>)> = (0..11u8).map(|n| ([b'a' + n % 9; 8], vec![n; usize::from(n)])).collect();
+    let mut bytes = bytes(t);
+    for (tag, contents) in &sections {
+        CompactSection { tag: *tag, contents }.write(&mut bytes).unwrap();
+    }
+    (bytes, sections)
+}
+
+#[test]
+fn sections_are_found_and_the_triangulation_does_not_change() {
+    for t in samples() {
+        let (whole, sections) = with_sections(&t);
+        let compact = open(&whole).unwrap();
+        assert_eq!(compact.check(Level::Law), Ok(()));
+        let listed: Vec<([u8; 8], Vec<u8>)> = compact.sections().map(|s| (s.tag, s.contents.to_vec())).collect();
+        assert_eq!(listed, sections);
+        assert_eq!(compact.section([b'c'; 8]), Some(&[2, 2][..]));
+        assert_eq!(compact.section([b'a'; 8]), Some(&[][..]), "the first of two");
+        assert_eq!(compact.section([b'j'; 8]), None);
+        for (tag, _) in &sections {
+            let range = compact.section_range(*tag).unwrap();
+            assert_eq!(Some(&compact.bytes()[range]), compact.section(*tag));
+        }
+        assert_eq!(compact.section_range([b'j'; 8]), None);
+        let mut again = Vec::new();
+        compact.write_compact(&mut again).unwrap();
+        assert_eq!(again, bytes(&t));
+    }
+}
+
+#[test]
+fn incomplete_sections_are_not_opened() {
+    let t = build(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    let (whole, sections) = with_sections(&t);
+    let mut ends = vec![bytes(&t).len()];
+    for (_, contents) in &sections {
+        ends.push(ends[ends.len() - 1] + 16 + contents.len().next_multiple_of(8));
+    }
+    assert_eq!(ends.last(), Some(&whole.len()));
+    for length in ends[0]..=whole.len() {
+        let opened = open(&whole[..length]);
+        // A whole section less is not noticed: the program that needs it looks for it.
+        assert_eq!(opened.is_ok(), ends.contains(&length), "{length} bytes");
+        if let Err(error) = opened {
+            let CompactError::Length { expected, found } = error else { panic!("{error}") };
+            assert!(found == length as u64 && expected > found && expected <= whole.len() as u64, "{error}");
+        }
+    }
+    // A length near the end of all numbers.
+    for length in [u64::MAX, u64::MAX - 7, u64::MAX - 16, u64::MAX - 40, 1 << 63, 1] {
+        let mut bytes = bytes(&t);
+        bytes.extend([b'x'; 8]);
+        bytes.extend(length.to_le_bytes());
+        assert!(matches!(open(&bytes), Err(CompactError::Length { .. })), "{length}");
+    }
+}
+
+#[test]
+fn other_versions_are_refused_by_their_number() {
+    for version in [0u32, 1, 3, u32::MAX] {
+        let mut bytes = bytes(&build(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]));
+        bytes[8..12].copy_from_slice(&version.to_le_bytes());
+        let error = open(&bytes).unwrap_err();
+        assert_eq!(error, CompactError::Version(version));
+        assert!(error.to_string().contains(&format!("version {version}; the known version is 2")), "{error}");
     }
 }
 

@@ -1,11 +1,13 @@
 //! The header, and the positions of the arrays that follow from it.
 
+use std::io::{self, Write};
+
 use super::{CompactError, Law};
 use crate::tds::CellId;
 
 /// The first bytes of a file. A transfer as text destroys its line ends and its control character.
 const MAGIC: [u8; 8] = *b"brkTIN\n\x1a";
-pub(super) const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 2;
 pub(super) const HEADER: usize = 48;
 
 /// Bytes of a cell: three vertices and three neighbors.
@@ -31,7 +33,7 @@ pub(super) struct Header {
     pub(super) infinite_cell: u32,
 }
 
-/// The offset of each array, and of the end.
+/// The offset of each array, and of their end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offsets {
     pub(super) cells_of_vertices: usize,
@@ -41,7 +43,7 @@ pub(super) struct Offsets {
 }
 
 /// Takes the first `W` bytes off a slice; zeros if there are fewer.
-fn taken<const W: usize>(bytes: &mut &[u8]) -> [u8; W] {
+pub(super) fn taken<const W: usize>(bytes: &mut &[u8]) -> [u8; W] {
     let (first, rest) = bytes.split_first_chunk().unwrap_or((&[0; W], &[]));
     *bytes = rest;
     *first
@@ -97,9 +99,9 @@ impl Header {
     pub(super) fn offsets(&self) -> Option<Offsets> {
         let points = self.vertices.checked_mul(8)?.checked_mul(self.doubles.into())?;
         let cells_of_vertices = points.checked_add(HEADER as u64)?;
-        let cells = cells_of_vertices.checked_add(padded(4 * self.vertices))?;
+        let cells = cells_of_vertices.checked_add(padded(self.vertices.checked_mul(4)?)?)?;
         let constraints = cells.checked_add(CELL as u64 * self.cells)?;
-        let end = constraints.checked_add(if self.law.has_constraints() { padded(self.cells) } else { 0 })?;
+        let end = constraints.checked_add(if self.law.has_constraints() { padded(self.cells)? } else { 0 })?;
         let [cells_of_vertices, cells, constraints] = [cells_of_vertices, cells, constraints].map(usize::try_from);
         Some(Offsets {
             cells_of_vertices: cells_of_vertices.ok()?,
@@ -110,7 +112,12 @@ impl Header {
     }
 }
 
-/// Rounds up to the next multiple of 8.
-pub(super) fn padded(bytes: u64) -> u64 {
-    bytes.div_ceil(8) * 8
+/// Rounds up to the next multiple of 8; `None` if there is none.
+pub(super) fn padded(bytes: u64) -> Option<u64> {
+    bytes.checked_next_multiple_of(8)
+}
+
+/// Writes zeros up to a multiple of 8 bytes.
+pub(super) fn pad(out: &mut impl Write, written: usize) -> io::Result<()> {
+    out.write_all(&[0; 8][..written.next_multiple_of(8) - written])
 }

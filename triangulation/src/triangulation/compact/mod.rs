@@ -4,15 +4,18 @@
 mod check;
 mod layout;
 mod queries;
+mod section;
 mod write;
 
 use std::fmt;
+use std::ops::Range;
 
 use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
 
 use super::Embedded;
 use layout::{CELL, HEADER, Header, Offsets};
+pub use section::CompactSection;
 
 /// The law that a file claims for its triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,9 +50,9 @@ pub enum CompactError {
     Version(u32),
     /// An entry of the header is impossible.
     Header(&'static str),
-    /// There are fewer or more bytes than the header says.
+    /// There are fewer or more bytes than the header and the sections announce.
     Length {
-        /// Bytes according to the header.
+        /// Bytes according to the header, or up to the end of the section that is incomplete.
         expected: u64,
         /// Bytes present.
         found: u64,
@@ -78,7 +81,7 @@ impl fmt::Display for CompactError {
             }
             CompactError::Header(what) => write!(f, "the header is damaged: {what}"),
             CompactError::Length { expected, found } => {
-                write!(f, "{found} bytes where the header says that there are {expected}")
+                write!(f, "{found} bytes where {expected} are announced")
             }
             CompactError::Coordinates { expected, found } => {
                 write!(f, "points of {found} coordinates; the geometry has {expected}")
@@ -101,7 +104,7 @@ impl std::error::Error for CompactError {}
 /// is anything that can be borrowed as bytes: a slice, a vector, or a file that another crate maps
 /// to memory. Opening reads the header and the number of bytes, in constant time however many
 /// points there are; a query then reads the bytes that it needs. Answers are those of the
-/// triangulation that was written.
+/// triangulation that was written. What a program wants to store with it is a [`CompactSection`].
 ///
 /// Nothing in the bytes is trusted: each number is checked against its limits where it is used,
 /// each point is one that the geometry [admits](Geometry::admits), and walks are bounded by the
@@ -143,7 +146,8 @@ pub struct Compact<G, B> {
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Opens a compact triangulation; checks its header and the number of bytes. O(1).
+    /// Opens a compact triangulation; checks its header and the number of bytes. Constant time, and
+    /// a step for each section.
     ///
     /// # Errors
     /// If the header or the number of bytes is wrong, or if the points do not have the geometry's
@@ -155,8 +159,11 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
             return Err(CompactError::Coordinates { expected: D, found: header.doubles as usize });
         }
         let offsets = header.offsets().ok_or(CompactError::Header("more bytes than can be addressed"))?;
-        if all.len() != offsets.end {
-            return Err(CompactError::Length { expected: offsets.end as u64, found: all.len() as u64 });
+        let length = |expected: u64| CompactError::Length { expected, found: all.len() as u64 };
+        let mut rest = all.get(offsets.end..).ok_or(length(offsets.end as u64))?;
+        while !rest.is_empty() {
+            let start = (all.len() - rest.len()) as u64;
+            rest = CompactSection::split_first(rest).map_err(|needed| length(start.saturating_add(needed)))?.1;
         }
         Ok(Compact { geometry, bytes, header, offsets })
     }
@@ -193,6 +200,36 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// If the vertex does not exist, or the geometry does not admit its point.
     pub fn point(&self, vertex: VertexId) -> Result<[f64; D], CompactError> {
         Embedded::point(self, vertex)
+    }
+
+    /// Returns all bytes: the triangulation, and its sections.
+    pub fn bytes(&self) -> &[u8] {
+        self.bytes.as_ref()
+    }
+
+    /// Returns all sections, in order.
+    pub fn sections(&self) -> impl Iterator<Item = CompactSection<'_>> {
+        let mut rest = self.bytes().get(self.offsets.end..).unwrap_or_default();
+        std::iter::from_fn(move || {
+            let (section, others) = CompactSection::split_first(rest).ok()?;
+            rest = others;
+            Some(section)
+        })
+    }
+
+    /// Returns the contents of the first section with a tag; `None` if there is none. They begin at
+    /// a multiple of 8 bytes.
+    pub fn section(&self, tag: [u8; 8]) -> Option<&[u8]> {
+        self.sections().find(|section| section.tag == tag).map(|section| section.contents)
+    }
+
+    /// Returns where the contents of [`section`](Self::section) are in [`bytes`](Self::bytes), for
+    /// a program that reads them often.
+    pub fn section_range(&self, tag: [u8; 8]) -> Option<Range<usize>> {
+        let contents = self.section(tag)?;
+        let before = self.sections().take_while(|section| section.tag != tag).map(|section| section.size());
+        let start = self.offsets.end + before.sum::<usize>() + section::HEAD as usize;
+        Some(start..start + contents.len())
     }
 
     /// Returns true if the edge opposite vertex `i` of a cell is constrained.

@@ -4,8 +4,8 @@ use crate::geometry::{Crossing, Geometry};
 use crate::tds::{CellId, Tds, VertexId};
 
 use super::super::{Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, Delaunay, Regular, Triangulation};
-use super::Law;
-use super::layout::{HEADER, Header, INFINITE, NONE, padded};
+use super::layout::{HEADER, Header, INFINITE, NONE, pad};
+use super::{Compact, Law};
 
 /// Numbers without gaps for used slots, in the same order; `None` if there are no gaps.
 struct Dense(Option<Vec<u32>>);
@@ -42,12 +42,6 @@ impl Numbers {
     fn cell(&self, cell: CellId) -> u32 {
         if cell == CellId::NONE { NONE } else { self.cells.at(cell.index()) }
     }
-}
-
-/// Writes zeros up to a multiple of 8 bytes.
-fn pad(out: &mut impl Write, written: usize) -> io::Result<()> {
-    let gap = padded(written as u64) as usize - written;
-    out.write_all(&[0; 8][..gap])
 }
 
 fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>(
@@ -155,5 +149,15 @@ impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize> Constr
     /// Those of `out`.
     pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
         write(&self.inner, Law::ConstrainedDelaunay, bits, out)
+    }
+}
+
+impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
+    /// Writes the triangulation again, without its sections.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
+        out.write_all(self.bytes.as_ref().get(..self.offsets.end).unwrap_or_default())
     }
 }
