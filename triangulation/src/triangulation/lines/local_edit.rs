@@ -53,6 +53,8 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     rounder: Rounder,
     /// The segment to be inserted; not in a table of edges yet.
     added: Option<Ends>,
+    /// The vertices near the segment to be inserted.
+    near_added: Vec<VertexId>,
     /// The segment to be removed.
     removed: Option<Ends>,
     /// The given vertex to be removed.
@@ -76,6 +78,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             lines,
             rounder,
             added: None,
+            near_added: Vec::new(),
             removed: None,
             gone: None,
             chains: FxHashMap::default(),
@@ -97,7 +100,9 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         }
         let ends = self.ends(segment);
         let mut crossed = Vec::new();
-        for other in self.near_segment(segment).0 {
+        let (others, vertices) = self.near_segment(segment);
+        self.near_added = vertices;
+        for other in others {
             let Some(center) = self.rounder.crossing(ends, self.ends(other)) else { continue };
             self.add_site(center, [segment, other])?;
             crossed.push(other);
@@ -158,6 +163,14 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| REACH * unit));
         let (edges, vertices) = near(self.t, &band, segment[0]);
         (self.segments_on(edges), vertices)
+    }
+
+    /// Returns all vertices whose pixels a segment meets, in no particular order.
+    fn attractors(&self, segment: Ends) -> Vec<VertexId> {
+        let mut vertices =
+            if Some(segment) == self.added { self.near_added.clone() } else { self.near_segment(segment).1 };
+        vertices.retain(|&v| self.meets_pixel(segment, v));
+        vertices
     }
 
     /// Returns the segments that may meet the pixel of a vertex, with the one that is inserted and
@@ -281,6 +294,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let site = self.lines.insert_point(self.t, p, near);
         if self.t.vertex_count() > count {
             self.lines.added.insert(site);
+            self.near_added.push(site);
             self.make_hot(site);
         } else if !self.is_hot(site) {
             self.make_hot(site);
@@ -290,9 +304,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Schedules a segment to be bent if it meets the pixel of an active site.
     fn bend_if_attracted(&mut self, segment: Ends) {
-        let vertices = self.near_segment(segment).1;
-        let attracts = |&v: &VertexId| self.meets_pixel(segment, v) && self.is_hot(v) && self.is_active(v);
-        if vertices.iter().any(attracts) {
+        if self.attractors(segment).into_iter().any(|v| self.is_hot(v) && self.is_active(v)) {
             self.steps.push(Step::Bend(segment));
         }
     }
@@ -306,7 +318,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                         return Err(NotLocal); // the grid becomes another one
                     }
                     for segment in self.around(site) {
-                        if self.is_bent(segment) && self.meets_pixel(segment, site) && !self.has_site(segment, site) {
+                        if self.is_bent(segment) && !self.has_site(segment, site) && self.meets_pixel(segment, site) {
                             self.insert_site(segment, site);
                             if !self.is_exact(segment, site) {
                                 self.steps.push(Step::Activate(site));
@@ -337,10 +349,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     fn bend(&mut self, segment: Ends) {
         self.chains.insert(segment, Some(Vec::new()));
         let ends = self.ends(segment);
-        let mut vertices = self.near_segment(segment).1;
-        vertices.retain(|&v| self.meets_pixel(segment, v));
         let mut sites = Vec::new();
-        for v in vertices {
+        for v in self.attractors(segment) {
             if self.is_hot(v) {
                 sites.push(v);
                 if !self.is_exact(segment, v) {

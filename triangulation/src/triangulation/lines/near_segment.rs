@@ -80,10 +80,11 @@ pub(super) fn near<G: Crossing, V, C: Copy + Default>(
     while let Some(cell) = open.pop() {
         let corners = *t.tds.corners(cell);
         let positions = corners.map(|v| position(t, v));
-        vertices.extend((0..3).filter(|&i| band.has(positions[i])).map(|i| corners[i]));
+        let is_inside = positions.map(|p| band.has(p));
+        vertices.extend((0..3).filter(|&i| is_inside[i]).map(|i| corners[i]));
         for i in 0..3 {
             let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-            if !band.meets([positions[j], positions[k]]) {
+            if !is_inside[j] && !is_inside[k] && !band.meets([positions[j], positions[k]]) {
                 continue;
             }
             if t.is_constrained(cell, i) {
