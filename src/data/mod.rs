@@ -50,5 +50,5 @@ pub(crate) use mesh::{not_finite, orientation};
 pub use points::{Columns, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
 pub use shape::{Layer, Shape, ShapeKind};
 pub use surface::{EdgeKind, Face, Surface};
-pub(crate) use surface::{corners, faces};
+pub(crate) use surface::{LineEdges, corners, faces};
 pub use triangles::{LinkFlaw, Triangles};

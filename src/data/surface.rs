@@ -132,6 +132,30 @@ pub trait Surface: Sync {
     }
 }
 
+/// The numbers of edges of a surface that lie on lines.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct LineEdges {
+    /// On breaklines.
+    pub(crate) breaklines: usize,
+    /// On clip lines.
+    pub(crate) clips: usize,
+}
+
+impl LineEdges {
+    /// Adds the edges of a face. An edge between two faces counts with the face of the smaller
+    /// number, so that it counts once when all faces are added.
+    pub(crate) fn add<S: Surface + ?Sized>(&mut self, surface: &S, face: u32, edges: [EdgeKind; 3]) {
+        for (i, kind) in edges.into_iter().enumerate() {
+            let count = match kind {
+                EdgeKind::Breakline => &mut self.breaklines,
+                EdgeKind::Clip => &mut self.clips,
+                EdgeKind::Plain | EdgeKind::Rim => continue,
+            };
+            *count += usize::from(surface.neighbor(face, i).is_none_or(|other| face < other));
+        }
+    }
+}
+
 /// The number of faces fetched at a time: few enough to stay in a core's cache.
 const BATCH: u32 = 1 << 11;
 

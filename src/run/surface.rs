@@ -10,7 +10,7 @@ use super::systems::{self, Role, Stated, SystemOptions};
 use super::tin::{self, BuildReport, TinRequest};
 use super::watched::Watched;
 use crate::crs::Crs;
-use crate::data::{self, Bounds, EdgeKind, Grid, Mesh, Surface};
+use crate::data::{self, Bounds, Grid, LineEdges, Mesh, Surface};
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::mesh::{self, MeshSummary};
@@ -213,25 +213,19 @@ impl SurfaceFacts {
     /// Linear.
     pub fn of(surface: &dyn Surface) -> Self {
         let mut is_used = vec![false; surface.vertex_count()];
-        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, breaklines: 0, clips: 0, extent: Bounds::default() };
+        let mut lines = LineEdges::default();
+        let (mut vertices, mut triangles, mut extent) = (0, 0, Bounds::default());
         data::faces(surface).for_each(|face| {
-            facts.triangles += 1;
-            for (i, kind) in face.edges.into_iter().enumerate() {
-                let count = match kind {
-                    EdgeKind::Breakline => &mut facts.breaklines,
-                    EdgeKind::Clip => &mut facts.clips,
-                    EdgeKind::Plain | EdgeKind::Rim => continue,
-                };
-                // An inner edge is visited from both sides.
-                *count += usize::from(surface.neighbor(face.number, i).is_none_or(|other| face.number < other));
-            }
+            triangles += 1;
+            lines.add(surface, face.number, face.edges);
             for vertex in face.corners {
                 if !std::mem::replace(&mut is_used[vertex as usize], true) {
-                    facts.vertices += 1;
-                    facts.extent.add(surface.position(vertex));
+                    vertices += 1;
+                    extent.add(surface.position(vertex));
                 }
             }
         });
-        facts
+        let LineEdges { breaklines, clips } = lines;
+        SurfaceFacts { vertices, triangles, breaklines, clips, extent }
     }
 }

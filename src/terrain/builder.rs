@@ -1,7 +1,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::crs::Crs;
-use crate::data::Bounds;
+use crate::data::{Bounds, LineEdges};
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::tds::VertexId;
@@ -250,7 +250,8 @@ impl TinBuilder {
         report.vertices_cut = vertices - old_vertices;
         let (has_lines, is_clipped) = (report.breaklines > 0, !clip.is_everything());
         (report.constrained_edges, report.clip_edges) = if is_clipped || has_lines && report.faces_beyond_max_edge > 0 {
-            tin.count_lines()
+            let LineEdges { breaklines, clips } = tin.count_lines();
+            (breaklines, clips)
         } else if has_lines {
             (tin.triangulation.constrained_edges().count(), 0)
         } else {

@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use crate::crs::Crs;
-use crate::data::{Bounds, EdgeKind, Face, Surface};
+use crate::data::{Bounds, EdgeKind, Face, LineEdges, Surface};
 use crate::triangulation::geometry::{Terrain, height_along};
 use crate::triangulation::kernel::RANGE;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
@@ -155,25 +155,16 @@ impl Tin {
         })
     }
 
-    /// The numbers of edges of the surface that are breaklines and that lie on clip lines.
-    pub(super) fn count_lines(&self) -> (usize, usize) {
-        let (mut breaklines, mut clips) = (0, 0);
+    /// The numbers of edges of the surface that lie on lines.
+    pub(super) fn count_lines(&self) -> LineEdges {
         let has_lines = |face: &u32| {
             self.cut.is_some() || (0..3).any(|i| self.triangulation.is_constrained(CellId::new(*face as usize), i))
         };
+        let mut count = LineEdges::default();
         for face in (0..self.face_count() as u32).filter(has_lines).filter(|&face| self.face(face).is_some()) {
-            for (i, kind) in self.kinds(face).into_iter().enumerate() {
-                match kind {
-                    // An edge with two faces is counted from the one with the larger number.
-                    EdgeKind::Breakline if self.neighbor(face, i).is_none_or(|beside| beside < face) => {
-                        breaklines += 1;
-                    }
-                    EdgeKind::Clip => clips += 1,
-                    _ => {}
-                }
-            }
+            count.add(self, face, self.kinds(face));
         }
-        (breaklines, clips)
+        count
     }
 }
 

@@ -4,7 +4,7 @@ pub(super) mod crs_text;
 pub(super) mod polygon;
 pub(super) mod text;
 
-use crate::data::{self, EdgeKind, Surface};
+use crate::data::{self, EdgeKind, LineEdges, Surface};
 
 const UNUSED: u32 = u32::MAX;
 
@@ -28,7 +28,7 @@ impl<'a> Listing<'a> {
     pub(super) fn new(surface: &'a dyn Surface) -> Self {
         let mut number = vec![UNUSED; surface.vertex_count()];
         let mut face_count = 0;
-        let mut constrained_edges = 0;
+        let mut lines = LineEdges::default();
         let mut add = |corners: [u32; 3]| {
             face_count += 1;
             corners.iter().for_each(|&v| number[v as usize] = 0);
@@ -36,9 +36,7 @@ impl<'a> Listing<'a> {
         if surface.has_lines() {
             data::faces(surface).for_each(|face| {
                 add(face.corners);
-                // An interior edge is seen from both sides.
-                let is_first = |i: &usize| surface.neighbor(face.number, *i).is_none_or(|other| face.number < other);
-                constrained_edges += (0..3).filter(|&i| face.edges[i].is_constrained()).filter(is_first).count();
+                lines.add(surface, face.number, face.edges);
             });
         } else {
             data::corners(surface).for_each(|(_, corners)| add(corners));
@@ -48,7 +46,13 @@ impl<'a> Listing<'a> {
             *number = vertex_count;
             vertex_count += 1;
         }
-        Listing { surface, number, vertex_count: vertex_count as usize, face_count, constrained_edges }
+        Listing {
+            surface,
+            number,
+            vertex_count: vertex_count as usize,
+            face_count,
+            constrained_edges: lines.breaklines + lines.clips,
+        }
     }
 
     pub(super) fn vertices(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
