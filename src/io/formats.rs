@@ -691,6 +691,7 @@ pub static FORMATS: &[Format] = &[
         reader: Reader::Mesh(triangle::read_triangles),
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges],
+        beside: &["node"],
         ..plane("Triangle .ele", "an .ele file of Triangle", &["ele"], "triangles in the plane (Triangle)")
     },
     Format {
@@ -699,10 +700,12 @@ pub static FORMATS: &[Format] = &[
     },
     Format {
         holds: &[Holding::Points, Holding::Lines],
+        beside: &["node"],
         ..plane("Triangle .poly", "a .poly file of Triangle", &["poly"], "points and segments in the plane (Triangle)")
     },
     Format {
         reader: Reader::InfoOnly,
+        beside: &["node"],
         ..plane(
             "Triangle .edge",
             "an .edge file of Triangle",

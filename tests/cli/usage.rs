@@ -27,7 +27,7 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
         (&["tim"], "unrecognized subcommand"),
         (&["tin"], "required"),
         (&["tin", "a.xyz"], "--output"),
-        (&["triangulate", "a.xyz", "-o", "t.tif"], ".node, .ele, .poly, .edge, .neigh, .off, .obj, .ply"),
+        (&["triangulate", "a.xyz", "-o", "t.tif"], ".ele, .node, .poly, .edge, .neigh, .ply, .obj, .off, .stl"),
         (&["triangulate", "a.xyz", "-o", "t.ele", "--on-crossing", "ignore"], "split, reject"),
         (&["triangulate", "a.xyz", "-o", "t.ele", "--kernel", "wide"], "adaptive, exact, fast"),
         (&["tin", "a.xyz", "-o", "t.ply", "--max-edge", "-3"], "--max-edge"),
@@ -206,7 +206,12 @@ fn info_reads_whatever_the_program_writes() {
     run("contour a.xyz --a-srs EPSG:25832 -o c.shp -o c.geojson").works(&["c.shp", "c.shx", "c.dbf", "c.prj", "c.cpg"]);
     run("hillshade a.xyz --a-srs EPSG:25832 -o s.png -o s.tif")
         .works(&["written     s.pgw", "written     s.png.aux.xml"]);
-    run("triangulate p.poly -o q.ele -o q.edge -o q.neigh").works(&["written     q.neigh"]);
+    run("triangulate p.poly -o q.ele -o q.edge -o q.neigh -o q.stl").works(&[
+        "written     q.neigh",
+        "q.stl: 4 edges",
+        "q.stl: coordinates are relative to",
+        "q.stl.origin.txt",
+    ]);
     for (file, facts) in [
         ("r.csv", &["r.csv"][..]),
         ("t.ply", &["triangles  18", "EPSG:25832"]),
@@ -222,6 +227,7 @@ fn info_reads_whatever_the_program_writes() {
         ("q.ele", &["triangles  2", "vertices   4"]),
         ("q.edge", &["edges      5"]),
         ("q.neigh", &["triangles  2"]),
+        ("q.stl", &["STL, binary", "triangles  2"]),
     ] {
         let info = run(&format!("info {file}"));
         assert_eq!(info.code, 0, "{file}: {}", info.stderr);

@@ -325,7 +325,7 @@ fn nothing_is_replaced_unasked() {
     let folder = folder_with(&[("box.poly", BOX), ("a.node", "mine")]);
     run(&folder, "triangulate box.poly -o a.ele").ends(1, &["error: a.node: the file exists", "--overwrite"]);
     run(&folder, "triangulate box.poly -o box.ele").ends(2, &["box.poly: the output is one of the inputs"]);
-    run(&folder, "triangulate box.poly -o b.dxf").ends(2, &["not a format that can be written", ".node, .ele, .poly"]);
+    run(&folder, "triangulate box.poly -o b.dxf").ends(2, &["not a format that can be written", ".ele, .node, .poly"]);
     run(&folder, "triangulate box.txt -o b.ele").ends(1, &["box.txt: no such file"]);
     std::fs::write(folder.path().join("box.txt"), BOX).unwrap();
     run(&folder, "triangulate box.txt -o b.ele")

@@ -10,6 +10,7 @@ use crate::cli::report::summary::describe;
 use crate::data::BlockSource;
 use crate::error::{Error, Result};
 use crate::io::formats::{self, Product};
+use crate::io::mesh::MeshSummary;
 use crate::io::{self, Destination, Output, OutputSet};
 use crate::run::units::bytes;
 use crate::run::{CellProduct, SurfaceProduct};
@@ -284,13 +285,19 @@ fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
     })
 }
 
-/// Prints a note if a format does not store which edges are on lines, and there are any.
-pub(in crate::cli) fn note_lost_edges(file: &Path, edges: usize, cure: &str, console: &Console) {
+/// Prints a note if the format of a mesh does not store which edges are on lines, and there are
+/// any; and a note if its coordinates are relative to an origin.
+pub(in crate::cli) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, console: &Console) {
+    let path = file.display();
+    let edges = written.lost_edges;
     if edges > 0 {
-        let path = file.display();
         console.note(format_args!(
             "{path}: {edges} edges on breaklines or clip lines are not marked in this format; {cure}"
         ));
+    }
+    if let Some(([x, y, z], beside)) = &written.origin {
+        let beside = beside.display();
+        console.note(format_args!("{path}: coordinates are relative to {x} {y} {z}, see {beside}"));
     }
 }
 

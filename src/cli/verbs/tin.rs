@@ -16,11 +16,7 @@ pub(in crate::cli) fn run(args: &TinArgs, console: &Console) -> Result<Exit> {
     outputs.add_report(&plan, &product)?;
     for target in &outputs.targets {
         let written = run::write_mesh(product.triangles()?, target.within(&outputs.set), &console.context())?;
-        outputs::note_lost_edges(&target.path, written.lost_edges, ".ply keeps them", console);
-        if let Some(([x, y, z], beside)) = written.origin {
-            let (mesh, beside) = (target.path.display(), beside.display());
-            console.note(format_args!("{mesh}: coordinates are relative to {x} {y} {z}, see {beside}"));
-        }
+        outputs::note_mesh(&target.path, &written, ".ply keeps them", console);
     }
     print_surface(&product, console);
     outputs.commit(console)?;

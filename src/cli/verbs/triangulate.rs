@@ -3,10 +3,11 @@
 use crate::cli::Exit;
 use crate::cli::input::args::{KernelArg, TriangulateArgs};
 use crate::cli::input::inputs;
-use crate::cli::input::outputs::{self, Format, Target};
+use crate::cli::input::outputs::{self, Format, Outputs, Target};
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
-use crate::io::{Destination, OutputSet};
+use crate::io::Destination;
+use crate::io::formats::Product;
 use crate::run::{self, Arithmetic, TriangulateOptions, TriangulateProduct};
 use crate::triangulation::refine::Shortfall;
 
@@ -17,29 +18,17 @@ enum Family {
     Mesh,
 }
 
-const MESHES: [Format<Family>; 3] = [
-    Format { extension: "off", kind: Family::Mesh, companions: &[] },
-    Format { extension: "obj", kind: Family::Mesh, companions: &[] },
-    Format { extension: "ply", kind: Family::Mesh, companions: &[] },
-];
+/// What is written beside an `.ele` whose input is a `.poly`: as with Triangle, also the segments.
+const BESIDE_ELE_OF_POLY: &[&str] = &["node", "poly"];
 
-/// Formats for a `.poly`: as with Triangle, an `.ele` is written with the segments.
-const OF_POLY: &[Format<Family>] = &formats(&["node", "poly"]);
-const OF_NODE: &[Format<Family>] = &formats(&["node"]);
-
-const fn formats(beside_ele: &'static [&'static str]) -> [Format<Family>; 8] {
-    let [off, obj, ply] = MESHES;
-    let kind = Family::Triangle;
-    [
-        Format { extension: "node", kind, companions: &[] },
-        Format { extension: "ele", kind, companions: beside_ele },
-        Format { extension: "poly", kind, companions: &["node"] },
-        Format { extension: "edge", kind, companions: &["node"] },
-        Format { extension: "neigh", kind, companions: &[] },
-        off,
-        obj,
-        ply,
-    ]
+/// Returns the formats of the outputs.
+fn formats(is_poly: bool) -> Vec<Format<Family>> {
+    let mut formats = outputs::formats_of(Product::Plane, |_| Family::Triangle);
+    if let Some(ele) = formats.iter_mut().find(|format| is_poly && format.extension == "ele") {
+        ele.companions = BESIDE_ELE_OF_POLY;
+    }
+    formats.extend(outputs::formats_of(Product::Surface, |_| Family::Mesh));
+    formats
 }
 
 /// Triangulates a `.node` or `.poly` file.
@@ -47,11 +36,11 @@ pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<E
     let path = &args.input;
     inputs::require([path])?;
     let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
-    let formats = if is_poly { OF_POLY } else { OF_NODE };
+    let formats = formats(is_poly);
     // The vertices of a .poly may be in the .node next to it.
     let mut read = vec![path.clone()];
     read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
-    let outputs = outputs::resolve(&args.output, formats, &read)?;
+    let outputs = outputs::resolve(&args.output, &formats, &read)?;
     let product = run::triangulate(path, &options(args), &console.context())?;
     if product.report.triangles_built == 0
         && let Some(mesh) = outputs.targets.iter().find(|target| target.kind == Family::Mesh)
@@ -60,8 +49,7 @@ pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<E
             .in_file(&mesh.path)
             .cure("add a vertex off the line; .node, .poly and .ele can also store vertices without triangles"));
     }
-    let [meshes, files] = [Family::Mesh, Family::Triangle].map(|family| files(&outputs.targets, formats, family));
-    write(&outputs.set, &meshes, &files, &product, console)?;
+    write(&outputs, &formats, &product, console)?;
     print_report(&product, args.max_added, console);
     outputs.commit(console)?;
     Ok(Exit::Done)
@@ -83,35 +71,28 @@ fn options(args: &TriangulateArgs) -> TriangulateOptions {
     }
 }
 
-/// Returns the files of a family that are written, with their companions, each once.
-fn files(targets: &[Target<Family>], formats: &'static [Format<Family>], family: Family) -> Vec<Target<Family>> {
-    let mut files: Vec<Target<Family>> = Vec::new();
-    for target in targets.iter().filter(|target| target.kind == family) {
-        for file in outputs::files_of(target, formats) {
-            if !files.contains(&file) {
-                files.push(file);
-            }
-        }
-    }
-    files
-}
-
-/// Writes the files of all families as outputs.
+/// Writes meshes and Triangle's files, the latter with their companions, each once.
 fn write(
-    outputs: &OutputSet,
-    meshes: &[Target<Family>],
-    files: &[Target<Family>],
+    outputs: &Outputs<Family>,
+    formats: &[Format<Family>],
     product: &TriangulateProduct,
     console: &Console,
 ) -> Result<()> {
+    let (meshes, others): (Vec<_>, Vec<_>) = outputs.targets.iter().partition(|target| target.kind == Family::Mesh);
     if !meshes.is_empty() {
         let mesh = product.to_mesh()?;
         for target in meshes {
-            let written = run::write_mesh(&mesh, target.within(outputs), &console.context())?;
-            outputs::note_lost_edges(&target.path, written.lost_edges, ".ply and .poly keep them", console);
+            let written = run::write_mesh(&mesh, target.within(&outputs.set), &console.context())?;
+            outputs::note_mesh(&target.path, &written, ".ply and .poly keep them", console);
         }
     }
-    let files: Vec<Destination> = files.iter().map(|file| file.within(outputs)).collect();
+    let mut files: Vec<Target<Family>> = Vec::new();
+    for file in others.into_iter().flat_map(|target| outputs::files_of(target, formats)) {
+        if !files.contains(&file) {
+            files.push(file);
+        }
+    }
+    let files: Vec<Destination> = files.iter().map(|file| file.within(&outputs.set)).collect();
     product.write(&files, &console.context())
 }
 
