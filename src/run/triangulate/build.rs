@@ -58,8 +58,7 @@ pub(super) fn build<K: Kernel>(
 ) -> Result<Built, InputError> {
     // Negative zero becomes zero: sites are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
-    let (coarse, vertices) =
-        ConstrainedDelaunay::<_>::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
+    let (coarse, vertices) = ConstrainedDelaunay::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
     let refined = quality.map(|quality| coarse.clone().refined(quality));
     let t = refined.as_deref().unwrap_or(&coarse);
     let chains: Vec<Vec<VertexId>> = (0..segments.len()).map(|i| t.chain(LineId::new(i))).collect();

@@ -279,7 +279,7 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 ///
 /// let stations = [[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]].map(|at| Station { at, is_surveyed: true });
 /// let lines = [[0, 1], [2, 3]];
-/// let (t, _) = ConstrainedDelaunay::<_>::from_lines(Site(Plane::default()), &stations, &lines, OnCrossing::Split)?;
+/// let (t, _) = ConstrainedDelaunay::from_lines(Site(Plane::default()), &stations, &lines, OnCrossing::Split)?;
 /// let added: Vec<_> = t.points().iter().filter(|p| !p.is_surveyed).map(|p| p.at).collect();
 /// assert_eq!(added, [[2.0, 2.0]]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -7,8 +7,8 @@ use breakline_triangulation::geometry::{Plane, Space, Weighted};
 use breakline_triangulation::kernel::Adaptive;
 use breakline_triangulation::tds::{CellId, Tds, VertexId};
 use breakline_triangulation::{
-    Basic, Constrained, ConstrainedEdges, ConstraintError, Delaunay, Inserted, Level, MoveError, PointError, Regular,
-    RemovalError, Triangulation,
+    Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, ConstraintError, Delaunay, Inserted, Level, MoveError,
+    PointError, Regular, RemovalError, Triangulation,
 };
 use testkit::random::Random;
 
@@ -265,6 +265,7 @@ fn insertion_gives_back_a_payload_that_it_does_not_use() {
     judge_insertions!(Delaunay::<Plane, 3, usize>::with_capacity(Plane::default(), 9), plane);
     judge_insertions!(Regular::<Weighted, usize>::new(Weighted::default()), |[x, y]: [f64; 2]| [x, y, 2.0]);
     judge_insertions!(Constrained::<Plane, usize>::new(Plane::default()), plane);
+    judge_insertions!(ConstrainedDelaunay::<Plane, usize>::new(Plane::default()), plane);
 }
 
 /// A vertex that moves onto a constraint splits it; a vertex that was on a constraint stays.

@@ -14,6 +14,7 @@ mod mapped;
 mod natural;
 mod nowhere;
 mod payloads;
+mod points_among_lines;
 mod polygon;
 mod power;
 mod queries;

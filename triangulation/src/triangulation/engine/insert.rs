@@ -1,11 +1,15 @@
 //! Insertion, written once: the conflict zone of a point is replaced by the point's star. The kinds
 //! decide how far the zone extends.
 
+use std::ops::Deref;
+
 use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, Zone};
 
-use super::super::{InputError, Location, MAX_VERTICES, PointError, Triangulation, spatial_order};
+use super::super::{
+    InputError, Locate, Location, MAX_VERTICES, MoveError, PointError, RemovalError, Triangulation, spatial_order,
+};
 
 /// The result of inserting a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -200,6 +204,49 @@ impl<G: Coordinates<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N
         let geometry = &self.geometry;
         spatial_order(points.len(), |i| geometry.coordinates(&points[i]))
     }
+}
+
+/// Inserts a point into a kind: locates it by a strategy, inserts it by the step of the kind, and
+/// notifies the strategy if the vertex is new and in cells.
+pub(in super::super) fn insert_located<K, G: Geometry<N>, const N: usize, V, C: Copy + Default>(
+    kind: &mut K,
+    strategy: &mut impl Locate<G, N>,
+    p: G::Point,
+    data: V,
+    insert_at: impl FnOnce(&mut K, G::Point, V, Location) -> Inserted<V>,
+) -> Result<Inserted<V>, PointError>
+where
+    K: Deref<Target = Triangulation<G, N, V, C>>,
+{
+    kind.admit(&p)?;
+    let location = strategy.locate(kind, &p);
+    let inserted = insert_at(kind, p, data, location);
+    if inserted.is_new() && kind.tds.is_vertex(inserted.vertex) {
+        strategy.inserted(&kind.geometry, inserted.vertex, &p);
+    }
+    Ok(inserted)
+}
+
+/// Moves a vertex of a kind: removes it and inserts it elsewhere, by two steps of the kind. The
+/// second takes over what the first returns. If the site stays, only the point is replaced.
+pub(in super::super) fn move_vertex<K, G: Geometry<N>, const N: usize, V, C: Copy + Default, R>(
+    kind: &mut K,
+    inner: impl FnOnce(&mut K) -> &mut Triangulation<G, N, V, C>,
+    (vertex, p): (VertexId, G::Point),
+    remove: impl FnOnce(&mut K, VertexId) -> Result<R, RemovalError>,
+    insert_again: impl FnOnce(&mut K, G::Point, Location, R) -> VertexId,
+) -> Result<VertexId, MoveError>
+where
+    K: Deref<Target = Triangulation<G, N, V, C>>,
+{
+    kind.admit(&p)?;
+    if kind.tds.is_vertex(vertex) && inner(kind).replace_on_site(vertex, &p) {
+        return Ok(vertex);
+    }
+    let neighbor = kind.finite_neighbor(vertex);
+    let removed = remove(kind, vertex)?;
+    let location = kind.locate(&p, neighbor.and_then(|v| kind.tds.cell_of(v)));
+    Ok(insert_again(kind, p, location, removed))
 }
 
 /// Inserts points in an order of their positions, by `insert`, and returns the vertex of each.

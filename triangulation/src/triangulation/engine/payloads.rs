@@ -29,6 +29,17 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self.with_data_of_all(data.into_iter().flatten().collect())
     }
 
+    /// Like [`with_data_of_points`](Self::with_data_of_points), but vertices without a point have
+    /// the default payload.
+    pub(in super::super) fn with_data_of_some<W: Default>(
+        self,
+        vertices: &[VertexId],
+        data: impl FnMut(usize) -> W,
+    ) -> Triangulation<G, N, W, C> {
+        let data = data_of_points(self.tds.vertex_slots(), vertices, data);
+        self.with_data_of_all(data.into_iter().map(Option::unwrap_or_default).collect())
+    }
+
     /// Returns the triangulation with new payloads of all cells, in order of their numbers.
     pub(in super::super) fn with_cell_data<D: Copy + Default>(
         self,

@@ -6,7 +6,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId, cw};
 
 use super::super::engine::flip::WithConstraints;
-use super::super::engine::insert::insert_each;
+use super::super::engine::insert::{insert_each, insert_located, move_vertex};
 use super::super::lines::trace::{Met, Scratch, Side};
 use super::super::{
     ConstrainedEdges, Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError,
@@ -175,13 +175,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         p: G::Point,
         data: V,
     ) -> Result<Inserted<V>, PointError> {
-        self.inner.admit(&p)?;
-        let location = strategy.locate(&self.inner, &p);
-        let inserted = self.insert_at(p, data, location);
-        if inserted.is_new() {
-            strategy.inserted(&self.inner.geometry, inserted.vertex, &p);
-        }
-        Ok(inserted)
+        insert_located(self, strategy, p, data, Self::insert_at)
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
@@ -281,9 +275,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     /// # Errors
     /// See [`remove`](Self::remove).
     pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        let point = self.remove(vertex)?;
-        strategy.removed(vertex);
-        Ok(point)
+        self.remove(vertex).inspect(|_| strategy.removed(vertex))
     }
 
     /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
@@ -296,18 +288,19 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     /// # Complexity
     /// That of a removal and an insertion; the search starts at the old site.
     pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
-        self.inner.admit(&p)?;
-        if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
-            return Ok(vertex);
-        }
-        let neighbor = self.inner.finite_neighbor(vertex);
-        self.remove(vertex)?;
-        let location = self.inner.locate(&p, neighbor.and_then(|v| self.tds().cell_of(v)));
-        let split = self.inner.constraint_at(location);
-        let moved =
-            self.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i)).unwrap_or(vertex);
-        self.constrain_both_halves(split, moved);
-        Ok(moved)
+        move_vertex(
+            self,
+            |t| &mut t.inner,
+            (vertex, p),
+            Self::remove,
+            |t, p, location, _| {
+                let split = t.inner.constraint_at(location);
+                let moved = t.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i));
+                let moved = moved.unwrap_or(vertex);
+                t.constrain_both_halves(split, moved);
+                moved
+            },
+        )
     }
 
     /// Returns the flaws found by a check up to the given level. The law checked is that each edge

@@ -73,10 +73,12 @@ impl<C: Default> ConstrainedEdges<C> {
 /// [rounding](crate::Rounding) requires: the [arrangement](crate::arrangement) describes how, and
 /// what is proven.
 ///
-/// Vertices have payloads `V`. Triangles, the infinite ones included, have payloads `C`, read with
-/// [`cell_data`](Triangulation::cell_data). Each triangle around a new vertex inherits the payload
-/// of the destroyed triangle that had the edge opposite the vertex. Triangles created by a removal
-/// or a constraint, or by a change of dimension, have the default payload.
+/// Vertices have payloads `V`; those of crossings, and those that come with
+/// [lines](Self::insert_lines), begin with the default payload. Triangles, the infinite ones
+/// included, have payloads `C`, read with [`cell_data`](Triangulation::cell_data). Each triangle
+/// around a new vertex inherits the payload of the destroyed triangle that had the edge opposite
+/// the vertex. Triangles created by a removal or a constraint, or by a change of dimension, have
+/// the default payload.
 ///
 /// The triangulation is a function of the set of points and the set of segments: it does not matter
 /// whether these were given at once ([`from_lines`](Self::from_lines)) or one by one, or what has
@@ -88,8 +90,7 @@ impl<C: Default> ConstrainedEdges<C> {
 ///
 /// let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
 /// let lines = [vec![0, 2], vec![1, 3, 0]];
-/// let geometry: Plane = Plane::default();
-/// let (mut t, v) = ConstrainedDelaunay::<_, ()>::from_lines(geometry, &points, &lines, OnCrossing::Split)?;
+/// let (mut t, v) = ConstrainedDelaunay::from_lines(Plane::new(), &points, &lines, OnCrossing::Split)?;
 ///
 /// let ids: Vec<_> = t.lines().collect();
 /// let [from, crossing, to] = t.chain(ids[0])[..] else { panic!("they cross once") };
@@ -128,9 +129,20 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     pub fn new(geometry: G) -> Self {
         ConstrainedDelaunay { inner: Triangulation::new(geometry), lines: Lines::default() }
     }
+
+    /// Like [`new`](Self::new), but with room for that many vertices.
+    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
+        ConstrainedDelaunay { inner: Triangulation::with_capacity(geometry, vertices), lines: Lines::default() }
+    }
 }
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
+    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
+    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
+    pub fn with_vertex_data<W: Default>(self, data: impl FnMut(VertexId) -> W) -> ConstrainedDelaunay<G, W, C> {
+        ConstrainedDelaunay { inner: self.inner.with_vertex_data(data), lines: self.lines }
+    }
+
     /// Returns the triangulation with new payloads of its triangles. `data` is called in order of
     /// the triangle numbers, infinite triangles included. Linear time; nothing but payloads is
     /// copied.
@@ -197,7 +209,9 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
         debug_assert_eq!(triangulation.vertex_count(), count, "two points on one site");
         Ok(triangulation)
     }
+}
 
+impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     /// Triangulates many points; also returns the vertex of each. Vertices are numbered along a
     /// space filling curve. Points on one site share a vertex, which keeps the first of them.
     ///
@@ -209,5 +223,19 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let (sites, vertices) = Sites::of(&geometry, points, bulk::Grain::default())?;
         Ok((Self::from_sites(geometry, sites, bulk::Grain::default())?, vertices))
+    }
+
+    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
+    /// vertex, with the position of the first point at that vertex, in increasing order.
+    ///
+    /// # Errors
+    /// See [`from_points`](Self::from_points).
+    pub fn from_points_with<V>(
+        geometry: G,
+        points: &[G::Point],
+        data: impl FnMut(usize) -> V,
+    ) -> Result<(ConstrainedDelaunay<G, V>, Vec<VertexId>), InputError> {
+        let (ConstrainedDelaunay { inner, lines }, vertices) = Self::from_points(geometry, points)?;
+        Ok((ConstrainedDelaunay { inner: inner.with_data_of_points(&vertices, data), lines }, vertices))
     }
 }

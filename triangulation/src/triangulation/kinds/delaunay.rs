@@ -4,7 +4,7 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::NoConstraints;
-use super::super::engine::insert::insert_each;
+use super::super::engine::insert::{insert_each, insert_located, move_vertex};
 use super::super::{
     InputError, Inserted, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
 };
@@ -164,13 +164,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         p: G::Point,
         data: V,
     ) -> Result<Inserted<V>, PointError> {
-        self.inner.admit(&p)?;
-        let location = strategy.locate(&self.inner, &p);
-        let inserted = self.insert_at(p, data, location);
-        if inserted.is_new() {
-            strategy.inserted(&self.inner.geometry, inserted.vertex, &p);
-        }
-        Ok(inserted)
+        insert_located(self, strategy, p, data, Self::insert_at)
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
@@ -238,9 +232,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// # Errors
     /// See [`remove`](Self::remove).
     pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        let point = self.remove(vertex)?;
-        strategy.removed(vertex);
-        Ok(point)
+        self.remove(vertex).inspect(|_| strategy.removed(vertex))
     }
 
     /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
@@ -253,15 +245,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// # Complexity
     /// That of a removal and an insertion; the search starts at the old site.
     pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
-        self.inner.admit(&p)?;
-        if self.tds().is_vertex(vertex) && self.inner.replace_on_site(vertex, &p) {
-            return Ok(vertex);
-        }
-        let neighbor = self.inner.finite_neighbor(vertex);
-        self.remove(vertex)?;
-        let location = self.inner.locate(&p, neighbor.and_then(|v| self.tds().cell_of(v)));
-        let moved = self.inner.insert_again(p, location, takes(&p), |data, _| *data);
-        Ok(moved.unwrap_or(vertex))
+        move_vertex(
+            self,
+            |t| &mut t.inner,
+            (vertex, p),
+            Self::remove,
+            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data).unwrap_or(vertex),
+        )
     }
 }
 

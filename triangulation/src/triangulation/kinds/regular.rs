@@ -7,7 +7,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::NoConstraints;
-use super::super::engine::insert::insert_each;
+use super::super::engine::insert::{insert_each, insert_located};
 use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
 };
@@ -219,13 +219,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         p: G::Point,
         data: V,
     ) -> Result<Inserted<V>, PointError> {
-        self.inner.admit(&p)?;
-        let location = strategy.locate(&self.inner, &p);
-        let inserted = self.insert_at(p, data, location);
-        if inserted.is_new() && self.tds().is_vertex(inserted.vertex) {
-            strategy.inserted(&self.inner.geometry, inserted.vertex, &p);
-        }
-        Ok(inserted)
+        insert_located(self, strategy, p, data, Self::insert_at)
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
@@ -336,9 +330,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
     /// # Errors
     /// See [`remove`](Self::remove).
     pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        let point = self.remove(vertex)?;
-        strategy.removed(vertex);
-        Ok(point)
+        self.remove(vertex).inspect(|_| strategy.removed(vertex))
     }
 
     /// Moves a point, visible or hidden, and returns its vertex, which keeps its number and

@@ -48,7 +48,7 @@ pub struct Rounding {
     pub on_grid: bool,
 }
 
-impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
+impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     /// Triangulates many points and lines; also returns the vertex of each point. A line is a list
     /// of points, named by their positions. It may touch itself and others, overlap, repeat, cross,
     /// close and double back. Points on one site share a vertex, which keeps the first of them. The
@@ -83,6 +83,23 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             vertices.iter_mut().for_each(|v| *v = renumbered[v.index()]);
         }
         Ok((triangulation, vertices))
+    }
+
+    /// Like [`from_lines`](Self::from_lines), but with payloads. `data` is called once for each
+    /// vertex of a point, with the position of the first point at that vertex, in increasing order.
+    /// Vertices of crossings have the default payload.
+    ///
+    /// # Errors
+    /// See [`from_lines`](Self::from_lines).
+    pub fn from_lines_with<L: AsRef<[u32]>, V: Default>(
+        geometry: G,
+        points: &[G::Point],
+        lines: &[L],
+        on_crossing: OnCrossing,
+        data: impl FnMut(usize) -> V,
+    ) -> Result<(ConstrainedDelaunay<G, V>, Vec<VertexId>), InputError> {
+        let (ConstrainedDelaunay { inner, lines }, vertices) = Self::from_lines(geometry, points, lines, on_crossing)?;
+        Ok((ConstrainedDelaunay { inner: inner.with_data_of_some(&vertices, data), lines }, vertices))
     }
 
     /// Triangulates sorted points and lines through them, for callers that have sorted and merged

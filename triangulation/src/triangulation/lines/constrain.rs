@@ -4,7 +4,8 @@ use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::WithConstraints;
-use super::super::{ConstrainedEdges, Triangulation};
+use super::super::engine::insert::Inserted;
+use super::super::{ConstrainedEdges, Location, Triangulation};
 use super::Lines;
 use super::paths::undirected;
 use super::trace::Met;
@@ -28,16 +29,28 @@ impl Lines {
         near: Option<CellId>,
     ) -> VertexId {
         let location = t.locate(&p, near);
+        self.insert_at(t, p, V::default(), location).vertex
+    }
+
+    /// Inserts a point that was admitted at its location, unless its site is taken. A point on a
+    /// constraint splits it.
+    pub(super) fn insert_at<G: Crossing, V, C: Copy + Default>(
+        &mut self,
+        t: &mut Mesh<G, V, C>,
+        p: G::Point,
+        data: V,
+        location: Location,
+    ) -> Inserted<V> {
         let split = t.constraint_at(location);
         let takes = |t: &Mesh<G, V, C>, from, i, beyond| !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p);
-        let vertex = t.insert_at(p, location, V::default(), takes, |constrained, i| constrained.only(i)).vertex;
+        let inserted = t.insert_at(p, location, data, takes, |constrained, i| constrained.only(i));
         for end in split.into_iter().flatten() {
-            t.constrain_edge(vertex, end);
+            t.constrain_edge(inserted.vertex, end);
         }
         if let Some([a, b]) = split {
-            self.split_edge(a, b, vertex);
+            self.split_edge(a, b, inserted.vertex);
         }
-        vertex
+        inserted
     }
 
     /// Inserts the sub-constraint between two vertices. All constraints enter the triangulation by

@@ -1,4 +1,4 @@
-//! Insertion, removal and change of lines and points.
+//! Insertion, removal and change of lines.
 //!
 //! The result is the same, except for numbers, as that of construction from scratch. A few changes
 //! are [local edits](super::local_edit). Many changes at once, and those that change the grid,
@@ -8,7 +8,7 @@ use crate::arrangement::is_ordinary;
 use crate::geometry::{Coordinates, Crossing};
 use crate::tds::VertexId;
 
-use super::super::{ConstrainedDelaunay, InputError, LineId, PointError, RemovalError};
+use super::super::{ConstrainedDelaunay, InputError, LineId, RemovalError};
 use super::Lines;
 use super::constrain::{Mesh, position};
 use super::index::NotLocal;
@@ -17,31 +17,9 @@ use super::paths::{Ends, LineVertices, segments_of, undirected};
 use super::rearrange::order_of_insertion;
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
-    /// already. A point on a constraint splits it.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or out of range; nothing has changed then.
-    ///
-    /// # Complexity
-    /// A walk, and time linear in the number of triangles replaced. If the point lies exactly on a
-    /// segment that crosses others, as [`insert_lines`](Self::insert_lines).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
-        self.inner.admit(&p)?;
-        let count = self.vertex_count();
-        let vertex = self.lines.insert_point(&mut self.inner, p, None);
-        let is_new = self.vertex_count() > count;
-        self.lines.owned.remove(vertex);
-        if self.make_given(vertex, p, is_new).is_err() {
-            self.rearrange();
-        }
-        self.lines.constrain_waiting(&mut self.inner);
-        Ok(vertex)
-    }
-
     /// Updates the lines for a given vertex, which is new, or may have been added for a crossing
     /// before.
-    fn make_given(&mut self, vertex: VertexId, p: G::Point, is_new: bool) -> Result<(), NotLocal> {
+    pub(super) fn make_given(&mut self, vertex: VertexId, p: G::Point, is_new: bool) -> Result<(), NotLocal> {
         let was_added = self.lines.added.remove(vertex);
         if was_added {
             self.lines.touch();
@@ -54,33 +32,6 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             return Ok(());
         }
         Edit::on(&mut self.inner, &mut self.lines)?.make_given(vertex, was_added)
-    }
-
-    /// Removes a vertex and returns its point. Constraints that only run through it stay, without
-    /// it. The other vertices keep their numbers; the next point inserted takes the freed one.
-    ///
-    /// # Errors
-    /// If there is no such vertex, if it was added where lines cross, or if a line was given by it.
-    ///
-    /// # Complexity
-    /// As [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as
-    /// [`remove_line`](Self::remove_line). The first edit after construction takes linear time.
-    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        if !self.tds().is_vertex(vertex) {
-            return Err(RemovalError::NoVertex);
-        }
-        if self.is_added(vertex) {
-            return Err(RemovalError::Crossing);
-        }
-        if let Some(&line) = self.lines.given_by(&self.inner, vertex).first() {
-            return Err(RemovalError::Line(line));
-        }
-        let p = *self.point(vertex);
-        let is_removed = !self.lines.recrossed && self.lines.remove_free(&mut self.inner, vertex).is_some();
-        if !is_removed && self.lines.withdraw(&mut self.inner, vertex).is_err() {
-            self.rearrange();
-        }
-        Ok(p)
     }
 
     /// Removes a vertex together with all lines that were given by it. Returns its point and the
@@ -238,7 +189,11 @@ impl Lines {
     }
 
     /// Returns the lines that were given by a vertex, in order.
-    fn given_by<G: Crossing, V, C: Copy + Default>(&self, t: &Mesh<G, V, C>, vertex: VertexId) -> Vec<LineId> {
+    pub(super) fn given_by<G: Crossing, V, C: Copy + Default>(
+        &self,
+        t: &Mesh<G, V, C>,
+        vertex: VertexId,
+    ) -> Vec<LineId> {
         let names = |line: &LineId| self.paths.vertices(*line).contains(&vertex);
         if t.dimension() < 2 {
             return self.paths.numbered().map(|(line, _)| line).filter(names).collect();
@@ -320,7 +275,7 @@ impl Lines {
     }
 
     /// Removes a vertex that no line was given by, and that constraints run through.
-    fn withdraw<G: Crossing, V: Default, C: Copy + Default>(
+    pub(super) fn withdraw<G: Crossing, V: Default, C: Copy + Default>(
         &mut self,
         t: &mut Mesh<G, V, C>,
         vertex: VertexId,

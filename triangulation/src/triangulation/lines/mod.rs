@@ -9,7 +9,8 @@
 //! |---|---|
 //! | `paths` | line ids, chains of segments |
 //! | `build` | bulk construction from points and lines |
-//! | `edit` | insertion and removal of lines and points |
+//! | `edit` | insertion and removal of lines |
+//! | `points` | insertion, removal and moves of points |
 //! | `local_edit`, `near_segment` | the consequences of one edit, in its neighborhood; what lies near a segment |
 //! | `change` | where the old and the new chain of a segment differ |
 //! | `index` | which segments run along an edge, which lines contain them |
@@ -32,6 +33,7 @@ mod local_edit;
 mod near_segment;
 mod nesting;
 pub(super) mod paths;
+mod points;
 mod rearrange;
 #[cfg(test)]
 mod removal_tests;

@@ -281,9 +281,8 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
     /// use breakline_triangulation::{ConstrainedDelaunay, OnCrossing};
     ///
     /// let sliver = [[0.0, 0.0], [9.0, 0.0], [9.0, 1.0], [0.0, 1.0]];
-    /// let geometry: Plane = Plane::default();
     /// let lines = [vec![0, 1, 2, 3, 0]];
-    /// let (t, _) = ConstrainedDelaunay::<_, ()>::from_lines(geometry, &sliver, &lines, OnCrossing::Split)?;
+    /// let (t, _) = ConstrainedDelaunay::from_lines(Plane::new(), &sliver, &lines, OnCrossing::Split)?;
     /// let mesh = t.refined(&Quality { min_angle: 25.0, max_area: 0.25, ..Quality::default() });
     /// assert!(mesh.shortfall().is_empty());
     /// assert!(mesh.inside().count() >= 36, "nine times four");
