@@ -631,7 +631,7 @@ mod with_proj {
     #[test]
     fn heights_that_stay_are_reported() {
         let warnings = check("EPSG:4326+5773", "EPSG:4979", [15.5, 47.0, 300.0], [15.5, 47.0, 300.0], 1e-9);
-        assert!(warnings.iter().any(|text| text.contains("heights are left")), "{warnings:?}");
+        assert!(warnings.iter().any(|text| text.contains("heights keep their datum")), "{warnings:?}");
         let warnings = check(
             "EPSG:25832+7837",
             "EPSG:25833",
