@@ -121,12 +121,10 @@ fn locate_seed<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u
         Location::Vertex(v) => {
             t.tds().around(v).find_map(|cell| face_of[cell.index()]).map_or(SeedLocation::Outside, SeedLocation::Face)
         }
-        Location::Cell { cell, touching } => {
-            match (0..3).any(|i| touching >> i & 1 == 1 && t.is_constrained(cell, i)) {
-                true => SeedLocation::Constraint,
-                false => in_face(cell),
-            }
-        }
+        Location::Cell { cell, facets } => match facets.iter().any(|i| t.is_constrained(cell, i)) {
+            true => SeedLocation::Constraint,
+            false => in_face(cell),
+        },
         // `Nowhere` is a coordinate larger, or nearer to zero, than any vertex can have.
         Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => SeedLocation::Outside,
     }

@@ -27,7 +27,7 @@ pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, D
 pub use lines::LinesFlaw;
 pub use lines::build::{OnCrossing, Rounding};
 pub use lines::paths::{LineId, LineTag};
-pub use locate::{Buckets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
+pub use locate::{Buckets, Facets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
 
 use crate::geometry::Geometry;

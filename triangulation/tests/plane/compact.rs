@@ -41,7 +41,7 @@ impl<V, C: Copy + Default> Dense<'_, V, C> {
 
     fn location(&self, location: Location) -> Location {
         match location {
-            Location::Cell { cell, touching } => Location::Cell { cell: self.cell(cell), touching },
+            Location::Cell { cell, facets } => Location::Cell { cell: self.cell(cell), facets },
             Location::OutsideHull { cell } => Location::OutsideHull { cell: self.cell(cell) },
             other => other,
         }

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use breakline_triangulation::geometry::{Geometry, Mapped, Plane, Space, Steps, Terrain, Weighted};
 use breakline_triangulation::kernel::{Adaptive, Lattice, Wide};
 use breakline_triangulation::num::Sign;
-use breakline_triangulation::tds::{Tds, VertexId};
+use breakline_triangulation::tds::{CellId, Tds, VertexId};
 use breakline_triangulation::{
     Basic, Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine, Triangulation,
 };
@@ -26,6 +26,14 @@ enum Position {
     OffTheFlat,
 }
 
+/// Asserts that the cells at a location are those that have all of the vertices around it.
+fn judge_cells<const N: usize>(tds: &Tds<N>, location: Location, around: &BTreeSet<VertexId>) {
+    let Ok(mut cells) = location.cells(tds);
+    cells.sort_unstable();
+    let has_all = |cell: &CellId| around.iter().all(|v| tds.cell_vertices(*cell).contains(v));
+    assert!(cells.into_iter().eq(tds.cells().filter(has_all)), "{location:?}");
+}
+
 /// Returns the position, and asserts that it is correct.
 fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Location, q: Point) -> Position {
     let tds: &Tds<3> = t.tds();
@@ -33,18 +41,21 @@ fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Lo
     match location {
         Location::Vertex(vertex) => {
             assert_eq!(*t.point(vertex), q);
+            judge_cells(t.tds(), location, &[vertex].into());
             Position::On([vertex].into())
         }
-        Location::Cell { cell, touching } => {
+        Location::Cell { cell, facets } => {
             let corners = tds.cell_vertices(cell);
-            let spanned = corners.iter().enumerate().filter(|(i, _)| touching >> i & 1 == 0).map(|(_, &v)| v);
+            let spanned = corners.iter().enumerate().filter(|(i, _)| !facets.contains(*i)).map(|(_, &v)| v);
             for i in (0..3).filter(|_| t.dimension() == 2) {
                 let mut simplex = [0, 1, 2].map(|k| t.point(corners[k]));
                 simplex[i] = &q;
-                let expected = if touching >> i & 1 == 1 { Sign::Zero } else { Sign::Positive };
+                let expected = if facets.contains(i) { Sign::Zero } else { Sign::Positive };
                 assert_eq!(plane.orientation(simplex), expected);
             }
-            Position::On(spanned.collect())
+            let spanned: BTreeSet<VertexId> = spanned.collect();
+            judge_cells(t.tds(), location, &spanned);
+            Position::On(spanned)
         }
         Location::OutsideHull { cell } => {
             let infinite = tds.index_of(cell, VertexId::INFINITE).unwrap();
@@ -106,6 +117,36 @@ fn tiny_grids_that_grow_and_shrink() {
         }
         assert_eq!(t.check(Level::Law), []);
     }
+}
+
+/// On vertices, edges and faces of tetrahedra, inside and outside of them.
+#[test]
+fn cells_at_points_in_space() {
+    let mut random = Random(9);
+    let mut seen = [0; 5];
+    for _ in 0..60 {
+        let mut draw = || [random.below(3) as f64, random.below(3) as f64, random.below(3) as f64];
+        let points: Vec<[f64; 3]> = (0..12).map(|_| draw()).collect();
+        let (t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
+        for q in (0..20).map(|_| draw().map(|x| x * 0.75)) {
+            let location = t.locate(&q, None);
+            let around: BTreeSet<VertexId> = match location {
+                Location::Vertex(vertex) => [vertex].into(),
+                Location::Cell { cell, facets } => {
+                    let corners = t.tds().cell_vertices(cell).iter().enumerate();
+                    corners.filter(|(i, _)| !facets.contains(*i)).map(|(_, &v)| v).collect()
+                }
+                _ => {
+                    assert_eq!(location.cells(t.tds()), Ok(Vec::new()));
+                    continue;
+                }
+            };
+            judge_cells(t.tds(), location, &around);
+            assert_eq!(location.facets().count() + around.len(), if location.vertex().is_some() { 1 } else { 4 });
+            seen[around.len()] += 1;
+        }
+    }
+    assert!(seen[1..].iter().all(|&count| count > 5), "{seen:?}");
 }
 
 #[test]

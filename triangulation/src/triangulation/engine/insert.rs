@@ -8,7 +8,8 @@ use crate::num::Sign;
 use crate::tds::{CellId, VertexId, Zone};
 
 use super::super::{
-    InputError, Locate, Location, MAX_VERTICES, MoveError, PointError, RemovalError, Triangulation, spatial_order,
+    Facets, InputError, Locate, Location, MAX_VERTICES, MoveError, PointError, RemovalError, Triangulation,
+    spatial_order,
 };
 
 /// The result of inserting a point.
@@ -157,17 +158,17 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         location: Location,
         takes: impl Fn(&Self, CellId, usize, CellId) -> bool,
     ) -> Option<Zone> {
-        let (cell, touching) = match location {
+        let (cell, on) = match location {
             Location::OutsideAffineHull | Location::Nowhere => return None,
-            Location::Vertex(vertex) => (self.tds.cell_of(vertex)?, 0),
-            Location::Cell { cell, touching } => (cell, touching),
-            Location::OutsideHull { cell } => (cell, 0),
+            Location::Vertex(vertex) => (self.tds.cell_of(vertex)?, Facets::default()),
+            Location::Cell { cell, facets } => (cell, facets),
+            Location::OutsideHull { cell } => (cell, Facets::default()),
         };
         let mut zone = std::mem::take(&mut self.zone);
         zone.grow(&self.tds, cell, |from, i, beyond| {
             // A point on a facet destroys the cells on both sides, even if the facet is
             // constrained.
-            from == cell && touching >> i & 1 == 1 || takes(self, from, i, beyond)
+            from == cell && on.contains(i) || takes(self, from, i, beyond)
         });
         Some(zone)
     }

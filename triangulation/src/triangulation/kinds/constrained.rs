@@ -424,9 +424,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// Returns the ends of the constraint that a location lies on, between the ends.
     pub(in super::super) fn constraint_at(&self, location: Location) -> Option<[VertexId; 2]> {
         match location {
-            Location::Cell { cell, touching } if self.dimension() == 2 && touching != 0 => {
-                let i = touching.trailing_zeros() as usize;
-                self.is_constrained(cell, i).then(|| self.tds.edge_ends(cell, i))
+            Location::Cell { cell, facets } if self.dimension() == 2 => {
+                let constrained = facets.iter().find(|&i| self.is_constrained(cell, i));
+                constrained.map(|i| self.tds.edge_ends(cell, i))
             }
             _ => None,
         }

@@ -235,18 +235,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
     fn same(&self, p: &G::Point, location: Location) -> Option<VertexId> {
         let is_same =
             |v: &VertexId| self.inner.geometry.compare(self.point(*v), p).is_eq() && self.side_of(*v, p) == Sign::Zero;
-        let tds = self.tds();
-        // Any of the cells that the location touches may hide it.
-        let cells: Vec<CellId> = match location {
+        // Any of the cells at the location may hide it.
+        let Ok(cells) = match location {
             Location::Vertex(vertex) if is_same(&vertex) => return Some(vertex),
             _ if self.hidden.host.is_empty() => return None,
-            Location::Vertex(vertex) if self.dimension() == 2 => tds.around(vertex).collect(),
-            Location::Vertex(_) => tds.cells().collect(),
-            Location::Cell { cell, touching } => {
-                let neighbors = (0..3).filter(|i| touching >> i & 1 == 1).map(|i| tds.neighbor(cell, i));
-                neighbors.chain([cell]).collect()
-            }
-            _ => return None,
+            _ => location.cells(self.tds()),
         };
         cells.iter().filter_map(|cell| self.hidden.under.get(cell)).flatten().copied().find(is_same)
     }

@@ -31,6 +31,8 @@ pub use hierarchy::Hierarchy;
 pub use start::{JumpAndWalk, Locate, Near};
 pub use straight::StraightLine;
 
+use rustc_hash::FxHashSet;
+
 use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
 
@@ -44,13 +46,13 @@ use walk::{LOOKS, PATIENCE, Seems};
 pub enum Location {
     /// On a vertex.
     Vertex(VertexId),
-    /// In a finite cell, or on its border. Bit `i` of `touching` is set if the point lies on the
-    /// facet opposite vertex `i`. In the plane: no bit inside of the triangle, one bit on an edge.
+    /// In a finite cell, or on its border.
     Cell {
         /// The cell.
         cell: CellId,
-        /// The facets that the point lies on.
-        touching: u8,
+        /// The facets of the cell that the point lies on: none inside of the cell, one in the
+        /// interior of a facet, two on an edge of a tetrahedron.
+        facets: Facets,
     },
     /// Outside of the convex hull, on the outer side of the finite facet of this infinite cell.
     OutsideHull {
@@ -64,6 +66,47 @@ pub enum Location {
     /// infinite, or beyond the [range](crate::kernel::Kernel::RANGE) of the kernel; the range of
     /// [`Wide`](crate::kernel::Wide) is all finite numbers.
     Nowhere,
+}
+
+/// Some facets of a cell, each named by the index of the opposite vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Facets(u8);
+
+impl Facets {
+    /// Returns true if the facet opposite vertex `i` is among them.
+    #[inline(always)]
+    pub fn contains(self, i: usize) -> bool {
+        i < 8 && self.0 >> i & 1 == 1
+    }
+
+    /// Returns true if there are none.
+    #[inline(always)]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// The number of facets.
+    #[inline(always)]
+    pub fn len(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// The indices of the opposite vertices, in order.
+    #[inline]
+    pub fn iter(self) -> impl Iterator<Item = usize> {
+        let mut left = self.0;
+        std::iter::from_fn(move || {
+            let next = (left != 0).then(|| left.trailing_zeros() as usize)?;
+            left &= left - 1;
+            Some(next)
+        })
+    }
+
+    /// Adds the facet opposite vertex `i`, at most 7.
+    #[inline(always)]
+    fn insert(&mut self, i: usize) {
+        self.0 |= 1 << i;
+    }
 }
 
 impl Location {
@@ -102,12 +145,63 @@ impl Location {
     /// ```
     #[inline]
     pub fn facets(self) -> impl Iterator<Item = (CellId, usize)> {
-        let (cell, touching) = match self {
-            Location::Cell { cell, touching } => (Some(cell), touching),
-            _ => (None, 0),
+        let on = match self {
+            Location::Cell { cell, facets } => Some((cell, facets)),
+            _ => None,
         };
-        let is_on = move |i: &usize| touching >> i & 1 == 1;
-        cell.into_iter().flat_map(move |cell| (0..u8::BITS as usize).filter(is_on).map(move |i| (cell, i)))
+        on.into_iter().flat_map(|(cell, facets)| facets.iter().map(move |i| (cell, i)))
+    }
+
+    /// Returns all cells that contain the point, infinite ones included: one inside of a cell, two
+    /// in the interior of a facet, those around an edge or a vertex on one of these. Empty outside
+    /// of the hull.
+    ///
+    /// # Errors
+    /// If links of the complex do not hold.
+    ///
+    /// # Complexity
+    /// Linear in the number of these cells.
+    ///
+    /// ```
+    /// use breakline_triangulation::Delaunay;
+    /// use breakline_triangulation::geometry::Space;
+    ///
+    /// let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [4.0, 4.0, 4.0]];
+    /// let (t, v) = Delaunay::from_points(Space::new(), &corners)?;
+    /// let Ok(cells) = t.locate(&[2.0, 2.0, 0.0], None).cells(t.tds());
+    /// let around_edge = t.tds().cells().filter(|&c| [v[1], v[2]].iter().all(|&end| t.tds().index_of(c, end).is_some()));
+    /// assert_eq!(cells.len(), around_edge.count());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn cells<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Vec<CellId>, T::Error> {
+        let start = match self {
+            Location::Vertex(_) | Location::Cell { .. } => self.cell_in(complex)?,
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,
+        };
+        let Some(start) = start else { return Ok(Vec::new()) };
+        let width = complex.width().min(N);
+        let corners = complex.corners(start)?;
+        let spans = |i: &usize| match self {
+            Location::Vertex(vertex) => corners[*i] == vertex,
+            Location::Cell { facets, .. } => !facets.contains(*i),
+            _ => false,
+        };
+        // The point is in the interior of what these vertices span.
+        let around: Vec<VertexId> = (0..width).filter(spans).map(|i| corners[i]).collect();
+        let mut cells = vec![start];
+        let mut seen = FxHashSet::from_iter([start]);
+        let mut done = 0;
+        while let Some(&cell) = cells.get(done) {
+            done += 1;
+            let corners = complex.corners(cell)?;
+            for i in (0..width).filter(|&i| !around.contains(&corners[i])) {
+                let beyond = complex.neighbor(cell, i)?;
+                if seen.insert(beyond) {
+                    cells.push(beyond);
+                }
+            }
+        }
+        Ok(cells)
     }
 
     /// Like [`cell`](Self::cell), in any complex.

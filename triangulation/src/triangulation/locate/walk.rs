@@ -7,7 +7,7 @@ use crate::tds::{CellId, Complex, VertexId};
 
 use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::engine::sides::{points_with, side_of_facet, simplex};
-use super::Location;
+use super::{Facets, Location};
 
 /// Marsaglia's xorshift. The walk tests facets in an order that no input can anticipate, and that
 /// is the same in every run.
@@ -126,14 +126,15 @@ pub fn locate<const N: usize, T: Embedded<N>>(
         };
         let beyond = match sides {
             Sides::Outside(i) => complex.neighbor(cell, i)?,
-            Sides::Touching(touching) => {
+            Sides::On(facets) => {
                 // A point on all facets means a flat cell.
-                complex.ensure(cell, || (touching.count_ones() as usize) < width)?;
-                if touching.count_ones() as usize == width - 1 {
+                complex.ensure(cell, || facets.len() < width)?;
+                if facets.len() == width - 1 {
                     // On all facets but one: on the vertex opposite that one.
-                    return Ok(Location::Vertex(complex.vertex(cell, (!touching).trailing_zeros() as usize)?));
+                    let opposite = (0..width).find(|&i| !facets.contains(i)).unwrap_or(0);
+                    return Ok(Location::Vertex(complex.vertex(cell, opposite)?));
                 }
-                return Ok(Location::Cell { cell, touching });
+                return Ok(Location::Cell { cell, facets });
             }
         };
         if complex.is_infinite(beyond)? {
@@ -243,8 +244,8 @@ fn hull_exit<const N: usize, T: Embedded<N>>(
 enum Sides {
     /// Outside of the facet opposite this vertex.
     Outside(usize),
-    /// Outside of no facet, and on those whose bit is set.
-    Touching(u8),
+    /// Outside of no facet, and on these.
+    On(Facets),
 }
 
 /// Returns on which sides of a finite cell `q` lies, exactly. Tests one facet after the other from
@@ -259,7 +260,7 @@ fn ask_sides<const N: usize, T: Embedded<N>>(
     from: Option<CellId>,
 ) -> Result<Sides, T::Error> {
     let width = t.complex().width();
-    let mut touching = 0;
+    let mut on = Facets::default();
     for turn in 0..N.min(width) {
         let i = if first + turn < width { first + turn } else { first + turn - width };
         if from.is_some() && from == Some(t.complex().neighbor(cell, i)?) {
@@ -267,11 +268,11 @@ fn ask_sides<const N: usize, T: Embedded<N>>(
         }
         match side_of_facet(t, cell, i, q)? {
             Sign::Positive => {}
-            Sign::Zero => touching |= 1 << i,
+            Sign::Zero => on.insert(i),
             Sign::Negative => return Ok(Sides::Outside(i)),
         }
     }
-    Ok(Sides::Touching(touching))
+    Ok(Sides::On(on))
 }
 
 /// Returns a finite cell that is nearer to `q` than this one, if one of some vertices is.

@@ -178,9 +178,8 @@ impl<T: Embedded<3>> Segment<'_, T> {
         let complex = self.t.complex();
         Ok(match location {
             Location::Vertex(vertex) => Some(Passage::Vertex(vertex)),
-            Location::Cell { cell, touching: 0 } => Some(Passage::Face(cell)),
-            Location::Cell { cell, touching } => {
-                let i = touching.trailing_zeros() as usize;
+            Location::Cell { cell, facets } => {
+                let Some(i) = facets.iter().next() else { return Ok(Some(Passage::Face(cell))) };
                 let ends @ [from, to] = plane::edge_ends(complex, cell, i)?;
                 let beyond = complex.neighbor(cell, i)?;
                 Some(match self.end_side(ends)? {

@@ -4,7 +4,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, ccw, cw};
 
-use super::super::{Location, Triangulation};
+use super::super::Triangulation;
 
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Returns the finite edges that the open segment from `a` to `b` crosses in their interior,
@@ -51,16 +51,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// Returns the cells that contain a point, inside or on their border; all infinite cells for a
     /// point outside.
     fn cells_at(&self, a: &G::Point) -> Vec<CellId> {
-        match self.locate(a, None) {
-            Location::Vertex(vertex) => self.tds.around(vertex).collect(),
-            Location::Cell { cell, touching } => {
-                let beside = (0..3).filter(|i| touching >> i & 1 == 1).map(|i| self.tds.neighbor(cell, i));
-                std::iter::once(cell).chain(beside).collect()
-            }
-            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => {
-                self.tds.around(VertexId::INFINITE).collect()
-            }
-        }
+        let Ok(cells) = self.locate(a, None).cells(&self.tds);
+        if cells.is_empty() { self.tds.around(VertexId::INFINITE).collect() } else { cells }
     }
 
     fn crosses(&self, a: &G::Point, b: &G::Point, [c, d]: [VertexId; 2]) -> bool {

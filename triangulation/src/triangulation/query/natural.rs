@@ -123,9 +123,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
             Location::Vertex(vertex) => return Some(vec![(vertex, 1.0)]),
             Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => return None,
             Location::Cell { cell, .. } if self.dimension() == 1 => self.between(self.tds().edge_ends(cell, 2), at),
-            Location::Cell { cell, touching } => {
-                let on_hull =
-                    (0..3).find(|&i| touching >> i & 1 == 1 && self.tds().is_infinite(self.tds().neighbor(cell, i)));
+            Location::Cell { cell, facets } => {
+                let on_hull = facets.iter().find(|&i| self.tds().is_infinite(self.tds().neighbor(cell, i)));
                 if let Some(i) = on_hull {
                     self.between(self.tds().edge_ends(cell, i), at)
                 } else {

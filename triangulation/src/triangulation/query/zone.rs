@@ -6,7 +6,7 @@ use crate::tds::{CellId, Complex};
 use super::super::engine::embedded::{Embedded, PointOf};
 use super::super::engine::sides::in_conflict;
 use super::super::locate::locate;
-use super::super::{ConstrainedDelaunay, Delaunay, Location};
+use super::super::{ConstrainedDelaunay, Delaunay, Facets, Location};
 
 /// The cells that a new point would destroy, and the edges around them, from which the star of the
 /// point would be built.
@@ -51,14 +51,14 @@ pub(super) fn zone_at<T: Embedded<3>>(
     passes: impl Fn(CellId, usize) -> Result<bool, T::Error>,
 ) -> Result<Option<ConflictZone>, T::Error> {
     let complex = t.complex();
-    let (start, touching) = match location {
+    let (start, on) = match location {
         Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return Ok(None),
-        Location::Cell { cell, touching } => (cell, touching),
-        Location::OutsideHull { cell } => (cell, 0),
+        Location::Cell { cell, facets } => (cell, facets),
+        Location::OutsideHull { cell } => (cell, Facets::default()),
     };
     let takes = |from: CellId, i: usize, beyond: CellId| {
         // A point on an edge destroys the cells on both sides, constraint or not.
-        let is_split = from == start && touching >> i & 1 == 1;
+        let is_split = from == start && on.contains(i);
         Ok(is_split || passes(from, i)? && in_conflict(t, beyond, q)?)
     };
     let width = complex.width();
