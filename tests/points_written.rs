@@ -5,10 +5,11 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+use breakline::crs::Crs;
 use breakline::data::{LasHead, PointBatch, PointSource};
 use breakline::io::las::{Cut, Detail, ReadOptions, Rounding};
 use breakline::io::{OutputSet, las as ours, points};
-use breakline::run::{Context, PointsReport, PointsRequest, Withheld, write_points};
+use breakline::run::{Context, PointsReport, PointsRequest, SystemOptions, Withheld, write_points};
 use las::{Builder, Point, Transform, Vector, Version, Vlr, Writer};
 
 /// The records of a file, its lattice in bits, and its head, as our reader has them.
@@ -325,6 +326,102 @@ fn what_would_be_lost_is_refused_unless_asked_for() {
     fs::write(&text, "1 2 3\n").unwrap();
     let error = copy(&request(&[&text]), &target).unwrap_err();
     assert!(error.to_string().contains("only if they come from LAS or LAZ"), "{error}");
+}
+
+fn system(code: u32) -> Option<Crs> {
+    Some(Crs::from_epsg(code).unwrap())
+}
+
+/// Returns the records of a file that state a coordinate system, by number.
+fn stated(head: &LasHead) -> Vec<u16> {
+    let all = head.records.iter().chain(&head.late_records);
+    let of_system = all.filter(|record| record[2..].starts_with(b"LASF_Projection\0"));
+    of_system.map(|record| u16::from_le_bytes([record[18], record[19]])).collect()
+}
+
+#[test]
+fn an_assigned_system_is_stated_and_nothing_else_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, one, two] = ["a.las", "b.laz", "c.las"].map(|name| folder.path().join(name));
+    let other = Vlr { user_id: "other".into(), record_id: 7, description: "kept".into(), data: vec![1, 2, 3] };
+    for (version, format, records) in
+        [((1, 0), 0, &[34735, 34737][..]), ((1, 4), 3, &[34735, 34737]), ((1, 4), 6, &[2112]), ((1, 4), 8, &[2112])]
+    {
+        write(&path, &Spec { version, format, ..SPEC }, vec![other.clone()]);
+        let before = read(&path).unwrap();
+        let assign = |code, files: &[&Path], target: &Path| {
+            let systems = SystemOptions { assign: system(code), ..SystemOptions::default() };
+            copy(&PointsRequest { systems, ..request(files) }, target).unwrap()
+        };
+        assert_eq!(assign(3005, &[&path], &one).crs, system(3005));
+        // Replaced, not added.
+        assign(25832, &[&one], &two);
+        for (file, code) in [(&one, 3005), (&two, 25832)] {
+            let source = ours::open(file).unwrap();
+            assert!(source.info().crs.as_ref().unwrap().is_same(&system(code).unwrap()), "{version:?} {format} {code}");
+            assert!(source.info().warnings.is_empty(), "{:?}", source.info().warnings);
+            let after = read(file).unwrap();
+            assert!(after.records == before.records);
+            assert_eq!(stated(&after.head), records, "{version:?} {format}");
+            assert_eq!(after.head.header[6] & 16 != 0, records == [2112]);
+            assert!(before.head.records.iter().all(|record| after.head.records.contains(record)));
+            check_header(file, &before);
+        }
+        // Files of different systems are merged if all are said to be in one.
+        let error = copy(&request(&[&one, &two]), &folder.path().join("d.las")).unwrap_err();
+        assert!(error.to_string().contains("two coordinate systems"), "{error}");
+        let merged = folder.path().join("e.las");
+        assign(25833, &[&one, &two], &merged);
+        assert_eq!(stated(&read(&merged).unwrap().head), records);
+    }
+}
+
+#[test]
+fn reprojecting_to_the_same_system_changes_no_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, target] = ["a.las", "b.las"].map(|name| folder.path().join(name));
+    write(&path, &SPEC, Vec::new());
+    let systems = SystemOptions { assign: system(25832), target: system(25832), ..SystemOptions::default() };
+    copy(&PointsRequest { systems, ..request(&[&path]) }, &target).unwrap();
+    assert!(read(&path).unwrap().records == read(&target).unwrap().records);
+    // Nothing is known of where the points are.
+    let systems = SystemOptions { target: system(25832), ..SystemOptions::default() };
+    let error = copy(&PointsRequest { systems, ..request(&[&path]) }, &folder.path().join("c.las")).unwrap_err();
+    assert!(error.to_string().contains("no coordinate system to reproject from"), "{error}");
+}
+
+#[cfg(feature = "proj")]
+#[test]
+fn reprojected_points_are_within_half_a_step_and_keep_their_attributes() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, target] = ["a.las", "b.laz"].map(|name| folder.path().join(name));
+    for format in [1, 7] {
+        write(&path, &Spec { format, extra: 3, ..SPEC }, Vec::new());
+        let coordinates = |path: &Path| {
+            let (mut source, mut batch) = (ours::open(path).unwrap(), PointBatch::default());
+            source.read(&mut batch).unwrap();
+            (0..batch.len()).map(|i| [batch.x[i], batch.y[i], batch.z[i]]).collect::<Vec<_>>()
+        };
+        let mut expected = coordinates(&path);
+        for (code, step) in [(25833, 0.01), (4326, 1e-7)] {
+            let systems = SystemOptions { assign: system(25832), target: system(code), ..SystemOptions::default() };
+            let report = copy(&PointsRequest { systems, ..request(&[&path]) }, &target).unwrap();
+            assert_eq!(report.crs, system(code));
+            let (before, after) = (read(&path).unwrap(), read(&target).unwrap());
+            let there = breakline::io::proj::transform(&system(25832).unwrap(), &system(code).unwrap()).unwrap();
+            expected.copy_from_slice(&coordinates(&path));
+            there.transform(&mut expected).unwrap();
+            for (found, expected) in coordinates(&target).iter().zip(&expected) {
+                assert!((0..2).all(|k| (found[k] - expected[k]).abs() <= 0.5001 * step), "{found:?} {expected:?}");
+                assert_eq!(found[2], expected[2], "the same heights, on the same lattice");
+            }
+            let length = usize::from(before.head.record_length);
+            for (before, after) in before.records.chunks_exact(length).zip(after.records.chunks_exact(length)) {
+                assert_eq!(before[8..], after[8..]);
+            }
+            check_header(&target, &after);
+        }
+    }
 }
 
 #[test]

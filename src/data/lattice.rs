@@ -16,11 +16,19 @@ impl Lattice {
         [0, 1, 2].map(|k| f64::from(steps[k]) * self.scale[k] + self.offset[k])
     }
 
+    /// Returns the steps to the nearest point of the lattice; `None` if they do not fit into 32
+    /// bits.
+    #[inline]
+    pub fn nearest(&self, point: [f64; 3]) -> Option<[i32; 3]> {
+        let range = f64::from(i32::MIN)..=f64::from(i32::MAX);
+        let steps = [0, 1, 2].map(|k| ((point[k] - self.offset[k]) / self.scale[k]).round());
+        steps.iter().all(|step| range.contains(step)).then(|| steps.map(|step| step as i32))
+    }
+
     /// Returns the steps to a point; `None` if it is not a [point](Self::point) of the lattice.
     #[inline]
     pub fn steps(&self, point: [f64; 3]) -> Option<[i32; 3]> {
-        let steps = [0, 1, 2].map(|k| ((point[k] - self.offset[k]) / self.scale[k]).round() as i32);
-        (self.point(steps) == point).then_some(steps)
+        self.nearest(point).filter(|&steps| self.point(steps) == point)
     }
 
     /// Returns the embedding of this lattice in a finer one; `None` if the other lacks some of its

@@ -71,6 +71,8 @@ mod extents;
 mod facts;
 mod frame;
 mod input;
+mod lattice;
+mod layers;
 mod lines;
 mod memory;
 mod notice;

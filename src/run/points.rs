@@ -3,14 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use super::context::{Context, Journal, Size, Stage};
-use super::input::is_read_once;
+use super::input::{Input, is_read_once};
+use super::layers::{self, Layers};
 use super::notice::Notice;
-use super::{lines, open};
+use super::systems::{self, Role, Stated, SystemOptions, Systems};
+use super::transforms::Transforms;
+use super::{lattice, open};
 use crate::crs::Crs;
-use crate::data::{Bounds, PointBatch, PointFlags, PointInfo, PointSource, PointSummary};
+use crate::data::{Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSource, PointSummary};
 use crate::error::{Error, Result};
 use crate::io::Destination;
-use crate::io::las::Rounding;
+use crate::io::las::{self, Rounding};
 use crate::io::points::{self, Options};
 use crate::terrain::Inside;
 
@@ -36,6 +39,10 @@ pub struct PointsRequest {
     pub boundary: Vec<PathBuf>,
     /// What to do with coordinates that are not on the lattice of a LAS output.
     pub rounding: Rounding,
+    /// Options of coordinate systems. Points in degrees are written whatever these say. An output
+    /// in LAS states the system that is assigned or reprojected to; points that are reprojected get
+    /// a new scale and offset.
+    pub systems: SystemOptions,
 }
 
 /// What to do with points that are flagged as withheld.
@@ -74,8 +81,8 @@ pub struct PointsReport {
 /// Needs memory for some chunks of points only, however large the files are.
 ///
 /// # Errors
-/// If a file cannot be read, the files are in different coordinate systems, their points cannot be
-/// written together without a loss (see [`las::create`](crate::io::las::create)), no point is left,
+/// If a file cannot be read, the files are in different coordinate systems and no target is
+/// requested, reprojection is not possible, their points cannot be written together without a loss (see [`las::create`](crate::io::las::create)), no point is left,
 /// or the run is canceled. Nothing is written then.
 pub fn write_points(request: &PointsRequest, target: Destination, context: &Context) -> Result<PointsReport> {
     let journal = Journal::new(context);
@@ -83,24 +90,32 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     let open = |path: &Path| open::points_of_file(path, options).map_err(|e| e.in_file(path));
     let mut sources: Vec<Option<Box<dyn PointSource + Send>>> = Vec::new();
     let mut infos: Vec<PointInfo> = Vec::new();
-    let mut crs = None;
     for path in &request.files {
         let source = open(path)?;
         let info = source.info().clone();
         note_warnings(&journal, path, &info.warnings);
-        one_system(&mut crs, info.crs.as_ref(), path)?;
         infos.push(info);
         let keep = request.files.len() <= MOST_OPEN || is_read_once(path);
         sources.push(Some(source).filter(|_| keep));
     }
-    let inside = boundary(request, crs.as_ref(), &journal)?;
+    let boundary: Vec<Input<Layer>> = request.boundary.iter().cloned().map(Input::File).collect();
+    let boundary = layers::read(&boundary, &journal)?;
+    let plan = Plan::new(request, &infos, &boundary, &journal)?;
+    let (of_points, of_boundary) = plan.transforms.by_file.split_at(infos.len());
+    let polygons = layers::polygons(&boundary, of_boundary, &plan.transforms)?;
+    let inside = (!polygons.is_empty()).then(|| Inside::new(&polygons));
+    let restated = |((info, &number), path): ((PointInfo, &Option<usize>), &PathBuf)| {
+        restated(info, &plan, number).map_err(|e| e.in_file(path))
+    };
+    let infos: Vec<PointInfo> =
+        infos.into_iter().zip(of_points).zip(&request.files).map(restated).collect::<Result<_>>()?;
     let all: Vec<&PointInfo> = infos.iter().collect();
     let mut report = PointsReport::default();
     let mut sink = points::create(target, &all, request.rounding)?;
     let count = infos.iter().map(|info| info.count).sum::<Option<u64>>();
     let work = journal.start(Stage::WritingPoints, count.map_or(Size::Unknown, Size::Items))?;
     let mut batch = PointBatch::default();
-    for ((path, info), source) in request.files.iter().zip(&infos).zip(sources) {
+    for (((path, info), source), number) in request.files.iter().zip(&infos).zip(sources).zip(of_points) {
         let mut source = source.map_or_else(|| open(path), Ok)?;
         sink.next_source(info).map_err(|e| e.in_file(path))?;
         loop {
@@ -110,6 +125,10 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
             }
             let count = batch.len() as u64;
             report.read += count;
+            plan.transforms.apply_to_batch(*number, &mut batch).map_err(|e| e.in_file(path))?;
+            if let (Some(_), Some(_), Some(lattice)) = (number, &info.head, &info.lattice) {
+                las::put_coordinates(&mut batch, lattice).map_err(|e| e.in_file(path))?;
+            }
             select(&mut batch, request, inside.as_ref(), &mut report);
             sink.write(&batch).map_err(|e| e.in_file(path))?;
             work.add(count)?;
@@ -121,9 +140,32 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     }
     report.written = sink.finish()?;
     work.end()?;
-    report.crs = crs;
+    plan.transforms.warn(&journal);
+    report.crs.clone_from(&plan.crs);
     report.notices = journal.take();
     Ok(report)
+}
+
+/// The coordinate system of the result, and how points get there.
+struct Plan {
+    crs: Option<Crs>,
+    /// True if the system was requested, not stated by the files.
+    is_new: bool,
+    /// Of the files, then of the boundary.
+    transforms: Transforms,
+}
+
+impl Plan {
+    fn new(request: &PointsRequest, infos: &[PointInfo], boundary: &Layers, journal: &Journal) -> Result<Self> {
+        let stated = |path: &Path, crs: &Option<Crs>, role| Stated { path: path.to_path_buf(), crs: crs.clone(), role };
+        let points = request.files.iter().zip(infos).map(|(path, info)| stated(path, &info.crs, Role::Ground));
+        let lines = boundary.iter().map(|(path, layer)| stated(path, &layer.crs, Role::Lines));
+        let stated: Vec<Stated> = points.chain(lines).collect();
+        let SystemOptions { assign, target, .. } = &request.systems;
+        let Systems { from, crs } = systems::unify(&stated, &request.systems, journal)?;
+        let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
+        Ok(Plan { crs, is_new: assign.is_some() || target.is_some(), transforms })
+    }
 }
 
 fn note_warnings(journal: &Journal, path: &Path, warnings: &[String]) {
@@ -166,33 +208,24 @@ fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {
     (0..2).all(|k| bounds.min[k] <= p[k] && p[k] <= bounds.max[k])
 }
 
-/// Returns the polygons that points are clipped to, in the coordinate system of the points.
-fn boundary(request: &PointsRequest, crs: Option<&Crs>, journal: &Journal) -> Result<Option<Inside>> {
-    let mut polygons = Vec::new();
-    for path in &request.boundary {
-        let layer = open::layer(path)?;
-        note_warnings(journal, path, &layer.warnings);
-        one_system(&mut crs.cloned(), layer.crs.as_ref(), path)?;
-        polygons.extend(lines::polygons(&layer, path)?);
+/// Returns what a sink is to be given of a source: the coordinate system of the result and, if the
+/// points are reprojected, a lattice for them.
+fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<PointInfo> {
+    info.crs.clone_from(&plan.crs);
+    let Some(head) = &mut info.head else { return Ok(info) };
+    if let Some(crs) = plan.crs.as_ref().filter(|_| plan.is_new) {
+        las::state_system(head, crs)?;
     }
-    Ok((!request.boundary.is_empty()).then(|| Inside::new(&polygons)))
-}
-
-/// Returns an error if a file is in a different coordinate system than those before it. Points are
-/// not reprojected: that would round them.
-fn one_system(all: &mut Option<Crs>, stated: Option<&Crs>, path: &Path) -> Result<()> {
-    match (&all, stated) {
-        (Some(known), Some(stated)) if !known.is_same(stated) => {
-            Err(Error::usage(format!("the file is in {stated}, the files before it are in {known}"))
-                .in_file(path)
-                .cure("convert all files to one coordinate system first: `points` does not reproject"))
-        }
-        (None, Some(stated)) => {
-            *all = Some(stated.clone());
-            Ok(())
-        }
-        _ => Ok(()),
+    if number.is_some()
+        && let Some(lattice) = &mut info.lattice
+    {
+        let bounds = info.bounds.ok_or_else(|| {
+            Error::format("the header states no extent, which scale and offset would be chosen by")
+                .cure("write the file without --t-srs first: that counts its extent")
+        })?;
+        *lattice = lattice::reprojected(lattice, &bounds, |points| plan.transforms.apply(number, points))?;
     }
+    Ok(info)
 }
 
 #[cold]

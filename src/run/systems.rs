@@ -73,15 +73,27 @@ pub(super) struct Systems {
 /// nothing to reproject from.
 pub(super) fn reconcile(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
     let stated = assigned(files, options, journal);
-    let systems = match &options.target {
-        Some(target) => reproject(&stated, target, journal)?,
-        None => Systems { from: vec![None; stated.len()], crs: agree(&stated, journal)? },
-    };
+    let systems = common(&stated, options, journal)?;
     match &systems.crs {
         Some(crs) => judge(crs, &stated, options.degrees, journal)?,
         None => journal.add(Notice::NoSystem),
     }
     Ok(systems)
+}
+
+/// Like [`reconcile`], for results that need no lengths: the system may be of any kind, or unknown.
+///
+/// # Errors
+/// If two files state different systems, or there is nothing to reproject from.
+pub(super) fn unify(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
+    common(&assigned(files, options, journal), options, journal)
+}
+
+fn common(stated: &[Stated], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
+    match &options.target {
+        Some(target) => reproject(stated, target, journal),
+        None => Ok(Systems { from: vec![None; stated.len()], crs: agree(stated, journal)? }),
+    }
 }
 
 /// Like [`reconcile`], but ignores the files that are `None`; these are not reprojected.

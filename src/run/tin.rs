@@ -8,6 +8,7 @@ use super::context::{Journal, Size, Stage};
 use super::crossings::{self, LineNames};
 use super::extents;
 use super::input::{Input, MemoryPoints};
+use super::layers;
 use super::lines;
 use super::memory;
 use super::notice::Notice;
@@ -136,8 +137,8 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     }
     request.check_layers()?;
     let mut files = PointFiles::open(&request.points, request.read, journal)?;
-    let breaklines = layers(&request.breaklines, journal)?;
-    let boundary = layers(&request.boundary, journal)?;
+    let breaklines = layers::read(&request.breaklines, journal)?;
+    let boundary = layers::read(&request.boundary, journal)?;
 
     let mut stated = files.stated(&request.classes, journal)?;
     stated.extend(
@@ -176,7 +177,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
             names.add(file, &line);
         }
     }
-    for rings in clip_polygons(&boundary, of_boundary, &transforms)? {
+    for rings in layers::polygons(&boundary, of_boundary, &transforms)? {
         builder.add_boundary(&rings);
     }
 
@@ -299,23 +300,6 @@ impl Reach {
     }
 }
 
-/// Reads layers; returns each with its path.
-type Layers<'a> = Vec<(&'a Path, std::borrow::Cow<'a, Layer>)>;
-
-fn layers<'a>(inputs: &'a [Input<Layer>], journal: &Journal) -> Result<Layers<'a>> {
-    let mut layers = Vec::with_capacity(inputs.len());
-    for input in inputs {
-        journal.context.check()?;
-        let path = input.path();
-        let layer = open::layer_of(input).map_err(|e| e.in_file(path))?;
-        let (format, records) = (layer.format.clone(), layer.shapes.len());
-        journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
-        layer.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
-        layers.push((path, layer));
-    }
-    Ok(layers)
-}
-
 fn note_classes(report: &SelectionReport, wanted: &Classes, journal: &Journal) {
     if let Classes::Only(classes) = wanted {
         for class in classes.iter().filter(|class| !report.by_class.contains_key(class)) {
@@ -368,24 +352,4 @@ fn nothing_left(report: &SelectionReport, files: &[&Path]) -> Error {
         return error.cure(format!("the points have class {}: choose with --class", classes.join(", ")));
     }
     error.cure("withheld points are never used: clear the withheld flag on points that should be used")
-}
-
-/// Returns the polygons that the surface is clipped to, each as its rings.
-fn clip_polygons(
-    boundary: &Layers,
-    by_file: &[Option<usize>],
-    transforms: &Transforms,
-) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
-    let mut polygons = Vec::new();
-    for ((path, layer), transform) in boundary.iter().zip(by_file) {
-        for mut rings in lines::polygons(layer, path)? {
-            for ring in &mut rings {
-                let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
-                transforms.apply(*transform, &mut points).map_err(|e| e.in_file(path))?;
-                *ring = points.into_iter().map(|p| [p[0], p[1]]).collect();
-            }
-            polygons.push(rings);
-        }
-    }
-    Ok(polygons)
 }

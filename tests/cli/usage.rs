@@ -1,5 +1,6 @@
 //! What is asked for and makes no sense, and what is refused; help, lists and `info`.
 
+use super::lidar::{las, tile};
 use super::{Run, SLOPE, files_of, folder_with, geojson, run_in, run_with};
 
 #[test]
@@ -285,6 +286,27 @@ fn a_feature_that_is_not_built_in_is_named() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
     let run = run_in(&folder, &["tin", "a.xyz", "--a-srs", "EPSG:25832", "--t-srs", "EPSG:25833", "-o", "t.ply"]);
     run.fails(1, &["PROJ", "hint: ", "--features proj"]);
+    let run = run_in(&folder, &["points", "a.xyz", "--a-srs", "EPSG:25832", "-t_srs", "EPSG:25833", "-o", "t.xyz"]);
+    run.fails(1, &["PROJ", "hint: ", "--features proj"]);
+}
+
+#[test]
+fn points_are_assigned_a_system() {
+    let folder = folder_with(&[]);
+    let points = tile([500_000.0, 5_000_000.0], 2);
+    std::fs::write(folder.path().join("a.las"), las(&points, Some(25832))).unwrap();
+    std::fs::write(folder.path().join("b.las"), las(&points, None)).unwrap();
+    let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
+    run("points a.las -a_srs EPSG:25833+7837 -o c.laz").works(&[
+        "a.las states ETRS89 / UTM zone 32N",
+        "as given by --a-srs",
+        "CRS         ETRS89 / UTM zone 33N",
+    ]);
+    assert!(run("info c.laz").stdout.contains("EPSG:25833+7837"));
+    run("points a.las b.las -o d.las").works(&["b.las states no coordinate system", "points      32 points of 32"]);
+    run("points c.laz a.las -o e.las").fails(1, &["two coordinate systems: c.laz", "--a-srs CRS"]);
+    run("points a.las --a-srs EPSG:1 -o f.las").fails(2, &["--a-srs EPSG:1: "]);
+    run("points b.las --t-srs EPSG:25832 -o f.las").fails(1, &["b.las: the file states no coordinate system"]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::args::{CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, OnCrossingArg, SurfaceArgs};
+use super::args::{CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, OnCrossingArg, SurfaceArgs, SystemArgs};
 use super::inputs;
 use crate::cli::report::console::Console;
 use crate::crs::Crs;
@@ -29,11 +29,8 @@ impl SurfacePlan {
     /// If files are missing, kinds of input are mixed or options do not go together.
     pub(in crate::cli) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
         let files = inputs::expand(&args.inputs, console)?;
-        let systems = SystemOptions {
-            assign: system("--a-srs", args.a_srs.as_deref())?,
-            target: system("--t-srs", args.t_srs.as_deref())?,
-            degrees: if args.force_degrees { Degrees::Allow } else { Degrees::Refuse },
-        };
+        let degrees = if args.force_degrees { Degrees::Allow } else { Degrees::Refuse };
+        let systems = SystemOptions { degrees, ..systems(&args.systems)? };
         inputs::require(args.breaklines.iter().chain(&args.boundary))?;
         let (breaklines, boundary) = (layers(&args.breaklines), layers(&args.boundary));
         let building = TinRequest { breaklines, boundary, ..TinRequest::default() };
@@ -59,6 +56,18 @@ impl SurfacePlan {
         let extent = args.te.map(|corners| corners.bounds());
         Ok(FrameOptions { resolution: args.resolution, extent, align_to: args.align_to.clone() })
     }
+}
+
+/// Returns the coordinate systems that the options name.
+///
+/// # Errors
+/// If one is not known.
+pub(in crate::cli) fn systems(args: &SystemArgs) -> Result<SystemOptions> {
+    Ok(SystemOptions {
+        assign: system("--a-srs", args.a_srs.as_deref())?,
+        target: system("--t-srs", args.t_srs.as_deref())?,
+        ..SystemOptions::default()
+    })
 }
 
 /// Parses the coordinate system of an option.
@@ -128,7 +137,7 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
         (args.crossing_z != CrossingZArg::default(), "--crossing-z"),
         (args.crossing_tolerance.is_some(), "--crossing-tolerance"),
         (args.crossing_report.is_some(), "--crossing-report"),
-        (args.t_srs.is_some(), "--t-srs"),
+        (args.systems.t_srs.is_some(), "--t-srs"),
         (args.read.columns.is_some(), "--columns"),
         (args.read.parse.is_some(), "--parse"),
         (args.read.partial, "--partial"),

@@ -1,5 +1,6 @@
 use crate::cli::Exit;
 use crate::cli::input::args::PointsArgs;
+use crate::cli::input::plan::systems;
 use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::{counted, print_extent};
@@ -28,6 +29,7 @@ pub(in crate::cli) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> 
         bounds: args.bounds.map(|bounds| bounds.bounds()),
         boundary: args.boundary.clone(),
         rounding: if args.round { Rounding::Nearest } else { Rounding::Refuse },
+        systems: systems(&args.systems)?,
     };
     let report = write_points(&request, target.within(&outputs.set), &console.context())?;
     let left_out = [

@@ -63,25 +63,12 @@ impl Step {
     /// # Errors
     /// If they do not fit into 32 bits.
     pub(super) fn apply(&self, steps: [i32; 3], into: &Lattice) -> Result<[i32; 3]> {
-        let far = |point: [f64; 3]| {
-            let [x, y, z] = point;
-            Error::limit(format!("the point at {x} {y} {z} cannot be stored with the scale and offset of the output"))
-                .cure("write the files one by one")
-        };
         match self {
             Step::Same => Ok(steps),
             Step::Exact(embedding) => embedding.steps(steps).ok_or_else(|| far(steps.map(f64::from))),
             Step::Rounded(from) => {
                 let point = from.point(steps);
-                let mut there = [0; 3];
-                for k in 0..3 {
-                    let step = ((point[k] - into.offset[k]) / into.scale[k]).round();
-                    if step.abs() > f64::from(i32::MAX) {
-                        return Err(far(point));
-                    }
-                    there[k] = step as i32;
-                }
-                Ok(there)
+                into.nearest(point).ok_or_else(|| far(point))
             }
         }
     }
@@ -197,6 +184,13 @@ fn lattice(all: &[(&LasHead, Lattice)], rounding: Rounding) -> Result<Lattice> {
             Err(apart(&other.unwrap_or(first), &first))
         }
     }
+}
+
+/// Returns the error for a point that a lattice does not reach.
+#[cold]
+pub(super) fn far([x, y, z]: [f64; 3]) -> Error {
+    Error::limit(format!("the point at {x} {y} {z} cannot be stored with the scale and offset of the output"))
+        .cure("write the files one by one")
 }
 
 #[cold]

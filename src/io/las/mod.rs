@@ -41,6 +41,7 @@ mod reader;
 mod record;
 mod records;
 mod reference;
+mod system;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -50,4 +51,6 @@ pub use header::{Header, RecordInfo};
 pub use merge::Rounding;
 pub use options::{Detail, ReadOptions};
 pub use reader::{LasReader, from_stream, from_stream_with, open, open_with};
+pub use record::put_coordinates;
+pub use system::state_system;
 pub use write::{LasWriter, Packing, create};

@@ -148,7 +148,7 @@ fn failed(error: laz::LasZipError) -> Error {
 }
 
 /// Returns the header of a variable length record.
-fn record_header(user: &str, id: u16, length: u16, description: &str) -> Vec<u8> {
+pub(super) fn record_header(user: &str, id: u16, length: u16, description: &str) -> Vec<u8> {
     let mut bytes = vec![0; 2];
     bytes.extend(padded::<16>(user));
     bytes.extend(id.to_le_bytes());

@@ -5,6 +5,7 @@ mod parse;
 mod reading;
 mod surface;
 mod switches;
+mod systems;
 mod verbs;
 
 use std::num::NonZeroUsize;
@@ -17,6 +18,7 @@ use crate::io::formats;
 pub(in crate::cli) use parse::{EdgeLength, finite};
 pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(in crate::cli) use switches::expand_switches;
+pub(in crate::cli) use systems::SystemArgs;
 pub(in crate::cli) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, KernelArg, OutputArgs, PointsArgs,
     TinArgs, TriangulateArgs,

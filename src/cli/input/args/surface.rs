@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::parse::{Corners, EdgeLength, not_negative};
 use super::reading::ReadArgs;
+use super::systems::SystemArgs;
 use crate::cli::input::classes;
 use crate::triangulation::OnCrossing;
 
@@ -100,19 +101,8 @@ pub(in crate::cli) struct SurfaceArgs {
     #[arg(long, value_name = "FILE.csv", help_heading = "Surface")]
     pub(in crate::cli) crossing_report: Option<PathBuf>,
 
-    /// Coordinate system to assign to the input, such as `EPSG:25832`
-    ///
-    /// Overrides what the files state. Nothing is reprojected. Without this option, a file that
-    /// states no system is taken to be in that of the others, and two different systems are an
-    /// error.
-    #[arg(long, value_name = "CRS", help_heading = "Coordinate system")]
-    pub(in crate::cli) a_srs: Option<String>,
-
-    /// Coordinate system to reproject points and lines to
-    ///
-    /// Needs a build with PROJ (`--features proj`).
-    #[arg(long, value_name = "CRS", help_heading = "Coordinate system")]
-    pub(in crate::cli) t_srs: Option<String>,
+    #[command(flatten)]
+    pub(in crate::cli) systems: SystemArgs,
 
     /// Go on although the coordinates are in degrees
     ///

@@ -5,6 +5,7 @@ use clap::{Args, ValueEnum};
 use super::parse::{Corners, altitude, finite, positive, smallest_angle};
 use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
+use super::systems::SystemArgs;
 use crate::cli::input::classes;
 
 /// The files to write.
@@ -76,15 +77,19 @@ pub(in crate::cli) struct InfoArgs {
 ///
 /// Points are written in the order of the files. From LAS and LAZ to LAS and LAZ every byte of a
 /// point record is kept: times, colors, extra bytes. The coordinate system and the other records
-/// come from the first file. Files with different point formats, extra bytes, kinds of GPS time or
-/// coordinate systems cannot be merged, nor can waveforms. If scales and offsets differ, the first
-/// that can represent all points exactly is used; if none can, `--round` is needed. Text (.xyz,
-/// .txt, .csv) gets the coordinates, .csv also the class.
+/// come from the first file. Files with different point formats, extra bytes or kinds of GPS time
+/// cannot be merged, nor can waveforms. If scales and offsets differ, the first that can represent
+/// all points exactly is used; if none can, `--round` is needed. Text (.xyz, .txt, .csv) gets the
+/// coordinates, .csv also the class.
+///
+/// `--a-srs` changes only what the output states. `--t-srs` changes coordinates: scales become
+/// powers of ten that are at least as fine, and offsets follow from the extent.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
   breakline points tiles/*.laz --class ground,water --boundary site.shp -o site.laz
-  breakline points a.las b.las -o merged.laz")]
+  breakline points a.las b.las -o merged.laz
+  breakline points tile.laz --a-srs EPSG:25832+7837 -o tile-with-crs.laz")]
 pub(in crate::cli) struct PointsArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
@@ -125,6 +130,9 @@ pub(in crate::cli) struct PointsArgs {
     /// half a step.
     #[arg(long, help_heading = "Selection")]
     pub(in crate::cli) round: bool,
+
+    #[command(flatten)]
+    pub(in crate::cli) systems: SystemArgs,
 
     #[command(flatten)]
     pub(in crate::cli) read: ReadArgs,

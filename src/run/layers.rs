@@ -1,0 +1,56 @@
+//! Vector layers: read, and reprojected to the coordinate system of the result.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use super::context::Journal;
+use super::input::Input;
+use super::notice::Notice;
+use super::transforms::Transforms;
+use super::{lines, open};
+use crate::data::Layer;
+use crate::error::Result;
+
+/// Layers, each with its path.
+pub(super) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
+
+/// Reads layers, and adds a notice about each.
+///
+/// # Errors
+/// If one cannot be read, or the run is canceled.
+pub(super) fn read<'a>(inputs: &'a [Input<Layer>], journal: &Journal) -> Result<Layers<'a>> {
+    let mut layers = Vec::with_capacity(inputs.len());
+    for input in inputs {
+        journal.context.check()?;
+        let path = input.path();
+        let layer = open::layer_of(input).map_err(|e| e.in_file(path))?;
+        let (format, records) = (layer.format.clone(), layer.shapes.len());
+        journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
+        layer.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+        layers.push((path, layer));
+    }
+    Ok(layers)
+}
+
+/// Returns the polygons of boundaries, each as its rings, in the coordinate system of the result.
+///
+/// # Errors
+/// If a layer has none, or they cannot be reprojected.
+pub(super) fn polygons(
+    boundary: &Layers,
+    by_file: &[Option<usize>],
+    transforms: &Transforms,
+) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
+    let mut polygons = Vec::new();
+    for ((path, layer), transform) in boundary.iter().zip(by_file) {
+        for mut rings in lines::polygons(layer, path)? {
+            for ring in &mut rings {
+                let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
+                transforms.apply(*transform, &mut points).map_err(|e| e.in_file(path))?;
+                *ring = points.into_iter().map(|p| [p[0], p[1]]).collect();
+            }
+            polygons.push(rings);
+        }
+    }
+    Ok(polygons)
+}
