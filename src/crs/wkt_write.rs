@@ -4,6 +4,7 @@ use super::definition::Definition;
 use super::esri::{self, underscored};
 use super::projection::{Measure, Method, Param, Projection};
 use super::{CrsKind, Unit, registry};
+use crate::triangulation::num::unsigned_zero;
 
 /// A dialect of WKT 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -236,7 +237,7 @@ impl Writer {
     /// A number with fifteen significant digits, as other writers do; Esri's always have a point.
     fn number(&self, value: f64) -> String {
         let value: f64 = format!("{value:.14e}").parse().unwrap_or(value);
-        let text = (value + 0.0).to_string();
+        let text = unsigned_zero(value).to_string();
         if self.is_esri() && !text.contains('.') { text + ".0" } else { text }
     }
 }

@@ -13,6 +13,7 @@ use super::{Destination, Output};
 use crate::crs::{Crs, CrsKind};
 use crate::data::{ContourLine, Layer, Shape};
 use crate::error::{Error, Result};
+use crate::triangulation::num::unsigned_zero;
 
 /// Longitude and latitude on WGS 84, the default of GeoJSON.
 const WGS_84: u32 = 4326;
@@ -320,8 +321,7 @@ fn write(
         }
         let comma = if summary.lines == 0 { "" } else { "," };
         summary.add(&line);
-        // Negative zero is zero.
-        let level = line.level + 0.0;
+        let level = unsigned_zero(line.level);
         // `800.0` and not `800`, so that readers infer a field of real numbers.
         write!(out, "{comma}\n{{\"type\":\"Feature\",\"properties\":{{\"ID\":{},\"ELEV\":{level:?}}},", summary.lines)?;
         out.write_all(b"\"geometry\":{\"type\":\"LineString\",\"coordinates\":[")?;

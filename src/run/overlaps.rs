@@ -11,6 +11,7 @@ use std::collections::HashMap;
 use crate::data::{self, Surface};
 use crate::triangulation::geometry::Plane;
 use crate::triangulation::kernel::Wide;
+use crate::triangulation::num::unsigned_zero;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
@@ -64,7 +65,7 @@ pub(super) fn overlaps(surface: &dyn Surface) -> Vec<Overlap> {
         sides.filter(|&(face, _, i)| surface.neighbor(face, i).is_none()).collect();
     let position = |vertex: u32| {
         let [x, y, _] = surface.position(vertex);
-        [x + 0.0, y + 0.0]
+        [unsigned_zero(x), unsigned_zero(y)]
     };
     let ends: Vec<[f64; 2]> = border.iter().flat_map(|&(_, c, i)| [position(c[ccw(i)]), position(c[cw(i)])]).collect();
     let sides: Vec<[u32; 2]> = (0..border.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::units::neat;
 use crate::error::Error;
+use crate::triangulation::num::unsigned_zero;
 
 /// A point whose coordinates are compared bit by bit.
 type Key = [u64; 2];
@@ -28,7 +29,7 @@ pub(super) struct Gap {
 /// Linear.
 pub(super) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> {
     let flat: Vec<Vec<[f64; 2]>> =
-        lines.iter().map(|line| line.iter().map(|p| [p[0] + 0.0, p[1] + 0.0]).collect()).collect();
+        lines.iter().map(|line| line.iter().map(|p| [unsigned_zero(p[0]), unsigned_zero(p[1])]).collect()).collect();
     let mut at: HashMap<Key, Vec<usize>> = HashMap::new();
     for (number, line) in flat.iter().enumerate() {
         for end in ends(line) {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::crs::{Crs, CrsKind, Unit};
+use crate::triangulation::num::unsigned_zero;
 
 /// Metres per degree along a meridian, approximately: good enough for defaults.
 const METRES_PER_DEGREE: f64 = 111_320.0;
@@ -98,7 +99,7 @@ impl fmt::Display for Quantity {
 
 /// Formats a number with at most nine decimals.
 pub(crate) fn neat(value: f64) -> String {
-    let text = format!("{:.9}", value + 0.0);
+    let text = format!("{:.9}", unsigned_zero(value));
     match text.trim_end_matches('0').trim_end_matches('.') {
         // Not zero, but too small for nine decimals.
         "0" | "-0" if value != 0.0 => value.to_string(),

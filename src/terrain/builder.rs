@@ -4,6 +4,7 @@ use crate::crs::Crs;
 use crate::data::{Bounds, LineEdges};
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::num::unsigned_zero;
 use crate::triangulation::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, Rounding, spatial_order};
 
@@ -116,7 +117,7 @@ pub struct TinReport {
 
 /// Replaces -0 by 0: sites are compared bit by bit when sorted, and neither zero is the lower one.
 fn positive_zero([x, y, z]: [f64; 3]) -> [f64; 3] {
-    [x + 0.0, y + 0.0, z + 0.0]
+    [x, y, z].map(unsigned_zero)
 }
 
 impl TinBuilder {

@@ -1,4 +1,5 @@
 use crate::error::{Error, Result};
+use crate::triangulation::num::unsigned_zero;
 
 /// The largest number of levels in one run: far more than on any map, but few enough for memory.
 pub const MAX_LEVELS: usize = 1_000_000;
@@ -139,7 +140,7 @@ impl Progression {
 
 /// Replaces -0 by 0, so that equal levels are written alike.
 fn plain_zero(value: f64) -> f64 {
-    value + 0.0
+    unsigned_zero(value)
 }
 
 #[cfg(test)]

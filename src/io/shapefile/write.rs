@@ -9,6 +9,7 @@ use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind};
 use crate::error::{Error, Result};
 use crate::io::contour_summary::ContourSummary;
 use crate::io::{Destination, Output};
+use crate::triangulation::num::unsigned_zero;
 
 /// Limit for the bytes of each file: many programs read no more.
 const MAX_BYTES: u64 = i32::MAX as u64;
@@ -235,8 +236,7 @@ fn real(value: f64) -> String {
     if !value.is_finite() {
         return " ".repeat(width);
     }
-    // Negative zero is zero.
-    let mut text = (value + 0.0).to_string();
+    let mut text = unsigned_zero(value).to_string();
     if text.len() > width {
         // At most 24 characters: 17 digits with their point, two signs, the e and three digits.
         text = format!("{value:e}");

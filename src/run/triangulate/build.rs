@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use crate::triangulation::geometry::Plane;
 use crate::triangulation::kernel::{Kernel, twice_area};
+use crate::triangulation::num::unsigned_zero;
 use crate::triangulation::refine::{Quality, Shortfall};
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, Location, OnCrossing};
@@ -57,7 +58,7 @@ pub(super) fn build<K: Kernel>(
     quality: Option<&Quality<'_>>,
 ) -> Result<Built, InputError> {
     // Negative zero becomes zero: sites are compared bit by bit when sorted.
-    let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
+    let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(unsigned_zero)).collect();
     let (coarse, vertices) = ConstrainedDelaunay::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
     let refined = quality.map(|quality| coarse.clone().refined(quality));
     let t = refined.as_deref().unwrap_or(&coarse);
@@ -84,7 +85,7 @@ pub(super) fn build<K: Kernel>(
         vertex_of: vertices.iter().map(number).collect(),
         faces: cells.iter().map(face).collect(),
         chains: chains.iter().map(|chain| chain.iter().map(number).collect()).collect(),
-        seeds: seeds.iter().map(|p| locate_seed(t, &face_of, p.map(|x| x + 0.0))).collect(),
+        seeds: seeds.iter().map(|p| locate_seed(t, &face_of, p.map(unsigned_zero))).collect(),
         between: refined
             .iter()
             .flat_map(|refined| refined.added())

@@ -1,4 +1,5 @@
 use crate::data::Surface;
+use crate::triangulation::num::unsigned_zero;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
 /// A surface and the level of a contour.
@@ -127,7 +128,7 @@ impl<'a, S: Surface + ?Sized> Cut<'a, S> {
     pub(super) fn point(&self, face: &Face, node: Node) -> [f64; 2] {
         match node {
             // Adding 0 turns -0 into 0.
-            Node::Corner(i) => [face.at[i][0] + 0.0, face.at[i][1] + 0.0],
+            Node::Corner(i) => [unsigned_zero(face.at[i][0]), unsigned_zero(face.at[i][1])],
             Node::Edge(i) => crossing(face.at[(i + 1) % 3], face.at[(i + 2) % 3], self.level),
         }
     }
@@ -223,7 +224,7 @@ fn crossing(a: [f64; 3], b: [f64; 3], level: f64) -> [f64; 2] {
     let t = (0.5 * level - 0.5 * a[2]) / (0.5 * b[2] - 0.5 * a[2]);
     let between = |a: f64, b: f64| {
         let value = 2.0 * (0.5 * a + t * (0.5 * b - 0.5 * a));
-        value.max(a.min(b)).min(a.max(b)) + 0.0
+        unsigned_zero(value.max(a.min(b)).min(a.max(b)))
     };
     [between(a[0], b[0]), between(a[1], b[1])]
 }

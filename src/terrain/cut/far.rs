@@ -2,7 +2,7 @@
 
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::{Crossing, Geometry, Terrain};
-use crate::triangulation::num::Dyadic;
+use crate::triangulation::num::{Dyadic, unsigned_zero};
 use crate::triangulation::tds::VertexId;
 
 use super::{Domain, Segment};
@@ -61,6 +61,6 @@ fn crossing([a, b]: Segment, axis: usize, limit: f64) -> Option<[f64; 2]> {
     let numerator = Dyadic::from(a[other]) * difference(axis) + Dyadic::difference(limit, a[axis]) * difference(other);
     let mut site = [limit; 2];
     let (low, high) = (a[other].min(b[other]), a[other].max(b[other]));
-    site[other] = numerator.quotient(&difference(axis)).clamp(low, high) + 0.0; // zero has one sign only
+    site[other] = unsigned_zero(numerator.quotient(&difference(axis)).clamp(low, high));
     Some(site)
 }

@@ -18,7 +18,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::{Geometry, Terrain, height_along};
-use crate::triangulation::num::Sign;
+use crate::triangulation::num::{Sign, unsigned_zero};
 use crate::triangulation::tds::{CellId, VertexId};
 
 /// Cut lines and edges of triangles after their arrangement.
@@ -212,7 +212,7 @@ impl Arranged<'_> {
         let turned = |[i, j]: [f64; 2], turn: f64| [i - turn * j, j + turn * i].map(f64::round);
         let tried = [[i, j], turned([i, j], 0.5), turned([i, j], -0.5), [i / 2.0, j / 2.0], [i / 4.0, j / 4.0]];
         for [i, j] in tried {
-            let moved = [x + i * self.unit[0] + 0.0, y + j * self.unit[1] + 0.0, f64::NAN];
+            let moved = [unsigned_zero(x + i * self.unit[0]), unsigned_zero(y + j * self.unit[1]), f64::NAN];
             let is_new = self.base.geometry().admits(&moved) && !taken.contains(&bits(&moved));
             if is_new && self.is_free(site, &moved, chain, others) {
                 taken.insert(bits(&moved));

@@ -56,6 +56,7 @@ use std::ops::Range;
 use rustc_hash::FxHashMap;
 
 use crate::kernel::{Adaptive, Wide};
+use crate::num::unsigned_zero;
 use builder::Builder;
 use pixel::Grid;
 pub(crate) use rounder::{Rounder, crosses, is_aligned, is_ordinary, step_at};
@@ -135,7 +136,7 @@ impl Arrangement {
         const UP: f64 = f64::from_bits((1023 + 400) << 52);
         let scale: Site = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
         // Normalizes the sign of zero.
-        let scaled = |p: Site| [p[0] * scale[0] + 0.0, p[1] * scale[1] + 0.0];
+        let scaled = |p: Site| [unsigned_zero(p[0] * scale[0]), unsigned_zero(p[1] * scale[1])];
         let site_of = |i: u32| scaled(site_of(i));
         drawn.as_flattened_mut().iter_mut().for_each(|p| *p = scaled(*p));
         let smallest = scale.map(|s| step.max(f64::from_bits(1)) * s);

@@ -2,7 +2,7 @@
 
 use crate::kernel::{CornerSide, CrossingSide, Kernel, Orientation2, Predicate, RANGE};
 use crate::num::lattice::lowest_bit;
-use crate::num::{Dyadic, Pair, Sign};
+use crate::num::{Dyadic, Pair, Sign, unsigned_zero};
 
 use super::boxes::Box2;
 use super::{Segment, Site, lexicographic};
@@ -76,7 +76,7 @@ impl Grid {
     /// Returns the site nearest to a value, on an axis.
     fn nearest(&self, axis: usize, x: f64) -> f64 {
         let step = self.gap_above(axis, x);
-        (x / step).round() * step + 0.0 // zero has one sign only
+        unsigned_zero((x / step).round() * step)
     }
 
     /// Returns a box around the pixel of a site.
@@ -204,7 +204,7 @@ impl Grid {
             center =
                 if move_by.abs() <= 1.5 * step.abs() { center + step } else { self.nearest(along, center + move_by) };
         }
-        center + 0.0 // zero has one sign only
+        unsigned_zero(center)
     }
 }
 

@@ -48,7 +48,7 @@ use std::cmp::Ordering;
 use std::fmt::Debug;
 
 use crate::kernel::{Orientation2, Predicate};
-use crate::num::Sign;
+use crate::num::{Sign, unsigned_zero};
 
 /// The predicates that a triangulation needs. `N` is the number of vertices of a cell: 3 for
 /// triangles, 4 for tetrahedra.
@@ -311,7 +311,7 @@ pub trait Crossing: Coordinates<3> {
     /// The site lies on a line between points that are admitted.
     fn on_step(&self, site: [f64; 2]) -> [f64; 2] {
         let step = self.step();
-        if step == 0.0 { site } else { site.map(|x| (x / step).round() * step + 0.0) } // zero has one sign only
+        if step == 0.0 { site } else { site.map(|x| unsigned_zero((x / step).round() * step)) }
     }
 }
 

@@ -33,6 +33,20 @@ pub use integer::Integer;
 pub use interval::Interval;
 pub use pair::Pair;
 
+/// Returns zero for negative zero, and any other number as it is, so that equal numbers have equal
+/// bits.
+///
+/// ```
+/// use breakline_triangulation::num::unsigned_zero;
+///
+/// assert_eq!(unsigned_zero(-0.0).to_bits(), 0.0f64.to_bits());
+/// assert_eq!(unsigned_zero(-1.5), -1.5);
+/// ```
+#[inline(always)]
+pub fn unsigned_zero(x: f64) -> f64 {
+    x + 0.0
+}
+
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// The sign of a real number.

@@ -5,6 +5,7 @@ use crate::cli::input::classes;
 use crate::cli::report::summary::counted;
 use crate::data::{Columns, Lattice};
 use crate::run::PointFacts;
+use crate::triangulation::num::unsigned_zero;
 
 /// Names of the flags of a point, in the order in which they are counted.
 const FLAGS: [&str; 4] = ["synthetic", "key_point", "withheld", "overlap"];
@@ -23,7 +24,7 @@ pub(super) fn sheet(facts: &PointFacts) -> Sheet {
     sheet.bounds(facts.bounds);
     sheet.crs(info.crs.as_ref());
     if let Some(Lattice { scale, offset }) = info.lattice {
-        let list = |values: [f64; 3]| values.map(|value| (value + 0.0).to_string()).join(" ");
+        let list = |values: [f64; 3]| values.map(|value| unsigned_zero(value).to_string()).join(" ");
         sheet.row("scale", list(scale), json!(scale));
         sheet.row("offset", list(offset), json!(offset));
     }

@@ -1,6 +1,7 @@
 //! Insertion and removal of one vertex or one sub-constraint. The tables are kept up to date.
 
 use crate::geometry::Crossing;
+use crate::num::unsigned_zero;
 use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::WithConstraints;
@@ -16,7 +17,7 @@ pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 /// Returns the coordinates of a vertex; negative zeros become positive.
 #[inline]
 pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
-    t.geometry.plan(t.point(vertex)).map(|x| x + 0.0)
+    t.geometry.plan(t.point(vertex)).map(unsigned_zero)
 }
 
 impl Lines {

@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::arrangement::Arrangement;
 use crate::geometry::{Coordinates, Crossing};
+use crate::num::unsigned_zero;
 use crate::tds::VertexId;
 
 use super::super::ConstrainedDelaunay;
@@ -188,5 +189,5 @@ pub(super) fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::P
 
 /// Returns a key that is equal for equal sites: negative zeros become positive.
 fn key(position: [f64; 2]) -> [u64; 2] {
-    position.map(|x| (x + 0.0).to_bits())
+    position.map(|x| unsigned_zero(x).to_bits())
 }

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use crate::kernel::twice_area;
+use crate::num::unsigned_zero;
 
 #[inline]
 pub(super) fn minus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
@@ -143,7 +144,7 @@ impl Shape {
         let center = [(v[1] * uu - u[1] * vv) / doubled, (u[0] * vv - v[0] * uu) / doubled];
         let off = [0.5 * u[0] - reach * u[1], 0.5 * u[1] + reach * u[0]];
         let offset = if dot(off, off) < dot(center, center) { off } else { center };
-        [0, 1].map(|axis| p[axis] + offset[axis] + 0.0) // zero has one sign only
+        [0, 1].map(|axis| unsigned_zero(p[axis] + offset[axis]))
     }
 }
 

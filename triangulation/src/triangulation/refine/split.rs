@@ -2,7 +2,7 @@
 
 use crate::geometry::Crossing;
 use crate::kernel::{DotProduct, Kernel, Wide};
-use crate::num::Sign;
+use crate::num::{Sign, unsigned_zero};
 use crate::tds::{CellId, VertexId, Zone, cw};
 
 use super::draft::{Draft, Law, Origin};
@@ -45,7 +45,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // Phase 1: the new point.
         let [from, to] = [a, b].map(|v| self.t.plan_of(v));
         let fraction = self.shells.fraction([a, b], constraint, length(minus(to, from)));
-        let site = [0, 1].map(|axis| from[axis] * (1.0 - fraction) + to[axis] * fraction + 0.0); // zero has one sign only
+        let site = [0, 1].map(|axis| unsigned_zero(from[axis] * (1.0 - fraction) + to[axis] * fraction));
         let site = self.t.geometry().on_step(site);
         let p = self.t.geometry().meet(site, &[[self.t.point(a), self.t.point(b)]]);
         if self.t.inner.admit(&p).is_err() {
