@@ -298,11 +298,11 @@ fn points_are_assigned_a_system() {
     std::fs::write(folder.path().join("b.las"), las(&points, None)).unwrap();
     let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
     run("points a.las -a_srs EPSG:25833+7837 -o c.laz").works(&[
-        "a.las states ETRS89 / UTM zone 32N",
+        "a.las states EPSG:25832",
         "as given by --a-srs",
-        "CRS         ETRS89 / UTM zone 33N",
+        "CRS         EPSG:25833",
     ]);
-    assert!(run("info c.laz").stdout.contains("EPSG:25833+7837"));
+    assert!(run("info c.laz").stdout.contains("EPSG:7837"));
     run("points a.las b.las -o d.las").works(&["b.las states no coordinate system", "points      32 points of 32"]);
     run("points c.laz a.las -o e.las").fails(1, &["two coordinate systems: c.laz", "--a-srs CRS"]);
     run("points a.las --a-srs EPSG:1 -o f.las").fails(2, &["--a-srs EPSG:1: "]);
