@@ -46,14 +46,15 @@ impl Payloads {
 pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<String>) -> Result<Payloads> {
     let Layout { vlr_start, vlr_count, points_start, evlr_start, evlr_count, .. } = header.layout;
     let mut payloads = Payloads::default();
-    let short = Region { name: "variable length", start: vlr_start, end: points_start, count: vlr_count };
+    let short = Records { name: "variable length", start: vlr_start, end: points_start, count: vlr_count };
     short.read(input, header, &mut payloads, warnings, |source| {
         let mut bytes = [0; VLR_HEADER];
         source.read_exact(&mut bytes)?;
         Ok((RawRecordHeader::parse(&bytes), VLR_HEADER))
     })?;
     if evlr_count > 0 {
-        let long = Region { name: "extended variable length", start: evlr_start, end: input.length, count: evlr_count };
+        let long =
+            Records { name: "extended variable length", start: evlr_start, end: input.length, count: evlr_count };
         long.read(input, header, &mut payloads, warnings, |source| {
             let mut bytes = [0; EVLR_HEADER];
             source.read_exact(&mut bytes)?;
@@ -64,14 +65,14 @@ pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<String
 }
 
 /// A sequence of records of one kind.
-struct Region {
+struct Records {
     name: &'static str,
     start: u64,
     end: u64,
     count: u64,
 }
 
-impl Region {
+impl Records {
     fn read<'a>(
         &self,
         input: &'a Input,
@@ -80,7 +81,7 @@ impl Region {
         warnings: &mut Vec<String>,
         next: impl Fn(&mut BufReader<&'a std::fs::File>) -> std::io::Result<(RawRecordHeader, usize)>,
     ) -> Result<()> {
-        let Region { name, start, end, count } = *self;
+        let Records { name, start, end, count } = *self;
         let mut source = BufReader::new(&input.file);
         source.seek(SeekFrom::Start(start))?;
         let mut position = start;

@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, contain};
 use crate::triangulation::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
-use crate::triangulation::refine::{Domain, Quality, Region, Shortfall};
+use crate::triangulation::refine::{Domain, Quality, RegionBound, Shortfall};
 use crate::triangulation::{InputError, OnCrossing};
 
 /// Options of triangulating points and segments of the plane. By default nothing is refined, and
@@ -205,7 +205,9 @@ fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Contex
     Some(Quality {
         min_angle: options.min_angle.unwrap_or(0.0),
         max_area: options.max_area.unwrap_or(f64::INFINITY),
-        regions: bounds.filter_map(|region| Some(Region { seed: region.at, max_area: region.max_area? })).collect(),
+        regions: bounds
+            .filter_map(|region| Some(RegionBound { seed: region.at, max_area: region.max_area? }))
+            .collect(),
         domain: if is_hull { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
         max_added: options.max_added.unwrap_or(Quality::MAX_ADDED),
         cancel: Some(context.cancel),

@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use crate::grid::{Free, Point, build};
 use breakline_triangulation::geometry::{Metric, Plane, Space, Weighted};
 use breakline_triangulation::kernel::{Exact, Kernel, Wide};
-use breakline_triangulation::refine::{Conformity, Domain, Quality, Region};
+use breakline_triangulation::refine::{Conformity, Domain, Quality, RegionBound};
 use breakline_triangulation::tds::{CellId, VertexId};
 use breakline_triangulation::{
     Basic, Buckets, Compact, CompactError, Constrained, ConstrainedDelaunay, Delaunay, Hierarchy, JumpAndWalk, Level,
@@ -308,7 +308,8 @@ fn lines_and_meshes() {
             assert!(cell_numbers(&mesh).into_iter().all(|cell| !mesh.is_inside(cell) || mesh.tds().is_used(cell)));
         }
         for q in odd_places() {
-            let regions = vec![Region { seed: q, max_area: f64::NAN }, Region { seed: [1.0, 1.0], max_area: q[0] }];
+            let regions =
+                vec![RegionBound { seed: q, max_area: f64::NAN }, RegionBound { seed: [1.0, 1.0], max_area: q[0] }];
             let domains = [Domain::Hull { holes: vec![q] }, Domain::Seeded { seeds: vec![q] }];
             for domain in domains {
                 let quality = Quality {

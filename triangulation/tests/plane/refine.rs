@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use breakline_triangulation::geometry::{Crossing, Plane, Terrain, distance_to_segment};
 use breakline_triangulation::kernel::{Adaptive, DotProduct, Exact, Fixed, InCircle, Kernel, Lattice, Wide};
 use breakline_triangulation::num::Sign;
-use breakline_triangulation::refine::{Conformity, Domain, Quality, Refined, Region, Shortfall};
+use breakline_triangulation::refine::{Conformity, Domain, Quality, Refined, RegionBound, Shortfall};
 use breakline_triangulation::tds::CellId;
 use breakline_triangulation::{ConstrainedDelaunay, Level, OnCrossing};
 use testkit::random::Random;
@@ -298,7 +298,8 @@ fn areas_are_bounded_everywhere_in_a_region_and_by_site() {
     keeps_to(&coarse, &Quality { max_area: 1.0, ..Quality::default() });
     assert!(coarse.shortfall().is_empty());
 
-    let regions = vec![Region { seed: [1.0, 1.0], max_area: 0.25 }, Region { seed: [-5.0, 1.0], max_area: 1e-9 }];
+    let regions =
+        vec![RegionBound { seed: [1.0, 1.0], max_area: 0.25 }, RegionBound { seed: [-5.0, 1.0], max_area: 1e-9 }];
     let left = halves.refined(&Quality { max_area: 2.0, regions, ..Quality::default() });
     assert!(left.inside().any(|cell| area(corners(&left, cell)) > 0.25), "on the right");
     for cell in left.inside() {

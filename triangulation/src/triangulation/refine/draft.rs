@@ -12,9 +12,9 @@ use super::OUTSIDE;
 use super::shape::{area, is_in_lens, minus};
 use super::shells::Shells;
 
-/// The region around a constrained edge that must contain no vertex.
+/// The region around a constrained edge in which a vertex encroaches upon it.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Law {
+pub(super) enum Encroachment {
     /// The circle through its ends and a vertex on the other side, without its border.
     Delaunay,
     /// The circle that has it as its diameter, with its border.
@@ -58,11 +58,16 @@ pub(super) struct Draft<G: Crossing, V> {
     pub(super) encroached: VecDeque<[VertexId; 2]>,
     origins: Vec<Origin>,
     pub(super) shells: Shells,
-    pub(super) law: Law,
+    pub(super) encroachment: Encroachment,
 }
 
 impl<G: Crossing, V: Default> Draft<G, V> {
-    pub(super) fn new(t: ConstrainedDelaunay<G, V>, regions: Vec<u32>, law: Law, budget: usize) -> Self {
+    pub(super) fn new(
+        t: ConstrainedDelaunay<G, V>,
+        regions: Vec<u32>,
+        encroachment: Encroachment,
+        budget: usize,
+    ) -> Self {
         let mut draft = Draft {
             regions,
             fresh: Vec::new(),
@@ -70,7 +75,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             encroached: VecDeque::new(),
             origins: vec![Origin::Given; t.tds().vertex_slots()],
             shells: Shells::new(t.tds().vertex_slots()),
-            law,
+            encroachment,
             t,
         };
         for cell in draft.t.tds().cells() {
@@ -91,14 +96,14 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         self.regions[cell.index()] != OUTSIDE
     }
 
-    /// Returns true if an edge is constrained and has a vertex near it that the law forbids.
+    /// Returns true if an edge is constrained and a vertex encroaches upon it.
     pub(super) fn is_encroached(&self, cell: CellId, i: usize) -> bool {
         let is_far_apex_near = || {
             let beside = self.t.tds().neighbor(cell, i);
             self.is_apex_near(beside, self.t.tds().index_of_neighbor(beside, cell))
         };
         // Of four points in circles one test is enough.
-        let is_symmetric = matches!(self.law, Law::Delaunay);
+        let is_symmetric = matches!(self.encroachment, Encroachment::Delaunay);
         self.t.is_constrained(cell, i) && (self.is_apex_near(cell, i) || !is_symmetric && is_far_apex_near())
     }
 
@@ -115,7 +120,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         if apex == VertexId::INFINITE || !self.is_inside(cell) {
             return false;
         }
-        if let Law::Delaunay = self.law {
+        if let Encroachment::Delaunay = self.encroachment {
             let beside = tds.neighbor(cell, i);
             return !tds.is_infinite(beside) && {
                 let corners = tds.corners(beside).map(|v| self.t.point(v));
@@ -129,10 +134,10 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     fn encroaches(&self, ends: [VertexId; 2], site: [f64; 2]) -> bool {
         let [a, b] = ends.map(|v| self.t.plan_of(v));
         let angle = || Wide::sign(&DotProduct([a, site, b]));
-        match self.law {
-            Law::Delaunay => false,
-            Law::Gabriel => angle() != Sign::Positive,
-            Law::Lens(cosine) => is_in_lens(minus(a, site), minus(b, site), cosine),
+        match self.encroachment {
+            Encroachment::Delaunay => false,
+            Encroachment::Gabriel => angle() != Sign::Positive,
+            Encroachment::Lens(cosine) => is_in_lens(minus(a, site), minus(b, site), cosine),
         }
     }
 

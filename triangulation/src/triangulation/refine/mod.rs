@@ -47,7 +47,7 @@ use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
 use super::ConstrainedDelaunay;
-use draft::{Draft, Law, Origin};
+use draft::{Draft, Encroachment, Origin};
 use improve::Refiner;
 
 /// The region of a cell outside of the domain.
@@ -93,9 +93,9 @@ pub enum Domain {
     },
 }
 
-/// An area that constraints enclose, with a bound of its own.
+/// A bound on the triangles of one region: an area that constraints enclose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
+pub struct RegionBound {
     /// A point in the region, rounded like those of a [`Domain`]; a point outside of the domain has
     /// no effect.
     pub seed: [f64; 2],
@@ -113,7 +113,7 @@ pub struct Quality<'a> {
     /// The largest area of a triangle, in the square of the unit of the coordinates.
     pub max_area: f64,
     /// Regions with bounds of their own.
-    pub regions: Vec<Region>,
+    pub regions: Vec<RegionBound>,
     /// A bound on the area of a triangle that depends on its centroid.
     pub area_at: Option<&'a dyn Fn([f64; 2]) -> f64>,
     /// The region to refine.
@@ -258,11 +258,11 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
             return Refined::unchanged(self);
         }
         let regions = vec![0; self.tds().cell_slots()];
-        let law = match conformity {
-            Conformity::Delaunay => Law::Delaunay,
-            Conformity::Gabriel => Law::Gabriel,
+        let encroachment = match conformity {
+            Conformity::Delaunay => Encroachment::Delaunay,
+            Conformity::Gabriel => Encroachment::Gabriel,
         };
-        let mut draft = Draft::new(self, regions, law, MAX_SPLITS);
+        let mut draft = Draft::new(self, regions, encroachment, MAX_SPLITS);
         draft.split_encroached();
         let why = if draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
         let does_not_conform = |&cell: &CellId| (0..3).any(|i| draft.is_encroached(cell, i));
@@ -301,7 +301,7 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         // constraint could not be split then.
         let angle = if quality.bounds_areas() { quality.angle().max(1.0) } else { quality.angle() };
         let lens = if angle > 0.0 { (2.0 * angle.to_radians()).cos() } else { f64::INFINITY };
-        let draft = Draft::new(self, regions, Law::Lens(lens), quality.max_added);
+        let draft = Draft::new(self, regions, Encroachment::Lens(lens), quality.max_added);
         let mut refiner = Refiner::new(draft, quality);
         refiner.run();
         let shortfall = refiner.shortfall();

@@ -4,14 +4,14 @@ use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
 use super::super::{ConstrainedDelaunay, Location};
-use super::{Domain, OUTSIDE, Region};
+use super::{Domain, OUTSIDE, RegionBound};
 
 /// Returns for each cell, by number: [`OUTSIDE`], or 0, or one more than the index of its region.
 /// Makes the hull's edges constraints where the domain needs it.
 pub(super) fn regions_of<G: Crossing, V: Default>(
     t: &mut ConstrainedDelaunay<G, V>,
     domain: &Domain,
-    regions: &[Region],
+    regions: &[RegionBound],
 ) -> Vec<u32> {
     let mut marks = match domain {
         Domain::Hull { holes } => {

@@ -5,7 +5,7 @@ use crate::kernel::{DotProduct, Kernel, Wide};
 use crate::num::{Sign, unsigned_zero};
 use crate::tds::{CellId, VertexId, Zone, cw};
 
-use super::draft::{Draft, Law, Origin};
+use super::draft::{Draft, Encroachment, Origin};
 use super::shape::{length, minus};
 
 impl<G: Crossing, V: Default> Draft<G, V> {
@@ -34,7 +34,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         };
         let constraint = ends_of(a).or(ends_of(b)).unwrap_or([a, b]);
         self.shells.learn(&self.t, constraint);
-        if let Law::Lens(_) = self.law
+        if let Encroachment::Lens(_) = self.encroachment
             && !self.shells.is_in_cluster(constraint)
         {
             edge = self.clear_circle(edge);
