@@ -11,7 +11,7 @@
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
-//! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked | [`Surface`] |
+//! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked, [`SurfaceFacts`] counted | [`Surface`] |
 //! | a box | [`Bounds`] | |
 //!
 //! # Conventions
@@ -37,6 +37,7 @@ mod mesh;
 mod points;
 mod shape;
 mod surface;
+mod surface_facts;
 mod triangles;
 
 pub use bounds::Bounds;
@@ -51,4 +52,5 @@ pub use points::{Columns, PointBatch, PointFlags, PointInfo, PointSink, PointSou
 pub use shape::{Layer, Shape, ShapeKind};
 pub use surface::{EdgeKind, Face, Surface};
 pub(crate) use surface::{LineEdges, corners, faces};
+pub use surface_facts::SurfaceFacts;
 pub use triangles::{LinkFlaw, Triangles};

@@ -1,6 +1,8 @@
+use std::io::Write;
 use std::ops::Range;
 
 use crate::crs::Crs;
+use crate::error::{Error, Result};
 
 /// The role of an edge in a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -29,6 +31,19 @@ pub struct Face {
 }
 
 impl EdgeKind {
+    /// All kinds, each at the position of the number that stands for it in files.
+    pub const ALL: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
+
+    /// Returns the number that stands for the kind in files.
+    pub fn number(self) -> u8 {
+        match self {
+            EdgeKind::Plain => 0,
+            EdgeKind::Breakline => 1,
+            EdgeKind::Clip => 2,
+            EdgeKind::Rim => 3,
+        }
+    }
+
     /// Returns true for an edge on a breakline or a clip line.
     pub fn is_constrained(self) -> bool {
         matches!(self, EdgeKind::Breakline | EdgeKind::Clip)
@@ -91,6 +106,27 @@ pub trait Surface: Sync {
 
     /// The coordinate system, if known.
     fn crs(&self) -> Option<&Crs>;
+
+    /// Returns an error once something in the surface was found damaged, as can happen to a surface
+    /// that is read while it is used.
+    ///
+    /// Such a surface answers a question about what is damaged as if it were not there, or with any
+    /// position. So whoever writes a result asks here before the result counts.
+    ///
+    /// # Errors
+    /// The first damage that any question has met.
+    fn ensure_intact(&self) -> Result<()> {
+        Ok(())
+    }
+
+    /// Writes the surface together with its triangulation, as a file `.tin`.
+    ///
+    /// # Errors
+    /// Those of `out`, and if the surface has no triangulation: if it was not built from points.
+    fn write_tin(&self, _out: &mut dyn Write) -> Result<()> {
+        Err(Error::unsupported("a .tin holds a triangulation, and this surface has none")
+            .cure("build the surface from points, or write .ply"))
+    }
 
     /// The coordinates of the corners of a face; `None` if the [face](Self::face) does not
     /// exist.

@@ -12,13 +12,14 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::contour_summary::ContourSummary;
-use super::geotiff::{CellFormat, GeoTiffReader, RasterSummary, WriteOptions};
+use super::geotiff::{CellFormat, GeoTiffReader, RasterSummary};
 use super::las::{Detail, Packing, Rounding};
 use super::listing::Listing;
+use super::mapped::Mapped;
 use super::output::Destination;
 use super::point_options::Options;
 use super::triangle::Triangulated;
-use super::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, text, triangle};
+use super::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, text, tin, triangle};
 use crate::crs::Crs;
 use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
 use crate::error::{Error, Result};
@@ -129,6 +130,8 @@ pub(super) enum Reader {
     Layer(fn(&Path, Option<&str>) -> Result<Layer>),
     Raster(fn(&Path) -> Result<GeoTiffReader>),
     Mesh(fn(&Path) -> Result<Triangles>),
+    /// A TIN, which is not read, but used where its bytes are.
+    Tin(fn(&Path) -> Result<Mapped>),
     /// Triangles without exact coordinates: counted, but not read.
     Solid(fn(&Path) -> Result<stl::Solid>),
     /// Points and segments of the plane, see [`triangle::read`].
@@ -367,7 +370,7 @@ impl Reader {
             Reader::Points { .. } => "points",
             Reader::Layer(_) => "lines, polygons, points",
             Reader::Raster(_) => "heights",
-            Reader::Mesh(_) => "surface",
+            Reader::Mesh(_) | Reader::Tin(_) => "surface",
             Reader::Own => "points and segments",
             Reader::Solid(_) | Reader::InfoOnly => "by `info` only",
             Reader::Gdal => "with `gdal`",
@@ -440,6 +443,10 @@ const TEXT: Reader = Reader::Points {
 
 const fn lidar_writer(create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>) -> Writers {
     Writers { points: Some(PointWriter { detail: Detail::Records, create }), ..NOT_WRITTEN }
+}
+
+const fn surface_writer(write: WriteSurface) -> Writers {
+    Writers { surface: Some(write), ..NOT_WRITTEN }
 }
 
 const fn raster(
@@ -603,8 +610,8 @@ pub static FORMATS: &[Format] = &[
         gdal_name: Some("GTiff"),
         reader: Reader::Raster(|path| geotiff::open(path)),
         writers: Writers {
-            heights: Some(|target, source| geotiff::write(target, source, with_cells(CellFormat::Heights))),
-            shades: Some(|target, source| geotiff::write(target, source, with_cells(CellFormat::Shades)).map(drop)),
+            heights: Some(|target, source| geotiff::write(target, source, CellFormat::Heights.into())),
+            shades: Some(|target, source| geotiff::write(target, source, CellFormat::Shades.into()).map(drop)),
             ..NOT_WRITTEN
         },
         cure: AS_RASTER,
@@ -635,10 +642,7 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
         reader: Reader::Mesh(|path| ply::read(&std::fs::read(path)?)),
-        writers: Writers {
-            surface: Some(|target, mesh, crs| ply::write(target, mesh, crs).map(|()| None)),
-            ..NOT_WRITTEN
-        },
+        writers: surface_writer(|target, mesh, crs| ply::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles with breaklines and coordinate system",
         ..ROW
@@ -650,10 +654,7 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
         reader: Reader::Mesh(|path| obj::read(&std::fs::read(path)?)),
-        writers: Writers {
-            surface: Some(|target, mesh, crs| obj::write(target, mesh, crs).map(|()| None)),
-            ..NOT_WRITTEN
-        },
+        writers: surface_writer(|target, mesh, crs| obj::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles",
         ..ROW
@@ -665,10 +666,7 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
         reader: Reader::Mesh(|path| off::read(&std::fs::read(path)?)),
-        writers: Writers {
-            surface: Some(|target, mesh, crs| off::write(target, mesh, crs).map(|()| None)),
-            ..NOT_WRITTEN
-        },
+        writers: surface_writer(|target, mesh, crs| off::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles",
         ..ROW
@@ -682,9 +680,23 @@ pub static FORMATS: &[Format] = &[
         beside: &["stl.origin.txt"],
         parts: &["stl.origin.txt"],
         reader: Reader::Solid(stl::describe),
-        writers: Writers { surface: Some(|target, mesh, _| stl::write(target, mesh).map(Some)), ..NOT_WRITTEN },
+        writers: surface_writer(|target, mesh, _| stl::write(target, mesh).map(Some)),
         cure: AS_MESH,
         help: "triangles in 32-bit floats from a local origin; written only",
+        ..ROW
+    },
+    Format {
+        name: "TIN",
+        noun: "a TIN of breakline",
+        extensions: &["tin"],
+        magic: &[Magic::At(0, b"brkTIN\n\x1a")],
+        known_by: KnownBy::Bytes,
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        reader: Reader::Tin(tin::map),
+        writers: surface_writer(|target, mesh, _| tin::write(target, mesh).map(|()| None)),
+        cure: AS_MESH,
+        help: "triangulation with breaklines and coordinate system, opened in milliseconds",
         ..ROW
     },
     Format {
@@ -783,7 +795,3 @@ pub static FORMATS: &[Format] = &[
         ..ROW
     },
 ];
-
-fn with_cells(cells: CellFormat) -> WriteOptions<'static> {
-    WriteOptions { cells, progress: None }
-}

@@ -35,6 +35,9 @@ use std::path::{Path, PathBuf};
 
 use super::formats::{self, Content, Holding, Product, Reader};
 use super::listing::Listing;
+#[cfg(doc)]
+use super::mapped;
+use super::mapped::Mapped;
 use super::output::Destination;
 pub use super::stl::Solid;
 use crate::data::{Mesh, Surface, Triangles};
@@ -59,8 +62,8 @@ pub struct MeshSummary {
 /// Writes a surface in the format that the extension of `target` names.
 ///
 /// # Errors
-/// If the extension names no mesh format, the surface is too large for the format, or the file
-/// cannot be written.
+/// If the extension names no mesh format, the surface is too large for the format or was found
+/// damaged, or the file cannot be written.
 pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> Result<MeshSummary> {
     let target = target.into();
     let format = formats::of_name(&target.format_path()).filter(|format| format.content == Content::Mesh);
@@ -74,7 +77,11 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
         .cure(format!("use {}", formats::extensions_or(Product::Surface))));
     };
     let mesh = Listing::new(surface);
-    let origin = write(target, &mesh, surface.crs());
+    let origin = target.put_whole(|target| {
+        let origin = write(target, &mesh, surface.crs())?;
+        surface.ensure_intact()?;
+        Ok(origin)
+    });
     Ok(MeshSummary {
         vertices: mesh.vertex_count,
         faces: mesh.face_count,
@@ -82,6 +89,17 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
         lost_edges: if format.can_hold(Holding::Edges) { 0 } else { mesh.constrained_edges },
         origin: origin.map_err(|e| e.in_file(target.path()))?,
     })
+}
+
+/// Maps a TIN to memory; `None` for a file of another format, by its first bytes and its extension.
+///
+/// # Errors
+/// Those of [`mapped::open`].
+pub fn map_tin(path: &Path) -> Option<Result<Mapped>> {
+    match formats::detect_file(path).ok()??.reader {
+        Reader::Tin(map) => Some(map(path)),
+        _ => None,
+    }
 }
 
 /// Describes a file of unconnected triangles without exact coordinates (STL), which is not read as
@@ -125,6 +143,9 @@ pub fn read_triangles(path: &Path) -> Result<Triangles> {
             return Err(Error::unsupported(format!("{name} meshes are not read: they have no exact coordinates"))
                 .in_file(path)
                 .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
+        }
+        Some((_, Reader::Tin(_))) => {
+            return Err(Error::unsupported("a .tin is not read triangle by triangle").in_file(path));
         }
         _ => return Err(unknown(path)),
     };

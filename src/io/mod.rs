@@ -9,6 +9,7 @@
 //! | read a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
 //! | write a raster | | [`geotiff::write()`]; as a picture: [`png::write_gray`] |
 //! | read or write a mesh | [`mesh::read`], [`mesh::write`] | |
+//! | map a TIN to memory | [`mapped::open`], for a [`CompactTin`](crate::terrain::CompactTin) | |
 //! | read or write Triangle's files: points and segments in the plane, and their triangulation | | [`triangle::read`], [`triangle::write`] |
 //! | write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`] |
 //! | write other shapes | | [`shapefile::write_layer`] |
@@ -48,6 +49,7 @@ pub mod geotiff;
 pub mod las;
 pub mod layer;
 mod listing;
+pub mod mapped;
 pub mod mesh;
 mod obj;
 mod off;
@@ -62,6 +64,7 @@ mod rows;
 pub mod shapefile;
 mod stl;
 pub mod text;
+mod tin;
 pub mod triangle;
 mod world_file;
 

@@ -8,7 +8,7 @@ use super::watched::Watched;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Surface, Window};
 use crate::error::{Error, Result};
-use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
+use crate::io::geotiff::{self, CellFormat, RasterSummary};
 use crate::io::{Destination, png};
 use crate::terrain::{Dem, Hillshade, Light};
 
@@ -86,7 +86,7 @@ pub fn hillshade<'a>(
             refuse_frame(&options.frame)?;
             (Box::new(grid.as_ref()), None)
         }
-        Model::Tin(_) | Model::Mesh(_) => {
+        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => {
             let surface = product.triangles()?;
             (heights(product, surface, &options.frame, &journal)?, Some(surface))
         }
@@ -150,7 +150,7 @@ impl CellProduct<'_> {
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
     pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
-        geotiff::write(target, &self.watched(context)?, WriteOptions { cells: self.cells, progress: None })
+        geotiff::write(target, &self.watched(context)?, self.cells.into())
     }
 
     /// Computes all cells, on all cores, and writes them as a gray PNG, 0 to 255.

@@ -7,7 +7,7 @@ use super::context::{Context, Journal, Stage};
 use super::notice::Notice;
 use super::open;
 use super::overlaps::{Overlap, overlaps};
-use super::surface::{self, Source, SurfaceProduct, SurfaceRequest};
+use super::surface::{self, Model, Source, SurfaceProduct, SurfaceRequest};
 use super::systems::{Degrees, SystemOptions};
 use super::watched::Watched;
 use crate::data::{LinkFlaw, Mesh, Surface, Triangles};
@@ -71,13 +71,19 @@ pub struct CheckProduct {
 /// lines. Coordinates in degrees are allowed, since no lengths are checked.
 ///
 /// # Errors
-/// Those of [`triangles`](surface::triangles), except for a mesh that is not a surface.
+/// Those of [`triangles`](surface::triangles), except for a mesh that is not a surface; and if the
+/// file of a TIN is damaged.
 pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct> {
     let systems = SystemOptions { degrees: Degrees::Allow, ..request.systems.clone() };
-    if let Source::Mesh(path) = &request.source {
+    if let Source::Mesh(path) = &request.source
+        && open::tin(path).is_none()
+    {
         return check_mesh(path, &systems, context);
     }
     let product = surface::triangles(&SurfaceRequest { source: request.source.clone(), systems }, context)?;
+    if let Model::Compact(tin) = &product.model {
+        tin.check()?;
+    }
     let watched = checked(product.triangles()?, context)?;
     let flaws = flaws_beside(&[], &terrain::surface_flaws(&watched), &watched);
     watched.end()?;

@@ -96,7 +96,9 @@ impl ContourProduct<'_> {
     ) -> Result<T> {
         match &self.product.model {
             Model::Raster(grid) => draw(&GridSurface::new(grid)?, &self.levels, context, take),
-            Model::Tin(_) | Model::Mesh(_) => draw(self.product.triangles()?, &self.levels, context, take),
+            Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => {
+                draw(self.product.triangles()?, &self.levels, context, take)
+            }
         }
     }
 }

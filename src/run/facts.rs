@@ -5,13 +5,15 @@ use std::path::Path;
 
 use super::context::{Context, Size, Stage};
 use super::open::{self, Content, Raster};
-use super::surface::SurfaceFacts;
 use crate::crs::Crs;
-use crate::data::{BlockSource, Bounds, Frame, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape, ShapeKind, Surface};
+use crate::data::{
+    BlockSource, Bounds, Frame, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape, ShapeKind, Surface, SurfaceFacts,
+};
 use crate::error::Result;
 use crate::io::mesh::Solid;
 use crate::io::png::Picture;
 use crate::io::points;
+use crate::terrain::CompactTin;
 
 /// The contents of a file, by its kind.
 #[derive(Debug, Clone)]
@@ -105,7 +107,7 @@ pub struct RasterFacts {
     pub warnings: Vec<String>,
 }
 
-/// Counts over all triangles of a mesh.
+/// Counts over all triangles of a mesh, or those that the file of a TIN states.
 #[derive(Debug, Clone)]
 pub struct MeshFacts {
     /// Counts and extent.
@@ -157,7 +159,10 @@ pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Fa
         Content::Raster => Facts::Raster(Box::new(raster_facts(path)?)),
         Content::Mesh => match open::solid(path) {
             Some(solid) => Facts::Solid(Box::new(solid?)),
-            None => Facts::Mesh(Box::new(mesh_facts(path)?)),
+            None => Facts::Mesh(Box::new(match open::tin(path) {
+                Some(tin) => tin_facts(&tin?),
+                None => mesh_facts(path)?,
+            })),
         },
         Content::Picture => Facts::Picture(Box::new(open::picture(path)?)),
         Content::Plane => Facts::Plane(Box::new(plane_facts(path)?)),
@@ -276,6 +281,10 @@ fn raster_facts(path: &Path) -> Result<RasterFacts> {
 fn mesh_facts(path: &Path) -> Result<MeshFacts> {
     let (mesh, flaws) = open::linked_mesh(path)?;
     Ok(MeshFacts { surface: SurfaceFacts::of(&mesh), crs: mesh.crs().cloned(), flaw: flaws.first().copied() })
+}
+
+fn tin_facts<S: AsRef<[u8]> + Sync>(tin: &CompactTin<S>) -> MeshFacts {
+    MeshFacts { surface: tin.facts().clone(), crs: tin.crs().cloned(), flaw: None }
 }
 
 fn plane_facts(path: &Path) -> Result<PlaneFacts> {

@@ -100,7 +100,7 @@ pub use input::{Input, MemoryPoints, STDIN};
 pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity};
 pub use overlaps::Overlap;
 pub use points::{PointsReport, PointsRequest, Withheld, write_points};
-pub use surface::{Model, Source, SurfaceFacts, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
+pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
 pub use systems::{Degrees, SystemOptions};
 pub use tin::{BuildReport, EdgeLimit, TinRequest};
 pub use triangulate::{Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate};

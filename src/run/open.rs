@@ -13,12 +13,14 @@ use crate::error::{Error, Kind, Result};
 pub(super) use crate::io::formats::Content;
 use crate::io::formats::{self, Format, Holding};
 use crate::io::geotiff::GeoTiffReader;
+use crate::io::mapped::Mapped;
 pub(super) use crate::io::mesh::keeps_lines;
 use crate::io::mesh::{self, Solid};
 use crate::io::png::{self, Picture};
 use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph};
 use crate::io::{gdal, layer, points, raster};
+use crate::terrain::CompactTin;
 
 /// Returns true if a file is LAS, LAZ or COPC.
 pub(super) fn is_lidar(path: &Path) -> bool {
@@ -139,6 +141,11 @@ pub(super) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
     let mesh = mesh::read(path)?;
     reading.end()?;
     Ok(mesh)
+}
+
+/// Opens a TIN where its bytes are; `None` if the file has a different format.
+pub(super) fn tin(path: &Path) -> Option<Result<CompactTin<Mapped>>> {
+    mesh::map_tin(path).map(|mapped| CompactTin::open(mapped?, path))
 }
 
 /// Reads a mesh that may not be a surface: its triangles, linked where possible, and the flaws of

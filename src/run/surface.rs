@@ -10,11 +10,12 @@ use super::systems::{self, Role, Stated, SystemOptions};
 use super::tin::{self, BuildReport, TinRequest};
 use super::watched::Watched;
 use crate::crs::Crs;
-use crate::data::{self, Bounds, Grid, LineEdges, Mesh, Surface};
+use crate::data::{Bounds, Grid, Mesh, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::io::Destination;
+use crate::io::mapped::Mapped;
 use crate::io::mesh::{self, MeshSummary};
-use crate::terrain::Tin;
+use crate::terrain::{CompactTin, Tin};
 
 /// The surface that a verb works on, and its coordinate system.
 #[derive(Debug, Clone, Default)]
@@ -30,7 +31,7 @@ pub struct SurfaceRequest {
 pub enum Source {
     /// Points and lines, which it is built from.
     Points(Box<TinRequest>),
-    /// A file of triangles, which is read.
+    /// A file of triangles, which is read, or of a TIN, which is used where it is.
     Mesh(PathBuf),
     /// A raster of heights, which is read.
     Raster(PathBuf),
@@ -59,7 +60,7 @@ impl Source {
             Some(path) if files.len() > 1 => {
                 Err(Error::usage("the file is a surface, and cannot be combined with other files")
                     .in_file(path)
-                    .cure("pass one .ply or one raster alone, or points only"))
+                    .cure("pass one .tin, .ply or raster alone, or points only"))
             }
             Some(path) if content(path) == Content::Mesh => Ok(Source::Mesh(path.clone())),
             Some(path) => Ok(Source::Raster(path.clone())),
@@ -79,13 +80,15 @@ pub struct SurfaceProduct {
     pub notices: Vec<Notice>,
 }
 
-/// A surface of one of three kinds.
+/// A surface of one of four kinds.
 #[derive(Debug)]
 pub enum Model {
     /// Built from points and lines.
     Tin(Box<Tin>),
     /// Triangles from a file.
     Mesh(Box<Mesh>),
+    /// A TIN in a file, used where its bytes are.
+    Compact(Box<CompactTin<Mapped>>),
     /// Cells from a raster.
     Raster(Box<Grid>),
 }
@@ -99,7 +102,8 @@ impl SurfaceProduct {
         match &self.model {
             Model::Tin(tin) => Ok(tin.as_ref()),
             Model::Mesh(mesh) => Ok(mesh.as_ref()),
-            Model::Raster(_) => Err(Error::usage("the surface is a raster; points or a .ply are needed")),
+            Model::Compact(tin) => Ok(tin.as_ref()),
+            Model::Raster(_) => Err(Error::usage("the surface is a raster; points, a .tin or a .ply are needed")),
         }
     }
 
@@ -108,7 +112,23 @@ impl SurfaceProduct {
         match &self.model {
             Model::Tin(tin) => tin.crs(),
             Model::Mesh(mesh) => mesh.crs(),
+            Model::Compact(tin) => tin.crs(),
             Model::Raster(grid) => grid.crs.as_ref(),
+        }
+    }
+
+    /// Returns the counts and the extent of the triangles; for a TIN in a file, those that it
+    /// states.
+    ///
+    /// # Errors
+    /// If the surface is a raster.
+    ///
+    /// # Complexity
+    /// Linear, unless the TIN is in a file.
+    pub fn facts(&self) -> Result<SurfaceFacts> {
+        match &self.model {
+            Model::Compact(tin) => Ok(tin.facts().clone()),
+            Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) => self.triangles().map(SurfaceFacts::of),
         }
     }
 
@@ -116,18 +136,19 @@ impl SurfaceProduct {
     /// heights.
     ///
     /// # Complexity
-    /// Linear, unless the surface is a TIN.
+    /// Linear for a mesh and a raster, else constant.
     pub fn extent(&self) -> Bounds {
         match &self.model {
             Model::Tin(tin) => tin.report().extent,
             Model::Mesh(mesh) => SurfaceFacts::of(mesh.as_ref()).extent,
+            Model::Compact(tin) => tin.facts().extent,
             Model::Raster(grid) => grid.extent(),
         }
     }
 }
 
-/// Writes a mesh, in the format that the extension of `target` names: `.ply`, `.obj`, `.off` or
-/// `.stl`.
+/// Writes a surface, in the format that the extension of `target` names: `.tin`, `.ply`, `.obj`,
+/// `.off` or `.stl`.
 ///
 /// # Errors
 /// If the extension names no such format, the surface is too large for it, the file cannot be
@@ -154,8 +175,11 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
             (Model::Tin(Box::new(tin)), Some(Box::new(report)))
         }
         Source::Mesh(path) => {
-            let mesh = open::mesh(path, &journal)?;
-            (mesh_model(path, mesh, &request.systems, &journal)?, None)
+            let model = match open::tin(path) {
+                Some(tin) => tin_model(path, tin?, &request.systems, &journal)?,
+                None => mesh_model(path, open::mesh(path, &journal)?, &request.systems, &journal)?,
+            };
+            (model, None)
         }
         Source::Raster(path) => {
             let (mut grid, warnings) = open::raster(path, &journal)?;
@@ -173,7 +197,7 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
 /// Those of [`surface`], and if the input is a raster, which is not read then.
 pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
     if let Source::Raster(path) = &request.source {
-        return Err(Error::usage("the input is a raster; points or a .ply are needed")
+        return Err(Error::usage("the input is a raster; points, a .tin or a .ply are needed")
             .in_file(path)
             .cure("`contour` and `hillshade` take rasters"));
     }
@@ -186,46 +210,18 @@ pub(super) fn mesh_model(path: &Path, mut mesh: Mesh, options: &SystemOptions, j
     Ok(Model::Mesh(Box::new(mesh)))
 }
 
+/// Returns a TIN in a file as a model, in the coordinate system that it states or that is assigned.
+pub(super) fn tin_model(
+    path: &Path,
+    mut tin: CompactTin<Mapped>,
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<Model> {
+    tin.set_crs(one_system(path, tin.crs(), options, journal)?);
+    Ok(Model::Compact(Box::new(tin)))
+}
+
 fn one_system(path: &Path, crs: Option<&Crs>, options: &SystemOptions, journal: &Journal) -> Result<Option<Crs>> {
     let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), role: Role::Whole }];
     Ok(systems::reconcile(&stated, options, journal)?.crs)
-}
-
-/// Counts and extent of a surface. Vertices that no face uses do not count.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SurfaceFacts {
-    /// Vertices that some face uses.
-    pub vertices: usize,
-    /// Triangles.
-    pub triangles: usize,
-    /// Edges on breaklines.
-    pub breaklines: usize,
-    /// Edges on clip lines.
-    pub clips: usize,
-    /// The box around these vertices.
-    pub extent: Bounds,
-}
-
-impl SurfaceFacts {
-    /// Returns the counts over all faces of a surface.
-    ///
-    /// # Complexity
-    /// Linear.
-    pub fn of(surface: &dyn Surface) -> Self {
-        let mut is_used = vec![false; surface.vertex_count()];
-        let mut lines = LineEdges::default();
-        let (mut vertices, mut triangles, mut extent) = (0, 0, Bounds::default());
-        data::faces(surface).for_each(|face| {
-            triangles += 1;
-            lines.add(surface, face.number, face.edges);
-            for vertex in face.corners {
-                if !std::mem::replace(&mut is_used[vertex as usize], true) {
-                    vertices += 1;
-                    extent.add(surface.position(vertex));
-                }
-            }
-        });
-        let LineEdges { breaklines, clips } = lines;
-        SurfaceFacts { vertices, triangles, breaklines, clips, extent }
-    }
 }

@@ -1,12 +1,13 @@
 //! Sources that report progress, and that end when the run is canceled.
 
+use std::io::{self, Write};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::context::{Context, Size, Stage, Work};
 use crate::crs::Crs;
 use crate::data::{BlockSource, EdgeKind, Face, Frame, Surface, Window};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// A source that reports progress while a writer or a check reads from it.
 ///
@@ -22,14 +23,6 @@ pub(super) struct Watched<'a, S: ?Sized> {
 impl<'a, S: ?Sized> Watched<'a, S> {
     fn new(source: &'a S, stage: Stage, size: Size, context: &Context<'a>) -> Result<Self> {
         Ok(Watched { source, work: context.start(stage, size)?, is_canceled: AtomicBool::new(false) })
-    }
-
-    /// Ends the stage.
-    ///
-    /// # Errors
-    /// If the run was canceled; the data read from the source is then incomplete.
-    pub(super) fn end(self) -> Result<()> {
-        if self.is_canceled.into_inner() { Err(crate::error::Error::canceled()) } else { self.work.end() }
     }
 
     /// Counts faces; returns false once the run is canceled.
@@ -53,6 +46,19 @@ impl<'a, S: Surface + ?Sized> Watched<'a, S> {
     /// A surface that reports progress in faces, each of which is visited `times` times.
     pub(super) fn faces(source: &'a S, times: u64, stage: Stage, context: &Context<'a>) -> Result<Self> {
         Self::new(source, stage, Size::Items(times * source.face_count() as u64), context)
+    }
+
+    /// Ends the stage.
+    ///
+    /// # Errors
+    /// If the run was canceled, or something in the surface was found damaged; what was read from
+    /// it is then incomplete.
+    pub(super) fn end(self) -> Result<()> {
+        if self.is_canceled.into_inner() {
+            return Err(Error::canceled());
+        }
+        self.work.end()?;
+        self.source.ensure_intact()
     }
 
     /// A surface that is part of a stage in progress and reports nothing itself.
@@ -114,6 +120,14 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         self.source.crs()
     }
 
+    fn ensure_intact(&self) -> Result<()> {
+        self.source.ensure_intact()
+    }
+
+    fn write_tin(&self, out: &mut dyn Write) -> Result<()> {
+        self.source.write_tin(&mut Polled { out, work: &self.work })
+    }
+
     fn corners_in(&self, numbers: Range<u32>, faces: &mut Vec<(u32, [u32; 3])>) {
         if self.goes_on(numbers.len()) {
             self.source.corners_in(numbers, faces);
@@ -130,6 +144,23 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         if self.goes_on(numbers.len()) {
             self.source.heights_in(numbers, is_wanted, faces);
         }
+    }
+}
+
+/// A writer that fails once the run is canceled.
+struct Polled<'a, 'b> {
+    out: &'a mut dyn Write,
+    work: &'a Work<'b>,
+}
+
+impl Write for Polled<'_, '_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.work.add(0).map_err(io::Error::other)?;
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
     }
 }
 

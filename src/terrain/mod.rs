@@ -9,12 +9,13 @@
 //! | any surface | contours | [`contours()`], at [`Levels`] |
 //! | a DEM | contours | [`GridSurface`], a surface over its cells |
 //! | a DEM | shaded relief | [`Hillshade`] |
+//! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | any surface | a check that it is sound | [`surface_flaws`], [`shape_flaws`]; for a TIN also [`Tin::check`] |
 //!
 //! A surface is anything that implements [`Surface`](crate::data::Surface): a [`Tin`], a
-//! [`Mesh`](crate::data::Mesh) from a file, a [`GridSurface`]. Results are sources (of raster
-//! blocks, of lines), which the writers in [`io`](crate::io) accept. So a result need not fit into
-//! memory.
+//! [`CompactTin`], a [`Mesh`](crate::data::Mesh) from a file, a [`GridSurface`]. Results are
+//! sources (of raster blocks, of lines), which the writers in [`io`](crate::io) accept. So a result
+//! need not fit into memory.
 //!
 //! # Conventions
 //!
@@ -33,6 +34,7 @@
 mod admitted;
 mod builder;
 mod clip;
+mod compact;
 pub mod contour;
 mod crossings;
 mod cut;
@@ -48,6 +50,7 @@ mod tin;
 mod window;
 
 pub use builder::{TinBuilder, TinReport};
+pub use compact::CompactTin;
 pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};
 pub use duplicates::DuplicateRule;

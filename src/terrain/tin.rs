@@ -1,14 +1,16 @@
+use std::io::Write;
 use std::ops::Range;
 
 use crate::crs::Crs;
 use crate::data::{Bounds, EdgeKind, Face, LineEdges, Surface};
+use crate::error::Result;
 use crate::triangulation::geometry::{Terrain, height_along};
 use crate::triangulation::kernel::RANGE;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
-use super::TinReport;
 use super::cut::Cut;
+use super::{TinReport, compact};
 
 /// A surface of triangles over points and breaklines.
 ///
@@ -275,6 +277,10 @@ impl Surface for Tin {
 
     fn crs(&self) -> Option<&Crs> {
         self.crs.as_ref()
+    }
+
+    fn write_tin(&self, out: &mut dyn Write) -> Result<()> {
+        compact::write(self, &self.triangulation, out)
     }
 
     fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {

@@ -6,7 +6,7 @@ use super::console::Console;
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, Frame};
 use crate::run::units::{Units, neat, number};
-use crate::run::{BuildReport, Model, SurfaceFacts, SurfaceProduct};
+use crate::run::{BuildReport, Model, SurfaceProduct};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// Prints what a surface was built of, what was left out, and its size and extent.
@@ -24,9 +24,8 @@ pub(in crate::cli) fn print_surface(product: &SurfaceProduct, console: &Console)
             console.line(format_args!("raster      {}", describe(&grid.frame, grid.crs.as_ref())));
             return print_extent(grid.extent(), grid.crs.as_ref(), console);
         }
-        (None, Model::Mesh(_) | Model::Tin(_)) => {
-            let Ok(surface) = product.triangles() else { return };
-            let facts = SurfaceFacts::of(surface);
+        (None, Model::Mesh(_) | Model::Tin(_) | Model::Compact(_)) => {
+            let Ok(facts) = product.facts() else { return };
             for (name, edges) in [("breaklines", facts.breaklines), ("clip lines", facts.clips)] {
                 if edges > 0 {
                     console.line(format_args!("{name}  {edges} edges"));

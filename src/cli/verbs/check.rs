@@ -4,8 +4,9 @@ use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
 use crate::cli::{Exit, print};
+use crate::data::SurfaceFacts;
 use crate::error::Result;
-use crate::run::{self, CheckProduct, SurfaceFacts};
+use crate::run::{self, CheckProduct};
 
 /// Lists the flaws of a TIN, or of a mesh that may not be a surface.
 pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
@@ -18,7 +19,7 @@ pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     }
     print_surface(&product, console);
     outputs.commit(console)?;
-    let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = SurfaceFacts::of(product.triangles()?);
+    let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = product.facts()?;
     let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", breaklines + clips);
     match flaws.len() {
         0 => {

@@ -21,6 +21,13 @@ pub struct WriteOptions<'a> {
     pub progress: Option<&'a (dyn Fn(u64, u64) + Sync)>,
 }
 
+/// Options for these contents, without a report of progress.
+impl From<CellFormat> for WriteOptions<'_> {
+    fn from(cells: CellFormat) -> Self {
+        WriteOptions { cells, progress: None }
+    }
+}
+
 impl std::fmt::Debug for WriteOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("WriteOptions").field("cells", &self.cells).finish_non_exhaustive()

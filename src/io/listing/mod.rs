@@ -11,7 +11,7 @@ const UNUSED: u32 = u32::MAX;
 /// The vertices and faces of a surface as listed in a mesh file: in the surface's own order,
 /// without unused vertices.
 pub(super) struct Listing<'a> {
-    surface: &'a dyn Surface,
+    pub(super) surface: &'a dyn Surface,
     /// Maps each vertex of the surface to its number in the file.
     number: Vec<u32>,
     pub(super) vertex_count: usize,

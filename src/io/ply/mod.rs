@@ -18,9 +18,8 @@ use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
 
-/// The kinds of a face's edges, by their numbers in the file. The first edge goes from the first
-/// corner to the second, and so on.
-const KINDS: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
+/// The properties for the kinds of a face's edges. The first edge goes from the first corner to the
+/// second, and so on.
 const EDGES: [&str; 3] = ["edge1", "edge2", "edge3"];
 const FRAGMENT: &str = "piece";
 
@@ -58,7 +57,7 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     };
     if has_lines {
         mesh.lined_faces().try_for_each(|(face, [b, c, a], is_fragment)| {
-            let [a, b, c] = [a, b, c].map(|kind| KINDS.iter().position(|k| *k == kind).unwrap_or_default() as u8);
+            let [a, b, c] = [a, b, c].map(EdgeKind::number);
             output.write_all(&corners(face))?;
             output.write_all(&[a, b, c, u8::from(is_fragment)])
         })?;
@@ -188,8 +187,8 @@ fn line_properties(element: &Element) -> Option<([usize; 3], usize)> {
 }
 
 fn edge_kind(name: &str, number: f64) -> Result<EdgeKind> {
-    let kind = KINDS.into_iter().enumerate().find(|(i, _)| *i as f64 == number);
-    kind.map(|(_, kind)| kind).ok_or_else(|| {
+    let kind = EdgeKind::ALL.into_iter().find(|kind| f64::from(kind.number()) == number);
+    kind.ok_or_else(|| {
         Error::format(format!("{name} is {number}, expected 0 (plain), 1 (breakline), 2 (clip line) or 3 (rim)"))
     })
 }

@@ -67,6 +67,6 @@ impl<S: Surface + ?Sized> BlockSource for Dem<'_, S> {
                 scan.draw(corners, &rows, &columns);
             }
         }
-        Ok(())
+        self.surface.ensure_intact()
     }
 }

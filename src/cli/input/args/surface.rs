@@ -14,9 +14,9 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
     /// Points from LAS, LAZ, COPC, text (x y z) and vector layers (`FILE:FIELD` takes heights from
-    /// an attribute). Or one TIN: a .ply of this program, with its breaklines and coordinate
-    /// system, or an .obj. `@list.txt` contains one file name per line (`#` starts a comment),
-    /// relative to the list. The order of the files makes no difference, except for
+    /// an attribute). Or one TIN: a .tin or a .ply of this program, with its breaklines and
+    /// coordinate system, or an .obj. `@list.txt` contains one file name per line (`#` starts a
+    /// comment), relative to the list. The order of the files makes no difference, except for
     /// `--duplicates first` and `last`.
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,

@@ -141,13 +141,15 @@ pub(in crate::cli) struct PointsArgs {
 /// Build a TIN of points and breaklines
 ///
 /// Every breakline becomes edges of the TIN; everywhere else the triangulation is Delaunay, and it
-/// does not depend on the order of the input. Formats: .ply (binary, with breaklines and coordinate
-/// system; `dem`, `contour`, `hillshade`, `check` and `info` can read it), .obj, .off, and .stl
-/// (relative to a local origin, which is printed and written to a file next to it).
+/// does not depend on the order of the input. Formats: .tin (opened in milliseconds by `dem`,
+/// `contour`, `hillshade`, `check`, `info` and `tin`), .ply (binary, with breaklines and coordinate
+/// system; the same verbs read it), .obj, .off, and .stl (relative to a local origin, which is
+/// printed and written to a file next to it). A .tin must not change while a verb reads it.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
-  breakline tin tiles/*.laz --breaklines edges.shp --boundary site.shp -o ground.ply")]
+  breakline tin tiles/*.laz --breaklines edges.shp --boundary site.shp -o ground.ply
+  breakline tin tiles/*.laz -o ground.tin")]
 pub(in crate::cli) struct TinArgs {
     #[command(flatten)]
     pub(in crate::cli) surface: SurfaceArgs,
@@ -324,11 +326,11 @@ pub(in crate::cli) struct HillshadeArgs {
 
 /// Prove a TIN correct, or list its flaws
 ///
-/// Checks a mesh from a file (.ply, .obj, .off, or .ele with its .node), or the TIN of points and
-/// breaklines: links between neighbors, manifold, orientation, no overlaps, Delaunay between
-/// breaklines. The breaklines of an .ele are the segments of the .poly next to it; .obj and .off
-/// have no breaklines, and the Delaunay law is not checked for them. Flaws number vertices, faces
-/// and edges from 0 and give their positions. The exit code is 1 if there is any.
+/// Checks a surface from a file (.tin, .ply, .obj, .off, or .ele with its .node), or the TIN of
+/// points and breaklines: links between neighbors, manifold, orientation, no overlaps, Delaunay
+/// between breaklines. The breaklines of an .ele are the segments of the .poly next to it; .obj and
+/// .off have no breaklines, and the Delaunay law is not checked for them. Flaws number vertices,
+/// faces and edges from 0 and give their positions. The exit code is 1 if there is any.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:

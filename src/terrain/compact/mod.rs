@@ -1,0 +1,375 @@
+//! A TIN in the bytes of its file, used where they are.
+//!
+//! The file is that of a [`Compact`](crate::triangulation::Compact) triangulation with sections:
+//! which cells are faces of the surface, the fragments that a boundary or bounds have left, the
+//! coordinate system. `docs/decisions/0030-a-tin-in-its-file.md` says why it is arranged so.
+
+mod attributes;
+mod check;
+mod layout;
+mod write;
+
+use std::fmt;
+use std::io::Write;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use crate::crs::Crs;
+use crate::data::{EdgeKind, Surface, SurfaceFacts};
+use crate::error::{Error, Result};
+use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::tds::{CellId, Complex, VertexId};
+use crate::triangulation::{Compact, CompactError, CompactSection};
+
+use attributes::Attributes;
+use layout::{ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, SIDE, SIDES, Side, VERTEX, VERTICES};
+pub(super) use write::write;
+
+/// A TIN that is used where its bytes are, without being loaded.
+///
+/// [`Surface::write_tin`] writes it. `B` is anything that can be borrowed as bytes: a vector, or a
+/// file that [`io::mapped`](crate::io::mapped) maps to memory. Opening reads a few hundred bytes,
+/// however many points there are; then it is a surface with the faces and vertices, in the same
+/// order, of the one that was written, so that all results are the same bytes.
+///
+/// Nothing in the bytes is trusted. What is damaged is not part of the surface, and
+/// [`ensure_intact`](Surface::ensure_intact) then returns an error that names the cell or the
+/// vertex. A wrong value that is possible leads to a wrong result; [`check`](Self::check) reads all
+/// bytes and finds it. No bytes lead to a panic or an endless loop.
+///
+/// ```
+/// use breakline::data::Surface;
+/// use breakline::terrain::{CompactTin, TinBuilder};
+///
+/// let mut builder = TinBuilder::default();
+/// builder.add_points(&[0.0, 9.0, 9.0, 0.0], &[0.0, 0.0, 9.0, 9.0], &[1.0, 2.0, 3.0, 5.0]);
+/// let tin = builder.build()?;
+/// let mut bytes = Vec::new();
+/// tin.write_tin(&mut bytes)?;
+///
+/// let opened = CompactTin::open(bytes, "field.tin")?;
+/// assert_eq!(opened.facts().triangles, 2);
+/// assert_eq!(opened.face(0), tin.face(0));
+/// opened.ensure_intact()?;
+/// # Ok::<(), breakline::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct CompactTin<B> {
+    triangulation: Compact<Terrain, B>,
+    attributes: Attributes,
+    inside: Range<usize>,
+    vertices: Range<usize>,
+    fragments: Range<usize>,
+    sides: Range<usize>,
+    /// For messages.
+    path: PathBuf,
+    damage: OnceLock<Damage>,
+}
+
+/// What was found damaged.
+#[derive(Debug, Clone, PartialEq)]
+enum Damage {
+    Triangulation(CompactError),
+    /// A vertex of fragments.
+    Vertex(u32),
+    /// A face whose corners or edges are impossible.
+    Face(u32),
+    /// A face and the neighbor that the file states for it do not share an edge.
+    Link(u32, u32),
+    /// The row of an edge of a whole triangle, by its position.
+    Side(usize),
+    /// The counts or the extent are not those of the faces.
+    Facts,
+}
+
+/// What was read, or the damage there.
+type Found<T> = std::result::Result<T, Damage>;
+
+impl fmt::Display for Damage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Damage::Triangulation(error) => error.fmt(f),
+            Damage::Vertex(vertex) => write!(f, "vertex {vertex} is damaged"),
+            Damage::Face(face) => write!(f, "face {face} is damaged"),
+            Damage::Link(face, neighbor) => {
+                write!(f, "face {face} does not share an edge with its neighbor {neighbor}")
+            }
+            Damage::Side(row) => write!(f, "row {row} of section `sides` is damaged"),
+            Damage::Facts => f.write_str("the counts or the extent are not those of the faces"),
+        }
+    }
+}
+
+impl From<CompactError> for Damage {
+    fn from(error: CompactError) -> Self {
+        Damage::Triangulation(error)
+    }
+}
+
+impl<B: AsRef<[u8]>> CompactTin<B> {
+    /// Opens a TIN; `path` is its name in messages.
+    ///
+    /// # Errors
+    /// If the bytes are not those of a TIN, have another version, or are incomplete.
+    ///
+    /// # Complexity
+    /// Constant.
+    pub fn open(bytes: B, path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        Self::opened(bytes, path).map_err(|error| {
+            let error = error.in_file(path);
+            if error.cure_text().is_some() { error } else { error.cure("write the file again with `breakline tin`") }
+        })
+    }
+
+    fn opened(bytes: B, path: &Path) -> Result<Self> {
+        let triangulation = Compact::open(Terrain::default(), bytes).map_err(|e| Error::format(e.to_string()))?;
+        if triangulation.dimension() != 2 {
+            return Err(Error::format("the triangulation has no triangle"));
+        }
+        let section = |tag: [u8; 8]| {
+            let name = tag.escape_ascii().to_string();
+            triangulation.section_range(tag).ok_or_else(|| {
+                Error::format(format!("a triangulation without the section `{}` of a TIN", name.trim_end()))
+            })
+        };
+        let rows = |tag: [u8; 8], size: usize| match section(tag)? {
+            range if range.len() % size == 0 => Ok(range),
+            range => Err(Error::format(format!("{} bytes of rows of {size}", range.len()))
+                .at(format!("section `{}`", tag.escape_ascii().to_string().trim_end()))),
+        };
+        let inside = section(INSIDE)?;
+        let bits = triangulation.cell_count().div_ceil(8);
+        if inside.len() != bits {
+            return Err(Error::format(format!("{} bytes, expected {bits}", inside.len())).at("section `inside`"));
+        }
+        let vertices = rows(VERTICES, VERTEX)?;
+        let fragments = rows(FRAGMENTS, FRAGMENT)?;
+        let sides = rows(SIDES, SIDE)?;
+        let attributes = &triangulation.bytes()[section(ATTRIBUTES)?];
+        let attributes = Attributes::from_json(attributes).map_err(|e| e.at("section `tin`"))?;
+        let tin = CompactTin {
+            attributes,
+            inside,
+            vertices,
+            fragments,
+            sides,
+            path: path.to_path_buf(),
+            damage: OnceLock::new(),
+            triangulation,
+        };
+        // Numbers fit into 32 bits, and one is left for "none".
+        if tin.face_numbers() >= u32::MAX as usize || tin.vertex_numbers() >= u32::MAX as usize {
+            return Err(Error::format("more faces or vertices than have numbers"));
+        }
+        Ok(tin)
+    }
+
+    /// Returns the underlying triangulation, for queries.
+    ///
+    /// It covers the whole convex hull, and is not cut by a boundary or bounds.
+    pub fn triangulation(&self) -> &Compact<Terrain, B> {
+        &self.triangulation
+    }
+
+    /// Returns the counts and the extent that the file states; [`check`](Self::check) compares them
+    /// with the faces.
+    pub fn facts(&self) -> &SurfaceFacts {
+        &self.attributes.facts
+    }
+
+    /// Sets the coordinate system; coordinates do not change.
+    pub fn set_crs(&mut self, crs: Option<Crs>) {
+        self.attributes.crs = crs;
+    }
+
+    fn face_numbers(&self) -> usize {
+        self.triangulation.cell_count() + self.fragments.len() / FRAGMENT
+    }
+
+    fn vertex_numbers(&self) -> usize {
+        self.triangulation.vertex_count() + self.vertices.len() / VERTEX
+    }
+
+    /// Returns a row of a section; `None` beyond its end.
+    #[inline]
+    fn row<const W: usize>(&self, section: &Range<usize>, row: usize) -> Option<&[u8; W]> {
+        self.triangulation.bytes().get(section.clone())?.get(W * row..)?.first_chunk()
+    }
+
+    /// Returns true if a whole cell is a face.
+    #[inline]
+    fn is_inside(&self, cell: usize) -> bool {
+        cell < self.triangulation.cell_count()
+            && self.row(&self.inside, cell / 8).is_some_and(|[bits]| bits >> (cell % 8) & 1 == 1)
+    }
+
+    /// The number of a fragment; `None` for whole cells.
+    #[inline]
+    fn fragment_number(&self, face: u32) -> Option<usize> {
+        (face as usize).checked_sub(self.triangulation.cell_count())
+    }
+
+    fn fragment(&self, face: u32, number: usize) -> Found<Fragment> {
+        self.row(&self.fragments, number).and_then(Fragment::read).ok_or(Damage::Face(face))
+    }
+
+    #[inline]
+    fn corners(&self, face: u32) -> Found<Option<[u32; 3]>> {
+        let [a, b, c] = match self.fragment_number(face) {
+            None if self.is_inside(face as usize) => {
+                let number = |v: VertexId| if v == VertexId::INFINITE { u32::MAX } else { v.index() as u32 };
+                self.triangulation.corners(CellId::new(face as usize))?.map(number)
+            }
+            Some(number) if (face as usize) < self.face_numbers() => self.fragment(face, number)?.corners,
+            None | Some(_) => return Ok(None),
+        };
+        let is_face = a != b && b != c && c != a && (a.max(b).max(c) as usize) < self.vertex_numbers();
+        if is_face { Ok(Some([a, b, c])) } else { Err(Damage::Face(face)) }
+    }
+
+    #[inline]
+    fn point(&self, vertex: u32) -> Found<[f64; 3]> {
+        let point = match (vertex as usize).checked_sub(self.triangulation.vertex_count()) {
+            None => self.triangulation.point(VertexId::new(vertex as usize))?,
+            Some(number) => {
+                let row: &[u8; VERTEX] = self.row(&self.vertices, number).ok_or(Damage::Vertex(vertex))?;
+                let mut point = [0.0; 3];
+                for (x, bytes) in point.iter_mut().zip(row.as_chunks().0) {
+                    *x = f64::from_le_bytes(*bytes);
+                }
+                point
+            }
+        };
+        // The geometry does not look at heights.
+        let is_point = point[2].is_finite() && self.triangulation.geometry().admits(&point);
+        if is_point { Ok(point) } else { Err(Damage::Vertex(vertex)) }
+    }
+
+    /// The row of an edge of a whole triangle.
+    fn side(&self, face: u32, corner: usize) -> Found<Option<Side>> {
+        let rows = self.triangulation.bytes().get(self.sides.clone()).unwrap_or_default().as_chunks::<SIDE>().0;
+        let key = (face, corner as u8);
+        let at = rows.partition_point(|row| Side::key(row) < key);
+        match rows.get(at).filter(|row| Side::key(row) == key) {
+            Some(row) => Side::read(row).map(Some).ok_or(Damage::Side(at)),
+            None => Ok(None),
+        }
+    }
+
+    /// The face that the file states across an edge, which may not link back.
+    fn stated_neighbor(&self, face: u32, i: usize) -> Found<Option<u32>> {
+        if let Some(number) = self.fragment_number(face) {
+            return Ok(self.fragment(face, number)?.neighbors[i]);
+        }
+        let beside = self.triangulation.neighbor(CellId::new(face as usize), i)?.index();
+        if self.is_inside(beside) {
+            Ok(Some(beside as u32))
+        } else {
+            Ok(self.side(face, i)?.and_then(|side| side.neighbor))
+        }
+    }
+
+    /// The face across an edge. It links back, so that no walk from face to face is endless.
+    fn linked_neighbor(&self, face: u32, i: usize) -> Found<Option<u32>> {
+        let Some(corners) = self.corners(face)?.filter(|_| i < 3) else { return Ok(None) };
+        let Some(beside) = self.stated_neighbor(face, i)? else { return Ok(None) };
+        let broken = || Damage::Link(face, beside);
+        let theirs = self.corners(beside)?.ok_or_else(broken)?;
+        let edge = [corners[(i + 2) % 3], corners[(i + 1) % 3]];
+        let j = (0..3).find(|j| [theirs[(j + 1) % 3], theirs[(j + 2) % 3]] == edge).ok_or_else(broken)?;
+        if beside != face && self.stated_neighbor(beside, j)? == Some(face) { Ok(Some(beside)) } else { Err(broken()) }
+    }
+
+    fn kind(&self, face: u32, i: usize) -> Found<EdgeKind> {
+        if i > 2 || face as usize >= self.face_numbers() {
+            return Ok(EdgeKind::Rim);
+        }
+        if let Some(number) = self.fragment_number(face) {
+            return Ok(self.fragment(face, number)?.edges[i]);
+        }
+        let cell = CellId::new(face as usize);
+        if self.triangulation.is_constrained(cell, i)? {
+            Ok(EdgeKind::Breakline)
+        } else if self.is_inside(self.triangulation.neighbor(cell, i)?.index()) {
+            Ok(EdgeKind::Plain)
+        } else {
+            Ok(self.side(face, i)?.map_or(EdgeKind::Rim, |side| side.kind))
+        }
+    }
+
+    /// Returns what was found, or records the damage and returns a value that any caller can use.
+    #[inline]
+    fn or_record<T>(&self, found: Found<T>, instead: T) -> T {
+        found.unwrap_or_else(|damage| {
+            self.damage.get_or_init(|| damage);
+            instead
+        })
+    }
+
+    #[cold]
+    fn error(&self, damage: &Damage) -> Error {
+        Error::format(damage.to_string()).in_file(&self.path).cure(format!(
+            "copy the file again, or write it again with `breakline tin`; `breakline check {}` reads all of it",
+            self.path.display()
+        ))
+    }
+}
+
+impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
+    fn vertex_count(&self) -> usize {
+        self.vertex_numbers()
+    }
+
+    fn position(&self, vertex: u32) -> [f64; 3] {
+        self.or_record(self.point(vertex), [0.0; 3])
+    }
+
+    fn face_count(&self) -> usize {
+        self.face_numbers()
+    }
+
+    fn face(&self, face: u32) -> Option<[u32; 3]> {
+        self.or_record(self.corners(face), None)
+    }
+
+    fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
+        self.or_record(self.linked_neighbor(face, i), None)
+    }
+
+    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
+        self.or_record(self.kind(face, i), EdgeKind::Rim)
+    }
+
+    fn has_lines(&self) -> bool {
+        self.attributes.facts.breaklines + self.attributes.facts.clips > 0 || !self.fragments.is_empty()
+    }
+
+    fn is_fragment(&self, face: u32) -> bool {
+        self.fragment_number(face).is_some()
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.attributes.crs.as_ref()
+    }
+
+    fn ensure_intact(&self) -> Result<()> {
+        match self.damage.get() {
+            Some(damage) => Err(self.error(damage)),
+            None => Ok(()),
+        }
+    }
+
+    /// Copies the file; only the coordinate system may have changed.
+    fn write_tin(&self, mut out: &mut dyn Write) -> Result<()> {
+        self.triangulation.write_compact(&mut out)?;
+        for (tag, range) in
+            [(INSIDE, &self.inside), (VERTICES, &self.vertices), (FRAGMENTS, &self.fragments), (SIDES, &self.sides)]
+        {
+            let contents = self.triangulation.bytes().get(range.clone()).unwrap_or_default();
+            CompactSection { tag, contents }.write(&mut out)?;
+        }
+        write::write_attributes(&self.attributes, &mut out)
+    }
+}

@@ -1,0 +1,148 @@
+//! A TIN as bytes.
+
+use std::io::{self, BufWriter, Write};
+
+use super::attributes::Attributes;
+use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, SIDES, Side, VERTICES};
+use crate::data::{EdgeKind, Face, Surface, SurfaceFacts};
+use crate::error::{Error, Result};
+use crate::triangulation::geometry::Terrain;
+use crate::triangulation::tds::{CellId, VertexId};
+use crate::triangulation::{CompactSection, ConstrainedDelaunay};
+
+/// Writes a surface over a triangulation, and the triangulation: faces and vertices of the surface
+/// have the numbers of cells and vertices; those of fragments follow.
+///
+/// # Errors
+/// Those of `out`, and if there are too many faces or vertices to be numbered.
+///
+/// # Complexity
+/// Linear; in memory are a bit for each cell, and the fragments.
+pub(in crate::terrain) fn write(
+    surface: &dyn Surface,
+    triangulation: &ConstrainedDelaunay<Terrain>,
+    out: &mut dyn Write,
+) -> Result<()> {
+    // The rows are of a few bytes.
+    let mut out = BufWriter::with_capacity(1 << 16, out);
+    let layers = Layers::of(surface, triangulation)?;
+    triangulation.write_compact(&mut out)?;
+    layers.write(&mut out)?;
+    let attributes = Attributes { crs: surface.crs().cloned(), facts: SurfaceFacts::of(surface) };
+    write_attributes(&attributes, &mut out)?;
+    Ok(out.flush()?)
+}
+
+/// Writes the last section.
+pub(super) fn write_attributes(attributes: &Attributes, out: &mut impl Write) -> Result<()> {
+    Ok(CompactSection { tag: ATTRIBUTES, contents: attributes.to_json().as_bytes() }.write(out)?)
+}
+
+/// What a surface has beside its triangulation, in bytes.
+struct Layers {
+    inside: Vec<u8>,
+    vertices: Vec<u8>,
+    fragments: Vec<u8>,
+    sides: Vec<u8>,
+}
+
+impl Layers {
+    fn of(surface: &dyn Surface, triangulation: &ConstrainedDelaunay<Terrain>) -> Result<Self> {
+        let tds = triangulation.tds();
+        let mut fragments: Vec<Face> = Vec::new();
+        surface.faces_in(tds.cell_slots() as u32..surface.face_count() as u32, &mut fragments);
+        let is_added = |vertex: &u32| *vertex as usize >= tds.vertex_slots();
+        let mut added: Vec<u32> = fragments.iter().flat_map(|face| face.corners).filter(is_added).collect();
+        added.sort_unstable();
+        added.dedup();
+        let vertices = Numbers::new(tds.vertex_slots(), tds.vertices().map(VertexId::index), added);
+        let beyond = fragments.iter().map(|face| face.number).collect();
+        let faces = Numbers::new(tds.cell_slots(), tds.cells().map(CellId::index), beyond);
+        if faces.count() >= u32::MAX as usize || vertices.count() >= u32::MAX as usize {
+            return Err(Error::limit(format!("{} faces and {} vertices", faces.count(), vertices.count())));
+        }
+        let renumbered = |face: &Face| {
+            let neighbors = [0, 1, 2].map(|i| surface.neighbor(face.number, i).map(|face| faces.of(face)));
+            let corners = face.corners.map(|vertex| vertices.of(vertex));
+            Fragment::new(&Face { corners, ..*face }, neighbors).to_bytes()
+        };
+        let mut inside = vec![0; tds.cell_count().div_ceil(8)];
+        let mut sides = Vec::new();
+        for (at, cell) in tds.cells().enumerate() {
+            let face = cell.index() as u32;
+            if surface.face(face).is_none() {
+                continue;
+            }
+            inside[at / 8] |= 1 << (at % 8);
+            for i in (0..3).filter(|&i| surface.face(tds.neighbor(cell, i).index() as u32).is_none()) {
+                let (neighbor, kind) = (surface.neighbor(face, i), surface.edge_kind(face, i));
+                if neighbor.is_some() || kind == EdgeKind::Clip {
+                    let neighbor = neighbor.map(|face| faces.of(face));
+                    sides.extend(Side { face: at as u32, corner: i as u8, kind, neighbor }.to_bytes());
+                }
+            }
+        }
+        let position = |&vertex: &u32| surface.position(vertex).map(f64::to_le_bytes);
+        Ok(Layers {
+            inside,
+            vertices: vertices.beyond.iter().flat_map(position).flatten().collect(),
+            fragments: fragments.iter().flat_map(renumbered).collect(),
+            sides,
+        })
+    }
+
+    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        let Layers { inside, vertices, fragments, sides } = self;
+        for (tag, contents) in [(INSIDE, inside), (VERTICES, vertices), (FRAGMENTS, fragments), (SIDES, sides)] {
+            CompactSection { tag, contents }.write(out)?;
+        }
+        Ok(())
+    }
+}
+
+/// Numbers without gaps, in the same order: first those of used slots, then some beyond all slots.
+struct Numbers {
+    slots: usize,
+    used: usize,
+    /// The number of each slot, if some slots are not used.
+    of_slots: Option<Vec<u32>>,
+    beyond: Vec<u32>,
+}
+
+impl Numbers {
+    /// The numbers beyond the slots must be ascending.
+    fn new(slots: usize, used: impl ExactSizeIterator<Item = usize>, beyond: Vec<u32>) -> Self {
+        let count = used.len();
+        let of_slots = (count < slots).then(|| {
+            let mut numbers = vec![0; slots];
+            used.zip(0..).for_each(|(slot, number)| numbers[slot] = number);
+            numbers
+        });
+        Numbers { slots, used: count, of_slots, beyond }
+    }
+
+    fn count(&self) -> usize {
+        self.used + self.beyond.len()
+    }
+
+    fn of(&self, old: u32) -> u32 {
+        if old as usize >= self.slots {
+            return (self.used + self.beyond.partition_point(|&other| other < old)) as u32;
+        }
+        self.of_slots.as_ref().map_or(old, |numbers| numbers[old as usize])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_no_gaps_and_keep_their_order() {
+        let numbers = Numbers::new(6, [0, 2, 5].into_iter(), vec![7, 9]);
+        assert_eq!([0, 2, 5, 7, 9].map(|old| numbers.of(old)), [0, 1, 2, 3, 4]);
+        assert_eq!(numbers.count(), 5);
+        let whole = Numbers::new(3, [0, 1, 2].into_iter(), vec![3, 8]);
+        assert_eq!([0, 1, 2, 3, 8].map(|old| whole.of(old)), [0, 1, 2, 3, 4]);
+    }
+}
