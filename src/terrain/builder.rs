@@ -6,14 +6,14 @@ use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::num::unsigned_zero;
 use crate::triangulation::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, Rounding, spatial_order};
+use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, spatial_order};
 
 use super::admitted::refused;
 use super::clip::Clip;
 use super::crossings::{Pass, choose_heights, refuse};
 use super::tin::Count;
 use super::window::uncertain;
-use super::{CrossingHeights, CrossingRule, DuplicateRule, Tin, Window};
+use super::{CrossingRule, DuplicateRule, Tin, TinReport, Window};
 
 /// Builds a [`Tin`] from points and breaklines.
 ///
@@ -66,53 +66,6 @@ pub struct TinBuilder {
     line_ends: Vec<usize>,
     /// The polygons to clip to, as rings in plan.
     boundaries: Vec<Vec<Vec<[f64; 2]>>>,
-}
-
-/// Counts of what a [`TinBuilder`] was given and what it built.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct TinReport {
-    /// Points added.
-    pub points: usize,
-    /// Points merged into another point at the same site.
-    pub duplicates: usize,
-    /// Points replaced by a breakline's vertex at the same site.
-    pub points_on_breaklines: usize,
-    /// Breaklines added; each part and each ring counts as one.
-    pub breaklines: usize,
-    /// Distinct sites of the vertices of the breaklines.
-    pub breakline_vertices: usize,
-    /// Edges of the surface that are breaklines.
-    pub constrained_edges: usize,
-    /// Edges of the surface along the boundary or the bounds, except those that are breaklines.
-    pub clip_edges: usize,
-    /// Vertices added where breaklines cross between their vertices.
-    pub crossings: usize,
-    /// How the crossings were rounded; `None` if no breaklines cross.
-    pub rounding: Option<Rounding>,
-    /// The sites within the bounds at which breaklines meet with heights that differ by more than
-    /// the tolerance, from west to east.
-    pub crossing_heights: Vec<CrossingHeights>,
-    /// Vertices of the surface.
-    pub vertices: usize,
-    /// Triangles of the surface.
-    pub triangles: usize,
-    /// The box around the surface.
-    pub extent: Bounds,
-    /// Triangles left out by `max_edge`.
-    pub faces_beyond_max_edge: usize,
-    /// Triangles within the bounds that points outside of the [window](TinBuilder::window) may
-    /// change. If there are none, the surface is that of all points, in every triangle and height.
-    pub uncertain: usize,
-    /// Vertices left out of the surface because `max_edge` left out all of their triangles.
-    pub vertices_beyond_max_edge: usize,
-    /// Triangles left out by the boundary or the bounds.
-    pub faces_clipped: usize,
-    /// Vertices left out of the surface because clipping left out all of their remaining triangles.
-    pub vertices_clipped: usize,
-    /// Vertices added where the boundary or the bounds cut triangles.
-    pub vertices_cut: usize,
-    /// Triangles cut by the boundary or the bounds; the surface contains fragments of them.
-    pub faces_cut: usize,
 }
 
 /// Replaces -0 by 0: sites are compared bit by bit when sorted, and neither zero is the lower one.

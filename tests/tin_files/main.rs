@@ -3,6 +3,7 @@
 
 #[path = "../common/program.rs"]
 mod program;
+#[allow(dead_code)] // the judge of cuts uses more of it
 #[path = "../cuts/scene.rs"]
 mod scene;
 

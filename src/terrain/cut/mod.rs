@@ -46,7 +46,7 @@ use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, Location};
 
-use super::tin::linear;
+use super::linear::linear;
 use far::divided;
 use patch::Patch;
 use patched::{Patched, Remains};

@@ -8,7 +8,7 @@ use crate::triangulation::geometry::{Crossing, Geometry, Terrain, height_along};
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing};
 
-use super::super::tin::linear;
+use super::super::linear::linear;
 use super::Segment;
 use super::met::met;
 use super::steps::{Arranged, is_breakline};

@@ -1,0 +1,52 @@
+//! Heights on a triangle, linear between its corners.
+
+use crate::triangulation::geometry::height_along;
+
+/// The ratio of width to longest side below which a triangle is a sliver.
+///
+/// Rounding hides where across a sliver a position lies. Slivers arise where lines are bent through
+/// rounded crossings.
+const THINNEST: f64 = 1e-9;
+
+/// The height at `q` of the plane through three points; at a corner exactly its height.
+pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
+    let cross = |p: [f64; 3], r: [f64; 3]| (p[0] - q[0]) * (r[1] - q[1]) - (p[1] - q[1]) * (r[0] - q[0]);
+    let (at_a, at_b, at_c) = (cross(b, c), cross(c, a), cross(a, b));
+    let area = at_a + at_b + at_c;
+    let longest = square(a, b).max(square(b, c)).max(square(c, a));
+    if area.abs() <= THINNEST * longest {
+        return along_sliver([a, b, c], q);
+    }
+    a[2] + (at_b * (b[2] - a[2]) + at_c * (c[2] - a[2])) / area
+}
+
+/// The height at `q` on a sliver, interpolated along its two shorter sides.
+fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
+    let sides = [(a, b, c), (b, c, a), (c, a, b)];
+    let length = |&(p, r, _): &([f64; 3], [f64; 3], [f64; 3])| square(p, r);
+    let [from, to, middle] =
+        sides.into_iter().max_by(|s, t| length(s).total_cmp(&length(t))).map_or([a, b, c], Into::into);
+    let is_before = (q[0] - middle[0]) * (to[0] - from[0]) + (q[1] - middle[1]) * (to[1] - from[1]) <= 0.0;
+    if is_before { height_along(from, middle, q) } else { height_along(middle, to, q) }
+}
+
+/// The square of a distance in plan.
+fn square(p: [f64; 3], q: [f64; 3]) -> f64 {
+    (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sliver_is_folded_at_its_middle_corner() {
+        let [a, b, c] = [[0.0, 0.0, 1.0], [1.0, 3.0, 7.0], [0.5, 1.5 + 1e-13, 6.0]];
+        for corners in [[a, b, c], [c, b, a], [b, c, a]] {
+            for (y, z) in [(0.0, 1.0), (0.75, 3.5), (1.5, 6.0), (2.25, 6.5), (3.0, 7.0)] {
+                assert!((linear(corners, [y / 3.0, y]) - z).abs() < 1e-9, "{corners:?} at {y}");
+            }
+        }
+        assert_eq!([a, b, c].map(|p| linear([a, b, c], [p[0], p[1]])), [1.0, 7.0, 6.0]);
+    }
+}

@@ -1,0 +1,51 @@
+use super::CrossingHeights;
+use crate::data::Bounds;
+use crate::triangulation::Rounding;
+
+/// Counts of what a [`TinBuilder`](super::TinBuilder) was given and what it built.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TinReport {
+    /// Points added.
+    pub points: usize,
+    /// Points merged into another point at the same site.
+    pub duplicates: usize,
+    /// Points replaced by a breakline's vertex at the same site.
+    pub points_on_breaklines: usize,
+    /// Breaklines added; each part and each ring counts as one.
+    pub breaklines: usize,
+    /// Distinct sites of the vertices of the breaklines.
+    pub breakline_vertices: usize,
+    /// Edges of the surface that are breaklines.
+    pub constrained_edges: usize,
+    /// Edges of the surface along the boundary or the bounds, except those that are breaklines.
+    pub clip_edges: usize,
+    /// Vertices added where breaklines cross between their vertices.
+    pub crossings: usize,
+    /// How the crossings were rounded; `None` if no breaklines cross.
+    pub rounding: Option<Rounding>,
+    /// The sites within the bounds at which breaklines meet with heights that differ by more than
+    /// the tolerance, from west to east.
+    pub crossing_heights: Vec<CrossingHeights>,
+    /// Vertices of the surface.
+    pub vertices: usize,
+    /// Triangles of the surface.
+    pub triangles: usize,
+    /// The box around the surface.
+    pub extent: Bounds,
+    /// Triangles left out by `max_edge`.
+    pub faces_beyond_max_edge: usize,
+    /// Triangles within the bounds that points outside of the
+    /// [window](super::TinBuilder::window) may change. If there are none, the surface is that of
+    /// all points, in every triangle and height.
+    pub uncertain: usize,
+    /// Vertices left out of the surface because `max_edge` left out all of their triangles.
+    pub vertices_beyond_max_edge: usize,
+    /// Triangles left out by the boundary or the bounds.
+    pub faces_clipped: usize,
+    /// Vertices left out of the surface because clipping left out all of their remaining triangles.
+    pub vertices_clipped: usize,
+    /// Vertices added where the boundary or the bounds cut triangles.
+    pub vertices_cut: usize,
+    /// Triangles cut by the boundary or the bounds; the surface contains fragments of them.
+    pub faces_cut: usize,
+}
