@@ -124,12 +124,12 @@ where
     }
 
     #[inline]
-    fn rough_distance(&self, p: &P, q: &P) -> f64 {
+    fn rough_distance(&self, p: &P, q: &P) -> Option<f64> {
         Plane::<K>::default().rough_distance(&(self.site)(p), &(self.site)(q))
     }
 
     #[inline(always)]
-    fn rough_sides(&self, simplex: [&P; 3], q: &P) -> [f64; 3] {
+    fn rough_sides(&self, simplex: [&P; 3], q: &P) -> Option<[f64; 3]> {
         Plane::<K>::default().rough_sides(simplex.map(&self.site).each_ref(), &(self.site)(q))
     }
 

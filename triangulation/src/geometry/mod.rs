@@ -114,26 +114,27 @@ pub trait Geometry<const N: usize> {
     /// the simplex is positively oriented.
     fn side_of_sphere(&self, simplex: [&Self::Point; N], q: &Self::Point) -> Sign;
 
-    /// Returns the approximate distance of two points, in any measure.
+    /// Returns the approximate distance of two points, in any measure; `None`, the default, if
+    /// there is none.
     ///
-    /// Used to choose where a walk starts; no result depends on it. The default is NaN, for no
-    /// measure: walks from far away then take long.
-    #[inline]
-    fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> f64 {
-        f64::NAN
+    /// Used to choose where a walk starts; no result depends on it. Without a measure, walks from
+    /// far away take long.
+    #[inline(always)]
+    fn rough_distance(&self, _: &Self::Point, _: &Self::Point) -> Option<f64> {
+        None
     }
 
-    /// Returns about how far `q` lies inside of each facet of a positively oriented simplex;
-    /// negative outside.
+    /// Returns about how far `q` lies inside of each facet of a positively oriented simplex,
+    /// negative outside; `None`, the default, if there is no measure for that.
     ///
     /// The facets are in the order of the vertices opposite to them. Any measure will do that makes
     /// facets comparable, such as the area (volume) that each spans with `q`. Used to choose the
     /// direction of a walk; no result depends on it (structural filtering; Funke, Mehlhorn and
-    /// Näher 1999). The default is NaN, for no measure: walks then evaluate orientations at each
-    /// step, and take 1.6 times as long.
-    #[inline]
-    fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> [f64; N] {
-        [f64::NAN; N]
+    /// Näher 1999). Without a measure, walks evaluate orientations at each step, and take 1.6 times
+    /// as long.
+    #[inline(always)]
+    fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> Option<[f64; N]> {
+        None
     }
 
     /// Returns the orientation of fewer than `N` points within the flat (line, plane) that they

@@ -31,13 +31,13 @@ impl<K: Kernel> Geometry<3> for Plane<K> {
     }
 
     #[inline]
-    fn rough_distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
-        manhattan(*p, *q)
+    fn rough_distance(&self, p: &[f64; 2], q: &[f64; 2]) -> Option<f64> {
+        Some(manhattan(*p, *q))
     }
 
     #[inline(always)]
-    fn rough_sides(&self, simplex: [&[f64; 2]; 3], q: &[f64; 2]) -> [f64; 3] {
-        rough_areas(simplex.map(|p| *p), *q)
+    fn rough_sides(&self, simplex: [&[f64; 2]; 3], q: &[f64; 2]) -> Option<[f64; 3]> {
+        Some(rough_areas(simplex.map(|p| *p), *q))
     }
 
     #[inline(always)]

@@ -42,15 +42,15 @@ impl<K: Kernel> Geometry<4> for Space<K> {
     }
 
     #[inline]
-    fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
-        manhattan(*p, *q)
+    fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> Option<f64> {
+        Some(manhattan(*p, *q))
     }
 
     #[inline(always)]
-    fn rough_sides(&self, [a, b, c, d]: [&[f64; 3]; 4], q: &[f64; 3]) -> [f64; 4] {
+    fn rough_sides(&self, [a, b, c, d]: [&[f64; 3]; 4], q: &[f64; 3]) -> Option<[f64; 4]> {
         // Exchanging two points twice changes no sign.
         let facets = [[b, d, c], [d, a, c], [b, a, d], [a, b, c]];
-        facets.map(|[a, b, c]| Orientation3([*a, *b, *c, *q]).value(|x, y| x - y))
+        Some(facets.map(|[a, b, c]| Orientation3([*a, *b, *c, *q]).value(|x, y| x - y)))
     }
 
     #[inline(always)]

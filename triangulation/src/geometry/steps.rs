@@ -42,13 +42,13 @@ impl<K: Kernel> Geometry<3> for Steps<K> {
     }
 
     #[inline]
-    fn rough_distance(&self, p: &[i32; 3], q: &[i32; 3]) -> f64 {
-        manhattan(plan(p), plan(q))
+    fn rough_distance(&self, p: &[i32; 3], q: &[i32; 3]) -> Option<f64> {
+        Some(manhattan(plan(p), plan(q)))
     }
 
     #[inline(always)]
-    fn rough_sides(&self, simplex: [&[i32; 3]; 3], q: &[i32; 3]) -> [f64; 3] {
-        rough_areas(simplex.map(plan), plan(q))
+    fn rough_sides(&self, simplex: [&[i32; 3]; 3], q: &[i32; 3]) -> Option<[f64; 3]> {
+        Some(rough_areas(simplex.map(plan), plan(q)))
     }
 
     #[inline(always)]

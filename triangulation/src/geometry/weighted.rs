@@ -52,13 +52,13 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
     }
 
     #[inline]
-    fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
-        manhattan(plan(p), plan(q))
+    fn rough_distance(&self, p: &[f64; 3], q: &[f64; 3]) -> Option<f64> {
+        Some(manhattan(plan(p), plan(q)))
     }
 
     #[inline(always)]
-    fn rough_sides(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> [f64; 3] {
-        rough_areas(simplex.map(plan), plan(q))
+    fn rough_sides(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> Option<[f64; 3]> {
+        Some(rough_areas(simplex.map(plan), plan(q)))
     }
 
     #[inline(always)]

@@ -191,7 +191,9 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
     let mut from = None;
     for steps in 0..at_most {
         complex.fetch_neighbors(cell);
-        let sides = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q);
+        let Some(sides) = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q) else {
+            return Ok(Reached { cell, steps, seems: Seems::Elsewhere });
+        };
         let mut next = None;
         for i in 0..N {
             if sides[i] < 0.0 && sides.iter().all(|&side| sides[i] <= side) {
@@ -231,7 +233,9 @@ fn hull_exit<const N: usize, T: Embedded<N>>(
     cell: CellId,
     q: &PointOf<T, N>,
 ) -> Result<Option<usize>, T::Error> {
-    let sides = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q);
+    let Some(sides) = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q) else {
+        return Ok(None);
+    };
     for i in (0..N).filter(|&i| sides[i] < 0.0) {
         if t.complex().is_infinite(t.complex().neighbor(cell, i)?)? {
             return Ok(Some(i));
@@ -284,7 +288,9 @@ fn jump<const N: usize, T: Embedded<N>>(
     samples: usize,
     dice: &mut Dice,
 ) -> Result<Option<CellId>, T::Error> {
-    let distance = t.geometry().rough_distance(t.point(t.complex().vertex(cell, 0)?)?.borrow(), q);
+    let Some(distance) = t.geometry().rough_distance(t.point(t.complex().vertex(cell, 0)?)?.borrow(), q) else {
+        return Ok(None);
+    };
     let Some(nearer) = nearest_of_some(t, q, distance, samples, dice)? else {
         return Ok(None);
     };
@@ -306,7 +312,7 @@ pub(super) fn nearest_of_some<const N: usize, T: Embedded<N>>(
         if t.complex().cell_of(vertex)?.is_none() {
             continue;
         }
-        let distance = t.geometry().rough_distance(t.point(vertex)?.borrow(), q);
+        let Some(distance) = t.geometry().rough_distance(t.point(vertex)?.borrow(), q) else { break };
         if distance < than {
             (than, nearest) = (distance, Some(vertex));
         }
