@@ -1,5 +1,7 @@
 //! The triangles that lines meet, triangulated again together with the lines.
 
+use std::collections::HashMap;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::error::{Error, Result};
@@ -76,7 +78,7 @@ impl Drawing {
         corners.dedup();
         let mut points: Vec<[f64; 3]> = corners.iter().map(|&vertex| *base.point(vertex)).collect();
         let key = |x: f64, y: f64| [x.to_bits(), y.to_bits()];
-        let mut at: FxHashMap<[u64; 2], u32> = points.iter().zip(0..).map(|(p, i)| (key(p[0], p[1]), i)).collect();
+        let mut at: HashMap<[u64; 2], u32> = points.iter().zip(0..).map(|(p, i)| (key(p[0], p[1]), i)).collect();
         let mut number: FxHashMap<Ends, u32> = FxHashMap::default();
         let mut lines: Vec<Ends> = Vec::new();
         let mut drawn = vec![None; segments.len()];

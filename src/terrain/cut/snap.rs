@@ -1,5 +1,7 @@
 //! Snapping of cut lines to each other.
 
+use std::collections::HashMap;
+
 use rustc_hash::FxHashMap;
 
 use crate::triangulation::ConstrainedDelaunay;
@@ -22,7 +24,7 @@ use super::{Domain, Segment};
 /// O(n log n + k) for n segments that meet triangles and k pairs whose boxes overlap.
 pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
     let mut points: Vec<[f64; 2]> = Vec::new();
-    let mut at: FxHashMap<[u64; 2], u32> = FxHashMap::default();
+    let mut at: HashMap<[u64; 2], u32> = HashMap::new();
     let mut number = |point: [f64; 2]| {
         *at.entry(point.map(f64::to_bits)).or_insert_with(|| {
             points.push(point);

@@ -14,6 +14,8 @@
 //!
 //! If the side itself runs in that direction, to another vertex, it uses the vertex of that one.
 
+use std::collections::HashSet;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::triangulation::ConstrainedDelaunay;
@@ -66,7 +68,7 @@ impl Arranged<'_> {
         let mut shared: Vec<(u32, Vec<usize>)> = edges_at.into_iter().collect();
         shared.retain(|(site, edges)| edges.len() > usize::from(self.corner(*site).is_none()));
         shared.sort_unstable();
-        let mut taken: FxHashSet<[u64; 2]> = self.points.iter().map(bits).collect();
+        let mut taken: HashSet<[u64; 2]> = self.points.iter().map(bits).collect();
         let mut steps: Steps = FxHashMap::default();
         for (site, edges) in shared {
             let here = self.steps_at(site, &edges, first_edge, &mut taken);
@@ -102,13 +104,7 @@ impl Arranged<'_> {
 
     /// The edges at a point that get a vertex of their own, those closer to the point's height
     /// first.
-    fn steps_at(
-        &mut self,
-        site: u32,
-        edges: &[usize],
-        first_edge: usize,
-        taken: &mut FxHashSet<[u64; 2]>,
-    ) -> Vec<Step> {
+    fn steps_at(&mut self, site: u32, edges: &[usize], first_edge: usize, taken: &mut HashSet<[u64; 2]>) -> Vec<Step> {
         let tds = self.base.tds();
         // Start at the triangles of the vertex or edge that the point has its height from.
         let (start, height, own) = match self.corner(site) {
@@ -193,7 +189,7 @@ impl Arranged<'_> {
         chain: usize,
         distance: u32,
         others: &[usize],
-        taken: &mut FxHashSet<[u64; 2]>,
+        taken: &mut HashSet<[u64; 2]>,
     ) -> Option<u32> {
         let [x, y, _] = self.points[site as usize];
         let [p, q] = [from, to].map(|vertex| *self.base.point(vertex));
