@@ -2,9 +2,13 @@
 
 mod bulk;
 mod compact;
+mod embedded;
 mod engine;
 mod error;
+mod flaw;
+mod hierarchy;
 mod kinds;
+mod line_id;
 mod lines;
 mod locate;
 pub mod query;
@@ -14,20 +18,21 @@ mod saved;
 
 pub use bulk::spatial_order;
 pub use compact::{Compact, CompactError, CompactSection, Law};
-pub use engine::check::{Flaw, Level};
-pub use engine::embedded::{Embedded, PointOf};
+pub use embedded::{Embedded, PointOf};
+pub use engine::constrained_edges::ConstrainedEdges;
 pub use engine::insert::Inserted;
 pub use error::{GapError, InputError, MoveError, PointError, RemovalError};
+pub use flaw::{Flaw, Level, LinesFlaw};
+pub use hierarchy::Hierarchy;
 pub use kinds::basic::Basic;
 pub use kinds::constrained::{Constrained, ConstraintError};
-pub use kinds::constrained_delaunay::{ConstrainedDelaunay, ConstrainedEdges};
 pub use kinds::delaunay::Delaunay;
 pub use kinds::regular::Regular;
 pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, Delaunay3, Regular2};
-pub use lines::LinesFlaw;
+pub use line_id::{LineId, LineTag};
 pub use lines::build::{OnCrossing, Rounding};
-pub use lines::paths::{LineId, LineTag};
-pub use locate::{Buckets, Facets, Hierarchy, JumpAndWalk, Locate, Location, Near, StraightLine};
+pub use lines::constrained_delaunay::ConstrainedDelaunay;
+pub use locate::{Buckets, Facets, JumpAndWalk, Locate, Location, Near, StraightLine};
 pub use query::{ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
 
 use crate::geometry::Geometry;
@@ -176,13 +181,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     #[inline(always)]
     fn side_of_facet(&self, cell: CellId, replaced: usize, q: &G::Point) -> Sign {
-        let Ok(sign) = engine::sides::side_of_facet(self, cell, replaced, q);
+        let Ok(sign) = embedded::sides::side_of_facet(self, cell, replaced, q);
         sign
     }
 
     #[inline(always)]
     fn in_conflict(&self, cell: CellId, q: &G::Point) -> bool {
-        let Ok(is_in_conflict) = engine::sides::in_conflict(self, cell, q);
+        let Ok(is_in_conflict) = embedded::sides::in_conflict(self, cell, q);
         is_in_conflict
     }
 }

@@ -1,68 +1,12 @@
 use std::borrow::Borrow;
-use std::fmt;
 
 use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, VertexId};
 
-use super::super::{LinesFlaw, Triangulation};
-use super::embedded::Embedded;
-use super::sides::{in_conflict, side_of_facet, simplex};
-
-/// How far a check goes. Each level assumes the ones before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// The links between cells, neighbors and vertices agree.
-    Links = 1,
-    /// The cells form one sphere.
-    Manifold = 2,
-    /// Every finite cell is positively oriented and the hull is convex. Together these prove that
-    /// the cells tile the convex hull without overlap (Devillers, Liotta, Preparata, Tamassia
-    /// 1998).
-    Orientation = 3,
-    /// The kind's own law, ties included.
-    Law = 4,
-}
-
-/// A flaw found by a check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Flaw {
-    /// Level 1 or 2: a flaw of the structure.
-    Structure(tds::TdsError),
-    /// Level 3: a cell that is flat or turned around.
-    Orientation(CellId),
-    /// Level 3: beyond facet `i` of this infinite cell the hull turns inwards.
-    NotConvex(CellId, usize),
-    /// Level 4: the vertex beyond facet `i` lies in the cell's circumscribed sphere.
-    NotDelaunay(CellId, usize),
-    /// Level 4: a hidden point is not in the cell that should hide it, or should be visible.
-    Hidden(VertexId),
-    /// Level 4: an edge is constrained on one side only.
-    OneSided(CellId, usize),
-    /// Level 4: the tables of lines disagree with the triangulation.
-    Lines(LinesFlaw),
-    /// Level 4: the sub-constraint between these vertices is missing, because another one blocks
-    /// it.
-    Missing(VertexId, VertexId),
-}
-
-impl fmt::Display for Flaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Flaw::Structure(error) => error.fmt(f),
-            Flaw::Orientation(cell) => write!(f, "cell {cell:?} is flat or turned around"),
-            Flaw::NotConvex(cell, i) => write!(f, "beyond facet {i} of infinite cell {cell:?} the hull turns inwards"),
-            Flaw::NotDelaunay(cell, i) => {
-                write!(f, "the vertex beyond facet {i} of cell {cell:?} lies in the cell's circumscribed sphere")
-            }
-            Flaw::Hidden(vertex) => write!(f, "point {vertex:?} is hidden by a cell that does not hide it"),
-            Flaw::OneSided(cell, i) => write!(f, "edge {i} of cell {cell:?} is constrained on one side only"),
-            Flaw::Lines(flaw) => flaw.fmt(f),
-            Flaw::Missing(a, b) => write!(f, "the constraint between vertices {a:?} and {b:?} was left out"),
-        }
-    }
-}
+use super::super::embedded::Embedded;
+use super::super::embedded::sides::{in_conflict, side_of_facet, simplex};
+use super::super::{Flaw, Level, Triangulation};
 
 /// Returns true if a finite cell of full dimension is positively oriented.
 pub(in super::super) fn is_positive<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<bool, T::Error> {
@@ -153,14 +97,5 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             }
         }
         flaws
-    }
-}
-
-impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> super::super::Delaunay<G, N, V, C> {
-    /// Returns the flaws found by a check up to the given level, with exact predicates. If there
-    /// are none, the triangulation is what it claims to be.
-    #[must_use]
-    pub fn check(&self, level: Level) -> Vec<Flaw> {
-        self.flaws(level, |_, _| true)
     }
 }

@@ -1,11 +1,11 @@
-//! The engine that all kinds share: insertion, removal, flips, the sides of facets and spheres,
-//! checks.
+//! The engine that all kinds share: insertion, removal, flips, checks, and constraints made edges.
 
 pub(super) mod check;
-pub(super) mod embedded;
+pub(super) mod constrained_edges;
+mod corridor;
 pub(super) mod flip;
 pub(super) mod insert;
 pub(super) mod payloads;
 pub(super) mod remove;
 pub(super) mod remove_low_degree;
-pub(super) mod sides;
+pub(super) mod trace;

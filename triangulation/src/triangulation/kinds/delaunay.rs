@@ -6,7 +6,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::engine::flip::NoConstraints;
 use super::super::engine::insert::{insert_each, insert_located, move_vertex};
 use super::super::{
-    InputError, Inserted, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
+    Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
 };
 
 /// A Delaunay triangulation, of triangles in the plane or of tetrahedra in space. `N`, the number
@@ -169,6 +169,13 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         self.inner.insert_at(p, location, data, takes(&p), |data, _| *data)
+    }
+
+    /// Returns the flaws found by a check up to the given level, with exact predicates. If there
+    /// are none, the triangulation is what it claims to be.
+    #[must_use]
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        self.flaws(level, |_, _| true)
     }
 
     /// Returns the payload of a finite vertex, mutable.

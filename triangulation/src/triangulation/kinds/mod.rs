@@ -3,15 +3,14 @@
 
 pub(super) mod basic;
 pub(super) mod constrained;
-pub(super) mod constrained_delaunay;
 pub(super) mod delaunay;
 pub(super) mod regular;
 
 use crate::geometry::{Plane, Space, Weighted};
 
+use super::ConstrainedDelaunay;
 use basic::Basic;
 use constrained::Constrained;
-use constrained_delaunay::ConstrainedDelaunay;
 use delaunay::Delaunay;
 use regular::Regular;
 

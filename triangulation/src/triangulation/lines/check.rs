@@ -1,64 +1,13 @@
 //! Checks of the tables of lines against the triangulation.
 
-use std::fmt;
-
 use rustc_hash::FxHashSet;
 
 use crate::geometry::Crossing;
 use crate::tds::VertexId;
 
-use super::super::{ConstrainedEdges, Flaw, Rounding, Triangulation};
+use super::super::{ConstrainedEdges, Flaw, LinesFlaw, Rounding, Triangulation};
 use super::Lines;
 use super::paths::undirected;
-
-/// A flaw in the lines of a triangulation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LinesFlaw {
-    /// The chain of the segment between these vertices does not run in order on both axes, or meets
-    /// a vertex twice.
-    Order(VertexId, VertexId),
-    /// The chain of the segment between these vertices contains an edge that is not constrained.
-    Unconstrained(VertexId, VertexId),
-    /// The tables name sites, or split edges, that are on no segment's chain.
-    Stray,
-    /// The constraint between these vertices waits for triangles, although there are some.
-    Waiting(VertexId, VertexId),
-    /// The grid of the rounding does not fit the lines.
-    Rounding,
-    /// The index of segments by edges does not agree with their chains.
-    Index,
-    /// A vertex that was added where lines cross is on no constraint, or was given.
-    Added(VertexId),
-    /// A vertex owned by lines is named by none.
-    Owned(VertexId),
-}
-
-impl fmt::Display for LinesFlaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            LinesFlaw::Order(a, b) => {
-                write!(f, "the chain of the segment between vertices {} and {} is not in order", a.index(), b.index())
-            }
-            LinesFlaw::Unconstrained(a, b) => {
-                write!(
-                    f,
-                    "the chain of the segment between vertices {} and {} is not constrained",
-                    a.index(),
-                    b.index()
-                )
-            }
-            LinesFlaw::Stray => f.write_str("the chain of a segment belongs to no line"),
-            LinesFlaw::Waiting(a, b) => {
-                write!(f, "the constraint between vertices {} and {} waits for triangles", a.index(), b.index())
-            }
-            LinesFlaw::Rounding => f.write_str("the unit of the grid does not fit the lines"),
-            LinesFlaw::Index => f.write_str("the index of segments does not agree with their chains"),
-            LinesFlaw::Added(v) => write!(f, "vertex {} was added where no lines cross", v.index()),
-            LinesFlaw::Owned(v) => write!(f, "vertex {} came with no line", v.index()),
-        }
-    }
-}
 
 impl Lines {
     /// Returns the flaws of the tables. Linear in the lengths of all chains.

@@ -6,10 +6,10 @@ use crate::tds::{CellId, VertexId};
 
 use super::super::engine::flip::WithConstraints;
 use super::super::engine::insert::Inserted;
+use super::super::engine::trace::Met;
 use super::super::{ConstrainedEdges, Location, Triangulation};
 use super::Lines;
 use super::paths::undirected;
-use super::trace::Met;
 
 /// The triangulation whose constraints are those of lines.
 pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;

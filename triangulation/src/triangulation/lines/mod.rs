@@ -7,6 +7,7 @@
 //!
 //! | file | contains |
 //! |---|---|
+//! | `constrained_delaunay` | the kind that owns lines |
 //! | `paths` | line ids, chains of segments |
 //! | `build` | bulk construction from points and lines |
 //! | `edit` | insertion and removal of lines |
@@ -16,7 +17,6 @@
 //! | `index` | which segments run along an edge, which lines contain them |
 //! | `rearrange` | a new arrangement of all lines |
 //! | `constrain` | insertion and removal of one sub-constraint |
-//! | `trace`, `corridor` | a sub-constraint made an edge: what it crosses, and the triangulation of both of its sides |
 //! | `saved_tables` | the tables in a form to be saved |
 //! | `check` | checks of what the tables claim |
 //! | `simplify`, `nesting` | lines with fewer vertices; what lines enclose |
@@ -26,7 +26,7 @@ pub(super) mod build;
 mod change;
 mod check;
 pub(super) mod constrain;
-mod corridor;
+pub(super) mod constrained_delaunay;
 pub(super) mod edit;
 mod index;
 mod local_edit;
@@ -40,19 +40,16 @@ mod removal_tests;
 #[cfg(feature = "serde")]
 pub(super) mod saved_tables;
 mod simplify;
-pub(super) mod trace;
 mod vertex_set;
-
-pub use check::LinesFlaw;
 
 use std::sync::OnceLock;
 
 use crate::tds::VertexId;
 
+use super::engine::trace::Scratch;
 use build::Rounding;
 use index::Index;
 use paths::Paths;
-use trace::Scratch;
 use vertex_set::VertexSet;
 
 /// The lines of a triangulation: the owner of its constraints.
@@ -105,6 +102,12 @@ impl Lines {
     /// Returns the vertices added where segments cross, in order.
     pub(super) fn added(&self) -> &[VertexId] {
         self.added_list.get_or_init(|| self.added.iter().collect())
+    }
+
+    /// Returns how many triangles all insertions of sub-constraints have met.
+    #[cfg(test)]
+    pub(super) fn met(&self) -> usize {
+        self.scratch.met
     }
 
     /// Discards what was derived from the set of added vertices.

@@ -7,16 +7,9 @@ use rustc_hash::FxHashMap;
 use crate::arrangement::Arrangement;
 use crate::geometry::Crossing;
 use crate::num::Sign;
-use crate::tds::{Id, VertexId};
+use crate::tds::VertexId;
 
-use super::super::ConstrainedDelaunay;
-
-/// The type tag of line numbers.
-#[derive(Debug)]
-pub enum LineTag {}
-
-/// The number of a line: its position among all lines that were given.
-pub type LineId = Id<LineTag>;
+use super::super::{ConstrainedDelaunay, LineId};
 
 /// The lines as given, and their paths through the triangulation.
 ///

@@ -5,7 +5,7 @@
 //! | [`Near`] a cell, or the last insertion | as many as cells lie between |
 //! | [`JumpAndWalk`] from the nearest of `n^(1/3)` vertices (Mücke, Saias and Zhu 1996) | `n^(1/3)`, and as many distances |
 //! | [`Buckets`] from a vertex in the same square of a grid | a few; no better than without if all points are in one square |
-//! | [`Hierarchy`] of samples (Devillers 2002) | `log n`, however the points are spread |
+//! | [`Hierarchy`](super::Hierarchy) of samples (Devillers 2002) | `log n`, however the points are spread |
 //!
 //! These walk from one triangle to the next across an edge that separates it from the point. At
 //! first they decide by rounded numbers and cross the edge that the point is furthest beyond, for
@@ -21,13 +21,11 @@
 //! but still correct.
 
 mod buckets;
-mod hierarchy;
 mod start;
 mod straight;
 mod walk;
 
 pub use buckets::Buckets;
-pub use hierarchy::Hierarchy;
 pub use start::{JumpAndWalk, Locate, Near};
 pub use straight::StraightLine;
 
@@ -242,7 +240,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     /// Returns a cell that contains `q` or is not far from it, given one nearby. Less certain than
     /// [`locate`](Self::locate), and faster.
-    fn approach(&self, q: &G::Point, near: Option<CellId>) -> Option<CellId> {
+    pub(super) fn approach(&self, q: &G::Point, near: Option<CellId>) -> Option<CellId> {
         let mut near = near.filter(|&c| self.tds.is_used(c));
         if self.tds.width() == N
             && let Some(start) = near

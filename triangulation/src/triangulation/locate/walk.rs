@@ -5,8 +5,8 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Complex, VertexId};
 
-use super::super::engine::embedded::{Embedded, PointOf};
-use super::super::engine::sides::{points_with, side_of_facet, simplex};
+use super::super::embedded::sides::{points_with, side_of_facet, simplex};
+use super::super::embedded::{Embedded, PointOf};
 use super::{Facets, Location};
 
 /// Marsaglia's xorshift. The walk tests facets in an order that no input can anticipate, and that

@@ -7,7 +7,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Complex, Star, VertexId, ccw, cw, plane};
 
-use super::super::engine::embedded::{Embedded, PointOf};
+use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::super::{Location, Triangulation};
 

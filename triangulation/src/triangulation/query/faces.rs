@@ -19,7 +19,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, Complex, Star, VertexId, ccw, cw};
 
 use super::super::Triangulation;
-use super::super::engine::embedded::Embedded;
+use super::super::embedded::Embedded;
 use super::site;
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {

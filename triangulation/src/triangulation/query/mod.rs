@@ -63,7 +63,7 @@ use crate::geometry::Coordinates;
 use crate::tds::VertexId;
 
 use super::Triangulation;
-use super::engine::embedded::Embedded;
+use super::embedded::Embedded;
 
 /// Returns the coordinates of a point in the plane.
 fn site_of<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {

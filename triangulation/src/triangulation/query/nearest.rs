@@ -16,7 +16,7 @@ use rustc_hash::FxHashSet;
 use crate::geometry::{Geometry, Metric};
 use crate::tds::{CellId, Complex, VertexId, plane};
 
-use super::super::engine::embedded::{Embedded, PointOf};
+use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::super::{Delaunay, Location};
 

@@ -6,7 +6,7 @@ use crate::num::Sign;
 use crate::tds::{CellId, Complex, VertexId, plane};
 
 use super::super::Triangulation;
-use super::super::engine::embedded::{Embedded, PointOf};
+use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::{site, site_of};
 

@@ -3,8 +3,8 @@ use rustc_hash::FxHashSet;
 use crate::geometry::{Crossing, Geometry};
 use crate::tds::{CellId, Complex};
 
-use super::super::engine::embedded::{Embedded, PointOf};
-use super::super::engine::sides::in_conflict;
+use super::super::embedded::sides::in_conflict;
+use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::super::{ConstrainedDelaunay, Delaunay, Facets, Location};
 

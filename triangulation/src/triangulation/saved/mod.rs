@@ -19,7 +19,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
-use super::lines::trace::Scratch;
+use super::engine::trace::Scratch;
 use super::{
     Basic, Constrained, ConstrainedEdges, Delaunay, Flaw, InputError, Level, MAX_VERTICES, Regular, Triangulation,
 };

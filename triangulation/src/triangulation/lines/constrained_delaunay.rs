@@ -4,63 +4,8 @@ use crate::geometry::{Coordinates, Crossing};
 use crate::tds::{CellId, VertexId};
 
 use super::super::bulk::{self, Sites};
-use super::super::lines::Lines;
-use super::super::{Flaw, InputError, Level, Triangulation};
-
-/// Which edges of a triangle are constrained, and the triangle's payload. Bit `i` is set for the
-/// edge opposite vertex `i`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename = "Walls"))] // as in saved files
-pub struct ConstrainedEdges<C = ()>(u8, C);
-
-impl<C> ConstrainedEdges<C> {
-    /// Returns true if the edge opposite vertex `i` is constrained.
-    #[inline(always)]
-    pub fn has(&self, i: usize) -> bool {
-        self.0 >> i & 1 == 1
-    }
-
-    /// The payload.
-    pub(in super::super) fn data(&self) -> &C {
-        &self.1
-    }
-
-    /// The payload, mutable.
-    pub(in super::super) fn data_mut(&mut self) -> &mut C {
-        &mut self.1
-    }
-
-    /// Returns a copy in which the edge opposite vertex `i` is constrained or not.
-    #[inline]
-    pub(in super::super) fn with(self, i: usize, is_constrained: bool) -> Self {
-        ConstrainedEdges(self.0 & !(1 << i) | u8::from(is_constrained) << i, self.1)
-    }
-
-    /// Returns a copy in which all edges are free, except the one opposite vertex `i`, which stays
-    /// as it was.
-    #[inline(always)]
-    pub(in super::super) fn only(self, i: usize) -> Self {
-        ConstrainedEdges(self.0 & 1 << i, self.1)
-    }
-
-    /// Returns a copy with another payload.
-    pub(in super::super) fn with_data<D>(&self, data: D) -> ConstrainedEdges<D> {
-        ConstrainedEdges(self.0, data)
-    }
-
-    /// Returns true for the mark of a triangle that is being replaced.
-    pub(in super::super) fn is_being_replaced(&self) -> bool {
-        self.0 == u8::MAX
-    }
-}
-
-impl<C: Default> ConstrainedEdges<C> {
-    /// Returns the mark of a triangle that is being replaced.
-    pub(in super::super) fn being_replaced() -> Self {
-        ConstrainedEdges(u8::MAX, C::default())
-    }
-}
+use super::super::{ConstrainedEdges, Flaw, InputError, Level, Triangulation};
+use super::Lines;
 
 /// A constrained Delaunay triangulation of the plane. Each given segment is a chain of its
 /// edges, and no vertex lies inside of a triangle's circumscribed circle unless a constraint

@@ -312,7 +312,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     }
 
     /// Triangulates a side by the Delaunay law.
-    pub(super) fn triangulate(&self, side: &Side, apexes: &mut Vec<u32>) {
+    pub(in super::super) fn triangulate(&self, side: &Side, apexes: &mut Vec<u32>) {
         if side.chain.len() < LONG || self.triangulate_long(side, apexes).is_none() {
             self.wrap(side, Self::is_in_circle, apexes);
         }

@@ -1,10 +1,12 @@
+//! Point location by a hierarchy of samples.
+
 use rustc_hash::FxHashMap;
 
 use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};
 
-use super::super::{Delaunay, Inserted, Triangulation};
-use super::{Dice, Locate, Location};
+use super::locate::Dice;
+use super::{Delaunay, Inserted, Locate, Location, Triangulation};
 
 /// The ratio of vertices to those in the next smaller sample.
 const RATIO: usize = 30;

@@ -347,7 +347,7 @@ mod tests {
             ASKED.store(0, Relaxed);
             let t = build::<Counting>(&points, &segments);
             assert_eq!(t.constrained_edges().count(), count as usize);
-            [t.lines.scratch.met as f64, ASKED.load(Relaxed) as f64]
+            [t.lines.met() as f64, ASKED.load(Relaxed) as f64]
         });
         for (few, many) in counts[0].into_iter().zip(counts[1]) {
             assert!(many < 2.6 * few && many < 1e6, "{counts:?}");

@@ -6,7 +6,7 @@ use crate::geometry::{Geometry, in_sphere, in_sphere_of_flat};
 use crate::num::Sign;
 use crate::tds::{CellId, Complex, VertexId};
 
-use super::embedded::{Embedded, PointOf};
+use super::{Embedded, PointOf};
 
 /// Returns the points of a cell of any dimension, with `q` in place of the vertex at `replaced`.
 /// All others are finite.

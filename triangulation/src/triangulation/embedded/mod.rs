@@ -1,10 +1,14 @@
+//! Structures with points, and on which sides of their cells a point lies.
+
+pub(super) mod sides;
+
 use std::borrow::Borrow;
 use std::convert::Infallible;
 
 use crate::geometry::Geometry;
 use crate::tds::{Complex, Tds, VertexId};
 
-use super::super::Triangulation;
+use super::Triangulation;
 
 /// A complex whose vertices have points. [`Triangulation`], the read-only
 /// [`Compact`](crate::Compact) and structures of the user's own implement it. Location and the
