@@ -235,6 +235,19 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         around::counted(vertices, self.vertex_count())
     }
 
+    /// The finite vertices with their payloads, mutable, in order of their numbers.
+    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
+        let slots = self.vertex_cell.iter().zip(&mut self.vertex_data).enumerate();
+        slots.filter(|(_, (cell, _))| **cell != CellId::NONE).map(|(i, (_, data))| (VertexId::new(i), data))
+    }
+
+    /// All cells with their payloads, mutable, the infinite ones included, in order of their
+    /// numbers.
+    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
+        let slots = self.links.iter().zip(&mut self.cell_data).enumerate();
+        slots.filter(|(_, (links, _))| links.vertices[0] != VertexId::NONE).map(|(i, (_, data))| (CellId::new(i), data))
+    }
+
     /// Returns true if this is the number of a finite vertex. Accepts any number.
     #[inline]
     pub fn is_vertex(&self, vertex: VertexId) -> bool {

@@ -178,6 +178,35 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         self.flaws(level, |_, _| true)
     }
 
+    /// The finite vertices with their payloads, mutable, in order of their numbers.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Plane, Delaunay};
+    ///
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]];
+    /// let (mut t, v) = Delaunay::from_points_with(Plane::new(), &points, |k| k)?;
+    /// t.remove(v[1])?;
+    /// for (vertex, data) in t.vertex_data_iter_mut() {
+    ///     *data = 10 * *data + usize::from(vertex == v[3]);
+    /// }
+    /// assert_eq!([0, 2, 3].map(|k| *t.tds().vertex_data(v[k])), [0, 20, 31]);
+    /// assert!(t.vertex_data_iter_mut().all(|(vertex, _)| vertex != v[1]));
+    ///
+    /// let mut t = t.with_cell_data(|_| 0);
+    /// t.cell_data_iter_mut().for_each(|(cell, data)| *data = cell.index() + 1);
+    /// assert!(t.tds().cells().all(|cell| *t.tds().cell_data(cell) == cell.index() + 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
+        self.inner.tds.vertex_data_iter_mut()
+    }
+
+    /// All cells with their payloads, mutable, the infinite ones included, in order of their
+    /// numbers.
+    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
+        self.inner.tds.cell_data_iter_mut()
+    }
+
     /// Returns the payload of a finite vertex, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)

@@ -349,6 +349,17 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         Ok(vertex)
     }
 
+    /// The visible vertices with their payloads, mutable, in order of their numbers.
+    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
+        self.inner.tds.vertex_data_iter_mut()
+    }
+
+    /// All cells with their payloads, mutable, the infinite ones included, in order of their
+    /// numbers.
+    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
+        self.inner.tds.cell_data_iter_mut()
+    }
+
     /// Returns the payload of a point, visible or hidden, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)

@@ -100,6 +100,17 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         self.inner.tds.cell_data_mut(cell).data_mut()
     }
 
+    /// The finite vertices with their payloads, mutable, in order of their numbers.
+    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
+        self.inner.tds.vertex_data_iter_mut()
+    }
+
+    /// All triangles with their payloads, mutable, the infinite ones included, in order of their
+    /// numbers.
+    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
+        self.inner.tds.cell_data_iter_mut().map(|(cell, edges)| (cell, edges.data_mut()))
+    }
+
     /// Returns the payload of a finite vertex, mutable.
     pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
         self.inner.tds.vertex_data_mut(vertex)

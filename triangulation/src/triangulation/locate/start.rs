@@ -19,8 +19,8 @@ use super::Location;
 ///
 /// # Models
 /// [`Near`], [`JumpAndWalk`], [`StraightLine`](super::StraightLine), [`Buckets`](super::Buckets),
-/// [`Hierarchy`](super::Hierarchy). All work with any kind of triangulation. A strategy of your own
-/// chooses where a walk starts; here, where the last query ended:
+/// [`Hierarchy`](super::super::Hierarchy). All work with any kind of triangulation. A strategy of
+/// your own chooses where a walk starts; here, where the last query ended:
 ///
 /// ```
 /// use std::cell::Cell;
