@@ -172,13 +172,20 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
         triangulation.lines.added = added.into_iter().collect();
         let parts = triangulation.lines.paths.record(&arrangement, &segments, vertex);
-        if !triangulation.constrain_all(parts, &arrangement).is_empty() {
+        let crossing = triangulation.constrain_all(parts, &arrangement, grain);
+        if grain.is_stopped() {
+            return Err(InputError::Canceled);
+        }
+        if !crossing.is_empty() {
             triangulation.rearrange();
             triangulation.lines.rearrangements = 0;
         }
         Ok((triangulation, renumbered))
     }
 }
+
+/// Sub-constraints that are inserted between two looks at the flag that cancels the work.
+const LOOK_EVERY: usize = 1 << 8;
 
 /// Returns an error if a line names a point that does not exist.
 fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), InputError> {
@@ -192,11 +199,12 @@ fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Inpu
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Inserts the sub-constraints of an arrangement. Returns those that cross others; they are
-    /// present up to the first crossing only.
+    /// present up to the first crossing only. Ends early if `grain` says so.
     pub(in super::super) fn constrain_all(
         &mut self,
         mut parts: Vec<[VertexId; 2]>,
         arrangement: &Arrangement,
+        grain: Grain,
     ) -> Vec<[VertexId; 2]> {
         self.lines.rounding = (!arrangement.crossings().is_empty())
             .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
@@ -212,6 +220,9 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         let mut crossing = Vec::new();
         let mut dice = Dice::default();
         for next in 0..parts.len() {
+            if next.is_multiple_of(LOOK_EVERY) && grain.stops() {
+                break;
+            }
             if self.lines.scratch.met > enough {
                 let left = parts.len() - next;
                 parts.swap(next, next + dice.below(left));

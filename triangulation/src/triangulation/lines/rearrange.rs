@@ -15,7 +15,7 @@ use crate::num::unsigned_zero;
 use crate::tds::VertexId;
 
 use super::super::ConstrainedDelaunay;
-use super::super::bulk::spatial_order;
+use super::super::bulk::{Grain, spatial_order};
 use super::super::locate::Dice;
 use super::build::points_added;
 use super::paths::{segments_of, undirected};
@@ -153,7 +153,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         }
         let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all are known now
         let parts = self.lines.paths.record(arrangement, segments, |site| sites[site as usize]);
-        let crossing = self.constrain_all(parts, arrangement);
+        let crossing = self.constrain_all(parts, arrangement, Grain::default());
         self.lines.paths.drop_stray_splits();
         self.lines.touch();
         crossing
