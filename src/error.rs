@@ -77,7 +77,8 @@ impl Error {
         Self::new(Kind::Limit, message.into())
     }
 
-    /// Creates the error that canceled work ends with.
+    /// Creates the error that canceled work ends with. It has no path and no location, because they
+    /// mean nothing to the user.
     #[cold]
     pub fn canceled() -> Self {
         Self::new(Kind::Canceled, "canceled".to_owned())
@@ -94,7 +95,9 @@ impl Error {
     /// Adds the path of the file, unless there is one already: the innermost is the most exact.
     #[must_use]
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
-        self.inner.path.get_or_insert_with(|| path.as_ref().to_path_buf());
+        if self.inner.kind != Kind::Canceled {
+            self.inner.path.get_or_insert_with(|| path.as_ref().to_path_buf());
+        }
         self
     }
 
@@ -102,7 +105,9 @@ impl Error {
     /// already.
     #[must_use]
     pub fn at(mut self, location: impl Into<String>) -> Self {
-        self.inner.location.get_or_insert_with(|| location.into());
+        if self.inner.kind != Kind::Canceled {
+            self.inner.location.get_or_insert_with(|| location.into());
+        }
         self
     }
 

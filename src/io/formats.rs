@@ -19,6 +19,7 @@ use super::mapped::Mapped;
 use super::output::Destination;
 use super::point_options::Options;
 use super::triangle::Triangulated;
+use super::watch::{Watch, bytes_of};
 use super::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, text, tin, triangle};
 use crate::crs::Crs;
 use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
@@ -127,9 +128,9 @@ pub(super) enum Reader {
         /// Reads input that can be read only once; messages show the path as its name.
         stream: fn(Box<dyn Read + Send>, &Path, Options) -> Points,
     },
-    Layer(fn(&Path, Option<&str>) -> Result<Layer>),
+    Layer(fn(&Path, Option<&str>, Watch) -> Result<Layer>),
     Raster(fn(&Path) -> Result<GeoTiffReader>),
-    Mesh(fn(&Path) -> Result<Triangles>),
+    Mesh(fn(&Path, Watch) -> Result<Triangles>),
     /// A TIN, which is not read, but used where its bytes are.
     Tin(fn(&Path) -> Result<Mapped>),
     /// Triangles without exact coordinates: counted, but not read.
@@ -573,7 +574,7 @@ pub static FORMATS: &[Format] = &[
         beside: &["shx", "dbf", "prj", "cpg"],
         parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
         gdal_name: Some("ESRI Shapefile"),
-        reader: Reader::Layer(shapefile::read_layer),
+        reader: Reader::Layer(shapefile::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
             check_size: Some(shapefile::check_size),
@@ -590,7 +591,7 @@ pub static FORMATS: &[Format] = &[
         content: Content::Layer,
         holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
         gdal_name: Some("GeoJSON"),
-        reader: Reader::Layer(geojson::read_layer),
+        reader: Reader::Layer(geojson::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| geojson::write_contours(target, lines, crs)),
             ..NOT_WRITTEN
@@ -641,7 +642,7 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"ply")],
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
-        reader: Reader::Mesh(|path| ply::read(&std::fs::read(path)?)),
+        reader: Reader::Mesh(|path, watch| ply::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| ply::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles with breaklines and coordinate system",
@@ -653,7 +654,7 @@ pub static FORMATS: &[Format] = &[
         extensions: &["obj"],
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
-        reader: Reader::Mesh(|path| obj::read(&std::fs::read(path)?)),
+        reader: Reader::Mesh(|path, watch| obj::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| obj::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles",
@@ -665,7 +666,7 @@ pub static FORMATS: &[Format] = &[
         extensions: &["off"],
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
-        reader: Reader::Mesh(|path| off::read(&std::fs::read(path)?)),
+        reader: Reader::Mesh(|path, watch| off::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| off::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles",
@@ -700,7 +701,7 @@ pub static FORMATS: &[Format] = &[
         ..ROW
     },
     Format {
-        reader: Reader::Mesh(triangle::read_triangles),
+        reader: Reader::Mesh(triangle::read_triangles_with),
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges],
         beside: &["node"],

@@ -9,6 +9,8 @@ use serde_json::{Map, Value};
 use super::contour_summary::ContourSummary;
 use super::field::no_such_field;
 use super::shapefile::parse_number;
+use super::watch::{Watch, bytes_of, unwatched};
+use super::watched_value;
 use super::{Destination, Output};
 use crate::crs::{Crs, CrsKind};
 use crate::data::{ContourLine, Layer, Shape};
@@ -40,13 +42,21 @@ type Object = Map<String, Value>;
 /// Linear. The file and all its values are in memory while it is read, which is many times the size
 /// of the shapes.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
-    let bytes = std::fs::read(path).map_err(|e| Error::from(e).in_file(path))?;
-    parse(&bytes, z_field).map_err(|e| e.in_file(path))
+    read_layer_with(path, z_field, &unwatched)
 }
 
-fn parse(bytes: &[u8], z_field: Option<&str>) -> Result<Layer> {
+/// Like [`read_layer`], but watched. Nothing is counted.
+///
+/// # Errors
+/// Those of [`read_layer`], and that of the watch.
+pub fn read_layer_with(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
+    let bytes = bytes_of(path, watch)?;
+    parse(&bytes, z_field, watch).map_err(|e| e.in_file(path))
+}
+
+fn parse(bytes: &[u8], z_field: Option<&str>, watch: Watch) -> Result<Layer> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let value: Value = serde_json::from_slice(bytes).map_err(|e| {
+    let value = watched_value::of(bytes, watch)?.map_err(|e| {
         Error::format(format!("not JSON: {e}")).cure("GeoJSON that is cut short cannot be read in part")
     })?;
     let Value::Object(root) = value else {
@@ -56,6 +66,9 @@ fn parse(bytes: &[u8], z_field: Option<&str>) -> Result<Layer> {
     match kind(&root)? {
         "FeatureCollection" => {
             for (i, feature) in array(&root, "features")?.iter().enumerate() {
+                if i % watched_value::VALUES_AT_ONCE == 0 {
+                    watch(0)?;
+                }
                 reader.feature(feature, z_field).map_err(|e| e.at(format!("feature {}", i + 1)))?;
             }
         }
@@ -340,7 +353,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Layer> {
-        parse(text.as_bytes(), None)
+        parse(text.as_bytes(), None, &unwatched)
     }
 
     fn features(list: &[&str]) -> String {
@@ -401,21 +414,21 @@ mod tests {
     #[test]
     fn heights_from_a_property() {
         let text = features(&[LINE, "null", LINE]).replace("2.5", "\"12,5\"");
-        let layer = parse(text.as_bytes(), Some("z")).unwrap();
+        let layer = parse(text.as_bytes(), Some("z"), &unwatched).unwrap();
         let heights: Vec<f64> = layer.shapes.iter().flat_map(Shape::vertices).map(|v| v[2]).collect();
         assert_eq!(heights, [0.5, 0.5, 12.5, 12.5]);
-        let error = parse(text.as_bytes(), Some("ELEV")).unwrap_err();
+        let error = parse(text.as_bytes(), Some("ELEV"), &unwatched).unwrap_err();
         assert_eq!(
             (error.to_string().as_str(), error.cure_text()),
             ("there is no field ELEV", Some("name one of Z, name"))
         );
-        let error = parse(text.as_bytes(), Some("name")).unwrap_err();
+        let error = parse(text.as_bytes(), Some("name"), &unwatched).unwrap_err();
         assert_eq!(error.to_string(), "property name holds no numbers; the first value is n");
         let text = features(&[LINE, LINE]).replace("1.5", "\"high\"");
-        let layer = parse(text.as_bytes(), Some("Z")).unwrap();
+        let layer = parse(text.as_bytes(), Some("Z"), &unwatched).unwrap();
         assert!(layer.warnings[0].contains("no number in 1 features (the first: high)"));
         let text = features(&[LINE, LINE]).replace("1.5", "null");
-        let layer = parse(text.as_bytes(), Some("Z")).unwrap();
+        let layer = parse(text.as_bytes(), Some("Z"), &unwatched).unwrap();
         assert!(layer.shapes[1].vertices().all(|v| v[2].is_nan()));
     }
 
@@ -459,15 +472,15 @@ mod tests {
         let mut bytes = Vec::new();
         let summary = write(&mut bytes, &mut lines.clone().into_iter(), None).unwrap();
         assert_eq!((summary.lines, summary.vertices, summary.closed), (2, 6, 1));
-        let layer = parse(&bytes, Some("ELEV")).unwrap();
+        let layer = parse(&bytes, Some("ELEV"), &unwatched).unwrap();
         assert_eq!(layer.fields, ["ELEV", "ID"]);
         for (shape, line) in layer.shapes.iter().zip([&lines[0], &lines[2]]) {
             let vertices: Vec<[f64; 3]> = line.points.iter().map(|p| [p[0], p[1], line.level]).collect();
             assert_eq!(*shape, Shape::Lines(vec![vertices]));
         }
-        assert_eq!(parse(&bytes, None).unwrap().shapes, layer.shapes);
+        assert_eq!(parse(&bytes, None, &unwatched).unwrap().shapes, layer.shapes);
         let mut bytes = Vec::new();
         write(&mut bytes, &mut std::iter::empty(), None).unwrap();
-        assert!(parse(&bytes, None).unwrap().shapes.is_empty());
+        assert!(parse(&bytes, None, &unwatched).unwrap().shapes.is_empty());
     }
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::formats::{self, Reader};
+use super::watch::{Watch, unwatched};
 use crate::data::Layer;
 use crate::error::{Error, Result};
 
@@ -16,6 +17,14 @@ use crate::error::{Error, Result};
 /// # Errors
 /// If the file does not exist or is not a vector layer.
 pub fn read(spec: &str) -> Result<Layer> {
+    read_with(spec, &unwatched)
+}
+
+/// Like [`read`], but watched: the bytes that were parsed are counted, if the format allows it.
+///
+/// # Errors
+/// Those of [`read`], and that of the watch.
+pub fn read_with(spec: &str, watch: Watch) -> Result<Layer> {
     let (path, field) = split(spec);
     if field == Some("") {
         return Err(Error::usage(format!("{spec}: no field after the colon")).cure("write FILE or FILE:FIELD"));
@@ -29,7 +38,7 @@ pub fn read(spec: &str) -> Result<Layer> {
         )));
     }
     match formats::detect_file(&path)?.map(|format| format.reader) {
-        Some(Reader::Layer(read)) => read(&path, field),
+        Some(Reader::Layer(read)) => read(&path, field, watch),
         _ => Err(unsupported(&path)),
     }
 }

@@ -40,6 +40,7 @@ use super::mapped;
 use super::mapped::Mapped;
 use super::output::Destination;
 pub use super::stl::Solid;
+use super::watch::{Watch, unwatched};
 use crate::data::{Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
 
@@ -128,7 +129,17 @@ pub fn keeps_lines(path: &Path) -> bool {
 /// If the file is damaged, is not a surface (see [`Mesh::new`]), has no faces, has polygons that
 /// are far from convex, or its format cannot be read.
 pub fn read(path: &Path) -> Result<Mesh> {
-    Mesh::of(read_triangles(path)?).map_err(|e| e.in_file(path))
+    read_with(path, &unwatched)
+}
+
+/// Like [`read`], but watched: the bytes that were parsed are counted.
+///
+/// # Errors
+/// Those of [`read`], and that of the watch.
+pub fn read_with(path: &Path, watch: Watch) -> Result<Mesh> {
+    let triangles = read_triangles_with(path, watch)?;
+    watch(0)?;
+    Mesh::of(triangles).map_err(|e| e.in_file(path))
 }
 
 /// Reads the triangles of a mesh even if they do not form a surface, for example to check them.
@@ -136,6 +147,14 @@ pub fn read(path: &Path) -> Result<Mesh> {
 /// # Errors
 /// As [`read`], except that the triangles need not form a surface.
 pub fn read_triangles(path: &Path) -> Result<Triangles> {
+    read_triangles_with(path, &unwatched)
+}
+
+/// Like [`read_triangles`], but watched: the bytes that were parsed are counted.
+///
+/// # Errors
+/// Those of [`read_triangles`], and that of the watch.
+pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
     let read = match formats::of_name(path).map(|format| (format, format.reader)) {
         Some((_, Reader::Mesh(read))) => read,
         Some((format, Reader::Solid(_))) => {
@@ -149,7 +168,7 @@ pub fn read_triangles(path: &Path) -> Result<Triangles> {
         }
         _ => return Err(unknown(path)),
     };
-    read(path).map_err(|e| e.in_file(path))
+    read(path, watch).map_err(|e| e.in_file(path))
 }
 
 #[cold]

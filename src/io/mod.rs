@@ -66,8 +66,11 @@ mod stl;
 pub mod text;
 mod tin;
 pub mod triangle;
+mod watch;
+mod watched_value;
 mod world_file;
 
 pub(crate) use contain::contain;
 pub use contain::is_contained;
 pub use output::{Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe};
+pub use watch::Watch;

@@ -2,12 +2,14 @@
 
 use std::io::Write;
 
+use super::listing::polygon::POLYGONS_AT_ONCE;
 use super::listing::text::write_lines;
 use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
-use crate::io::{Destination, Output};
+use crate::io::watch::Meter;
+use crate::io::{Destination, Output, Watch};
 
 /// Writes `v x y z` and `f a b c`, numbered from 1. Decimals are the shortest that read back as the
 /// same double.
@@ -28,13 +30,16 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
 
 /// Reads `v` and `f` lines (with texture and normal numbers, and numbers counted from the end), and
 /// comments that begin with `crs`. Everything else is skipped.
-pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
+pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let mut vertices = Vec::new();
     // Faces may precede their vertices, so they are assembled at the end.
     let mut corners = Vec::new();
     let mut polygons = Vec::new();
     let mut crs = String::new();
+    let (mut meter, mut left) = (Meter::new(watch, bytes.len()), bytes.len());
     for (number, line) in logical_lines(bytes) {
+        left = left.saturating_sub(line.len() + 1);
+        meter.left(left)?;
         let at_line = |e: Error| e.at(format!("line {number}"));
         let mut words = line.split_ascii_whitespace();
         match words.next() {
@@ -54,7 +59,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
         return Err(Error::format("there are no faces ('f a b c' lines)"));
     }
     let mut faces = Vec::with_capacity(polygons.len());
-    for (number, range) in polygons {
+    for (i, (number, range)) in polygons.into_iter().enumerate() {
+        if i % POLYGONS_AT_ONCE == 0 {
+            watch(0)?;
+        }
         let at_line = |e: Error| e.at(format!("line {number}"));
         polygon::add_polygon(&vertices, &corners[range], &mut faces).map_err(at_line)?;
     }

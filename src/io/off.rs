@@ -13,7 +13,7 @@ use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows, shown};
-use crate::io::{Destination, Output};
+use crate::io::{Destination, Output, Watch};
 
 /// Writes vertices, faces and the coordinate system. The number of edges, which no reader uses, is
 /// written as 0.
@@ -33,8 +33,8 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
 }
 
 /// Reads plain OFF and its variants with colors and normals.
-pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
-    let mut rows = Rows::new(bytes);
+pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
+    let mut rows = Rows::new(bytes, watch);
     let [vertex_count, face_count] = read_header(&mut rows)?;
     let mut vertices = Vec::with_capacity(vertex_count.min(bytes.len() / MIN_BYTES));
     for i in 0..vertex_count {

@@ -14,6 +14,7 @@ use super::formats::{self, Format, HEAD, PointWriter, Product, Reader};
 use super::las::{Detail, Rounding};
 use super::output::Destination;
 pub use super::point_options::Options;
+use super::watch::unwatched;
 use crate::data::{Layer, PointBatch, PointInfo, PointSink, PointSource, Shape};
 use crate::error::{Error, Result};
 
@@ -46,7 +47,9 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     let head = head(&mut file).map_err(named)?;
     match formats::detect(&head, path).map(|format| format.reader) {
         Some(Reader::Points { file, .. }) => file(path, options),
-        Some(Reader::Layer(read)) => Ok(Box::new(from_layer(read(path, None)?).map_err(|e| e.in_file(path))?)),
+        Some(Reader::Layer(read)) => {
+            Ok(Box::new(from_layer(read(path, None, &unwatched)?).map_err(|e| e.in_file(path))?))
+        }
         _ => Err(refusal(&head, path)),
     }
 }

@@ -2,12 +2,14 @@
 
 use std::str::FromStr;
 
+use super::watch::{Meter, Watch};
 use crate::error::{Error, Result};
 
 /// The lines of a text that contain more than a comment (`#` to the end of the line).
 pub(super) struct Rows<'a> {
     rest: &'a [u8],
     line: usize,
+    meter: Meter<'a>,
 }
 
 /// A line of words, separated by blanks or commas. Words are taken from its start.
@@ -20,8 +22,9 @@ pub(super) struct Row<'a> {
 }
 
 impl<'a> Rows<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Rows { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), line: 0 }
+    pub(super) fn new(bytes: &'a [u8], watch: Watch<'a>) -> Self {
+        let rest = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        Rows { rest, line: 0, meter: Meter::new(watch, rest.len()) }
     }
 
     /// Returns the number of bytes that are left of the text.
@@ -32,8 +35,9 @@ impl<'a> Rows<'a> {
     /// Returns the next line, which should match `pattern`.
     ///
     /// # Errors
-    /// If the text has ended; the message says what is missing.
+    /// If the text has ended; the message says what is missing. That of the watch.
     pub(super) fn expect(&mut self, what: impl FnOnce() -> String, pattern: &'static str) -> Result<Row<'a>> {
+        self.meter.left(self.rest.len())?;
         self.next(pattern).ok_or_else(|| {
             Error::format(format!("the file ends where {} is expected", what()))
                 .at(format!("line {}", self.line.max(1)))
@@ -169,10 +173,11 @@ pub(super) fn shown(word: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::watch::unwatched;
 
     #[test]
     fn comments_and_blank_lines_are_not_rows() {
-        let mut rows = Rows::new(b"\xef\xbb\xbf# title\r\n\n  \t\r\n 1, 2.5 # a comment\r\n,,\n3e0 x");
+        let mut rows = Rows::new(b"\xef\xbb\xbf# title\r\n\n  \t\r\n 1, 2.5 # a comment\r\n,,\n3e0 x", &unwatched);
         let mut row = rows.next("N X").unwrap();
         assert_eq!((row.line, row.whole("n").unwrap(), row.finite("x").unwrap()), (4, 1, 2.5));
         assert!(!row.has_more());
@@ -191,7 +196,7 @@ mod tests {
     #[test]
     fn numbers_that_are_none_are_named() {
         let read = |text: &str| {
-            let mut rows = Rows::new(text.as_bytes());
+            let mut rows = Rows::new(text.as_bytes(), &unwatched);
             let mut row = rows.next("N").unwrap();
             let whole = row.clone_of_rest().within::<u32>("n").map_err(|e| e.to_string());
             (whole, row.finite("n").map_err(|e| e.to_string()))

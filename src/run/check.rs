@@ -98,7 +98,7 @@ fn check_mesh(path: &Path, systems: &SystemOptions, context: &Context) -> Result
     }
     // The Delaunay law cannot be checked without the lines.
     let find = if keeps_lines { terrain::surface_flaws } else { terrain::shape_flaws };
-    let triangles = open::mesh_triangles(path, &journal)?;
+    let triangles = open::mesh_triangles(path, &journal.context)?;
     let (mesh, flaws) = flaws_by(find, triangles, context).map_err(|e| e.in_file(path))?;
     let model = surface::mesh_model(path, mesh, systems, &journal)?;
     Ok(CheckProduct { product: SurfaceProduct { model, built: None, notices: journal.take() }, flaws })

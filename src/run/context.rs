@@ -63,11 +63,13 @@ pub enum Stage {
     ReadingPoints,
     /// Points are read and written, counted in points read.
     WritingPoints,
-    /// A raster is read.
+    /// A vector layer is read, counted in bytes where the format allows it.
+    ReadingLayer,
+    /// A raster is read, counted in cells.
     ReadingCells,
-    /// A mesh is read.
+    /// A mesh is read, counted in bytes.
     ReadingTriangles,
-    /// A file is read, without a count.
+    /// Points and segments of the plane are read, counted in bytes.
     Reading,
     /// Points and lines are triangulated.
     Triangulating,

@@ -153,21 +153,20 @@ pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Fa
     if content == Content::Points {
         return point_facts(path, read, context).map(|facts| Facts::Points(Box::new(facts)));
     }
-    let reading = context.start(Stage::Reading, Size::Uncounted)?;
     let facts = match content {
-        Content::Layer | Content::Points => Facts::Layer(Box::new(layer_facts(path)?)),
-        Content::Raster => Facts::Raster(Box::new(raster_facts(path)?)),
+        Content::Layer | Content::Points => Facts::Layer(Box::new(layer_facts(path, context)?)),
+        Content::Raster => Facts::Raster(Box::new(raster_facts(path, context)?)),
         Content::Mesh => match open::solid(path) {
             Some(solid) => Facts::Solid(Box::new(solid?)),
             None => Facts::Mesh(Box::new(match open::tin(path) {
                 Some(tin) => tin_facts(&tin?),
-                None => mesh_facts(path)?,
+                None => mesh_facts(path, context)?,
             })),
         },
         Content::Picture => Facts::Picture(Box::new(open::picture(path)?)),
-        Content::Plane => Facts::Plane(Box::new(plane_facts(path)?)),
+        Content::Plane => Facts::Plane(Box::new(plane_facts(path, context)?)),
     };
-    reading.end()?;
+    context.check()?;
     Ok(facts)
 }
 
@@ -175,7 +174,7 @@ pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Fa
 const FLAGS: [u8; 4] = [PointFlags::SYNTHETIC, PointFlags::KEY_POINT, PointFlags::WITHHELD, PointFlags::OVERLAP];
 
 fn point_facts(path: &Path, read: points::Options, context: &Context) -> Result<PointFacts> {
-    let mut source = open::points_of_file(path, read)?;
+    let mut source = open::points_of_file(path, read, context)?;
     let mut facts = PointFacts {
         info: source.info().clone(),
         count: 0,
@@ -217,8 +216,8 @@ impl PointFacts {
     }
 }
 
-fn layer_facts(path: &Path) -> Result<LayerFacts> {
-    let layer = open::layer(path)?;
+fn layer_facts(path: &Path, context: &Context) -> Result<LayerFacts> {
+    let layer = open::layer(path, context)?;
     let mut facts = LayerFacts { records: layer.shapes.len(), ..LayerFacts::default() };
     for shape in &layer.shapes {
         *facts.kinds.entry(shape.kind()).or_default() += 1;
@@ -237,11 +236,14 @@ fn layer_facts(path: &Path) -> Result<LayerFacts> {
 }
 
 /// For GeoTIFF in bounded memory.
-fn raster_facts(path: &Path) -> Result<RasterFacts> {
-    match Raster::open(path)? {
+fn raster_facts(path: &Path, context: &Context) -> Result<RasterFacts> {
+    let raster = Raster::open(path)?;
+    let work = context.start(Stage::ReadingCells, Size::Items(raster.cells()))?;
+    let watch = |cells| work.add(cells);
+    match raster {
         Raster::GeoTiff(reader) => {
             let info = reader.info();
-            let extremes = reader.extremes()?;
+            let extremes = reader.extremes_with(&watch)?;
             Ok(RasterFacts {
                 format: info.description(),
                 sample: Some(info.sample.to_string()),
@@ -256,7 +258,7 @@ fn raster_facts(path: &Path) -> Result<RasterFacts> {
             })
         }
         Raster::Gdal(raster) => {
-            let values = raster.read_grid()?.values;
+            let values = raster.read_grid_with(&watch)?.values;
             let valid = values.into_iter().filter(|value| !value.is_nan());
             let (count, range) = valid.fold((0, None), |(count, range): (u64, Option<[f64; 2]>), value| {
                 let [low, high] = range.unwrap_or([value; 2]);
@@ -278,8 +280,8 @@ fn raster_facts(path: &Path) -> Result<RasterFacts> {
     }
 }
 
-fn mesh_facts(path: &Path) -> Result<MeshFacts> {
-    let (mesh, flaws) = open::linked_mesh(path)?;
+fn mesh_facts(path: &Path, context: &Context) -> Result<MeshFacts> {
+    let (mesh, flaws) = open::linked_mesh(path, context)?;
     Ok(MeshFacts { surface: SurfaceFacts::of(&mesh), crs: mesh.crs().cloned(), flaw: flaws.first().copied() })
 }
 
@@ -287,13 +289,13 @@ fn tin_facts<S: AsRef<[u8]> + Sync>(tin: &CompactTin<S>) -> MeshFacts {
     MeshFacts { surface: tin.facts().clone(), crs: tin.crs().cloned(), flaw: None }
 }
 
-fn plane_facts(path: &Path) -> Result<PlaneFacts> {
+fn plane_facts(path: &Path, context: &Context) -> Result<PlaneFacts> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     Ok(match extension.as_str() {
         "edge" => PlaneFacts::Edges(open::listed(path)?),
         "neigh" => PlaneFacts::Neighbors(open::listed(path)?),
         _ => {
-            let graph = open::line_graph(path)?;
+            let graph = open::line_graph(path, context)?;
             let mut bounds = Bounds::default();
             graph.nodes.points.iter().for_each(|&[x, y]| bounds.add([x, y, f64::NAN]));
             PlaneFacts::Graph {

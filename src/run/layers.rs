@@ -23,7 +23,7 @@ pub(super) fn read<'a>(inputs: &'a [Input<Layer>], journal: &Journal) -> Result<
     for input in inputs {
         journal.context.check()?;
         let path = input.path();
-        let layer = open::layer_of(input).map_err(|e| e.in_file(path))?;
+        let layer = open::layer_of(input, &journal.context).map_err(|e| e.in_file(path))?;
         let (format, records) = (layer.format.clone(), layer.shapes.len());
         journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
         layer.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::context::{Journal, Size, Stage};
+use super::context::{Context, Journal, Size, Stage};
 use super::input::{Input, MemoryPoints, MemorySource};
 use super::memory;
 use crate::crs::Crs;
@@ -40,17 +40,22 @@ fn format(path: &Path) -> Option<&'static Format> {
 }
 
 /// Opens points, in memory or in a file of any format.
-pub(super) fn points(input: &Input<MemoryPoints>, options: Options) -> Result<Box<dyn PointSource + Send>> {
+pub(super) fn points(
+    input: &Input<MemoryPoints>,
+    options: Options,
+    context: &Context,
+) -> Result<Box<dyn PointSource + Send>> {
     match input {
-        Input::File(path) => points_of_file(path, options),
+        Input::File(path) => points_of_file(path, options, context),
         Input::Memory(points) => Ok(Box::new(MemorySource::new(Arc::clone(points))?)),
     }
 }
 
 /// Opens points of any format. If the name of a vector layer ends in `:FIELD`, heights come from
 /// that attribute.
-pub(super) fn points_of_file(path: &Path, options: Options) -> Result<Box<dyn PointSource + Send>> {
-    let of_layer = || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path)?)?)) };
+pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
+    let of_layer =
+        || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path, context)?)?)) };
     match content(path) {
         Content::Layer => of_layer(),
         Content::Points | Content::Raster | Content::Mesh | Content::Picture | Content::Plane => {
@@ -64,26 +69,31 @@ pub(super) fn points_of_file(path: &Path, options: Options) -> Result<Box<dyn Po
 }
 
 /// Returns a vector layer, from memory or from a file.
-pub(super) fn layer_of(input: &Input<Layer>) -> Result<Cow<'_, Layer>> {
+pub(super) fn layer_of<'a>(input: &'a Input<Layer>, context: &Context) -> Result<Cow<'a, Layer>> {
     match input {
-        Input::File(path) => layer(path).map(Cow::Owned),
+        Input::File(path) => layer(path, context).map(Cow::Owned),
         Input::Memory(layer) => Ok(Cow::Borrowed(layer)),
     }
 }
 
 /// Reads a vector layer. If the name ends in `:FIELD`, heights come from that attribute; for
 /// formats that GDAL reads, it names a layer.
-pub(super) fn layer(path: &Path) -> Result<Layer> {
+pub(super) fn layer(path: &Path, context: &Context) -> Result<Layer> {
     let Some(spec) = path.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
     };
-    layer::read(spec).or_else(|error| {
-        if !gdal_may_help(&error) {
-            return Err(error);
-        }
-        let (file, name) = layer::split(spec);
-        gdal::read_layer(&file, name)
+    let (file, name) = layer::split(spec);
+    let work = context.start(Stage::ReadingLayer, size(&file))?;
+    let watch = |bytes| work.add(bytes);
+    layer::read_with(spec, &watch).or_else(|error| match gdal_may_help(&error) {
+        true => gdal::read_layer_with(&file, name, &watch),
+        false => Err(error),
     })
+}
+
+/// Returns the number of bytes of a file.
+fn size(path: &Path) -> Size {
+    std::fs::metadata(path).map_or(Size::Unknown, |data| Size::Items(data.len()))
 }
 
 /// Returns true if GDAL may be able to read a file that this crate cannot.
@@ -105,25 +115,28 @@ impl Raster {
             Err(error) => Err(error),
         }
     }
+
+    /// Returns the number of cells.
+    pub(super) fn cells(&self) -> u64 {
+        let Frame { width, height, .. } = match self {
+            Raster::GeoTiff(reader) => reader.frame(),
+            Raster::Gdal(raster) => raster.frame(),
+        };
+        width as u64 * height as u64
+    }
 }
 
 /// Reads a whole raster; returns it with the warnings of its reader.
 pub(super) fn raster(path: &Path, journal: &Journal) -> Result<(Grid, Vec<String>)> {
-    let _reading = journal.start(Stage::ReadingCells, Size::Uncounted)?;
-    match Raster::open(path)? {
-        Raster::GeoTiff(reader) => {
-            require_memory(reader.frame()).map_err(|e| e.in_file(path))?;
-            Ok((reader.read_grid()?, reader.info().warnings.clone()))
-        }
-        Raster::Gdal(raster) => {
-            require_memory(raster.frame()).map_err(|e| e.in_file(path))?;
-            Ok((raster.read_grid()?, raster.warnings().to_vec()))
-        }
+    let raster = Raster::open(path)?;
+    let cells = raster.cells();
+    memory::require_for_cells(cells).map_err(|e| e.in_file(path))?;
+    let work = journal.start(Stage::ReadingCells, Size::Items(cells))?;
+    let watch = |cells| work.add(cells);
+    match raster {
+        Raster::GeoTiff(reader) => Ok((reader.read_grid_with(&watch)?, reader.info().warnings.clone())),
+        Raster::Gdal(raster) => Ok((raster.read_grid_with(&watch)?, raster.warnings().to_vec())),
     }
-}
-
-fn require_memory(frame: Frame) -> Result<()> {
-    memory::require_for_cells(frame.width as u64 * frame.height as u64)
 }
 
 /// Returns the frame of a raster and its coordinate system, without reading cells.
@@ -137,8 +150,8 @@ pub(super) fn raster_frame(path: &Path) -> Result<(Frame, Option<Crs>)> {
 /// Reads a mesh; an error if it is not a surface.
 pub(super) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
     memory::require_for_mesh(path)?;
-    let reading = journal.start(Stage::ReadingTriangles, Size::Uncounted)?;
-    let mesh = mesh::read(path)?;
+    let reading = journal.start(Stage::ReadingTriangles, size(path))?;
+    let mesh = mesh::read_with(path, &|bytes| reading.add(bytes))?;
     reading.end()?;
     Ok(mesh)
 }
@@ -150,8 +163,8 @@ pub(super) fn tin(path: &Path) -> Option<Result<CompactTin<Mapped>>> {
 
 /// Reads a mesh that may not be a surface: its triangles, linked where possible, and the flaws of
 /// the links.
-pub(super) fn linked_mesh(path: &Path) -> Result<(Mesh, Vec<LinkFlaw>)> {
-    Mesh::link(mesh::read_triangles(path)?).map_err(|e| e.in_file(path))
+pub(super) fn linked_mesh(path: &Path, context: &Context) -> Result<(Mesh, Vec<LinkFlaw>)> {
+    Mesh::link(mesh_triangles(path, context)?).map_err(|e| e.in_file(path))
 }
 
 /// Reads an STL file; `None` if the mesh has a different format.
@@ -170,14 +183,17 @@ pub(super) fn listed(path: &Path) -> Result<usize> {
 }
 
 /// Reads a `.node` or a `.poly` file.
-pub(super) fn line_graph(path: &Path) -> Result<LineGraph> {
-    triangle::read(path)
+pub(super) fn line_graph(path: &Path, context: &Context) -> Result<LineGraph> {
+    let reading = context.start(Stage::Reading, size(path))?;
+    let graph = triangle::read_with(path, &|bytes| reading.add(bytes))?;
+    reading.end()?;
+    Ok(graph)
 }
 
 /// Reads the triangles of a mesh, in the order of the file.
-pub(super) fn mesh_triangles(path: &Path, journal: &Journal) -> Result<Triangles> {
-    let reading = journal.start(Stage::ReadingTriangles, Size::Uncounted)?;
-    let triangles = mesh::read_triangles(path)?;
+pub(super) fn mesh_triangles(path: &Path, context: &Context) -> Result<Triangles> {
+    let reading = context.start(Stage::ReadingTriangles, size(path))?;
+    let triangles = mesh::read_triangles_with(path, &|bytes| reading.add(bytes))?;
     reading.end()?;
     Ok(triangles)
 }

@@ -1,6 +1,6 @@
 //! Files of points: opened, then asked for their coordinate systems, then read.
 
-use super::context::{Journal, Size, Stage};
+use super::context::{Context, Journal, Size, Stage};
 use super::input::{Input, MemoryPoints};
 use super::notice::Notice;
 use super::systems::{Role, Stated};
@@ -35,7 +35,7 @@ impl PointFile {
     /// Returns true if the file has a point of these classes. Reads until one is found.
     fn has_any(&self, options: Options, classes: &Classes, journal: &Journal) -> Result<bool> {
         let path = self.input.path();
-        let mut source = self.reopen(options)?;
+        let mut source = self.reopen(options, &journal.context)?;
         let mut selection = Selection::new(classes.clone(), None);
         let mut batch = PointBatch::default();
         loop {
@@ -48,8 +48,8 @@ impl PointFile {
         }
     }
 
-    fn reopen(&self, options: Options) -> Result<Box<dyn PointSource + Send>> {
-        open::points(&self.input, options).map_err(|e| e.in_file(self.input.path()))
+    fn reopen(&self, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
+        open::points(&self.input, options, context).map_err(|e| e.in_file(self.input.path()))
     }
 }
 
@@ -65,7 +65,7 @@ impl PointFiles {
         let mut files = Vec::with_capacity(inputs.len());
         for input in inputs {
             let path = input.path();
-            let source = open::points(input, options).map_err(|e| e.in_file(path))?;
+            let source = open::points(input, options, &journal.context).map_err(|e| e.in_file(path))?;
             let info = source.info();
             journal.add(Notice::Opened(path.to_path_buf(), info.format.clone()));
             info.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
@@ -160,7 +160,7 @@ impl PointFiles {
         for (file, transform) in self.files.iter_mut().zip(by_file) {
             let source = file.source.take();
             let path = file.input.path();
-            let mut source = source.map_or_else(|| file.reopen(self.options), Ok)?;
+            let mut source = source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
             selection.next_source();
             let mut count = 0;
             let mut extent = Bounds::default();

@@ -82,12 +82,13 @@ pub struct PointsReport {
 ///
 /// # Errors
 /// If a file cannot be read, the files are in different coordinate systems and no target is
-/// requested, reprojection is not possible, their points cannot be written together without a loss (see [`las::create`](crate::io::las::create)), no point is left,
-/// or the run is canceled. Nothing is written then.
+/// requested, reprojection is not possible, points cannot be written together without a loss (see
+/// [`las::create`](crate::io::las::create)), no point is left, or the run is canceled. Nothing is
+/// written then.
 pub fn write_points(request: &PointsRequest, target: Destination, context: &Context) -> Result<PointsReport> {
     let journal = Journal::new(context);
     let options = Options { detail: points::detail_for(target)?, ..request.read };
-    let open = |path: &Path| open::points_of_file(path, options).map_err(|e| e.in_file(path));
+    let open = |path: &Path| open::points_of_file(path, options, context).map_err(|e| e.in_file(path));
     let mut sources: Vec<Option<Box<dyn PointSource + Send>>> = Vec::new();
     let mut infos: Vec<PointInfo> = Vec::new();
     for path in &request.files {

@@ -42,6 +42,7 @@ fn title(stage: Stage) -> &'static str {
     match stage {
         Stage::ReadingPoints => "reading points",
         Stage::WritingPoints => "writing points",
+        Stage::ReadingLayer => "reading lines",
         Stage::ReadingCells => "reading cells",
         Stage::ReadingTriangles => "reading triangles",
         Stage::Reading => "reading",

@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::crs::Crs;
 use crate::data::{Frame, Grid, Layer, Window};
 use crate::error::{Error, Result};
+use crate::io::Watch;
 
 /// A raster that GDAL has open. A build without the feature `gdal` has none.
 #[derive(Debug)]
@@ -19,6 +20,14 @@ pub struct Raster {
 /// Always; the message says how to get GDAL.
 pub fn read_layer(path: &Path, _name: Option<&str>) -> Result<Layer> {
     Err(missing("vector", &super::split(path).0))
+}
+
+/// Returns an error: this build has no GDAL.
+///
+/// # Errors
+/// Always; the message says how to get GDAL.
+pub fn read_layer_with(path: &Path, name: Option<&str>, _watch: Watch) -> Result<Layer> {
+    read_layer(path, name)
 }
 
 /// Returns an error: this build has no GDAL.
@@ -69,6 +78,14 @@ impl Raster {
     /// # Errors
     /// Never.
     pub fn read_grid(&self) -> Result<Grid> {
+        match self.never {}
+    }
+
+    /// Reads all values.
+    ///
+    /// # Errors
+    /// Never.
+    pub fn read_grid_with(&self, _watch: Watch) -> Result<Grid> {
         match self.never {}
     }
 }

@@ -22,11 +22,11 @@ mod raster;
 mod vector;
 
 #[cfg(not(feature = "gdal"))]
-pub use absent::{Raster, open_raster, read_layer};
+pub use absent::{Raster, open_raster, read_layer, read_layer_with};
 #[cfg(feature = "gdal")]
 pub use raster::{Raster, open_raster};
 #[cfg(feature = "gdal")]
-pub use vector::read_layer;
+pub use vector::{read_layer, read_layer_with};
 
 /// True if this build has GDAL.
 pub const IS_AVAILABLE: bool = cfg!(feature = "gdal");

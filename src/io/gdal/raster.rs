@@ -8,9 +8,13 @@ use super::messages;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Window};
 use crate::error::{Error, Result};
+use crate::io::watch::{Watch, unwatched};
 
 /// Limit for the cells of one read; 8 bytes each.
 const MAX_CELLS: usize = 1 << 31;
+
+/// Cells that are read before the watch is called, roughly.
+const CELLS_AT_ONCE: usize = 1 << 22;
 
 /// A raster that GDAL has open. Its first band is read: values are stored sample x scale + offset,
 /// and NaN for nodata (by its nodata value or its mask).
@@ -156,8 +160,22 @@ impl Raster {
     /// # Errors
     /// As [`read_window`](Raster::read_window).
     pub fn read_grid(&self) -> Result<Grid> {
+        self.read_grid_with(&unwatched)
+    }
+
+    /// Like [`read_grid`](Self::read_grid), but watched: cells are counted.
+    ///
+    /// # Errors
+    /// Those of [`read_grid`](Self::read_grid), and that of the watch.
+    pub fn read_grid_with(&self, watch: Watch) -> Result<Grid> {
         let Frame { width, height, .. } = self.frame;
-        let values = self.read_window(Window { column: 0, row: 0, width, height })?;
+        let mut values = self.buffer(width.saturating_mul(height))?;
+        let rows = (CELLS_AT_ONCE / width.max(1)).max(1);
+        for row in (0..height).step_by(rows) {
+            let height = rows.min(height - row);
+            values.extend(self.read_window(Window { column: 0, row, width, height })?);
+            watch((width * height) as u64)?;
+        }
         Ok(Grid { frame: self.frame, crs: self.crs.clone(), values })
     }
 

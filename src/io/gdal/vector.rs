@@ -11,6 +11,7 @@ use super::messages;
 use crate::crs::Crs;
 use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
+use crate::io::watch::{Watch, unwatched};
 
 /// Limit for the nesting of geometry collections; deeper ones lead to an error.
 const MAX_DEPTH: usize = 16;
@@ -26,6 +27,14 @@ const MAX_DEPTH: usize = 16;
 /// If GDAL cannot open the file, the file has no such layer or field, or reading fails; if the file
 /// has several layers and none is named.
 pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
+    read_layer_with(path, name, &unwatched)
+}
+
+/// Like [`read_layer`], but watched. Nothing is counted.
+///
+/// # Errors
+/// Those of [`read_layer`], and that of the watch.
+pub fn read_layer_with(path: &Path, name: Option<&str>, watch: Watch) -> Result<Layer> {
     messages::listen();
     let (path, behind) = super::split(path);
     let name = match (behind, name) {
@@ -56,6 +65,7 @@ pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
     layer.crs = reference.and_then(|reference| crs(&reference, &mut layer.warnings));
     let mut without_height = 0;
     for feature in source.features() {
+        watch(0)?;
         let first = layer.shapes.len();
         match feature.geometry() {
             Some(geometry) if !is_absent(geometry) => {

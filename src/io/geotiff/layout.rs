@@ -79,6 +79,13 @@ pub(super) struct Span {
     pub(super) stored: Stored,
 }
 
+impl Span {
+    /// Returns the number of cells.
+    pub(super) fn cells(&self) -> u64 {
+        self.width as u64 * self.rows as u64
+    }
+}
+
 /// Where the bytes of a [`Span`] are.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stored {

@@ -11,6 +11,7 @@ use super::{MAX_CELLS, block, tags};
 use crate::crs::{Crs, GeoKeys};
 use crate::data::{BlockSource, Frame, Grid, Window};
 use crate::error::{Error, Kind, Result};
+use crate::io::watch::{Watch, unwatched};
 use crate::io::world_file;
 
 /// What the header of a GeoTIFF states.
@@ -271,7 +272,7 @@ impl GeoTiffReader {
     /// # Errors
     /// As [`read_window`](Self::read_window).
     pub fn read_stored(&self, window: Window) -> Result<Vec<f64>> {
-        self.stored(window).map_err(|e| with_file(e, &self.path))
+        self.stored(window, &unwatched).map_err(|e| with_file(e, &self.path))
     }
 
     /// Reads the whole raster.
@@ -279,9 +280,19 @@ impl GeoTiffReader {
     /// # Errors
     /// As [`read_window`](Self::read_window).
     pub fn read_grid(&self) -> Result<Grid> {
+        self.read_grid_with(&unwatched)
+    }
+
+    /// Like [`read_grid`](Self::read_grid), but watched: the cells of the blocks that were read are
+    /// counted.
+    ///
+    /// # Errors
+    /// Those of [`read_grid`](Self::read_grid), and that of the watch.
+    pub fn read_grid_with(&self, watch: Watch) -> Result<Grid> {
         let frame = self.frame();
-        let all = Window { column: 0, row: 0, width: frame.width, height: frame.height };
-        Ok(Grid { frame, crs: self.info.crs.clone(), values: self.read_window(all)? })
+        let mut values = self.stored(frame.window(), watch).map_err(|e| with_file(e, &self.path))?;
+        self.scale(&mut values);
+        Ok(Grid { frame, crs: self.info.crs.clone(), values })
     }
 
     /// Reads all values once, in bounded memory, and returns their number and range.
@@ -289,6 +300,15 @@ impl GeoTiffReader {
     /// # Errors
     /// If a block is damaged or not in the file.
     pub fn extremes(&self) -> Result<Extremes> {
+        self.extremes_with(&unwatched)
+    }
+
+    /// Like [`extremes`](Self::extremes), but watched: the cells of the blocks that were read are
+    /// counted.
+    ///
+    /// # Errors
+    /// Those of [`extremes`](Self::extremes), and that of the watch.
+    pub fn extremes_with(&self, watch: Watch) -> Result<Extremes> {
         /// Cells read at a time, roughly; blocks of up to `BLOCK_CELLS` are read whole.
         const CELLS: usize = 1 << 24;
         const BLOCK_CELLS: usize = 1 << 26;
@@ -302,7 +322,8 @@ impl GeoTiffReader {
         for row in (0..height).step_by(rows) {
             for column in (0..width).step_by(columns) {
                 let window = Window { column, row, width: columns.min(width - column), height: rows.min(height - row) };
-                for value in self.read_stored(window)?.into_iter().filter(|value| !value.is_nan()) {
+                let values = self.stored(window, watch).map_err(|e| with_file(e, &self.path))?;
+                for value in values.into_iter().filter(|value| !value.is_nan()) {
                     found.valid += 1;
                     let [min, max] = found.stored_range.get_or_insert([value; 2]);
                     *min = min.min(value);
@@ -326,7 +347,7 @@ impl GeoTiffReader {
         }
     }
 
-    fn stored(&self, window: Window) -> Result<Vec<f64>> {
+    fn stored(&self, window: Window, watch: Watch) -> Result<Vec<f64>> {
         let Window { column, row, width, height } = window;
         let fits = |start: usize, length: usize, end| start.checked_add(length).is_some_and(|stop| stop <= end);
         if !fits(column, width, self.info.width) || !fits(row, height, self.info.height) {
@@ -365,7 +386,7 @@ impl GeoTiffReader {
         let batch = (MAX_WAITING_BYTES / span_bytes).min(4 * rayon::current_num_threads() as u64);
         if batch < 2 {
             // Only one of such huge blocks is decoded at a time, and its values are copied at once.
-            spans.iter().try_for_each(|span| values(span, &mut copy))?;
+            spans.iter().try_for_each(|span| values(span, &mut copy).and_then(|()| watch(span.cells())))?;
             return Ok(out);
         }
         for batch in spans.chunks(batch as usize) {
@@ -375,6 +396,7 @@ impl GeoTiffReader {
             };
             let decoded: Vec<_> = batch.par_iter().map(decode).collect::<Result<_>>()?;
             decoded.into_iter().flatten().for_each(|(part, values)| copy(part, values));
+            watch(batch.iter().map(Span::cells).sum())?;
         }
         Ok(out)
     }

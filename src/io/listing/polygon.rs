@@ -2,6 +2,9 @@ use crate::data::{not_finite, orientation};
 use crate::error::{Error, Result};
 use crate::triangulation::num::Sign;
 
+/// Polygons between two looks at a watch.
+pub(in crate::io) const POLYGONS_AT_ONCE: usize = 1 << 16;
+
 /// Divides a polygon into a fan of triangles around one of its corners, and adds them to `faces`.
 ///
 /// The choice of the corner matters: if three corners are collinear, a fan around the wrong one has

@@ -1,15 +1,18 @@
 use super::header::{Element, Encoding, Scalar};
 use crate::error::{Error, Result};
+use crate::io::Watch;
+use crate::io::watch::Meter;
 
 /// The values of a file that have not been read yet.
 pub(super) struct Body<'a> {
     rest: &'a [u8],
     encoding: Encoding,
+    meter: Meter<'a>,
 }
 
 impl<'a> Body<'a> {
-    pub(super) fn new(bytes: &'a [u8], encoding: Encoding) -> Self {
-        Body { rest: bytes, encoding }
+    pub(super) fn new(bytes: &'a [u8], encoding: Encoding, watch: Watch<'a>) -> Self {
+        Body { rest: bytes, encoding, meter: Meter::new(watch, bytes.len()) }
     }
 
     /// Returns an error if a count exceeds what the remaining bytes can contain, so that it may be
@@ -57,6 +60,7 @@ impl<'a> Body<'a> {
                 }
             }
             each(number, &row).map_err(in_row)?;
+            self.meter.left(self.rest.len())?;
         }
         Ok(())
     }

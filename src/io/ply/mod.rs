@@ -12,11 +12,12 @@ use std::io::Write;
 use body::Body;
 use header::{Element, Header, Property, Scalar};
 
+use super::listing::polygon::POLYGONS_AT_ONCE;
 use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};
-use crate::io::{Destination, Output};
+use crate::io::{Destination, Output, Watch};
 
 /// The properties for the kinds of a face's edges. The first edge goes from the first corner to the
 /// second, and so on.
@@ -69,7 +70,7 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
 
 /// Reads the elements `vertex`, `face` and, in files of earlier versions, `constrained_edge`, in
 /// any order and with any types.
-pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
+pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let header = Header::read(bytes)?;
     let has = |name: &str| header.elements.iter().any(|e| e.name == name && e.count > 0);
     if !has("face") {
@@ -78,7 +79,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
             false => Error::format("there are no faces: the file is a point cloud"),
         });
     }
-    let mut body = Body::new(&bytes[header.length..], header.encoding);
+    let mut body = Body::new(&bytes[header.length..], header.encoding, watch);
     let mut vertices = Vec::new();
     let mut polygons = Polygons::default();
     let mut constrained_edges = Vec::new();
@@ -99,6 +100,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles> {
     let mut start = 0;
     let mut fragments = polygons.fragments.into_iter().peekable();
     for (i, end) in polygons.ends.into_iter().enumerate() {
+        if i % POLYGONS_AT_ONCE == 0 {
+            watch(0)?;
+        }
         let corners = &polygons.corners[start..end];
         let first = triangles.faces.len() as u32;
         polygon::add_polygon(&triangles.vertices, corners, &mut triangles.faces)

@@ -47,6 +47,7 @@ use std::path::{Path, PathBuf};
 use crate::crs::Crs;
 use crate::data::{Layer, Shape};
 use crate::error::{Error, Result};
+use crate::io::watch::{Watch, unwatched};
 use index::Index;
 use record::type_name;
 pub(in crate::io) use table::parse_number;
@@ -79,10 +80,18 @@ const MAX_PRJ: u64 = 1 << 20;
 /// # Complexity
 /// Linear. Memory is needed for the shapes and one record.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
-    read(path, z_field).map_err(|e| e.in_file(path))
+    read_layer_with(path, z_field, &unwatched)
 }
 
-fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
+/// Like [`read_layer`], but watched: the bytes of the `.shp` that were parsed are counted.
+///
+/// # Errors
+/// Those of [`read_layer`], and that of the watch.
+pub fn read_layer_with(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
+    read(path, z_field, watch).map_err(|e| e.in_file(path))
+}
+
+fn read(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
     let file = File::open(path)?;
     let size = file.metadata()?.len();
     let mut file = BufReader::with_capacity(1 << 16, file);
@@ -97,7 +106,7 @@ fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
         }
         None => None,
     };
-    let Walk { records, types, damage, end, mut odd } = walk::walk(&mut file, size, index.as_ref())?;
+    let Walk { records, types, damage, end, mut odd } = walk::walk(&mut file, size, index.as_ref(), watch)?;
     if let Some(first) = damage.reported.first()
         && records.iter().all(|record| record.shape.is_none())
     {
@@ -123,6 +132,7 @@ fn read(path: &Path, z_field: Option<&str>) -> Result<Layer> {
         crs: read_prj(path, &mut warnings)?,
         ..Layer::default()
     };
+    watch(0)?;
     let attributes = read_table(path, z_field, records.len(), &mut layer.fields, &mut warnings)?;
     layer.shapes = join(records, rows, &attributes, &mut warnings);
     layer.warnings = warnings;

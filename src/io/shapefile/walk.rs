@@ -8,6 +8,7 @@ use super::index::Index;
 use super::record::{self, Flaw, Oddities, Parsed};
 use crate::data::Shape;
 use crate::error::{Error, Result};
+use crate::io::watch::{Meter, Watch};
 
 /// A record that was found, readable or not.
 #[derive(Debug)]
@@ -59,13 +60,15 @@ impl Damage {
 /// at the next record that `index` lists and whose length agrees; without an index it ends there.
 ///
 /// # Errors
-/// If reading fails, or a coordinate is not a number.
-pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>) -> Result<Walk> {
+/// If reading fails, or a coordinate is not a number; that of the watch.
+pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>, watch: Watch) -> Result<Walk> {
     let mut walk = Walk::default();
+    let mut meter = Meter::new(watch, size as usize);
     let mut content = Vec::new();
     let mut at = super::HEADER;
     file.seek(SeekFrom::Start(at))?;
     while at < size {
+        meter.left((size - at) as usize)?;
         let number = walk.records.len() + 1;
         let location = || format!("record {number} (byte {at})");
         let (id, length) = match header(file, size - at)? {

@@ -13,30 +13,31 @@ use std::path::Path;
 use super::{Numbering, Triangulated, counted, edge, listed, neigh, node, poly, read_rows};
 use crate::data::Triangles;
 use crate::error::Result;
+use crate::io::Watch;
 use crate::io::decimal::Decimal;
 use crate::io::rows::Rows;
 
 const COUNTS: &str = "TRIANGLES 3 ATTRIBUTES";
 const TRIANGLE: &str = "NUMBER VERTEX VERTEX VERTEX ATTRIBUTES";
 
-pub(super) fn read_file(path: &Path) -> Result<Triangles> {
-    let nodes = node::read_beside(path)?.nodes;
+pub(super) fn read_file(path: &Path, watch: Watch) -> Result<Triangles> {
+    let nodes = node::read_beside(path, watch)?.nodes;
     let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
-    let faces = read_rows(path, |rows| read(rows, numbering))?;
+    let faces = read_rows(path, watch, |rows| read(rows, numbering))?;
     let beside = |extension: &str| Some(path.with_extension(extension)).filter(|path| path.exists());
     let segments = match beside("poly") {
-        Some(path) => poly::read_segments_alone(&path, numbering)?,
+        Some(path) => poly::read_segments_alone(&path, numbering, watch)?,
         None => None,
     };
     let constrained_edges = match (segments, beside("edge")) {
         // Segments between collinear points have no adjacent triangles.
         _ if faces.is_empty() => Vec::new(),
         (Some(segments), _) => segments.into_iter().map(|segment| segment.ends).collect(),
-        (None, Some(path)) => edge::read_marked(&path, numbering)?,
+        (None, Some(path)) => edge::read_marked(&path, numbering, watch)?,
         (None, None) => Vec::new(),
     };
     let neighbors = match beside("neigh") {
-        Some(path) => Some(neigh::read_file(&path, numbering.first, faces.len())?),
+        Some(path) => Some(neigh::read_file(&path, numbering.first, faces.len(), watch)?),
         None => None,
     };
     let vertices = nodes.points.into_iter().map(|[x, y]| [x, y, 0.0]).collect();

@@ -42,12 +42,13 @@ mod neigh;
 mod node;
 mod poly;
 
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::rows::{Row, Rows};
+use crate::io::watch::{Watch, bytes_of, unwatched};
 use crate::io::{Destination, Output};
 
 /// Vertices as in a `.node` file.
@@ -163,9 +164,17 @@ pub struct Triangulated {
 /// # Errors
 /// If a file is damaged, see [above](self); the error names the file and the line.
 pub fn read(path: &Path) -> Result<LineGraph> {
+    read_with(path, &unwatched)
+}
+
+/// Like [`read`], but watched: the bytes that were parsed are counted.
+///
+/// # Errors
+/// Those of [`read`], and that of the watch.
+pub fn read_with(path: &Path, watch: Watch) -> Result<LineGraph> {
     match extension(path).as_str() {
-        "node" => node::read_file(path),
-        "poly" => poly::read_file(path),
+        "node" => node::read_file(path, watch),
+        "poly" => poly::read_file(path, watch),
         _ => Err(unknown(path, "use .node or .poly")),
     }
 }
@@ -179,7 +188,15 @@ pub fn read(path: &Path) -> Result<LineGraph> {
 /// # Errors
 /// If a file is damaged, see [above](self); the error names the file and the line.
 pub fn read_triangles(path: &Path) -> Result<Triangles> {
-    ele::read_file(path)
+    read_triangles_with(path, &unwatched)
+}
+
+/// Like [`read_triangles`], but watched: the bytes that were parsed are counted.
+///
+/// # Errors
+/// Those of [`read_triangles`], and that of the watch.
+pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
+    ele::read_file(path, watch)
 }
 
 /// Writes files of Triangle; the extension of each target decides its content.
@@ -213,18 +230,10 @@ fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
-fn bytes_of(path: &Path) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|mut file| file.read_to_end(&mut bytes))
-        .map_err(|e| Error::from(e).in_file(path))?;
-    Ok(bytes)
-}
-
 /// Runs `read` on the lines of a file and returns its result; errors name the file.
-fn read_rows<T>(path: &Path, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> {
-    let bytes = bytes_of(path)?;
-    read(Rows::new(&bytes)).map_err(|e| e.in_file(path))
+fn read_rows<T>(path: &Path, watch: Watch, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> {
+    let bytes = bytes_of(path, watch)?;
+    read(Rows::new(&bytes, watch)).map_err(|e| e.in_file(path))
 }
 
 /// Counts the items of a file: edges, neighborhoods, triangles or vertices.
@@ -232,7 +241,7 @@ fn read_rows<T>(path: &Path, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> 
 /// # Errors
 /// If the file does not begin with a count, or has fewer or more lines.
 pub fn count(path: &Path) -> Result<usize> {
-    read_rows(path, |mut rows| {
+    read_rows(path, &unwatched, |mut rows| {
         let (_, count) = counted(&mut rows, "items", "ITEMS ...")?;
         for i in 0..count {
             rows.expect(|| format!("item {} of {count}", i + 1), "NUMBER ...")?;

@@ -10,13 +10,14 @@ use std::path::Path;
 
 use super::{Triangulated, counted, listed, read_rows};
 use crate::error::Result;
+use crate::io::Watch;
 use crate::io::rows::Rows;
 
 const COUNTS: &str = "TRIANGLES 3";
 const NEIGHBORS: &str = "NUMBER NEIGHBOR NEIGHBOR NEIGHBOR, -1 for none";
 
-pub(super) fn read_file(path: &Path, first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {
-    read_rows(path, |rows| read(rows, first, triangle_count))
+pub(super) fn read_file(path: &Path, first: u32, triangle_count: usize, watch: Watch) -> Result<Vec<[Option<u32>; 3]>> {
+    read_rows(path, watch, |rows| read(rows, first, triangle_count))
 }
 
 fn read(mut rows: Rows, first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {

@@ -12,6 +12,7 @@ use std::path::Path;
 
 use super::{LineGraph, Nodes, Surplus, Triangulated, counted, listed, marker, read_rows, room, site};
 use crate::error::Result;
+use crate::io::Watch;
 use crate::io::decimal::Decimal;
 use crate::io::rows::Rows;
 
@@ -25,8 +26,8 @@ pub(super) struct Listed {
     pub(super) surplus: Surplus,
 }
 
-pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
-    let Listed { nodes, lines, surplus } = read_rows(path, |mut rows| {
+pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
+    let Listed { nodes, lines, surplus } = read_rows(path, watch, |mut rows| {
         let vertices = read(&mut rows)?;
         rows.end("the last vertex")?;
         Ok(vertices)
@@ -36,8 +37,8 @@ pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
 }
 
 /// Reads the `.node` file that contains the vertices of another file.
-pub(super) fn read_beside(path: &Path) -> Result<LineGraph> {
-    read_file(&path.with_extension("node")).map_err(|e| match e.cure_text() {
+pub(super) fn read_beside(path: &Path, watch: Watch) -> Result<LineGraph> {
+    read_file(&path.with_extension("node"), watch).map_err(|e| match e.cure_text() {
         Some(_) => e,
         None => e.cure(format!("{} needs its vertices next to it", path.display())),
     })

@@ -14,21 +14,22 @@ use std::path::Path;
 
 use super::node::{self, Listed};
 use super::{Hole, LineGraph, Numbering, Region, Segment, Surplus, Triangulated};
-use super::{bytes_of, counted, listed, marker, read_rows, site};
+use super::{counted, listed, marker, read_rows, site};
 use crate::error::{Error, Result};
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows};
+use crate::io::watch::{Watch, bytes_of};
 
 const SEGMENTS: &str = "SEGMENTS MARKERS";
 const SEGMENT: &str = "NUMBER VERTEX VERTEX MARKER, the last if the list's first line announces it";
 
-pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
-    let bytes = bytes_of(path)?;
-    let mut rows = Rows::new(&bytes);
+pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
+    let bytes = bytes_of(path, watch)?;
+    let mut rows = Rows::new(&bytes, watch);
     let here = |e: Error| e.in_file(path);
     let Listed { nodes, lines, mut surplus } = node::read(&mut rows).map_err(here)?;
     let mut graph = if nodes.points.is_empty() {
-        let mut graph = node::read_beside(path)?;
+        let mut graph = node::read_beside(path, watch)?;
         let file = graph.node_file.display().to_string();
         graph.warnings.iter_mut().for_each(|text| text.insert_str(0, &format!("{file}: ")));
         graph
@@ -45,8 +46,8 @@ pub(super) fn read_file(path: &Path) -> Result<LineGraph> {
 }
 
 /// Returns the segments of a file that has no vertices of its own; `None` if it has some.
-pub(super) fn read_segments_alone(path: &Path, numbering: Numbering) -> Result<Option<Vec<Segment>>> {
-    read_rows(path, |mut rows| {
+pub(super) fn read_segments_alone(path: &Path, numbering: Numbering, watch: Watch) -> Result<Option<Vec<Segment>>> {
+    read_rows(path, watch, |mut rows| {
         if !node::read(&mut rows)?.nodes.points.is_empty() {
             return Ok(None);
         }

@@ -92,9 +92,7 @@ pub struct TriangulateReport {
 /// triangle is left, or the run is canceled.
 pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context) -> Result<TriangulateProduct> {
     let journal = Journal::new(context);
-    let reading = context.start(Stage::Reading, Size::Uncounted)?;
-    let graph = open::line_graph(path)?;
-    reading.end()?;
+    let graph = open::line_graph(path, context)?;
     graph.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
     if !options.region_areas
         && graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute))
