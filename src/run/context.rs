@@ -15,9 +15,13 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 pub struct Context<'a> {
     /// Receives progress and notices as they occur.
     pub monitor: &'a dyn Monitor,
-    /// The flag that cancels the run. When any thread sets it to true, the run returns within a
-    /// fraction of a second an error of the kind [`Canceled`](crate::error::Kind::Canceled), and
-    /// nothing is written.
+    /// The flag that cancels the run. When any thread sets it to true, the run soon returns an
+    /// error of the kind [`Canceled`](crate::error::Kind::Canceled), and nothing is written.
+    ///
+    /// It is polled after each batch of points, each megabyte of a mesh or of a layer (GeoJSON:
+    /// 1024 features), each few blocks of a raster, each range of 16 384 points and each 256
+    /// sub-constraints of a triangulation, each 2048 faces that are written. It is not polled while
+    /// points are sorted, the triangles of a file are linked, or the finished surface is clipped.
     pub cancel: &'a AtomicBool,
 }
 
