@@ -226,6 +226,20 @@ mod tests {
     }
 
     #[test]
+    fn a_tin_is_written_until_the_run_is_canceled() {
+        let mut builder = terrain::TinBuilder::default();
+        builder.add_points(&[0.0, 9.0, 9.0], &[0.0, 0.0, 9.0], &[1.0; 3]);
+        let tin = builder.build().unwrap();
+        let cancel = AtomicBool::new(false);
+        let context = Context { cancel: &cancel, ..Context::default() };
+        let watched = Watched::faces(&tin, 2, Stage::WritingFaces, &context).unwrap();
+        watched.write_tin(&mut Vec::new()).unwrap();
+        cancel.store(true, Ordering::Relaxed);
+        assert!(watched.write_tin(&mut Vec::new()).is_err());
+        assert_eq!(watched.end().unwrap_err().kind(), Kind::Canceled);
+    }
+
+    #[test]
     fn a_canceled_source_gives_no_more_and_stays_canceled() {
         let cancel = AtomicBool::new(false);
         let context = Context { cancel: &cancel, ..Context::default() };

@@ -13,7 +13,7 @@ pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     let mut sheet = Sheet::with_warnings(no_surface.into_iter().collect());
     sheet.silent("kind", "mesh");
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
-    sheet.plain("format", format!("TIN, {extension}"));
+    sheet.plain("format", if extension == "TIN" { extension } else { format!("TIN, {extension}") });
     sheet.plain("vertices", surface.vertices);
     sheet.plain("triangles", surface.triangles);
     sheet.row("breaklines", format!("{} edges", surface.breaklines), surface.breaklines);
