@@ -49,6 +49,7 @@
 //! [kinds of triangulations](crate#reexports) contain one that is a sphere, with read access only.
 
 mod around;
+mod around_space;
 mod build;
 mod check;
 mod complex;
@@ -59,6 +60,7 @@ pub mod plane;
 #[cfg(feature = "serde")]
 mod rebuild;
 mod remove;
+pub mod space;
 mod zone;
 
 pub use complex::Complex;

@@ -2,6 +2,7 @@
 //! counting faces.
 
 mod edits;
+mod in_space;
 mod judge;
 mod shapes;
 

@@ -1,0 +1,119 @@
+//! Edges, facets, and what is around a vertex or an edge, in space.
+//!
+//! Orders are functions of the cells' numbers, so triangulations that were built alike are iterated
+//! alike.
+//!
+//! | dimension | facets | edges | around an edge |
+//! |---|---|---|---|
+//! | 3 | triangles between two cells | sides of triangles | cells in a ring |
+//! | 2 | sides of triangles | the same | two cells |
+//! | 1 | the vertices | the cells | one cell |
+//! | 0, -1 | none | none | nothing |
+
+use std::iter::FusedIterator;
+
+use super::space::{self, Edge};
+use super::{CellId, Tds, VertexId};
+
+impl<V, C: Copy + Default> Tds<4, V, C> {
+    /// Returns the ends of an edge, from its start to its end.
+    #[inline]
+    pub fn edge_ends(&self, edge: Edge) -> [VertexId; 2] {
+        let Ok(ends) = space::edge_ends(self, edge);
+        ends
+    }
+
+    /// All facets, each once, as a cell and the index of the vertex opposite: of the two cells that
+    /// have a facet, the one with the smaller number. In order of these pairs.
+    pub fn facets(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
+        let width = if self.dimension < 1 { 0 } else { self.dimension as usize + 1 };
+        let sides = self.cells().flat_map(move |cell| (0..width).map(move |i| (cell, i)));
+        sides.filter(|&(cell, i)| cell < self.neighbor(cell, i))
+    }
+
+    /// The facets without the infinite vertex, each once. The cell may be an infinite one.
+    pub fn finite_facets(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
+        self.facets().filter(|&(cell, i)| {
+            self.cell_vertices(cell).iter().enumerate().all(|(k, &vertex)| k == i || vertex != VertexId::INFINITE)
+        })
+    }
+
+    /// All edges, each once, as the cell with the smallest number that has the edge, and the
+    /// indices of its ends. In order of these triples.
+    ///
+    /// # Complexity
+    /// For each edge, time in proportion to the square of the number of cells around it.
+    pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
+        let pairs: &[(usize, usize)] = match self.dimension {
+            3 => &[(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)],
+            2 => &[(0, 1), (0, 2), (1, 2)],
+            1 => &[(0, 1)],
+            _ => &[],
+        };
+        let edges = self.cells().flat_map(move |cell| pairs.iter().map(move |&(i, j)| (cell, i, j)));
+        edges.filter(|&(cell, i, j)| match self.dimension {
+            3 => self.cells_around_edge((cell, i, j)).skip(1).all(|(other, ..)| cell < other),
+            2 => cell < self.neighbor(cell, 3 - i - j),
+            _ => true,
+        })
+    }
+
+    /// The edges without the infinite vertex, each once, in the order of [`edges`](Self::edges). The
+    /// cell may be an infinite one.
+    pub fn finite_edges(&self) -> impl Iterator<Item = Edge> + '_ {
+        self.edges().filter(|&edge| !self.edge_ends(edge).contains(&VertexId::INFINITE))
+    }
+
+    /// The cells around an edge, the infinite ones included, counter-clockwise seen from its end,
+    /// each with the indices of the edge in it. The given cell is the first. Empty below dimension
+    /// 3.
+    pub fn cells_around_edge(&self, edge: Edge) -> impl DoubleEndedIterator<Item = Edge> + FusedIterator + '_ {
+        let Ok(cells) = space::cells_around_edge(self, edge);
+        cells.map(|Ok(edge)| edge)
+    }
+
+    /// The facets around an edge, counter-clockwise seen from its end, each as a cell and the index
+    /// of the vertex opposite: the facet between that cell and the next. Empty below dimension 3.
+    pub fn facets_around_edge(
+        &self,
+        edge: Edge,
+    ) -> impl DoubleEndedIterator<Item = (CellId, usize)> + FusedIterator + '_ {
+        self.cells_around_edge(edge).map(|(cell, i, j)| (cell, space::beside(i, j)[0]))
+    }
+
+    /// Returns the cells that have a vertex, the infinite ones included, each with the index of the
+    /// vertex in it: its star. The facets opposite the vertex are its link.
+    ///
+    /// # Complexity
+    /// Linear in the number of cells.
+    pub fn cells_around(&self, vertex: VertexId) -> Vec<(CellId, usize)> {
+        let Ok(cells) = space::cells_around(self, vertex);
+        cells
+    }
+
+    /// Returns the vertices that a vertex is joined to by an edge, the infinite one included, in
+    /// order of their numbers.
+    pub fn vertices_around(&self, vertex: VertexId) -> Vec<VertexId> {
+        let Ok(vertices) = space::vertices_around(self, vertex);
+        vertices
+    }
+
+    /// The number of edges at a vertex, including that to the infinite vertex.
+    pub fn degree(&self, vertex: VertexId) -> usize {
+        self.vertices_around(vertex).len()
+    }
+
+    /// Returns a cell that has these vertices, two to four different ones in any order, one of which
+    /// may be the infinite one. Time in proportion to the number of cells around the first.
+    pub fn cell_with(&self, vertices: &[VertexId]) -> Option<CellId> {
+        let Ok(cell) = space::cell_with(self, vertices);
+        cell
+    }
+
+    /// The facets of the convex hull, each as the infinite cell beyond it and the index of the
+    /// infinite vertex. Empty below dimension 3.
+    pub fn hull_facets(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
+        let star = if self.dimension < 3 { Vec::new() } else { self.cells_around(VertexId::INFINITE) };
+        star.into_iter()
+    }
+}

@@ -1,0 +1,225 @@
+//! Queries around vertices and edges in space, for any [`Complex`]: the functions correspond to the
+//! methods of [`Tds`](super::Tds).
+//!
+//! Each returns an error at the first link that does not hold. All terminate, whatever the links
+//! are.
+//!
+//! ```
+//! use breakline_triangulation::tds::{Complex, VertexId, space};
+//!
+//! /// The largest number of cells around an edge that starts at a vertex.
+//! fn thickest<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<usize, T::Error> {
+//!     let mut thickest = 0;
+//!     for (cell, i) in space::cells_around(complex, vertex)? {
+//!         for j in (0..4).filter(|&j| j != i) {
+//!             thickest = thickest.max(space::cells_around_edge(complex, (cell, i, j))?.count());
+//!         }
+//!     }
+//!     Ok(thickest)
+//! }
+//! ```
+
+use std::iter::FusedIterator;
+
+use rustc_hash::FxHashSet;
+
+use super::{CellId, Complex, VertexId};
+
+/// An edge with a direction, in any dimension: a cell that has it, and the indices of its start and
+/// its end there.
+pub type Edge = (CellId, usize, usize);
+
+/// Returns the other two indices of a tetrahedron, so that `i j k l` is an even permutation:
+/// counter-clockwise around the edge from `i` to `j`, seen from its end, `l` follows `k`.
+///
+/// ```text
+///          j                 l
+///        / | \            /     \
+///       k--|--l   from   k - j - (the next)
+///        \ | /    above:  \     /
+///          i                 ...
+/// ```
+#[inline(always)]
+pub const fn beside(i: usize, j: usize) -> [usize; 2] {
+    const TABLE: [[[usize; 2]; 4]; 4] = [
+        [[0, 0], [2, 3], [3, 1], [1, 2]],
+        [[3, 2], [0, 0], [0, 3], [2, 0]],
+        [[1, 3], [3, 0], [0, 0], [0, 1]],
+        [[2, 1], [0, 2], [1, 0], [0, 0]],
+    ];
+    TABLE[i & 3][j & 3]
+}
+
+/// The cells around an edge, counter-clockwise seen from its end.
+///
+/// A step across a link is taken only if the link is mutual. So no two steps enter one cell, and
+/// the iteration cannot run into a ring that does not contain its start.
+struct Ring<'a, T> {
+    complex: &'a T,
+    ends: [VertexId; 2],
+    front: CellId,
+    /// Equal to `front` at the start, when all cells are left, and at the end, when none is.
+    end: CellId,
+    is_over: bool,
+}
+
+impl<T: Complex<4>> Ring<'_, T> {
+    /// Returns the edge in a cell.
+    #[inline(always)]
+    fn edge_in(&self, cell: CellId) -> Result<Edge, T::Error> {
+        let corners = self.complex.corners(cell)?;
+        let [i, j] = self.ends.map(|end| super::first_of(&corners, end));
+        self.complex.ensure(cell, || i < 4 && j < 4 && i != j)?;
+        Ok((cell, i.min(3), j.min(3))) // indices into a cell whatever the links say
+    }
+
+    /// Returns the next cell, across the facet opposite the one of the two other vertices that
+    /// `forth` selects.
+    #[inline(always)]
+    fn step(&self, cell: CellId, forth: usize) -> Result<CellId, T::Error> {
+        let (_, i, j) = self.edge_in(cell)?;
+        let next = self.complex.neighbor(cell, beside(i, j)[forth])?;
+        self.complex.ensure(next, || {
+            let Ok((_, i, j)) = self.edge_in(next) else { return false };
+            self.complex.neighbor(next, beside(i, j)[1 - forth]).is_ok_and(|back| back == cell)
+        })?;
+        Ok(next)
+    }
+}
+
+impl<T: Complex<4>> Iterator for Ring<'_, T> {
+    type Item = Result<Edge, T::Error>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.is_over {
+            return None;
+        }
+        let here = self.edge_in(self.front).and_then(|edge| {
+            self.front = self.step(self.front, 0)?;
+            self.is_over = self.front == self.end;
+            Ok(edge)
+        });
+        Some(here.inspect_err(|_| self.is_over = true))
+    }
+}
+
+impl<T: Complex<4>> DoubleEndedIterator for Ring<'_, T> {
+    fn next_back(&mut self) -> Option<Self::Item> {
+        if self.is_over {
+            return None;
+        }
+        let here = self.step(self.end, 1).and_then(|cell| {
+            self.end = cell;
+            self.is_over = self.front == self.end;
+            self.edge_in(cell)
+        });
+        Some(here.inspect_err(|_| self.is_over = true))
+    }
+}
+
+impl<T: Complex<4>> FusedIterator for Ring<'_, T> {}
+
+/// Returns the ends of an edge, from its start to its end.
+///
+/// # Errors
+/// If there is no such cell.
+#[inline]
+pub fn edge_ends<T: Complex<4>>(complex: &T, (cell, i, j): Edge) -> Result<[VertexId; 2], T::Error> {
+    let corners = complex.corners(cell)?;
+    Ok([corners[i], corners[j]])
+}
+
+/// Returns the cells around an edge, the infinite ones included, counter-clockwise seen from its
+/// end, each with the indices of the edge in it. The given cell is the first. Empty below
+/// dimension 3.
+///
+/// The facets around the edge are those opposite the first of the [other two](beside) indices of
+/// each cell: each lies between its cell and the next.
+///
+/// # Errors
+/// If there is no such cell. The iterator ends at the first error.
+pub fn cells_around_edge<T: Complex<4>>(
+    complex: &T,
+    edge: Edge,
+) -> Result<impl DoubleEndedIterator<Item = Result<Edge, T::Error>> + FusedIterator + '_, T::Error> {
+    let ends = edge_ends(complex, edge)?;
+    Ok(Ring { complex, ends, front: edge.0, end: edge.0, is_over: complex.dimension() < 3 })
+}
+
+/// Returns the cells that have a vertex, the infinite ones included, each with the index of the
+/// vertex in it: its star. The facets opposite the vertex are its link.
+///
+/// A cell follows one that it shares a facet with; the first is that of
+/// [`cell_of`](Complex::cell_of). Of any dimension; empty for a vertex without a cell.
+///
+/// # Errors
+/// If there is no such vertex, or at the first link that does not hold.
+///
+/// # Complexity
+/// Linear in the number of cells.
+pub fn cells_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<(CellId, usize)>, T::Error> {
+    let mut star: Vec<(CellId, usize)> = Vec::with_capacity(32);
+    let mut seen: FxHashSet<CellId> = FxHashSet::default();
+    let Some(first) = complex.cell_of(vertex)? else { return Ok(star) };
+    let mut add = |cell, star: &mut Vec<(CellId, usize)>| {
+        if seen.insert(cell) {
+            let index = complex.index_of(cell, vertex)?;
+            complex.ensure(cell, || index.is_some())?;
+            star.extend(index.map(|index| (cell, index)));
+        }
+        Ok(())
+    };
+    add(first, &mut star)?;
+    let width = complex.width().min(4);
+    let mut at = 0;
+    while let Some(&(cell, index)) = star.get(at) {
+        at += 1;
+        for i in (0..width).filter(|&i| i != index) {
+            add(complex.neighbor(cell, i)?, &mut star)?;
+        }
+    }
+    Ok(star)
+}
+
+/// Returns the vertices that a vertex is joined to by an edge, the infinite one included, in order
+/// of their numbers. Empty below dimension 1.
+///
+/// # Errors
+/// As for [`cells_around`].
+///
+/// # Complexity
+/// As for [`cells_around`], and sorting them.
+pub fn vertices_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<VertexId>, T::Error> {
+    let mut vertices = Vec::new();
+    if complex.dimension() < 1 {
+        return Ok(vertices);
+    }
+    for (cell, index) in cells_around(complex, vertex)? {
+        let corners = complex.corners(cell)?;
+        vertices.extend((0..complex.width().min(4)).filter(|&i| i != index).map(|i| corners[i]));
+    }
+    vertices.sort_unstable();
+    vertices.dedup();
+    Ok(vertices)
+}
+
+/// Returns a cell that has these vertices, two to four different ones in any order, one of which
+/// may be the infinite one; `None` if there is none.
+///
+/// # Errors
+/// As for [`cells_around`].
+///
+/// # Complexity
+/// Linear in the number of cells around the first vertex.
+pub fn cell_with<T: Complex<4>>(complex: &T, vertices: &[VertexId]) -> Result<Option<CellId>, T::Error> {
+    let [first, others @ ..] = vertices else { return Ok(None) };
+    let width = complex.width().min(4);
+    for (cell, _) in cells_around(complex, *first)? {
+        let corners = complex.corners(cell)?;
+        if others.iter().all(|other| corners[..width].contains(other)) {
+            return Ok(Some(cell));
+        }
+    }
+    Ok(None)
+}
