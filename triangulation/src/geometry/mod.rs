@@ -25,6 +25,7 @@
 //! Distances are used only to choose where a walk starts, and to find what is nearest. Angles are
 //! never used, and units do not matter.
 
+mod borrowed;
 mod crossed;
 mod mapped;
 mod metric;

@@ -59,6 +59,7 @@ mod id;
 pub mod plane;
 #[cfg(feature = "serde")]
 mod rebuild;
+mod refill;
 mod remove;
 pub mod space;
 mod zone;

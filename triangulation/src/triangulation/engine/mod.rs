@@ -8,4 +8,5 @@ pub(super) mod insert;
 pub(super) mod payloads;
 pub(super) mod remove;
 pub(super) mod remove_low_degree;
+pub(super) mod remove_space;
 pub(super) mod trace;

@@ -291,6 +291,51 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 }
 
+impl<G: Geometry<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
+    /// Removes a vertex and returns its point. The result is the triangulation of the other points,
+    /// whose vertices keep their numbers; the next point inserted takes the freed one.
+    ///
+    /// # Errors
+    /// If there is no such vertex.
+    ///
+    /// # Complexity
+    /// That of triangulating the neighbors of the vertex.
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        if !self.tds().is_vertex(vertex) {
+            return Err(RemovalError::NoVertex);
+        }
+        self.inner.remove_vertex_in_space(vertex);
+        Ok(*self.point(vertex))
+    }
+
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
+    ///
+    /// # Errors
+    /// See [`remove`](Self::remove).
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 4>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        self.remove(vertex).inspect(|_| strategy.removed(vertex))
+    }
+
+    /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
+    /// is taken, the vertex is removed, and the one that is there already is returned.
+    ///
+    /// # Errors
+    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has
+    /// changed then.
+    ///
+    /// # Complexity
+    /// That of a removal and an insertion; the search starts at the old site.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
+        move_vertex(
+            self,
+            |t| &mut t.inner,
+            (vertex, p),
+            Self::remove,
+            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data).unwrap_or(vertex),
+        )
+    }
+}
+
 /// Returns the test for the cells that a new point destroys: those whose circumscribed sphere
 /// contains it.
 fn takes<G: Geometry<N>, const N: usize, V, C: Copy + Default>(

@@ -1,0 +1,3 @@
+//! Triangulations in space.
+
+mod removal;
