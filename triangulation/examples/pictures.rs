@@ -75,7 +75,7 @@ fn closed(ring: &[Site]) -> Vec<Site> {
 fn regular() -> Result<String, Box<dyn std::error::Error>> {
     let weighted = |(k, [x, y]): (usize, Site)| [x, y, if k % 5 == 2 { 1200.0 } else { 0.0 }];
     let points: Vec<[f64; 3]> = spread(28).into_iter().enumerate().map(weighted).collect();
-    let (t, _) = Regular::<Weighted>::from_points(Weighted::default(), &points)?;
+    let (t, _) = Regular::<Weighted, 3>::from_points(Weighted::default(), &points)?;
     let hosts: Vec<CellId> = t.finite_cells().filter(|&cell| !t.hidden_under(cell).is_empty()).collect();
     let hidden: Vec<[Site; 1]> = t.hidden().map(|v| [[t.point(v)[0], t.point(v)[1]]]).collect();
     let dots = hidden.iter().map(|site| Mark::Line(site));

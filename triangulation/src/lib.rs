@@ -11,7 +11,7 @@
 //! |---|---|---|
 //! | [`Basic`] | none: a point splits what it lies on | plane, space |
 //! | [`Delaunay`] | no vertex inside of a cell's circumscribed sphere | plane, space |
-//! | [`Regular`] | Delaunay with weights; points of too little weight are hidden | plane |
+//! | [`Regular`] | Delaunay with weights; points of too little weight are hidden | plane, space |
 //! | [`Constrained`] | some edges are constrained, and do not cross | plane |
 //! | [`ConstrainedDelaunay`] | Delaunay among vertices that see each other past constraints; lines may cross | plane |
 //!
@@ -42,8 +42,7 @@
 //!
 //! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear,
 //! 2 in the plane or while all are coplanar, and 3 in space. Each is a state of the same structure:
-//! it can be traversed, queried and checked, grows by insertion and, in the plane, shrinks by
-//! removal.
+//! it can be traversed, queried and checked, grows by insertion and shrinks by removal.
 //!
 //! **Infinity.** Beyond each facet of the convex hull there is a cell that joins the facet to the
 //! one infinite vertex, [`VertexId::INFINITE`](crate::tds::VertexId::INFINITE). So every cell has
@@ -80,8 +79,9 @@
 //! | build and edit a surface of any genus | [`tds::Tds::from_cells`] |
 //! | check it | [`Delaunay::check`], [`ConstrainedDelaunay::check`], up to a [`Level`] |
 //!
-//! All queries take `&self`. In space there are the basic and the Delaunay kind, and points cannot
-//! be removed.
+//! All queries take `&self`. In space there are location, stars, rings around edges, insertion,
+//! removal and checks; the other queries, and bulk construction by divide and conquer, are of the
+//! plane.
 //!
 //! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
 //! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of

@@ -137,7 +137,7 @@ impl Question<3, 4> for PowerTest2 {
 
 /// Orders points on a line: the first comes before the second on the axis on which these are
 /// further apart.
-impl Question<3, 3> for PowerOnLine {
+impl Question<3, 3> for PowerOnLine<3> {
     fn of(points: [[f64; 3]; 3]) -> Self {
         let along = usize::from(points[0][0] == points[1][0]);
         PowerOnLine { points, along }
@@ -540,7 +540,7 @@ fn weighted_points() {
         let direction = if round % 3 == 0 { [0, 1] } else { [1 + random.below(2) as i64, random.around(3)] };
         let mut steps = [(); 3].map(|()| random.around(side));
         (steps[0], steps[1]) = (steps[0].min(steps[1]), steps[0].max(steps[1]) + 1);
-        line.ask::<PowerOnLine, 3, 3>(steps.map(|step| {
+        line.ask::<PowerOnLine<3>, 3, 3>(steps.map(|step| {
             let [x, y] = direction.map(|w| unit * (origin + (step * w) as f64));
             [x, y, weight(&mut random)]
         }));
@@ -583,7 +583,7 @@ fn weights_of_every_size() {
         // On the diagonal, and vertical.
         let [a, b, x] = [any(), any(), any()];
         for upright in [false, true] {
-            line.ask::<PowerOnLine, 3, 3>(
+            line.ask::<PowerOnLine<3>, 3, 3>(
                 [a.min(b), a.max(b), any()].map(|t| if upright { [x, t, any()] } else { [t, t, any()] }),
             );
         }

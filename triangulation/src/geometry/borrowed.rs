@@ -30,12 +30,12 @@ impl<G: Geometry<N>, const N: usize> Geometry<N> for &G {
     }
 
     #[inline]
-    fn rough_distance(&self, p: &G::Point, q: &G::Point) -> f64 {
+    fn rough_distance(&self, p: &G::Point, q: &G::Point) -> Option<f64> {
         (**self).rough_distance(p, q)
     }
 
     #[inline]
-    fn rough_sides(&self, simplex: [&G::Point; N], q: &G::Point) -> [f64; N] {
+    fn rough_sides(&self, simplex: [&G::Point; N], q: &G::Point) -> Option<[f64; N]> {
         (**self).rough_sides(simplex, q)
     }
 

@@ -12,6 +12,7 @@
 //! | [`Mapped`] | any type | in the plane, on sites that a function computes: other planes ([`seen_along`]), scaled axes |
 //! | [`Weighted`] | `[f64; 3]` | in the plane, with weights: x, y, weight |
 //! | [`Space`] | `[f64; 3]` | in space |
+//! | [`WeightedSpace`] | `[f64; 4]` | in space, with weights: x, y, z, weight |
 //!
 //! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
 //!
@@ -35,6 +36,7 @@ mod space;
 mod steps;
 mod terrain;
 mod weighted;
+mod weighted_space;
 
 pub use mapped::{Mapped, seen_along};
 pub use metric::Metric;
@@ -44,6 +46,7 @@ pub use space::Space;
 pub use steps::Steps;
 pub use terrain::{Terrain, height_along};
 pub use weighted::Weighted;
+pub use weighted_space::WeightedSpace;
 
 use std::cmp::Ordering;
 use std::fmt::Debug;

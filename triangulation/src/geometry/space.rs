@@ -17,15 +17,13 @@ impl Space {
     }
 }
 
-impl<K: Kernel> Space<K> {
-    /// Returns the first projection along an axis in which three points have an area, and its sign.
-    /// For all triangles of one plane, it is the same projection.
-    fn projection(&self, [a, b, c]: [&[f64; 3]; 3]) -> Option<([usize; 2], Sign)> {
-        [[0, 1], [1, 2], [2, 0]].into_iter().find_map(|axes| {
-            let sign = K::sign(&Orientation2([a, b, c].map(|p| axes.map(|axis| p[axis]))));
-            (sign != Sign::Zero).then_some((axes, sign))
-        })
-    }
+/// Returns the first projection along an axis in which three points have an area, and its sign. For
+/// all triangles of one plane, it is the same projection.
+pub(super) fn projection<K: Kernel>(triangle: [[f64; 3]; 3]) -> Option<([usize; 2], Sign)> {
+    [[0, 1], [1, 2], [2, 0]].into_iter().find_map(|axes| {
+        let sign = K::sign(&Orientation2(triangle.map(|p| axes.map(|axis| p[axis]))));
+        (sign != Sign::Zero).then_some((axes, sign))
+    })
 }
 
 impl<K: Kernel> Geometry<4> for Space<K> {
@@ -66,7 +64,7 @@ impl<K: Kernel> Geometry<4> for Space<K> {
     fn orientation_in_flat(&self, simplex: &[&[f64; 3]]) -> Sign {
         match *simplex {
             [p, q] => self.compare(q, p).into(),
-            [a, b, c] => self.projection([a, b, c]).map_or(Sign::Zero, |(_, sign)| sign),
+            [a, b, c] => projection::<K>([*a, *b, *c]).map_or(Sign::Zero, |(_, sign)| sign),
             _ => Sign::Zero,
         }
     }
@@ -74,7 +72,7 @@ impl<K: Kernel> Geometry<4> for Space<K> {
     fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
         match *simplex {
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
-            [a, b, c] => self.projection([a, b, c]).map_or(Sign::Negative, |(axes, turn)| {
+            [a, b, c] => projection::<K>([*a, *b, *c]).map_or(Sign::Negative, |(axes, turn)| {
                 turn * K::sign(&InCircleOfPlane { points: [*a, *b, *c, *q], axes })
             }),
             _ => Sign::Negative,

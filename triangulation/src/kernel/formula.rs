@@ -105,6 +105,25 @@ impl Predicate for Orientation3 {
     }
 }
 
+/// Returns the in-sphere determinant of four vectors in space, which start at the query point, and
+/// their squared lengths.
+#[inline(always)]
+pub(super) fn in_sphere<T: Number>([b, a, c, d]: [[T; 3]; 4], [b_length, a_length, c_length, d_length]: [T; 4]) -> T {
+    // With rows in this order, the 4 x 4 determinant is positive inside.
+    let plane = |p: &[T; 3], q: &[T; 3]| cross(&p[0], &q[1], &p[1], &q[0]);
+    let (ab, bc, cd, da) = (plane(&a, &b), plane(&b, &c), plane(&c, &d), plane(&d, &a));
+    let (ac, bd) = (plane(&a, &c), plane(&b, &d));
+    let volume = |p: &T, qr: &T, q: &T, pr: &T, r: &T, pq: &T| {
+        p.clone() * qr.clone() - q.clone() * pr.clone() + r.clone() * pq.clone()
+    };
+    let abc = volume(&a[2], &bc, &b[2], &ac, &c[2], &ab);
+    let bcd = volume(&b[2], &cd, &c[2], &bd, &d[2], &bc);
+    // Two minors have their rows in another order: ac = -ca, and so on.
+    let cda = c[2].clone() * da.clone() + d[2].clone() * ac.clone() + a[2].clone() * cd.clone();
+    let dab = d[2].clone() * ab.clone() + a[2].clone() * bd.clone() + b[2].clone() * da.clone();
+    (d_length * abc - c_length * dab) + (b_length * cda - a_length * bcd)
+}
+
 /// The in-sphere test of a positively oriented tetrahedron and a fifth point: positive if the point
 /// lies inside the circumscribed sphere, zero if on it.
 #[derive(Debug, Clone, Copy)]
@@ -122,21 +141,9 @@ impl Predicate for InSphere {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d, e] = self.0;
-        // With rows b, a, c, d the 4 x 4 determinant is positive inside.
-        let [a, b, c, d] = [b, a, c, d].map(|p| minus(p, e, difference));
-        let plane = |p: &[T; 3], q: &[T; 3]| cross(&p[0], &q[1], &p[1], &q[0]);
-        let (ab, bc, cd, da) = (plane(&a, &b), plane(&b, &c), plane(&c, &d), plane(&d, &a));
-        let (ac, bd) = (plane(&a, &c), plane(&b, &d));
-        let volume = |p: &T, qr: &T, q: &T, pr: &T, r: &T, pq: &T| {
-            p.clone() * qr.clone() - q.clone() * pr.clone() + r.clone() * pq.clone()
-        };
-        let abc = volume(&a[2], &bc, &b[2], &ac, &c[2], &ab);
-        let bcd = volume(&b[2], &cd, &c[2], &bd, &d[2], &bc);
-        // Two minors have their rows in another order: ac = -ca, and so on.
-        let cda = c[2].clone() * da.clone() + d[2].clone() * ac.clone() + a[2].clone() * cd.clone();
-        let dab = d[2].clone() * ab.clone() + a[2].clone() * bd.clone() + b[2].clone() * da.clone();
-        let length = |v: &[T; 3]| square(&v[0]) + square(&v[1]) + square(&v[2]);
-        (length(&d) * abc - length(&c) * dab) + (length(&b) * cda - length(&a) * bcd)
+        let vectors = [a, b, c, d].map(|p| minus(p, e, difference));
+        let lengths = vectors.each_ref().map(|v| square(&v[0]) + square(&v[1]) + square(&v[2]));
+        in_sphere(vectors, lengths)
     }
 }
 

@@ -36,7 +36,7 @@ pub use center::{circumcenter, power_center};
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
-pub use power::{ComparePower, PowerOnLine, PowerTest2};
+pub use power::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3};
 pub use rounding::{CornerSide, CrossingSide};
 pub use scaled::Scaled;
 
@@ -56,7 +56,7 @@ use crate::num::{Dyadic, Expansion, Number, Sign};
 ///
 /// # Models
 /// [`Orientation2`], [`Orientation3`], [`InCircle`], [`InSphere`], [`InCircleOfPlane`],
-/// [`CompareDistance`], [`DotProduct`], [`PowerTest2`], [`PowerOnLine`], [`ComparePower`], and the
+/// [`CompareDistance`], [`DotProduct`], [`PowerTest2`], [`PowerTest3`], [`PowerInPlane`], [`PowerOnLine`], [`ComparePower`], and the
 /// predicates of snap rounding, [`CornerSide`] and [`CrossingSide`]. A predicate of your own is
 /// exact at once, with every kernel but [`Fast`]:
 ///

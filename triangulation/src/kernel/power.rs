@@ -1,4 +1,4 @@
-//! The power test: the in-circle test for points with a weight.
+//! The power test: the in-circle and in-sphere tests for points with a weight.
 //!
 //! A weight is an area, of degree 2 in the coordinates. That would break the law that all terms of
 //! a predicate have one degree, which integers on a common grid and [`Scaled`](super::Scaled) rely
@@ -6,22 +6,27 @@
 //! axes of their own.
 
 use super::Predicate;
-use super::formula::{cross, in_circle, minus, square};
+use super::formula::{cross, in_circle, in_sphere, minus, square};
 use crate::num::Number;
 
-/// Returns the coordinates of weighted points on an axis: x, y, weights, and the two whose
-/// difference is 1.
-fn axis<const N: usize>(points: &[[f64; 3]; N], axis: usize) -> impl Iterator<Item = f64> + Clone {
-    let of_point = move |p: &[f64; 3]| if axis < 3 { p[axis] } else { 1.0 };
-    let zero = (axis == 3).then_some(0.0);
+/// Returns the coordinates of weighted points on an axis: those in the plane or in space, weights,
+/// and the two whose difference is 1. The last coordinate of a point is its weight.
+fn axis<const D: usize, const N: usize>(points: &[[f64; D]; N], axis: usize) -> impl Iterator<Item = f64> + Clone {
+    let of_point = move |p: &[f64; D]| if axis < D { p[axis] } else { 1.0 };
+    let zero = (axis == D).then_some(0.0);
     points.iter().map(of_point).chain(zero)
 }
 
-/// Returns the lift of `p` relative to `q`: the squared distance in the plane, less the difference
-/// of the weights.
+/// Returns the lift of `p` relative to `q`: the squared distance, less the difference of the
+/// weights.
 #[inline(always)]
-fn lift<T: Number>(vector: &[T; 2], p: [f64; 3], q: [f64; 3], difference: impl Fn(f64, f64) -> T) -> T {
-    square(&vector[0]) + square(&vector[1]) - difference(p[2], q[2]) * difference(1.0, 0.0)
+fn lift<T: Number, const D: usize>(
+    squared_distance: T,
+    p: [f64; D],
+    q: [f64; D],
+    difference: impl Fn(f64, f64) -> T,
+) -> T {
+    squared_distance - difference(p[D - 1], q[D - 1]) * difference(1.0, 0.0)
 }
 
 /// The power test of three weighted points `[x, y, w]` that turn counter-clockwise and a fourth:
@@ -46,25 +51,89 @@ impl Predicate for PowerTest2 {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d] = self.0;
         let [u, v, w] = [a, b, c].map(|p| minus([p[0], p[1]], [d[0], d[1]], difference));
-        let lifts = [lift(&u, a, d, difference), lift(&v, b, d, difference), lift(&w, c, d, difference)];
+        let lifts = [(&u, a), (&v, b), (&w, c)].map(|(vector, p)| lift(length(vector), p, d, difference));
         in_circle(u, v, w, lifts)
     }
 }
 
-/// The power test of three weighted points `[x, y, w]` on a line: positive if the third's lift is
-/// below the line through the lifts of the first two, zero if on it. The first has the smaller
-/// coordinate.
+/// The power test of four weighted points `[x, y, z, w]` that are positively oriented and a fifth:
+/// positive if the fifth's lift is below the hyperplane through theirs, zero if on it. For equal
+/// weights, this is [`InSphere`](super::InSphere).
 #[derive(Debug, Clone, Copy)]
-pub struct PowerOnLine {
+pub struct PowerTest3(pub [[f64; 4]; 5]);
+
+impl Predicate for PowerTest3 {
+    const DEGREE: i32 = 5;
+    const AXES: usize = 5;
+
+    #[inline(always)]
+    fn axis(&self, of: usize) -> impl Iterator<Item = f64> + Clone {
+        axis(&self.0, of)
+    }
+
+    #[inline(always)]
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c, d, q] = self.0;
+        let vectors = [a, b, c, d].map(|p| minus(site(p), site(q), difference));
+        let lifts = std::array::from_fn(|k| lift(length(&vectors[k]), self.0[k], q, difference));
+        in_sphere(vectors, lifts)
+    }
+}
+
+/// The power test of four weighted points `[x, y, z, w]` with sites in a common plane: positive if
+/// the lift of the fourth is below the plane through the lifts of the first three, which turn
+/// counter-clockwise seen along the axis that is left out.
+#[derive(Debug, Clone, Copy)]
+pub struct PowerInPlane {
+    /// The triangle, and the query point.
+    pub points: [[f64; 4]; 4],
+    /// The two axes of a projection in which the triangle has an area.
+    pub axes: [usize; 2],
+}
+
+impl Predicate for PowerInPlane {
+    const DEGREE: i32 = 4;
+    const AXES: usize = 5;
+
+    fn axis(&self, of: usize) -> impl Iterator<Item = f64> + Clone {
+        axis(&self.points, of)
+    }
+
+    fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
+        let [a, b, c, q] = self.points;
+        let vectors = [a, b, c].map(|p| minus(site(p), site(q), difference));
+        let lifts = std::array::from_fn(|k| lift(length(&vectors[k]), self.points[k], q, difference));
+        let [a, b, c] = vectors.map(|v| self.axes.map(|axis| v[axis].clone()));
+        in_circle(a, b, c, lifts)
+    }
+}
+
+/// Returns the position of a weighted point in space.
+#[inline(always)]
+fn site([x, y, z, _]: [f64; 4]) -> [f64; 3] {
+    [x, y, z]
+}
+
+/// Returns the squared length of a vector.
+#[inline(always)]
+fn length<T: Number, const D: usize>(vector: &[T; D]) -> T {
+    (1..D).fold(square(&vector[0]), |sum, axis| sum + square(&vector[axis]))
+}
+
+/// The power test of three weighted points on a line, `[x, y, w]` in the plane (`D` is 3) or
+/// `[x, y, z, w]` in space (4): positive if the third's lift is below the line through the lifts of
+/// the first two, zero if on it. The first has the smaller coordinate.
+#[derive(Debug, Clone, Copy)]
+pub struct PowerOnLine<const D: usize> {
     /// The two points, and the query point.
-    pub points: [[f64; 3]; 3],
-    /// The axis on which the first two differ: 0 or 1.
+    pub points: [[f64; D]; 3],
+    /// An axis on which the first two differ.
     pub along: usize,
 }
 
-impl Predicate for PowerOnLine {
+impl<const D: usize> Predicate for PowerOnLine<D> {
     const DEGREE: i32 = 3;
-    const AXES: usize = 4;
+    const AXES: usize = D + 1;
 
     #[inline(always)]
     fn axis(&self, of: usize) -> impl Iterator<Item = f64> + Clone {
@@ -74,9 +143,13 @@ impl Predicate for PowerOnLine {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, q] = self.points;
-        let [u, v] = [a, b].map(|p| minus([p[0], p[1]], [q[0], q[1]], difference));
-        let (a_lift, b_lift) = (lift(&u, a, q, difference), lift(&v, b, q, difference));
-        cross(&a_lift, &v[self.along], &b_lift, &u[self.along])
+        let squared = |p: [f64; D]| {
+            let axis = |k: usize| square(&difference(p[k], q[k]));
+            (1..D - 1).fold(axis(0), |sum, k| sum + axis(k))
+        };
+        let [a_lift, b_lift] = [a, b].map(|p| lift(squared(p), p, q, difference));
+        let [u, v] = [a, b].map(|p| difference(p[self.along], q[self.along]));
+        cross(&a_lift, &v, &b_lift, &u)
     }
 }
 
@@ -99,6 +172,6 @@ impl Predicate for ComparePower {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [q, a, b] = self.0;
         let [u, v] = [a, b].map(|p| minus([p[0], p[1]], [q[0], q[1]], difference));
-        lift(&u, a, q, difference) - lift(&v, b, q, difference)
+        lift(length(&u), a, q, difference) - lift(length(&v), b, q, difference)
     }
 }

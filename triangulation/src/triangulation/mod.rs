@@ -28,7 +28,7 @@ pub use kinds::basic::Basic;
 pub use kinds::constrained::{Constrained, ConstraintError};
 pub use kinds::delaunay::Delaunay;
 pub use kinds::regular::Regular;
-pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, Delaunay3, Regular2};
+pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, Delaunay3, Regular2, Regular3};
 pub use line_id::{LineId, LineTag};
 pub use lines::build::{OnCrossing, Rounding};
 pub use lines::constrained_delaunay::ConstrainedDelaunay;

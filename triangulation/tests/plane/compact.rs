@@ -188,7 +188,7 @@ fn all_kinds_and_geometries() {
     assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(CompactError::Unanswerable(Law::Constrained)));
 
     // A hidden vertex is not written.
-    let mut regular: Regular<breakline_triangulation::geometry::Weighted> = Regular::new(Default::default());
+    let mut regular: Regular<breakline_triangulation::geometry::Weighted, 3> = Regular::new(Default::default());
     for (k, [x, y]) in square.into_iter().chain([[2.0, 2.0]]).enumerate() {
         regular.insert([x, y, if k == 4 { -100.0 } else { 0.0 }]).unwrap();
     }

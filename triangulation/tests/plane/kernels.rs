@@ -84,7 +84,7 @@ fn one_answer() {
 #[test]
 fn one_regular_triangulation() {
     fn build<K: Kernel>(points: &[[f64; 3]]) -> (Cells, Vec<usize>) {
-        let mut t: Regular<Chosen<3>> = Regular::new(weighted::<K>());
+        let mut t: Regular<Chosen<3>, 3> = Regular::new(weighted::<K>());
         for &p in points {
             t.insert(p).unwrap();
         }

@@ -186,7 +186,7 @@ fn a_grid_of_twenty() {
     random.shuffle(&mut points);
     let mut basic: Basic<Plane, 3> = Basic::new(Plane::default());
     let mut delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
-    let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
+    let mut regular: Regular<Weighted, 3> = Regular::new(Weighted::default());
     for &p in &points {
         basic.insert(p).unwrap();
         delaunay.insert(p).unwrap();
@@ -263,7 +263,7 @@ fn insertion_gives_back_a_payload_that_it_does_not_use() {
     let plane = |p: [f64; 2]| p;
     judge_insertions!(Basic::<Plane, 3, usize>::new(Plane::default()), plane);
     judge_insertions!(Delaunay::<Plane, 3, usize>::with_capacity(Plane::default(), 9), plane);
-    judge_insertions!(Regular::<Weighted, usize>::new(Weighted::default()), |[x, y]: [f64; 2]| [x, y, 2.0]);
+    judge_insertions!(Regular::<Weighted, 3, usize>::new(Weighted::default()), |[x, y]: [f64; 2]| [x, y, 2.0]);
     judge_insertions!(Constrained::<Plane, usize>::new(Plane::default()), plane);
     judge_insertions!(ConstrainedDelaunay::<Plane, usize>::new(Plane::default()), plane);
 }

@@ -335,7 +335,7 @@ fn lines_and_meshes() {
 #[test]
 fn weighted_points() {
     for points in SETS {
-        let mut t: Regular<Weighted> = Regular::new(Weighted::default());
+        let mut t: Regular<Weighted, 3> = Regular::new(Weighted::default());
         for (k, &[x, y]) in points.iter().enumerate() {
             t.insert([x, y, k as f64]).unwrap();
         }

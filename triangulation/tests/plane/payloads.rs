@@ -121,7 +121,7 @@ fn cells_in_space_inherit_what_they_replace() {
 fn regular_cells_inherit_what_they_replace() {
     let mut dice = Random(3);
     for _ in 0..400 {
-        let mut t = Regular::<Weighted>::new(Weighted::default()).with_cell_data(|_| 0u32);
+        let mut t = Regular::<Weighted, 3>::new(Weighted::default()).with_cell_data(|_| 0u32);
         for _ in 0..25 {
             t = t.with_cell_data(another);
             let (before, hidden) = (seen(&t), t.hidden().len());

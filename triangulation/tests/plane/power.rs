@@ -10,7 +10,7 @@ use breakline_triangulation::{Regular, VoronoiEdge};
 use testkit::random::{Random, ulps};
 
 type Point = [f64; 3];
-type Weights = Regular<Weighted>;
+type Weights = Regular<Weighted, 3>;
 
 fn build(dice: &mut Random, round: usize) -> Weights {
     let (side, weights) = (1 + dice.below(6), 1 + dice.below(9));

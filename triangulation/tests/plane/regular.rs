@@ -94,7 +94,7 @@ fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 3]> {
     faces
 }
 
-fn cells(t: &Regular<Grid>) -> BTreeSet<[Point; 3]> {
+fn cells(t: &Regular<Grid, 3>) -> BTreeSet<[Point; 3]> {
     let corners = |cell| {
         let mut corners = t.tds().corners(cell).map(|v| *t.point(v));
         corners.sort_unstable();
@@ -103,7 +103,7 @@ fn cells(t: &Regular<Grid>) -> BTreeSet<[Point; 3]> {
     t.finite_cells().map(corners).collect()
 }
 
-fn is_lower_hull(t: &Regular<Grid>, points: &BTreeSet<Point>) {
+fn is_lower_hull(t: &Regular<Grid, 3>, points: &BTreeSet<Point>) {
     assert_eq!(t.check(Level::Law), [], "{points:?}");
     assert_eq!(t.vertex_count() + t.hidden().len(), points.len(), "{points:?}");
     let there: BTreeSet<Point> = t.tds().vertices().chain(t.hidden()).map(|v| *t.point(v)).collect();
@@ -127,10 +127,10 @@ fn the_weighted_plane_is_the_same() {
         let points: Vec<Point> = (0..1 + random.index(20))
             .map(|_| [random.below(side), random.below(side), random.below(weights)].map(|x| x as i64))
             .collect();
-        let mut expected: Regular<Grid> = Regular::new(Grid);
+        let mut expected: Regular<Grid, 3> = Regular::new(Grid);
         points.iter().for_each(|&p| _ = expected.insert(p).unwrap());
         let doubles: Vec<[f64; 3]> = points.iter().map(|p| [p[0] as f64, p[1] as f64, p[2] as f64]).collect();
-        let (t, vertices) = Regular::<_, ()>::from_points(Weighted::<Adaptive>::default(), &doubles).unwrap();
+        let (t, vertices) = Regular::<_, 3>::from_points(Weighted::<Adaptive>::default(), &doubles).unwrap();
         assert_eq!(t.check(Level::Law), []);
         assert!(vertices.iter().zip(&doubles).all(|(&v, p)| t.point(v) == p));
         let whole = |v: VertexId| t.point(v).map(|x| x as i64);
@@ -156,7 +156,7 @@ fn points_come_and_go() {
     let mut random = Random(21);
     for _ in 0..1500 {
         let (side, weights) = (1 + random.below(5), 1 + random.below(12));
-        let mut t: Regular<Grid> = Regular::new(Grid);
+        let mut t: Regular<Grid, 3> = Regular::new(Grid);
         let mut points = BTreeSet::new();
         for _ in 0..30 {
             let p = [random.below(side), random.below(side), random.below(weights)].map(|x| x as i64);
@@ -190,7 +190,7 @@ fn points_come_and_go() {
 fn hiding_on_vertex_edge_and_face() {
     for (site, seen) in [([0, 0], 1), ([2, 0], 3), ([1, 1], 3)] {
         for weight in -3..6 {
-            let mut t: Regular<Grid> = Regular::new(Grid);
+            let mut t: Regular<Grid, 3> = Regular::new(Grid);
             for [x, y] in [[0, 0], [4, 0], [0, 4]] {
                 t.insert([x, y, 0]).unwrap();
             }
@@ -222,7 +222,7 @@ fn one_site_on_another() {
     for others in
         [vec![], vec![[3, 0, 0]], vec![[3, 0, 0], [-3, 0, 0]], vec![[3, 0, 0], [-3, 0, 0], [0, 3, 0], [0, -3, 0]]]
     {
-        let mut t: Regular<Grid> = Regular::new(Grid);
+        let mut t: Regular<Grid, 3> = Regular::new(Grid);
         for &p in &others {
             t.insert(p).unwrap();
         }
@@ -241,7 +241,7 @@ fn one_site_on_another() {
 /// Points on a line: one kind hides the lightest, the other hides none.
 #[test]
 fn a_check_finds_points_that_ought_to_be_hidden() {
-    let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
+    let mut regular: Regular<Weighted, 3> = Regular::new(Weighted::default());
     let mut delaunay: Delaunay<Weighted, 3> = Delaunay::new(Weighted::default());
     for p in [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [2.0, 0.0, -9.0]] {
         assert_eq!(delaunay.check(Level::Law), []);

@@ -70,7 +70,7 @@ proptest! {
 
     #[test]
     fn regular_comes_back_with_what_it_hides(before in edits(), after in edits()) {
-        let edit = |t: &mut Regular<Weighted>, _, edit| match edit {
+        let edit = |t: &mut Regular<Weighted, 3>, _, edit| match edit {
             Edit::Insert([x, y], w) => drop(t.insert([x.into(), y.into(), w.into()]).unwrap()),
             Edit::Remove(k) => drop(t.remove(VertexId::new(k.into()))),
         };
@@ -202,7 +202,7 @@ fn damage_to_the_basic_and_delaunay_kinds_is_an_error() {
 #[test]
 fn damage_to_regular_and_constrained_kinds_is_an_error() {
     for sites in SITES {
-        let mut regular: Regular<Weighted> = Regular::new(Weighted::default());
+        let mut regular: Regular<Weighted, 3> = Regular::new(Weighted::default());
         let mut constrained: Constrained<Plane> = Constrained::new(Plane::default());
         for (k, &[x, y]) in sites.iter().enumerate() {
             regular.insert([x, y, if k % 3 == 1 { -4.0 } else { 0.0 }]).unwrap();
@@ -210,7 +210,7 @@ fn damage_to_regular_and_constrained_kinds_is_an_error() {
         }
         let _ = constrained.constrain(VertexId::new(0), VertexId::new(sites.len().saturating_sub(1)));
         read_damaged(&regular, |mut t| {
-            let (fresh, _) = Regular::<Weighted>::from_points(Weighted::default(), t.points()).unwrap();
+            let (fresh, _) = Regular::<Weighted, 3>::from_points(Weighted::default(), t.points()).unwrap();
             let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
             t.insert([0.25, 1.0, 0.5]).unwrap();
             let _ = t.remove(VertexId::new(0));

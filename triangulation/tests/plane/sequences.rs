@@ -70,7 +70,7 @@ fn delaunay(random: &mut Random, geometry: Chosen<2>) {
 
 fn regular(random: &mut Random, geometry: Chosen<3>) {
     let (side, weights) = (1 + random.below(5), 1 + random.below(12));
-    let mut t: Regular<Chosen<3>> = Regular::new(geometry);
+    let mut t: Regular<Chosen<3>, 3> = Regular::new(geometry);
     let mut points: Vec<([f64; 3], VertexId)> = Vec::new();
     for _ in 0..4 + random.index(16) {
         if points.is_empty() || random.below(5) > 1 {
@@ -89,9 +89,9 @@ fn regular(random: &mut Random, geometry: Chosen<3>) {
     }
     assert_eq!(t.check(Level::Law), []);
     let points: Vec<[f64; 3]> = points.into_iter().map(|(p, _)| p).collect();
-    let (fresh, _) = Regular::<_, ()>::from_points(geometry, &points).unwrap();
+    let (fresh, _) = Regular::<_, 3>::from_points(geometry, &points).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{points:?}");
-    let hidden = |t: &Regular<Chosen<3>>| t.hidden().map(|v| t.point(v).map(|x| x as i64)).collect::<BTreeSet<_>>();
+    let hidden = |t: &Regular<Chosen<3>, 3>| t.hidden().map(|v| t.point(v).map(|x| x as i64)).collect::<BTreeSet<_>>();
     assert_eq!(hidden(&t), hidden(&fresh), "{points:?}");
 }
 

@@ -1,3 +1,4 @@
 //! Triangulations in space.
 
+mod regular;
 mod removal;

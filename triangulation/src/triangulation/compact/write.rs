@@ -109,7 +109,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Bas
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Regular<G, V, C> {
+impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Regular<G, 3, V, C> {
     /// Writes the triangulation like [`Basic::write_compact`], without its law and without hidden
     /// points.
     ///

@@ -6,6 +6,7 @@ mod corridor;
 pub(super) mod flip;
 pub(super) mod insert;
 pub(super) mod payloads;
+pub(super) mod removal;
 pub(super) mod remove;
 pub(super) mod remove_low_degree;
 pub(super) mod remove_space;

@@ -3,8 +3,8 @@ use std::ops::Deref;
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
 
-use super::super::engine::flip::NoConstraints;
 use super::super::engine::insert::{insert_each, insert_located, move_vertex};
+use super::super::engine::removal::Removal;
 use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation, bulk,
 };
@@ -246,7 +246,10 @@ impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C>
     }
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C>
+where
+    Triangulation<G, N, V, C>: Removal,
+{
     /// Removes a vertex and returns its point. The result is the triangulation of the other points,
     /// whose vertices keep their numbers; the next point inserted takes the freed one.
     ///
@@ -254,12 +257,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// If there is no such vertex.
     ///
     /// # Complexity
-    /// Linear in the degree of the vertex in practice, quadratic in the worst case.
+    /// In the plane linear in the degree of the vertex in practice, quadratic in the worst case. In
+    /// space that of triangulating the neighbors of the vertex.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);
         }
-        self.inner.remove_vertex(NoConstraints, vertex);
+        self.inner.remove_and_restore(vertex);
         Ok(*self.point(vertex))
     }
 
@@ -267,52 +271,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     ///
     /// # Errors
     /// See [`remove`](Self::remove).
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        self.remove(vertex).inspect(|_| strategy.removed(vertex))
-    }
-
-    /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
-    /// is taken, the vertex is removed, and the one that is there already is returned.
-    ///
-    /// # Errors
-    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has
-    /// changed then.
-    ///
-    /// # Complexity
-    /// That of a removal and an insertion; the search starts at the old site.
-    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
-        move_vertex(
-            self,
-            |t| &mut t.inner,
-            (vertex, p),
-            Self::remove,
-            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data).unwrap_or(vertex),
-        )
-    }
-}
-
-impl<G: Geometry<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
-    /// Removes a vertex and returns its point. The result is the triangulation of the other points,
-    /// whose vertices keep their numbers; the next point inserted takes the freed one.
-    ///
-    /// # Errors
-    /// If there is no such vertex.
-    ///
-    /// # Complexity
-    /// That of triangulating the neighbors of the vertex.
-    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        if !self.tds().is_vertex(vertex) {
-            return Err(RemovalError::NoVertex);
-        }
-        self.inner.remove_vertex_in_space(vertex);
-        Ok(*self.point(vertex))
-    }
-
-    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
-    ///
-    /// # Errors
-    /// See [`remove`](Self::remove).
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 4>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, N>, vertex: VertexId) -> Result<G::Point, RemovalError> {
         self.remove(vertex).inspect(|_| strategy.removed(vertex))
     }
 

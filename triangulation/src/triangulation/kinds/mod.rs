@@ -6,7 +6,7 @@ pub(super) mod constrained;
 pub(super) mod delaunay;
 pub(super) mod regular;
 
-use crate::geometry::{Plane, Space, Weighted};
+use crate::geometry::{Plane, Space, Weighted, WeightedSpace};
 
 use super::ConstrainedDelaunay;
 use basic::Basic;
@@ -23,7 +23,10 @@ pub type Delaunay2<V = (), C = ()> = Delaunay<Plane, 3, V, C>;
 /// A Delaunay triangulation of points `[x, y, z]` in space.
 pub type Delaunay3<V = (), C = ()> = Delaunay<Space, 4, V, C>;
 /// A regular triangulation of points `[x, y, weight]`.
-pub type Regular2<V = (), C = ()> = Regular<Weighted, V, C>;
+pub type Regular2<V = (), C = ()> = Regular<Weighted, 3, V, C>;
+
+/// A regular triangulation of weighted points `[x, y, z, weight]`.
+pub type Regular3<V = (), C = ()> = Regular<WeightedSpace, 4, V, C>;
 /// A constrained triangulation of points `[x, y]`, without another law.
 pub type Constrained2<V = (), C = ()> = Constrained<Plane, V, C>;
 /// A constrained Delaunay triangulation of points `[x, y]`.

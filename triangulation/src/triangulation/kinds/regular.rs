@@ -6,19 +6,19 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
-use super::super::engine::flip::NoConstraints;
 use super::super::engine::insert::{insert_each, insert_located};
+use super::super::engine::removal::Removal;
 use super::super::{
     Flaw, InputError, Inserted, Level, Locate, Location, MoveError, Near, PointError, RemovalError, Triangulation,
 };
 
-/// A regular triangulation of the plane, also known as weighted Delaunay: the lower hull of the
-/// points lifted to `x^2 + y^2 - w`, seen from below (Aurenhammer 1987; Edelsbrunner and Shah
-/// 1996). It is the dual of the power diagram.
+/// A regular triangulation of the plane or of space, also known as weighted Delaunay: the lower
+/// hull of the points lifted to `x^2 + y^2 (+ z^2) - w`, seen from below (Aurenhammer 1987;
+/// Edelsbrunner and Shah 1996). It is the dual of the power diagram.
 ///
 /// Its geometry's [`side_of_sphere`](Geometry::side_of_sphere) must be the power test, as in
-/// [`Weighted`](crate::geometry::Weighted). With any other geometry it is the Delaunay
-/// triangulation.
+/// [`Weighted`](crate::geometry::Weighted) and [`WeightedSpace`](crate::geometry::WeightedSpace).
+/// With any other geometry it is the Delaunay triangulation.
 ///
 /// Points above the lower hull are *hidden*: they have a number and a payload, but no cell. They
 /// are kept with the cell that hides them, and become visible again when enough other points are
@@ -50,8 +50,8 @@ use super::super::{
 ///
 /// Payloads of cells are kept as in [`Delaunay`](crate::Delaunay).
 #[derive(Debug)]
-pub struct Regular<G: Geometry<3>, V = (), C = ()> {
-    inner: Triangulation<G, 3, V, C>,
+pub struct Regular<G: Geometry<N>, const N: usize, V = (), C = ()> {
+    inner: Triangulation<G, N, V, C>,
     hidden: Hidden,
 }
 
@@ -100,21 +100,21 @@ impl Hidden {
     }
 }
 
-impl<G: Geometry<3>, V, C> Deref for Regular<G, V, C> {
-    type Target = Triangulation<G, 3, V, C>;
+impl<G: Geometry<N>, const N: usize, V, C> Deref for Regular<G, N, V, C> {
+    type Target = Triangulation<G, N, V, C>;
 
     fn deref(&self) -> &Self::Target {
         &self.inner
     }
 }
 
-impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Regular<G, V, C> {
+impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Regular<G, N, V, C> {
     fn clone(&self) -> Self {
         Regular { inner: self.inner.duplicate(), hidden: self.hidden.clone() }
     }
 }
 
-impl<G: Geometry<3>, V> Regular<G, V> {
+impl<G: Geometry<N>, const N: usize, V> Regular<G, N, V> {
     /// Returns an empty triangulation. Its cells have no payload;
     /// [`with_cell_data`](Self::with_cell_data) adds one.
     pub fn new(geometry: G) -> Self {
@@ -127,7 +127,7 @@ impl<G: Geometry<3>, V> Regular<G, V> {
     }
 }
 
-impl<G: Coordinates<3>> Regular<G> {
+impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
     /// Triangulates many points, inserted in [spatial order](crate::spatial_order); also returns
     /// the vertex of each. Points on one site with one weight share a vertex.
     ///
@@ -151,21 +151,21 @@ impl<G: Coordinates<3>> Regular<G> {
         geometry: G,
         points: &[G::Point],
         data: impl FnMut(usize) -> V,
-    ) -> Result<(Regular<G, V>, Vec<VertexId>), InputError> {
+    ) -> Result<(Regular<G, N, V>, Vec<VertexId>), InputError> {
         let (Regular { inner, hidden }, vertices) = Self::from_points(geometry, points)?;
         Ok((Regular { inner: inner.with_data_of_points(&vertices, data), hidden }, vertices))
     }
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
-    fn over(inner: Triangulation<G, 3, V, C>) -> Self {
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
+    fn over(inner: Triangulation<G, N, V, C>) -> Self {
         Regular { inner, hidden: Hidden::default() }
     }
 
     /// Builds the table of hidden points: those vertices that are in no cell. Vertices that nothing
     /// hides are inserted.
     #[cfg(feature = "serde")]
-    pub(in super::super) fn with_hidden(inner: Triangulation<G, 3, V, C>) -> Self {
+    pub(in super::super) fn with_hidden(inner: Triangulation<G, N, V, C>) -> Self {
         let hidden = inner.tds.detached_vertices();
         let mut regular = Regular { inner, hidden: Hidden::default() };
         regular.connect_again(hidden);
@@ -174,13 +174,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
 
     /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
     /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
-    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Regular<G, W, C> {
+    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Regular<G, N, W, C> {
         Regular { inner: self.inner.with_vertex_data(data), hidden: self.hidden }
     }
 
     /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
     /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, V, D> {
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, N, V, D> {
         Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
     }
 
@@ -215,7 +215,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
     /// See [`insert_with`](Self::insert_with).
     pub fn insert_by(
         &mut self,
-        strategy: &mut impl Locate<G, 3>,
+        strategy: &mut impl Locate<G, N>,
         p: G::Point,
         data: V,
     ) -> Result<Inserted<V>, PointError> {
@@ -290,65 +290,6 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
         }
     }
 
-    /// Removes a point, visible or hidden, and returns it. The result is the triangulation of the
-    /// others, which keep their numbers; the next point inserted takes the freed one.
-    ///
-    /// # Errors
-    /// If no point has this number.
-    ///
-    /// # Complexity
-    /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point that the
-    /// cells around it hide.
-    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        if self.hidden.take(vertex) {
-            self.inner.tds.attach();
-            self.inner.tds.remove_vertex(vertex);
-        } else if self.tds().is_vertex(vertex) {
-            let hidden = if self.inner.is_flat_without(vertex) {
-                self.hidden.take_all()
-            } else {
-                self.hidden.take_under(self.inner.tds.around(vertex))
-            };
-            self.inner.remove_vertex(NoConstraints, vertex);
-            self.connect_again(hidden);
-        } else {
-            return Err(RemovalError::NoVertex);
-        }
-        Ok(*self.point(vertex))
-    }
-
-    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate). It is not
-    /// notified of points that become visible.
-    ///
-    /// # Errors
-    /// See [`remove`](Self::remove).
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        self.remove(vertex).inspect(|_| strategy.removed(vertex))
-    }
-
-    /// Moves a point, visible or hidden, and returns its vertex, which keeps its number and
-    /// payload. If a point with the same weight is on the site, the moved one is removed, and the
-    /// vertex that is there already is returned.
-    ///
-    /// # Errors
-    /// If no point has this number, or a coordinate or the weight is not finite or out of
-    /// range; nothing has changed then.
-    ///
-    /// # Complexity
-    /// That of a removal and of an insertion.
-    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
-        self.inner.admit(&p)?;
-        self.remove(vertex)?;
-        let location = self.inner.locate(&p, None);
-        if let Some(same) = self.same(&p, location) {
-            return Ok(same);
-        }
-        if let Some(vertex) = self.inner.restore_vertex(p) {
-            self.connect(vertex, location);
-        }
-        Ok(vertex)
-    }
-
     /// The visible vertices with their payloads, mutable, in order of their numbers.
     pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
         self.inner.tds.vertex_data_iter_mut()
@@ -415,7 +356,75 @@ impl<G: Geometry<3>, V, C: Copy + Default> Regular<G, V, C> {
     }
 }
 
-impl<G: Geometry<3>, C: Copy + Default> Regular<G, (), C> {
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C>
+where
+    Triangulation<G, N, V, C>: Removal,
+{
+    /// Removes a point, visible or hidden, and returns it. The result is the triangulation of the
+    /// others, which keep their numbers; the next point inserted takes the freed one.
+    ///
+    /// # Errors
+    /// If no point has this number.
+    ///
+    /// # Complexity
+    /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point that the
+    /// cells around it hide.
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        if self.hidden.take(vertex) {
+            self.inner.tds.attach();
+            self.inner.tds.remove_vertex(vertex);
+        } else if self.tds().is_vertex(vertex) {
+            let dimension = self.dimension();
+            let mut hidden = if self.inner.is_full() {
+                self.hidden.take_under(self.inner.star(vertex))
+            } else {
+                self.hidden.take_all()
+            };
+            self.inner.remove_and_restore(vertex);
+            if self.dimension() < dimension {
+                hidden.extend(self.hidden.take_all());
+            }
+            self.connect_again(hidden);
+        } else {
+            return Err(RemovalError::NoVertex);
+        }
+        Ok(*self.point(vertex))
+    }
+
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate). It is not
+    /// notified of points that become visible.
+    ///
+    /// # Errors
+    /// See [`remove`](Self::remove).
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, N>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        self.remove(vertex).inspect(|_| strategy.removed(vertex))
+    }
+
+    /// Moves a point, visible or hidden, and returns its vertex, which keeps its number and
+    /// payload. If a point with the same weight is on the site, the moved one is removed, and the
+    /// vertex that is there already is returned.
+    ///
+    /// # Errors
+    /// If no point has this number, or a coordinate or the weight is not finite or out of
+    /// range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// That of a removal and of an insertion.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
+        self.inner.admit(&p)?;
+        self.remove(vertex)?;
+        let location = self.inner.locate(&p, None);
+        if let Some(same) = self.same(&p, location) {
+            return Ok(same);
+        }
+        if let Some(vertex) = self.inner.restore_vertex(p) {
+            self.connect(vertex, location);
+        }
+        Ok(vertex)
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, C: Copy + Default> Regular<G, N, (), C> {
     /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
     /// already.
     ///
@@ -426,7 +435,7 @@ impl<G: Geometry<3>, C: Copy + Default> Regular<G, (), C> {
     }
 }
 
-impl<G: Coordinates<3>, C: Copy + Default> Regular<G, (), C> {
+impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Regular<G, N, (), C> {
     /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
     /// each.
     ///

@@ -8,7 +8,7 @@ use super::super::Regular;
 use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus};
 use super::nearest::nearest;
 
-impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
+impl<G: Metric, V, C: Copy + Default> Regular<G, 3, V, C> {
     /// Returns the vertex of the least power at a point, which is its squared distance less its
     /// weight; of several, the first in the [order](crate::geometry::Geometry::compare) of the
     /// geometry.
@@ -26,7 +26,7 @@ impl<G: Metric, V, C: Copy + Default> Regular<G, V, C> {
     }
 }
 
-impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, V, C> {
+impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, 3, V, C> {
     /// Returns the point that has the same power with the corners of a finite face, and less with
     /// no other point: the corner of the power diagram, and the center of the circle that is
     /// orthogonal to those of the three corners. `None` if the cell is not a finite face. As

@@ -208,13 +208,13 @@ where
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Regular<G, V, C> {
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Regular<G, 3, V, C> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
 }
 
-impl<'de, G, V, C> Deserialize<'de> for Regular<G, V, C>
+impl<'de, G, V, C> Deserialize<'de> for Regular<G, 3, V, C>
 where
     G: Geometry<3, Point: Deserialize<'de>> + Default,
     V: Deserialize<'de>,

@@ -1,0 +1,120 @@
+use std::cmp::Ordering;
+use std::marker::PhantomData;
+
+use super::space::projection;
+use super::{Coordinates, Geometry, Space, lexicographic};
+use crate::kernel::{Adaptive, Kernel, PowerInPlane, PowerOnLine, PowerTest3};
+use crate::num::Sign;
+
+/// The geometry of points in space with a weight: `[x, y, z, weight]`, the weight in the square of
+/// the unit of the coordinates.
+///
+/// A point stands for a sphere of squared radius `weight`. Everything else is as for
+/// [`Weighted`](super::Weighted), one dimension up: orientation and order are those of [`Space`],
+/// and a point is *inside* of the sphere of a simplex if its [lift](PowerTest3) is below the
+/// hyperplane through the lifts of the corners.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WeightedSpace<K = Adaptive>(PhantomData<K>);
+
+impl WeightedSpace {
+    /// Returns the geometry with the kernel [`Adaptive`]. For another kernel, use
+    /// `WeightedSpace::<K>::default()`.
+    pub fn new() -> Self {
+        WeightedSpace::default()
+    }
+}
+
+impl<K: Kernel> WeightedSpace<K> {
+    /// Compares the weights of two points: of those at one site, the greater is in the regular
+    /// triangulation.
+    #[inline]
+    pub fn compare_weights(&self, p: &[f64; 4], q: &[f64; 4]) -> Ordering {
+        lexicographic([p[3]], [q[3]])
+    }
+
+    /// The geometry of the sites.
+    fn space(&self) -> Space<K> {
+        Space::default()
+    }
+}
+
+#[inline(always)]
+fn site(p: &[f64; 4]) -> [f64; 3] {
+    [p[0], p[1], p[2]]
+}
+
+impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
+    type Point = [f64; 4];
+
+    /// Returns true if the coordinates and the weight are admitted.
+    #[inline]
+    fn admits(&self, p: &[f64; 4]) -> bool {
+        p.iter().all(|&x| K::RANGE.admits(x))
+    }
+
+    #[inline(always)]
+    fn compare(&self, p: &[f64; 4], q: &[f64; 4]) -> Ordering {
+        lexicographic(site(p), site(q))
+    }
+
+    #[inline]
+    fn rough_distance(&self, p: &[f64; 4], q: &[f64; 4]) -> Option<f64> {
+        self.space().rough_distance(&site(p), &site(q))
+    }
+
+    #[inline(always)]
+    fn rough_sides(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> Option<[f64; 4]> {
+        self.space().rough_sides(simplex.map(site).each_ref(), &site(q))
+    }
+
+    #[inline(always)]
+    fn orientation(&self, simplex: [&[f64; 4]; 4]) -> Sign {
+        self.space().orientation(simplex.map(site).each_ref())
+    }
+
+    #[inline(always)]
+    fn side_of_sphere(&self, [a, b, c, d]: [&[f64; 4]; 4], q: &[f64; 4]) -> Sign {
+        K::sign(&PowerTest3([*a, *b, *c, *d, *q]))
+    }
+
+    fn orientation_in_flat(&self, simplex: &[&[f64; 4]]) -> Sign {
+        match *simplex {
+            [p, q] => self.compare(q, p).into(),
+            [a, b, c] => projection::<K>([a, b, c].map(site)).map_or(Sign::Zero, |(_, sign)| sign),
+            _ => Sign::Zero,
+        }
+    }
+
+    /// As for [`Weighted`](super::Weighted): positive if the lift of `q`, anywhere in the plane or
+    /// on the line of the simplex, is below the flat through the lifts of the corners. For one
+    /// point, positive if `q`, on the same site, is heavier.
+    fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 4]], q: &[f64; 4]) -> Sign {
+        match *simplex {
+            [a] => self.compare_weights(q, a).into(),
+            [a, b] => {
+                let (a, b) = match self.compare(a, b) {
+                    Ordering::Less => (a, b),
+                    Ordering::Equal => return Sign::Negative,
+                    Ordering::Greater => (b, a),
+                };
+                // In lexicographic order, the first has the smaller coordinate on the first axis on
+                // which they differ.
+                let along = (0..2).find(|&axis| a[axis] != b[axis]).unwrap_or(2);
+                K::sign(&PowerOnLine { points: [*a, *b, *q], along })
+            }
+            [a, b, c] => projection::<K>([a, b, c].map(site)).map_or(Sign::Negative, |(axes, turn)| {
+                turn * K::sign(&PowerInPlane { points: [*a, *b, *c, *q], axes })
+            }),
+            _ => Sign::Negative,
+        }
+    }
+}
+
+impl<K: Kernel> Coordinates<4> for WeightedSpace<K> {
+    type Coordinates = [f64; 3];
+
+    #[inline]
+    fn coordinates(&self, p: &[f64; 4]) -> [f64; 3] {
+        site(p)
+    }
+}
