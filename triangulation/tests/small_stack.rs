@@ -15,10 +15,9 @@ fn on_stack(kib: usize, work: impl FnOnce() + Send + 'static) {
 }
 
 /// Points that come closer and closer to the origin, by a factor of two each time: a divide and
-/// conquer that halves squares splits off one point at a time. Its depth is bounded by the bits of
-/// the coordinates, not by the number of points: these are nearly all that the default kernel has.
-fn closer_and_closer() -> Vec<[f64; 2]> {
-    let powers = (-160..199).map(|k| 2f64.powi(k));
+/// conquer that halves squares splits off one point at a time.
+fn closer_and_closer(powers: std::ops::Range<i32>) -> Vec<[f64; 2]> {
+    let powers = powers.map(|k| 2f64.powi(k));
     powers.flat_map(|r| [[r, 0.0], [-r, r / 2.0], [r, r], [0.0, -r]]).collect()
 }
 
@@ -26,10 +25,14 @@ fn closer_and_closer() -> Vec<[f64; 2]> {
 fn bulk_construction_of_points_that_come_closer_and_closer() {
     on_stack(USUAL, || {
         for order in [1, 7] {
-            let points = closer_and_closer();
+            let points = closer_and_closer(-160..199);
             let n = points.len();
             let points: Vec<_> = (0..n).map(|i| points[i * order % n]).collect();
             let (delaunay, _) = Delaunay::from_points(Plane::new(), &points).unwrap();
+            assert_eq!(delaunay.vertex_count(), points.len());
+            // Nearly all powers that there are.
+            let points = closer_and_closer(-1000..1000);
+            let (delaunay, _) = Delaunay::from_points(Plane::<Wide>::default(), &points).unwrap();
             assert_eq!(delaunay.vertex_count(), points.len());
         }
     });

@@ -73,6 +73,8 @@ pub(super) struct Range<'a, G: Coordinates<N>, const N: usize, const FILTERED: b
     pub(super) faces: &'a mut [Links<3>],
     pub(super) offset: usize,
     pub(super) grain: Grain<'a>,
+    /// The number of ranges with equal keys around this one.
+    pub(super) nesting: usize,
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {

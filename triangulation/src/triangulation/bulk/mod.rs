@@ -153,6 +153,9 @@ enum Axis {
     Y,
 }
 
+/// Every that many ranges within ranges of equal keys, the recursion goes on with a stack of its own.
+const NESTED: usize = 4;
+
 /// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
 /// are all collinear, more than [`MAX_POINTS`], or not in the plane, or if the work was stopped.
 ///
@@ -206,7 +209,7 @@ fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
     grain: Grain,
 ) {
     let seen = Seen::<G, N, FILTERED>::new(geometry, points, curve, grain);
-    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain }.build(0, points.len(), arc::MOST);
+    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain, nesting: 0 }.build(0, points.len(), arc::MOST);
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
@@ -237,10 +240,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             if self.grain.stops() {
                 return self.unbuilt(lo);
             }
-            let Range { seen, keys, first, offset, grain, .. } = *self;
+            let Range { seen, keys, first, offset, grain, nesting, .. } = *self;
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
-            let mut left = Range { seen, keys, first, faces: left, offset, grain };
-            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain };
+            let mut left = Range { seen, keys, first, faces: left, offset, grain, nesting };
+            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain, nesting };
             join(|| left.build(lo, mid, arcs), || right.build(mid, hi, arcs))
         } else {
             (self.build(lo, mid, arcs), self.build(mid, hi, arcs))
@@ -305,7 +308,15 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             let curve = Curve::through(count, coordinates, self.grain.points);
             keys = Keys::of(count, coordinates, &curve, self.grain);
         }
-        let Range { seen, offset, grain, .. } = *self;
-        Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain }.build(lo, hi, arcs)
+        let Range { seen, offset, grain, nesting, .. } = *self;
+        let mut range =
+            Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain, nesting: nesting + 1 };
+        // Each range with keys of its own is up to 64 calls deep. There may be as many within each
+        // other as the exponents of doubles allow, however few points there are.
+        if range.nesting.is_multiple_of(NESTED) {
+            on_new_stack(|| range.build(lo, hi, arcs))
+        } else {
+            range.build(lo, hi, arcs)
+        }
     }
 }

@@ -209,7 +209,7 @@ fn is_arc(points: &[[f64; 2]]) -> bool {
     let Sites { points, keys, curve, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
     let seen = Seen::<_, 3, true>::new(&geometry, &points, &curve, Grain::default());
     let mut faces = vec![Links::UNUSED; 2 * points.len()];
-    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY };
+    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY, nesting: 0 };
     range.arc(0, points.len()).is_some()
 }
 
