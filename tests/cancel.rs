@@ -1,5 +1,7 @@
 //! Reading under watch, and how soon a run ends after it was canceled.
 
+#![allow(clippy::print_stdout, reason = "latencies are measured by hand")]
+
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -107,6 +109,9 @@ fn every_reader_ends_with_the_error_of_its_watch() {
     }
 }
 
+/// What a verb does in a context.
+type Work<'a> = dyn Fn(&Context) -> Result<()> + 'a;
+
 /// Remembers the stage that began last.
 #[derive(Default)]
 struct Stages(Mutex<Option<Stage>>);
@@ -138,7 +143,7 @@ fn latency_of_cancellation() {
     run::write_mesh(tin.triangles().unwrap(), ply.as_path().into(), &Context::default()).unwrap();
 
     let out = |name: &str| folder.path().join(name);
-    let work: [(&str, &dyn Fn(&Context) -> Result<()>); 7] = [
+    let work: [(&str, &Work); 7] = [
         ("tin of LAZ", &|context| {
             let product = run::triangles(&of(&lidar), context)?;
             run::write_mesh(product.triangles()?, out("b.ply").as_path().into(), context).map(drop)

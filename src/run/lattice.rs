@@ -40,7 +40,8 @@ pub(super) fn reprojected(
     points[4..].iter().for_each(|&point| after.add(point));
     let mut new = *lattice;
     let keeps_heights = before.iter().zip(&points).all(|(before, after)| before[2] == after[2]);
-    for k in 0..if keeps_heights { 2 } else { 3 } {
+    let axes = if keeps_heights { 0..2 } else { 0..3 };
+    for k in axes {
         let step = (1..4).map(|i| (points[i][k] - points[0][k]).abs() / LEAP).fold(0.0, f64::max);
         let half = (after.max[k] - after.min[k]) / 2.0;
         // A little is added, because a hundredth may come out as slightly less.

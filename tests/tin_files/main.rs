@@ -35,7 +35,7 @@ fn tin_of(round: usize) -> Option<Tin> {
     let drawn = scene::Scene::new(&mut random, scene::UNITS[round % 3], draw);
     let mut builder = drawn.builder();
     // One in four is not clipped.
-    if round % 4 != 0 {
+    if !round.is_multiple_of(4) {
         drawn.polygons.iter().for_each(|rings| builder.add_boundary(rings));
         builder.bounds = drawn.bounds;
     }

@@ -56,9 +56,9 @@ use crate::num::{Dyadic, Expansion, Number, Sign};
 ///
 /// # Models
 /// [`Orientation2`], [`Orientation3`], [`InCircle`], [`InSphere`], [`InCircleOfPlane`],
-/// [`CompareDistance`], [`DotProduct`], [`PowerTest2`], [`PowerTest3`], [`PowerInPlane`], [`PowerOnLine`], [`ComparePower`], and the
-/// predicates of snap rounding, [`CornerSide`] and [`CrossingSide`]. A predicate of your own is
-/// exact at once, with every kernel but [`Fast`]:
+/// [`CompareDistance`], [`DotProduct`], [`PowerTest2`], [`PowerTest3`], [`PowerInPlane`],
+/// [`PowerOnLine`], [`ComparePower`], and the predicates of snap rounding, [`CornerSide`] and
+/// [`CrossingSide`]. A predicate of your own is exact at once, with every kernel but [`Fast`]:
 ///
 /// ```
 /// use breakline_triangulation::kernel::{Adaptive, Exact, Kernel, Predicate};

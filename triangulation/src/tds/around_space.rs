@@ -58,8 +58,8 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
         })
     }
 
-    /// The edges without the infinite vertex, each once, in the order of [`edges`](Self::edges). The
-    /// cell may be an infinite one.
+    /// The edges without the infinite vertex, each once, in the order of [`edges`](Self::edges).
+    /// The cell may be an infinite one.
     pub fn finite_edges(&self) -> impl Iterator<Item = Edge> + '_ {
         self.edges().filter(|&edge| !self.edge_ends(edge).contains(&VertexId::INFINITE))
     }
@@ -103,8 +103,8 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
         self.vertices_around(vertex).len()
     }
 
-    /// Returns a cell that has these vertices, two to four different ones in any order, one of which
-    /// may be the infinite one. Time in proportion to the number of cells around the first.
+    /// Returns a cell that has these vertices, two to four different ones in any order, one of
+    /// which may be the infinite one. Time in proportion to the number of cells around the first.
     pub fn cell_with(&self, vertices: &[VertexId]) -> Option<CellId> {
         let Ok(cell) = space::cell_with(self, vertices);
         cell

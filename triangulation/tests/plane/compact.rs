@@ -256,9 +256,12 @@ fn the_format() {
     }
 }
 
+/// A tag and contents.
+type Section = ([u8; 8], Vec<u8>);
+
 /// A triangulation with some sections, of all lengths up to a multiple of 8 and beyond.
-fn with_sections(t: &Free) -> (Vec<u8>, Vec<([u8; 8], Vec<u8>)>) {
-    let sections: Vec<([u8; 8], Vec<u8>)> = (0..11u8).map(|n| ([b'a' + n % 9; 8], vec![n; usize::from(n)])).collect();
+fn with_sections(t: &Free) -> (Vec<u8>, Vec<Section>) {
+    let sections: Vec<Section> = (0..11u8).map(|n| ([b'a' + n % 9; 8], vec![n; usize::from(n)])).collect();
     let mut bytes = bytes(t);
     for (tag, contents) in &sections {
         CompactSection { tag: *tag, contents }.write(&mut bytes).unwrap();
@@ -272,7 +275,7 @@ fn sections_are_found_and_the_triangulation_does_not_change() {
         let (whole, sections) = with_sections(&t);
         let compact = open(&whole).unwrap();
         assert_eq!(compact.check(Level::Law), Ok(()));
-        let listed: Vec<([u8; 8], Vec<u8>)> = compact.sections().map(|s| (s.tag, s.contents.to_vec())).collect();
+        let listed: Vec<Section> = compact.sections().map(|s| (s.tag, s.contents.to_vec())).collect();
         assert_eq!(listed, sections);
         assert_eq!(compact.section([b'c'; 8]), Some(&[2, 2][..]));
         assert_eq!(compact.section([b'a'; 8]), Some(&[][..]), "the first of two");

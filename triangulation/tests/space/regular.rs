@@ -25,8 +25,8 @@ fn volume([a, b, c, d]: [Point; 4]) -> i64 {
     u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0])
 }
 
-/// Returns the cells of the lower hull of the lifted points. Ties are broken by raising the lifts by
-/// powers of a small number, the largest point most.
+/// Returns the cells of the lower hull of the lifted points. Ties are broken by raising the lifts
+/// by powers of a small number, the largest point most.
 fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 4]> {
     // In order of site and weight, the heaviest of a site last.
     let sorted: Vec<Point> = points.iter().copied().collect();

@@ -153,7 +153,8 @@ enum Axis {
     Y,
 }
 
-/// Every that many ranges within ranges of equal keys, the recursion goes on with a stack of its own.
+/// Every that many ranges within ranges of equal keys, the recursion goes on with a stack of its
+/// own.
 const NESTED: usize = 4;
 
 /// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
