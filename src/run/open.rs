@@ -61,7 +61,7 @@ pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -
         Content::Points | Content::Raster | Content::Mesh | Content::Picture | Content::Plane => {
             points::open_with(path, options).or_else(|error| match gdal_may_help(&error) {
                 // If GDAL does not know the file either, its error is less exact.
-                true => of_layer().map_err(|_| error),
+                true => of_layer().map_err(|e| if e.kind() == Kind::Canceled { e } else { error }),
                 false => Err(error),
             })
         }

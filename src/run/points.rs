@@ -139,8 +139,8 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     if report.read == report.withheld + report.other_class + report.other_return + report.outside {
         return Err(nothing_left(&report, &request.files));
     }
-    report.written = sink.finish()?;
     work.end()?;
+    report.written = sink.finish()?;
     plan.transforms.warn(&journal);
     report.crs.clone_from(&plan.crs);
     report.notices = journal.take();

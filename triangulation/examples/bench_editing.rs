@@ -25,7 +25,7 @@ fn run(stem: &str, points: &[[f64; 2]]) -> Result<(), Box<dyn std::error::Error>
         println!("breakline_{name} {stem} {} 1 {seconds:.4} 0 0 {done} {seconds:.4}", points.len());
     };
     let (mut t, mut hierarchy) =
-        (Delaunay::<Plane, 3>::new(Plane::default()), Hierarchy::<Plane>::new(Plane::default()));
+        (Delaunay::<Plane, 3>::new(Plane::default()), Hierarchy::<Plane, 3>::new(Plane::default()));
     let mut vertices = Vec::with_capacity(points.len());
 
     let start = Instant::now();

@@ -79,9 +79,9 @@
 //! | build and edit a surface of any genus | [`tds::Tds::from_cells`] |
 //! | check it | [`Delaunay::check`], [`ConstrainedDelaunay::check`], up to a [`Level`] |
 //!
-//! All queries take `&self`. In space there are location, stars, rings around edges, insertion,
-//! removal and checks; the other queries, and bulk construction by divide and conquer, are of the
-//! plane.
+//! All queries take `&self`. In space there are location by all strategies but [`Buckets`] and
+//! [`StraightLine`], nearest vertices, stars, rings around edges, insertion, removal and checks;
+//! the other queries, and bulk construction by divide and conquer, are of the plane.
 //!
 //! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
 //! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of

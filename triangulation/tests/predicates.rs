@@ -102,7 +102,7 @@ impl Question<3, 5> for InSphere {
     }
 }
 
-impl Question<2, 3> for CompareDistance {
+impl Question<2, 3> for CompareDistance<2> {
     fn of(points: [[f64; 2]; 3]) -> Self {
         CompareDistance(points)
     }
@@ -228,7 +228,7 @@ fn ask_all(rounds: usize, mut coordinate: impl FnMut() -> f64) -> [Tally; 5] {
         circle.ask::<InCircle, 2, 4>([(); 4].map(|()| [(); 2].map(|()| coordinate())));
         orientation_in_space.ask::<Orientation3, 3, 4>([(); 4].map(|()| [(); 3].map(|()| coordinate())));
         sphere.ask::<InSphere, 3, 5>([(); 5].map(|()| [(); 3].map(|()| coordinate())));
-        distance.ask::<CompareDistance, 2, 3>([(); 3].map(|()| [(); 2].map(|()| coordinate())));
+        distance.ask::<CompareDistance<2>, 2, 3>([(); 3].map(|()| [(); 2].map(|()| coordinate())));
     }
     tallies
 }

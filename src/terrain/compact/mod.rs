@@ -343,7 +343,7 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
     }
 
     fn has_lines(&self) -> bool {
-        self.attributes.facts.breaklines + self.attributes.facts.clips > 0 || !self.fragments.is_empty()
+        self.attributes.facts.breaklines > 0 || self.attributes.facts.clips > 0 || !self.fragments.is_empty()
     }
 
     fn is_fragment(&self, face: u32) -> bool {

@@ -1,9 +1,9 @@
 use std::cmp::Ordering;
 
-use super::{Geometry, Plane, Steps, Terrain, Weighted};
+use super::{Geometry, Plane, Space, Steps, Terrain, Weighted, WeightedSpace};
 use crate::kernel::{CompareDistance, ComparePower, Kernel};
 
-/// A geometry of the plane that can compare distances.
+/// A geometry that can compare distances, in the plane (`N` is 3) or in space (4).
 ///
 /// Required for [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest),
 /// [`nearest_first`](crate::triangulation::Delaunay::nearest_first) and
@@ -15,9 +15,10 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// - The answer is exact: `Equal` for equal distances, and antisymmetric.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped); and [`Weighted`],
-/// whose distance is the power. A geometry of your own that forwards positions to one of these
-/// forwards distances, too. This one is for a map whose y axis points down:
+/// [`Plane`], [`Terrain`] and [`Steps`] (in plan), [`Mapped`](super::Mapped), [`Space`]; and
+/// [`Weighted`] and [`WeightedSpace`], whose distance is the power. A geometry of your own that
+/// forwards positions to one of these forwards distances, too. This one is for a map whose y axis
+/// points down:
 ///
 /// ```
 /// use std::cmp::Ordering;
@@ -54,19 +55,19 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 /// assert_eq!(t.within(&[0, 0], &[500, 0]).count(), 2, "a point on the rim is within");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub trait Metric: Geometry<3> {
+pub trait Metric<const N: usize = 3>: Geometry<N> {
     /// Compares the distances from `q`: `Less` if `a` is nearer than `b`.
     fn compare_distance(&self, q: &Self::Point, a: &Self::Point, b: &Self::Point) -> Ordering;
 }
 
-fn compare<K: Kernel>(sites: [[f64; 2]; 3]) -> Ordering {
+fn compare<K: Kernel, const D: usize>(sites: [[f64; D]; 3]) -> Ordering {
     (K::sign(&CompareDistance(sites)) as i8).cmp(&0)
 }
 
 impl<K: Kernel> Metric for Plane<K> {
     #[inline]
     fn compare_distance(&self, q: &[f64; 2], a: &[f64; 2], b: &[f64; 2]) -> Ordering {
-        compare::<K>([*q, *a, *b])
+        compare::<K, 2>([*q, *a, *b])
     }
 }
 
@@ -74,7 +75,7 @@ impl<K: Kernel> Metric for Terrain<K> {
     /// Compares in plan.
     #[inline]
     fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
-        compare::<K>([q, a, b].map(super::plan))
+        compare::<K, 2>([q, a, b].map(super::plan))
     }
 }
 
@@ -82,7 +83,7 @@ impl<K: Kernel> Metric for Steps<K> {
     /// Compares in plan.
     #[inline]
     fn compare_distance(&self, q: &[i32; 3], a: &[i32; 3], b: &[i32; 3]) -> Ordering {
-        compare::<K>([q, a, b].map(super::steps::plan))
+        compare::<K, 2>([q, a, b].map(super::steps::plan))
     }
 }
 
@@ -90,6 +91,21 @@ impl<K: Kernel> Metric for Weighted<K> {
     /// Compares powers: squared distance less weight. The weight of `q` does not count.
     #[inline]
     fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
+        (K::sign(&ComparePower([*q, *a, *b])) as i8).cmp(&0)
+    }
+}
+
+impl<K: Kernel> Metric<4> for Space<K> {
+    #[inline]
+    fn compare_distance(&self, q: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> Ordering {
+        compare::<K, 3>([*q, *a, *b])
+    }
+}
+
+impl<K: Kernel> Metric<4> for WeightedSpace<K> {
+    /// Compares powers, as for [`Weighted`].
+    #[inline]
+    fn compare_distance(&self, q: &[f64; 4], a: &[f64; 4], b: &[f64; 4]) -> Ordering {
         (K::sign(&ComparePower([*q, *a, *b])) as i8).cmp(&0)
     }
 }

@@ -67,9 +67,9 @@ use crate::num::{Sign, unsigned_zero};
 /// - All answers are those for one and the same set of exact points.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`]. For points that have a
-/// position in the plane, `Mapped` is a geometry in one line. You can add your own; this one counts
-/// the in-circle tests:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`], [`WeightedSpace`]. For
+/// points that have a position in the plane, `Mapped` is a geometry in one line. You can add your
+/// own; this one counts the in-circle tests:
 ///
 /// ```
 /// use std::cell::Cell;
@@ -158,10 +158,11 @@ pub trait Geometry<const N: usize> {
     ///
     /// For two points, inside means between them. A single point is only asked about for weighted
     /// points: `q` is then on the same site, and inside if its weight is larger. The default is
-    /// for points without weights: no point is inside of another. A geometry with weights overrides
-    /// it.
+    /// for points without weights: on one site, none is inside of another. A geometry with weights
+    /// overrides it.
     fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
         match simplex {
+            [_] => Sign::Zero,
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
             _ => Sign::Negative,
         }
@@ -181,8 +182,8 @@ pub trait Geometry<const N: usize> {
 ///   say that points lie along a line in some order, so do the coordinates.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] with
-/// three. A type of your own can forward all predicates to `Plane`:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] and
+/// [`WeightedSpace`] with three. A type of your own can forward all predicates to `Plane`:
 ///
 /// ```
 /// use std::cmp::Ordering;

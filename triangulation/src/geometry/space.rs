@@ -71,6 +71,7 @@ impl<K: Kernel> Geometry<4> for Space<K> {
 
     fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
         match *simplex {
+            [_] => Sign::Zero,
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
             [a, b, c] => projection::<K>([*a, *b, *c]).map_or(Sign::Negative, |(axes, turn)| {
                 turn * K::sign(&InCircleOfPlane { points: [*a, *b, *c, *q], axes })

@@ -14,6 +14,12 @@ pub(super) fn square<T: Number>(a: &T) -> T {
     a.clone() * a.clone()
 }
 
+/// Returns the squared length of a vector.
+#[inline(always)]
+pub(super) fn squared_length<T: Number, const D: usize>(vector: &[T; D]) -> T {
+    (1..D).fold(square(&vector[0]), |sum, axis| sum + square(&vector[axis]))
+}
+
 /// Returns `p - q`, axis by axis.
 #[inline(always)]
 pub(super) fn minus<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T) -> [T; D] {
@@ -72,7 +78,7 @@ impl Predicate for InCircle {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d] = self.0;
         let [a, b, c] = [a, b, c].map(|p| minus(p, d, difference));
-        let lengths = [&a, &b, &c].map(|v| square(&v[0]) + square(&v[1]));
+        let lengths = [&a, &b, &c].map(squared_length);
         in_circle(a, b, c, lengths)
     }
 }
@@ -142,7 +148,7 @@ impl Predicate for InSphere {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d, e] = self.0;
         let vectors = [a, b, c, d].map(|p| minus(p, e, difference));
-        let lengths = vectors.each_ref().map(|v| square(&v[0]) + square(&v[1]) + square(&v[2]));
+        let lengths = vectors.each_ref().map(squared_length);
         in_sphere(vectors, lengths)
     }
 }
@@ -172,20 +178,20 @@ impl Predicate for InCircleOfPlane {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d] = self.points;
         let vectors = [a, b, c].map(|p| minus(p, d, difference));
-        let lengths = vectors.each_ref().map(|v| square(&v[0]) + square(&v[1]) + square(&v[2]));
+        let lengths = vectors.each_ref().map(squared_length);
         let [a, b, c] = vectors.map(|v| self.axes.map(|axis| v[axis].clone()));
         in_circle(a, b, c, lengths)
     }
 }
 
-/// A comparison of distances in the plane: positive if the second point is further from the first
-/// than the third is.
+/// A comparison of distances, in the plane (`D` is 2) or in space (3): positive if the second point
+/// is further from the first than the third is.
 #[derive(Debug, Clone, Copy)]
-pub struct CompareDistance(pub [[f64; 2]; 3]);
+pub struct CompareDistance<const D: usize>(pub [[f64; D]; 3]);
 
-impl Predicate for CompareDistance {
+impl<const D: usize> Predicate for CompareDistance<D> {
     const DEGREE: i32 = 2;
-    const AXES: usize = 2;
+    const AXES: usize = D;
 
     #[inline(always)]
     fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
@@ -196,7 +202,7 @@ impl Predicate for CompareDistance {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [from, p, q] = self.0;
         let [p, q] = [p, q].map(|p| minus(p, from, difference));
-        (square(&p[0]) + square(&p[1])) - (square(&q[0]) + square(&q[1]))
+        squared_length(&p) - squared_length(&q)
     }
 }
 

@@ -6,7 +6,7 @@
 //! axes of their own.
 
 use super::Predicate;
-use super::formula::{cross, in_circle, in_sphere, minus, square};
+use super::formula::{cross, in_circle, in_sphere, minus, square, squared_length};
 use crate::num::Number;
 
 /// Returns the coordinates of weighted points on an axis: those in the plane or in space, weights,
@@ -51,7 +51,7 @@ impl Predicate for PowerTest2 {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d] = self.0;
         let [u, v, w] = [a, b, c].map(|p| minus([p[0], p[1]], [d[0], d[1]], difference));
-        let lifts = [(&u, a), (&v, b), (&w, c)].map(|(vector, p)| lift(length(vector), p, d, difference));
+        let lifts = [(&u, a), (&v, b), (&w, c)].map(|(vector, p)| lift(squared_length(vector), p, d, difference));
         in_circle(u, v, w, lifts)
     }
 }
@@ -75,7 +75,7 @@ impl Predicate for PowerTest3 {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d, q] = self.0;
         let vectors = [a, b, c, d].map(|p| minus(site(p), site(q), difference));
-        let lifts = std::array::from_fn(|k| lift(length(&vectors[k]), self.0[k], q, difference));
+        let lifts = std::array::from_fn(|k| lift(squared_length(&vectors[k]), self.0[k], q, difference));
         in_sphere(vectors, lifts)
     }
 }
@@ -102,7 +102,7 @@ impl Predicate for PowerInPlane {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, q] = self.points;
         let vectors = [a, b, c].map(|p| minus(site(p), site(q), difference));
-        let lifts = std::array::from_fn(|k| lift(length(&vectors[k]), self.points[k], q, difference));
+        let lifts = std::array::from_fn(|k| lift(squared_length(&vectors[k]), self.points[k], q, difference));
         let [a, b, c] = vectors.map(|v| self.axes.map(|axis| v[axis].clone()));
         in_circle(a, b, c, lifts)
     }
@@ -112,12 +112,6 @@ impl Predicate for PowerInPlane {
 #[inline(always)]
 fn site([x, y, z, _]: [f64; 4]) -> [f64; 3] {
     [x, y, z]
-}
-
-/// Returns the squared length of a vector.
-#[inline(always)]
-fn length<T: Number, const D: usize>(vector: &[T; D]) -> T {
-    (1..D).fold(square(&vector[0]), |sum, axis| sum + square(&vector[axis]))
 }
 
 /// The power test of three weighted points on a line, `[x, y, w]` in the plane (`D` is 3) or
@@ -143,25 +137,21 @@ impl<const D: usize> Predicate for PowerOnLine<D> {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, q] = self.points;
-        let squared = |p: [f64; D]| {
-            let axis = |k: usize| square(&difference(p[k], q[k]));
-            (1..D - 1).fold(axis(0), |sum, k| sum + axis(k))
-        };
-        let [a_lift, b_lift] = [a, b].map(|p| lift(squared(p), p, q, difference));
+        let [a_lift, b_lift] = [a, b].map(|p| power(p, q, difference));
         let [u, v] = [a, b].map(|p| difference(p[self.along], q[self.along]));
         cross(&a_lift, &v, &b_lift, &u)
     }
 }
 
-/// A comparison of powers at a point: positive if the first of two weighted points `[x, y, w]` has
-/// the larger power there, which is its squared distance less its weight. The query point comes
-/// first; its own weight does not count.
+/// A comparison of powers at a point: positive if the first of two weighted points, `[x, y, w]` in
+/// the plane (`D` is 3) or `[x, y, z, w]` in space (4), has the larger power there, which is its
+/// squared distance less its weight. The query point comes first; its own weight does not count.
 #[derive(Debug, Clone, Copy)]
-pub struct ComparePower(pub [[f64; 3]; 3]);
+pub struct ComparePower<const D: usize>(pub [[f64; D]; 3]);
 
-impl Predicate for ComparePower {
+impl<const D: usize> Predicate for ComparePower<D> {
     const DEGREE: i32 = 2;
-    const AXES: usize = 4;
+    const AXES: usize = D + 1;
 
     #[inline(always)]
     fn axis(&self, of: usize) -> impl Iterator<Item = f64> + Clone {
@@ -171,7 +161,13 @@ impl Predicate for ComparePower {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [q, a, b] = self.0;
-        let [u, v] = [a, b].map(|p| minus([p[0], p[1]], [q[0], q[1]], difference));
-        lift(length(&u), a, q, difference) - lift(length(&v), b, q, difference)
+        power(a, q, difference) - power(b, q, difference)
     }
+}
+
+/// Returns the lift of a weighted point relative to another one, on any number of axes.
+#[inline(always)]
+fn power<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T + Copy) -> T {
+    let axis = |k: usize| square(&difference(p[k], q[k]));
+    lift((1..D - 1).fold(axis(0), |sum, k| sum + axis(k)), p, q, difference)
 }

@@ -6,8 +6,8 @@
 //! | dimension | facets | edges | around an edge |
 //! |---|---|---|---|
 //! | 3 | triangles between two cells | sides of triangles | cells in a ring |
-//! | 2 | sides of triangles | the same | two cells |
-//! | 1 | the vertices | the cells | one cell |
+//! | 2 | sides of triangles | the same | nothing |
+//! | 1 | the vertices | the cells | nothing |
 //! | 0, -1 | none | none | nothing |
 
 use std::iter::FusedIterator;

@@ -56,6 +56,7 @@ mod complex;
 mod edit;
 mod error;
 mod id;
+mod neighbors;
 pub mod plane;
 #[cfg(feature = "serde")]
 mod rebuild;
@@ -67,6 +68,7 @@ mod zone;
 pub use complex::Complex;
 pub use error::{EditError, TdsError};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
+pub use neighbors::Neighbors;
 pub(crate) use plane::Star;
 #[cfg(feature = "serde")]
 pub(crate) use rebuild::Parts;

@@ -4,60 +4,89 @@ use rustc_hash::FxHashMap;
 
 use super::{CellId, Links, Tds, VertexId};
 
-/// The facets that have one cell so far: for the vertices of each, in order, the cell and the index
-/// of the vertex opposite.
-type Open<const N: usize> = FxHashMap<[VertexId; N], (CellId, usize)>;
+/// A side of a facet: a cell outside, or one of the new cells by its position; and the index of the
+/// vertex opposite.
+#[derive(Clone, Copy)]
+enum Side {
+    Outside(CellId, usize),
+    New(usize, usize),
+}
+
+/// The facets of which one side is known: for the vertices of each, in order, that side.
+type Open<const N: usize> = FxHashMap<[VertexId; N], Side>;
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Replaces the cells around a vertex, each with the index of the vertex in it, by others that
     /// fill the same space. They are given by their vertices, `dimension + 1` of them, and get
-    /// default payloads.
+    /// default payloads. Returns false, and changes nothing, if their border is another one.
     ///
     /// Expected time linear in the number of cells.
-    pub(crate) fn replace_star(&mut self, star: &[(CellId, usize)], cells: &[[VertexId; N]]) {
+    pub(crate) fn replace_star(&mut self, star: &[(CellId, usize)], cells: &[[VertexId; N]]) -> bool {
         let mut open = Open::default();
         for &(cell, i) in star {
             let beyond = self.neighbor(cell, i);
-            open.insert(self.facet_key(cell, i), (beyond, self.index_of_neighbor(beyond, cell)));
+            let side = Side::Outside(beyond, self.index_of_neighbor(beyond, cell));
+            open.insert(without(self.links[cell.index()].vertices, i), side);
         }
+        let Some(pairs) = self.paired(open, cells) else { return false };
         for &(cell, _) in star {
             self.remove_cell(cell);
         }
-        self.add_cells(open, cells);
+        self.add_cells(cells, &pairs);
+        true
     }
 
     /// Replaces all cells by others of some dimension, given by their vertices. Vertices without a
-    /// cell keep the one that they had.
-    pub(crate) fn replace_all(&mut self, dimension: i32, cells: &[[VertexId; N]]) {
+    /// cell keep the one that they had. Returns false, and leaves the complex without cells, if
+    /// they do not fit together.
+    pub(crate) fn replace_all(&mut self, dimension: i32, cells: &[[VertexId; N]]) -> bool {
         self.links.clear();
         self.cell_data.clear();
         self.unused.clear();
         self.infinite_cell = CellId::NONE;
         self.dimension = dimension;
-        self.add_cells(Open::default(), cells);
+        let pairs = self.paired(Open::default(), cells);
+        self.add_cells(cells, pairs.as_deref().unwrap_or_default());
+        pairs.is_some()
     }
 
-    fn add_cells(&mut self, mut open: Open<N>, cells: &[[VertexId; N]]) {
+    /// Returns the two sides of each facet of new cells; `None` if one has another number of sides.
+    fn paired(&self, mut open: Open<N>, cells: &[[VertexId; N]]) -> Option<Vec<[Side; 2]>> {
         let width = (self.dimension + 1) as usize;
-        for &vertices in cells {
-            let cell = self.add_cell(Links::alone(vertices), C::default());
-            for (i, &vertex) in vertices[..width].iter().enumerate() {
-                self.set_cell_of(vertex, cell);
-                let key = self.facet_key(cell, i);
+        let mut pairs = Vec::with_capacity(width * cells.len());
+        for (at, &vertices) in cells.iter().enumerate() {
+            for i in 0..width {
+                let (key, side) = (without(vertices, i), Side::New(at, i));
                 match open.remove(&key) {
-                    Some((other, j)) => self.link(cell, i, other, j),
-                    None => _ = open.insert(key, (cell, i)),
+                    Some(other) => pairs.push([side, other]),
+                    None => _ = open.insert(key, side),
                 }
             }
         }
-        debug_assert!(open.is_empty(), "the new cells do not fit");
+        open.is_empty().then_some(pairs)
     }
 
-    /// Returns the vertices of a facet, in order, for finding the other cell that has it.
-    fn facet_key(&self, cell: CellId, i: usize) -> [VertexId; N] {
-        let mut key = self.links[cell.index()].vertices;
-        key[i] = VertexId::NONE;
-        key.sort_unstable();
-        key
+    fn add_cells(&mut self, cells: &[[VertexId; N]], pairs: &[[Side; 2]]) {
+        let width = (self.dimension + 1) as usize;
+        let mut new = Vec::with_capacity(cells.len());
+        for &vertices in cells {
+            let cell = self.add_cell(Links::alone(vertices), C::default());
+            vertices[..width].iter().for_each(|&vertex| self.set_cell_of(vertex, cell));
+            new.push(cell);
+        }
+        for sides in pairs {
+            let [(a, i), (b, j)] = sides.map(|side| match side {
+                Side::Outside(cell, i) => (cell, i),
+                Side::New(at, i) => (new[at], i),
+            });
+            self.link(a, i, b, j);
+        }
     }
+}
+
+/// Returns all vertices of a cell but one, in order: the name of a facet.
+fn without<const N: usize>(mut vertices: [VertexId; N], i: usize) -> [VertexId; N] {
+    vertices[i] = VertexId::NONE;
+    vertices.sort_unstable();
+    vertices
 }

@@ -124,6 +124,9 @@ impl<T: Complex<4>> FusedIterator for Ring<'_, T> {}
 ///
 /// # Errors
 /// If there is no such cell.
+///
+/// # Panics
+/// If an index is 4 or more.
 #[inline]
 pub fn edge_ends<T: Complex<4>>(complex: &T, (cell, i, j): Edge) -> Result<[VertexId; 2], T::Error> {
     let corners = complex.corners(cell)?;
@@ -144,7 +147,8 @@ pub fn cells_around_edge<T: Complex<4>>(
     edge: Edge,
 ) -> Result<impl DoubleEndedIterator<Item = Result<Edge, T::Error>> + FusedIterator + '_, T::Error> {
     let ends = edge_ends(complex, edge)?;
-    Ok(Ring { complex, ends, front: edge.0, end: edge.0, is_over: complex.dimension() < 3 })
+    let is_edge = complex.dimension() == 3 && edge.1 != edge.2;
+    Ok(Ring { complex, ends, front: edge.0, end: edge.0, is_over: !is_edge })
 }
 
 /// Returns the cells that have a vertex, the infinite ones included, each with the index of the
@@ -176,7 +180,9 @@ pub fn cells_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<
     while let Some(&(cell, index)) = star.get(at) {
         at += 1;
         for i in (0..width).filter(|&i| i != index) {
-            add(complex.neighbor(cell, i)?, &mut star)?;
+            let beyond = complex.neighbor(cell, i)?;
+            complex.ensure(beyond, || complex.index_of_neighbor(beyond, cell).is_ok())?;
+            add(beyond, &mut star)?;
         }
     }
     Ok(star)
@@ -213,7 +219,11 @@ pub fn vertices_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<V
 /// # Complexity
 /// Linear in the number of cells around the first vertex.
 pub fn cell_with<T: Complex<4>>(complex: &T, vertices: &[VertexId]) -> Result<Option<CellId>, T::Error> {
+    let is_new = |(at, vertex): (usize, &VertexId)| !vertices[..at].contains(vertex);
     let [first, others @ ..] = vertices else { return Ok(None) };
+    if others.is_empty() || !vertices.iter().enumerate().all(is_new) {
+        return Ok(None);
+    }
     let width = complex.width().min(4);
     for (cell, _) in cells_around(complex, *first)? {
         let corners = complex.corners(cell)?;

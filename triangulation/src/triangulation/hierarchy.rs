@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};
 
+use super::engine::removal::Removal;
 use super::locate::Dice;
 use super::{Delaunay, Inserted, Locate, Location, Triangulation};
 
@@ -43,22 +44,22 @@ const RATIO: usize = 30;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Hierarchy<L: Geometry<3>> {
+pub struct Hierarchy<L: Geometry<N>, const N: usize> {
     geometry: L,
     /// The largest sample first.
-    levels: Vec<Level<L>>,
+    levels: Vec<Level<L, N>>,
     dice: Dice,
 }
 
 #[derive(Debug, Clone)]
-struct Level<L: Geometry<3>> {
+struct Level<L: Geometry<N>, const N: usize> {
     /// The payload of each vertex is the same vertex in the level below.
-    sample: Delaunay<L, 3, VertexId>,
+    sample: Delaunay<L, N, VertexId>,
     /// Maps a vertex of the level below to its vertex in this sample.
     of_below: FxHashMap<VertexId, VertexId>,
 }
 
-impl<L: Geometry<3>> Level<L> {
+impl<L: Geometry<N>, const N: usize> Level<L, N> {
     /// Returns a cell at a point and a vertex near it, given a vertex to start from.
     fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
         let tds = self.sample.tds();
@@ -79,16 +80,16 @@ impl<L: Geometry<3>> Level<L> {
     }
 }
 
-impl<L: Geometry<3> + Clone> Hierarchy<L> {
+impl<L: Geometry<N> + Clone, const N: usize> Hierarchy<L, N> {
     /// Creates a hierarchy for a triangulation that is still empty.
     pub fn new(geometry: L) -> Self {
         Hierarchy { geometry, levels: Vec::new(), dice: Dice::default() }
     }
 
     /// Creates a hierarchy for the vertices of a triangulation. O(n).
-    pub fn of<G, V, C>(geometry: L, triangulation: &Triangulation<G, 3, V, C>) -> Self
+    pub fn of<G, V, C>(geometry: L, triangulation: &Triangulation<G, N, V, C>) -> Self
     where
-        G: Geometry<3, Point = L::Point>,
+        G: Geometry<N, Point = L::Point>,
         C: Copy + Default,
     {
         let mut hierarchy = Self::new(geometry);
@@ -124,7 +125,7 @@ impl<L: Geometry<3> + Clone> Hierarchy<L> {
     }
 }
 
-impl<L: Geometry<3>> Hierarchy<L> {
+impl<L: Geometry<N>, const N: usize> Hierarchy<L, N> {
     /// Returns the number of vertices in each sample, the largest first.
     pub fn sample_sizes(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.levels.iter().map(|level| level.sample.vertex_count())
@@ -141,8 +142,13 @@ impl<L: Geometry<3>> Hierarchy<L> {
     }
 }
 
-impl<G: Geometry<3>, L: Geometry<3, Point = G::Point> + Clone> Locate<G, 3> for Hierarchy<L> {
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, 3, V, C>, q: &G::Point) -> Location {
+impl<G, L, const N: usize> Locate<G, N> for Hierarchy<L, N>
+where
+    G: Geometry<N>,
+    L: Geometry<N, Point = G::Point> + Clone,
+    Triangulation<L, N, VertexId>: Removal,
+{
+    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
         let nearest = self.descend(q, |_| ()).filter(|&vertex| triangulation.tds.is_vertex(vertex));
         triangulation.locate(q, nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)))
     }

@@ -86,7 +86,11 @@ fn judge<V, C: Copy + Default>(tds: &Tds<4, V, C>) {
             assert_eq!(tds.neighbor(cell, beside(i, j)[0]), next);
         }
         let facets: Vec<(CellId, usize)> = tds.facets_around_edge(edge).collect();
-        assert!(facets.iter().zip(&ring).all(|(facet, cell)| facet.0 == cell.0));
+        let beyond: Vec<CellId> = facets.iter().map(|&(cell, i)| tds.neighbor(cell, i)).collect();
+        assert!(facets.iter().map(|facet| facet.0).eq(ring.iter().map(|cell| cell.0)));
+        assert!(beyond.iter().eq(ring.iter().map(|cell| &cell.0).cycle().skip(1).take(ring.len())));
+        assert_eq!(tds.cells_around_edge((edge.0, edge.1, edge.1)).count(), 0);
+        assert_eq!(tds.cell_with(&[ends[0], ends[1], ends[0]]), None);
         assert!(facets.iter().all(|&(cell, i)| without(cell, i).contains(&ends[0])));
         assert!(facets.iter().all(|&(cell, i)| without(cell, i).contains(&ends[1])));
     }
@@ -116,7 +120,14 @@ fn of_triangulations_of_any_dimension() {
         let (t, _) = Delaunay::<Space, 4>::from_points(Space::new(), &points).unwrap();
         dimensions.insert(t.dimension());
         judge(t.tds());
-        assert_eq!(t.tds().hull_facets().count() > 0, t.dimension() == 3);
+        let infinite = t.tds().cells().filter(|&cell| t.dimension() == 3 && t.tds().is_infinite(cell));
+        let beyond: BTreeSet<CellId> = t.tds().hull_facets().map(|(cell, _)| cell).collect();
+        assert_eq!(beyond, infinite.collect());
+        let all: Vec<VertexId> = t.tds().vertices().collect();
+        for triple in all.windows(3) {
+            let has = |cell: CellId| triple.iter().all(|v| t.tds().cell_vertices(cell).contains(v));
+            assert_eq!(t.tds().cell_with(triple).is_some(), t.tds().cells().any(has));
+        }
     }
     assert_eq!(dimensions, BTreeSet::from([-1, 0, 1, 2, 3]));
 }

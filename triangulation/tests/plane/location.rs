@@ -71,7 +71,7 @@ fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Lo
 }
 
 /// Asserts that every strategy agrees with the default one.
-fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane>, buckets: &Buckets, start: Option<VertexId>, q: Point) {
+fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane, 3>, buckets: &Buckets, start: Option<VertexId>, q: Point) {
     let expected = position(t, t.locate(&q, None), q);
     let near = Near(start.filter(|&v| t.tds().is_vertex(v)).and_then(|v| t.tds().cell_of(v)));
     let found = [
@@ -178,7 +178,7 @@ fn thousands_of_points() {
 #[test]
 fn numbers_used_again() {
     let mut random = Random(13);
-    let (mut t, mut hierarchy) = (Free::new(Plane::default()), Hierarchy::<Plane>::new(Plane::default()));
+    let (mut t, mut hierarchy) = (Free::new(Plane::default()), Hierarchy::<Plane, 3>::new(Plane::default()));
     for _ in 0..5 {
         let mut vertices: Vec<VertexId> = (0..3000)
             .map(|_| [random.unit(), random.unit()])

@@ -176,7 +176,7 @@ fn a_picture_of_a_zone_on_a_line() {
 fn strategies() {
     for points in SETS {
         let t = &free(points)[1];
-        let (hierarchy, buckets) = (Hierarchy::<Plane>::of(Plane::default(), t), Buckets::of(t));
+        let (hierarchy, buckets) = (Hierarchy::<Plane, 3>::of(Plane::default(), t), Buckets::of(t));
         for q in odd_places() {
             for v in vertex_numbers(t).into_iter().map(Some).chain([None]) {
                 is_somewhere(t, q, StraightLine(v).locate(t, &q));
@@ -193,7 +193,7 @@ fn strategies() {
     // Samples with triangles of their own.
     let grid: Vec<Point> = (0..9000).map(|k| [f64::from(k % 90), f64::from(k / 90)]).collect();
     let t = build(&grid);
-    let hierarchy = Hierarchy::<Plane>::of(Plane::default(), &t);
+    let hierarchy = Hierarchy::<Plane, 3>::of(Plane::default(), &t);
     assert!(hierarchy.sample_sizes().next().is_some_and(|size| size > 200));
     for q in odd_places() {
         is_somewhere(&t, q, hierarchy.locate(&t, &q));

@@ -1,4 +1,5 @@
 //! Triangulations in space.
 
+mod queries;
 mod regular;
 mod removal;

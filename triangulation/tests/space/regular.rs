@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use breakline_triangulation::geometry::WeightedSpace;
+use breakline_triangulation::geometry::{Space, Weighted, WeightedSpace};
 use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Interval, Kernel, Lattice, Wide};
 use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{Delaunay, Level, Regular, RemovalError};
@@ -175,7 +175,7 @@ fn equal_weights_change_nothing() {
         let weight = random.below(9) as f64 - 4.0;
         let weighted: Vec<[f64; 4]> = sites.iter().map(|&[x, y, z]| [x, y, z, weight]).collect();
         let (regular, _) = Regular::from_points(WeightedSpace::new(), &weighted).unwrap();
-        let (delaunay, _) = Delaunay::from_points(breakline_triangulation::geometry::Space::new(), &sites).unwrap();
+        let (delaunay, _) = Delaunay::from_points(Space::new(), &sites).unwrap();
         let mut cells: Vec<Vec<[i64; 3]>> = Vec::new();
         for cell in delaunay.finite_cells() {
             let vertices = delaunay.tds().cell_vertices(cell);
@@ -190,4 +190,63 @@ fn equal_weights_change_nothing() {
         assert_eq!(found, expected, "{sites:?}");
         assert_eq!(regular.hidden().len(), 0);
     }
+}
+
+/// In a plane, cells and hidden points are those of the plane.
+#[test]
+fn a_plane_in_space_is_the_plane() {
+    let mut random = Random(33);
+    for _ in 0..400 {
+        let (side, weights) = (1 + random.below(5), 1 + random.below(12));
+        let points: Vec<[f64; 3]> = (0..random.index(20))
+            .map(|_| [random.below(side), random.below(side), random.below(weights)].map(|x| x as f64))
+            .collect();
+        let in_space: Vec<[f64; 4]> = points.iter().map(|&[x, y, w]| [x, y, 7.0, w]).collect();
+        let (flat, _) = Regular::from_points(Weighted::new(), &points).unwrap();
+        let (space, _) = Regular::from_points(WeightedSpace::new(), &in_space).unwrap();
+        let plan = |v: VertexId| space.point(v).map(|x| x as i64);
+        let hidden: BTreeSet<[i64; 3]> = space
+            .hidden()
+            .map(|v| {
+                let [x, y, _, w] = plan(v);
+                [x, y, w]
+            })
+            .collect();
+        assert_eq!(hidden, flat.hidden().map(|v| flat.point(v).map(|x| x as i64)).collect(), "{points:?}");
+        let sorted = |mut corners: Vec<[i64; 3]>| {
+            corners.sort_unstable();
+            corners
+        };
+        let cells: BTreeSet<Vec<[i64; 3]>> = space
+            .finite_cells()
+            .map(|cell| {
+                let vertices = space.tds().cell_vertices(cell).iter();
+                sorted(
+                    vertices
+                        .map(|&v| {
+                            let [x, y, _, w] = plan(v);
+                            [x, y, w]
+                        })
+                        .collect(),
+                )
+            })
+            .collect();
+        let expected: BTreeSet<Vec<[i64; 3]>> = flat
+            .finite_cells()
+            .map(|cell| {
+                let vertices = flat.tds().cell_vertices(cell).iter();
+                sorted(vertices.map(|&v| flat.point(v).map(|x| x as i64)).collect())
+            })
+            .collect();
+        assert_eq!(cells, expected, "{points:?}");
+    }
+}
+
+/// Without weights, a second point on a site is the first.
+#[test]
+fn points_without_weights_are_not_hidden() {
+    let mut t = Regular::<Space, 4>::new(Space::new());
+    let first = t.insert([1.0; 3]).unwrap();
+    assert_eq!(t.insert([1.0; 3]), Ok(first));
+    assert_eq!(t.hidden().len(), 0);
 }

@@ -4,8 +4,8 @@
 
 use std::collections::BTreeSet;
 
-use breakline_triangulation::geometry::Space;
-use breakline_triangulation::kernel::{Adaptive, Kernel};
+use breakline_triangulation::geometry::{Space, WeightedSpace};
+use breakline_triangulation::kernel::{Adaptive, Exact, Interval, Kernel, Wide};
 use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{Delaunay, Level};
 use testkit::random::Random;
@@ -43,12 +43,19 @@ fn sequence<K: Kernel>(random: &mut Random, point: impl Fn(&mut Random) -> Point
     let steps = 4 + random.below(40);
     for _ in 0..steps {
         let vertices: Vec<VertexId> = t.tds().vertices().collect();
+        let p = point(random);
         if random.below(5) < 3 || vertices.is_empty() {
-            t.insert(point(random)).unwrap();
+            t.insert(p).unwrap();
+            continue;
+        }
+        let vertex = random.pick(&vertices);
+        let old = *t.point(vertex);
+        if random.below(3) == 0 {
+            let is_taken = vertices.iter().any(|&v| v != vertex && *t.point(v) == p);
+            let moved = t.move_to(vertex, p).unwrap();
+            assert_eq!((*t.point(moved), moved == vertex, t.tds().is_vertex(vertex)), (p, !is_taken, !is_taken));
         } else {
-            let vertex = vertices[random.below(vertices.len() as u64) as usize];
-            let p = *t.point(vertex);
-            assert_eq!(t.remove(vertex), Ok(p));
+            assert_eq!(t.remove(vertex), Ok(old));
             assert!(t.remove(vertex).is_err());
         }
     }
@@ -69,7 +76,12 @@ fn on_small_grids() {
     let mut random = Random(1);
     for round in 0..rounds(400) {
         let sizes = [[2, 2, 2], [3, 3, 1], [3, 2, 2], [4, 1, 1], [3, 3, 3], [5, 5, 2]][round % 6];
-        sequence::<Adaptive>(&mut random, on_grid(sizes));
+        match round % 5 {
+            0 => sequence::<Exact>(&mut random, on_grid(sizes)),
+            1 => sequence::<Interval>(&mut random, on_grid(sizes)),
+            2 => sequence::<Wide>(&mut random, on_grid(sizes)),
+            _ => sequence::<Adaptive>(&mut random, on_grid(sizes)),
+        }
     }
 }
 
@@ -94,4 +106,17 @@ fn a_lattice_is_emptied() {
         t.remove(vertex).unwrap();
         judge(&t);
     }
+}
+
+/// Where the law does not hold, the other vertices stay.
+#[test]
+fn without_the_law() {
+    let mut t = Delaunay::<WeightedSpace, 4>::new(WeightedSpace::new());
+    let corners = [[0.0, 0.0, 0.0, 0.0], [4.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 4.0, 0.0]];
+    let first = t.insert(corners[0]).unwrap();
+    corners[1..].iter().for_each(|&p| _ = t.insert(p).unwrap());
+    t.insert([1.0, 1.0, 1.0, -99.0]).unwrap();
+    t.remove(first).unwrap();
+    assert_eq!((t.vertex_count(), t.dimension()), (4, 3));
+    assert_eq!(t.check(Level::Links), []);
 }

@@ -315,6 +315,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         // Each range with keys of its own is up to 64 calls deep. There may be as many within each
         // other as the exponents of doubles allow, however few points there are.
         if range.nesting.is_multiple_of(NESTED) {
+            // The new thread is not of the pool, and blocks one that may be: it must not wait for
+            // the pool.
+            range.grain = Grain { points: usize::MAX, range: usize::MAX, ..grain };
             on_new_stack(|| range.build(lo, hi, arcs))
         } else {
             range.build(lo, hi, arcs)

@@ -10,16 +10,19 @@ use super::flip::NoConstraints;
 /// space.
 pub trait Removal {
     /// Removes a vertex, and restores the law of the geometry's
-    /// [`side_of_sphere`](Geometry::side_of_sphere).
-    fn remove_and_restore(&mut self, vertex: VertexId);
+    /// [`side_of_sphere`](Geometry::side_of_sphere). Returns true if all cells may have been
+    /// replaced.
+    fn remove_and_restore(&mut self, vertex: VertexId) -> bool;
 
     /// Returns the cells around a vertex.
     fn star(&self, vertex: VertexId) -> Vec<CellId>;
 }
 
 impl<G: Geometry<3>, V, C: Copy + Default> Removal for Triangulation<G, 3, V, C> {
-    fn remove_and_restore(&mut self, vertex: VertexId) {
+    fn remove_and_restore(&mut self, vertex: VertexId) -> bool {
+        let dimension = self.dimension();
         self.remove_vertex(NoConstraints, vertex);
+        self.dimension() < dimension
     }
 
     fn star(&self, vertex: VertexId) -> Vec<CellId> {
@@ -28,8 +31,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Removal for Triangulation<G, 3, V, C>
 }
 
 impl<G: Geometry<4>, V, C: Copy + Default> Removal for Triangulation<G, 4, V, C> {
-    fn remove_and_restore(&mut self, vertex: VertexId) {
-        self.remove_vertex_in_space(vertex);
+    fn remove_and_restore(&mut self, vertex: VertexId) -> bool {
+        self.remove_vertex_in_space(vertex)
     }
 
     fn star(&self, vertex: VertexId) -> Vec<CellId> {

@@ -368,20 +368,18 @@ where
     ///
     /// # Complexity
     /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point that the
-    /// cells around it hide.
+    /// cells around it hide; for each hidden point below full dimension, or if the dimension sinks.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if self.hidden.take(vertex) {
             self.inner.tds.attach();
             self.inner.tds.remove_vertex(vertex);
         } else if self.tds().is_vertex(vertex) {
-            let dimension = self.dimension();
             let mut hidden = if self.inner.is_full() {
                 self.hidden.take_under(self.inner.star(vertex))
             } else {
                 self.hidden.take_all()
             };
-            self.inner.remove_and_restore(vertex);
-            if self.dimension() < dimension {
+            if self.inner.remove_and_restore(vertex) {
                 hidden.extend(self.hidden.take_all());
             }
             self.connect_again(hidden);

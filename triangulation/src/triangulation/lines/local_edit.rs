@@ -464,7 +464,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         }
         for vertex in leaving {
             self.lines.added.remove(vertex);
-            self.lines.remove_free(self.t, vertex).ok_or(NotLocal)?;
+            if self.lines.remove_free(self.t, vertex).is_none() {
+                self.lines.owned.insert(vertex); // a new arrangement of all lines removes it
+                return Err(NotLocal);
+            }
         }
         if self.t.dimension() < 2 {
             return Err(NotLocal);

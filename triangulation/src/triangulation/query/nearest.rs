@@ -10,63 +10,64 @@
 use std::borrow::Borrow;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::convert::Infallible;
 
 use rustc_hash::FxHashSet;
 
 use crate::geometry::{Geometry, Metric};
-use crate::tds::{CellId, Complex, VertexId, plane};
+use crate::tds::{CellId, Complex, Neighbors, Tds, VertexId};
 
 use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::super::{Delaunay, Location};
 
 /// A vertex that was found but not yet returned: the nearest is the greatest.
-struct Candidate<'t, T: Embedded<3>> {
+struct Candidate<'t, T: Embedded<N>, const N: usize> {
     t: &'t T,
-    q: PointOf<T, 3>,
+    q: PointOf<T, N>,
     vertex: VertexId,
     point: T::PointRef<'t>,
 }
 
-impl<T: Embedded<3, Geometry: Metric>> Candidate<'_, T> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Candidate<'_, T, N> {
     /// Returns true if the vertex is no further from the point than `rim` is.
-    fn is_within(&self, rim: &PointOf<T, 3>) -> bool {
+    fn is_within(&self, rim: &PointOf<T, N>) -> bool {
         self.t.geometry().compare_distance(&self.q, self.point.borrow(), rim).is_le()
     }
 }
 
-impl<T: Embedded<3, Geometry: Metric>> Ord for Candidate<'_, T> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Ord for Candidate<'_, T, N> {
     fn cmp(&self, other: &Self) -> Ordering {
         let (geometry, ours, theirs) = (self.t.geometry(), self.point.borrow(), other.point.borrow());
         geometry.compare_distance(&self.q, theirs, ours).then_with(|| geometry.compare(theirs, ours))
     }
 }
 
-impl<T: Embedded<3, Geometry: Metric>> PartialOrd for Candidate<'_, T> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialOrd for Candidate<'_, T, N> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl<T: Embedded<3, Geometry: Metric>> PartialEq for Candidate<'_, T> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialEq for Candidate<'_, T, N> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl<T: Embedded<3, Geometry: Metric>> Eq for Candidate<'_, T> {}
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Eq for Candidate<'_, T, N> {}
 
 /// Iterates over the vertices of a Delaunay triangulation by their distance from a point.
-struct NearestFirst<'t, T: Embedded<3, Geometry: Metric>> {
+struct NearestFirst<'t, T: Embedded<N, Geometry: Metric<N>>, const N: usize> {
     t: &'t T,
-    q: PointOf<T, 3>,
+    q: PointOf<T, N>,
     found: FxHashSet<VertexId>,
-    next: BinaryHeap<Candidate<'t, T>>,
+    next: BinaryHeap<Candidate<'t, T, N>>,
 }
 
-impl<'t, T: Embedded<3, Geometry: Metric>> NearestFirst<'t, T> {
+impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize> NearestFirst<'t, T, N> {
     /// Starts at the location of the point.
-    fn new(t: &'t T, q: &PointOf<T, 3>, location: Location) -> Result<Self, T::Error> {
+    fn new(t: &'t T, q: &PointOf<T, N>, location: Location) -> Result<Self, T::Error> {
         let mut nearest = NearestFirst { t, q: *q, found: FxHashSet::default(), next: BinaryHeap::new() };
         all_nearest(t, q, location)?.into_iter().try_for_each(|vertex| nearest.find(vertex))?;
         Ok(nearest)
@@ -80,8 +81,10 @@ impl<'t, T: Embedded<3, Geometry: Metric>> NearestFirst<'t, T> {
     }
 }
 
-impl<'t, T: Embedded<3, Geometry: Metric>> Iterator for NearestFirst<'t, T> {
-    type Item = Result<Candidate<'t, T>, T::Error>;
+impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize> Iterator
+    for NearestFirst<'t, T, N>
+{
+    type Item = Result<Candidate<'t, T, N>, T::Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let nearest = self.next.pop()?;
@@ -97,11 +100,11 @@ impl<'t, T: Embedded<3, Geometry: Metric>> Iterator for NearestFirst<'t, T> {
     }
 }
 
-fn finite_neighbors<T: Embedded<3>>(
+fn finite_neighbors<T: Embedded<N, Complex: Neighbors<N>>, const N: usize>(
     t: &T,
     vertex: VertexId,
-) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
-    let around = plane::vertices_around(t.complex(), vertex)?;
+) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T, N>, T::Error> {
+    let around = t.complex().neighbors_of(vertex)?;
     Ok(around.filter(|v| !v.as_ref().is_ok_and(|&v| v == VertexId::INFINITE)))
 }
 
@@ -117,9 +120,9 @@ fn finite_neighbors<T: Embedded<3>>(
 ///
 /// # Complexity
 /// That of [`locate`](super::locate), and the degrees of a few vertices.
-pub fn nearest<T: Embedded<3, Geometry: Metric>>(
+pub fn nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize>(
     t: &T,
-    q: &PointOf<T, 3>,
+    q: &PointOf<T, N>,
     near: Option<CellId>,
 ) -> Result<Option<VertexId>, T::Error> {
     let location = locate(t, q, near)?;
@@ -141,11 +144,11 @@ pub fn nearest<T: Embedded<3, Geometry: Metric>>(
 ///
 /// # Complexity
 /// That of [`nearest`], and `O(d log k)` for the `k`-th vertex, of degree `d`.
-pub fn nearest_first<'t, T: Embedded<3, Geometry: Metric>>(
+pub fn nearest_first<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize>(
     t: &'t T,
-    q: &PointOf<T, 3>,
+    q: &PointOf<T, N>,
     near: Option<CellId>,
-) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'t, T>, T::Error> {
+) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'t, T, N>, T::Error> {
     let nearest = NearestFirst::new(t, q, locate(t, q, near)?)?;
     Ok(nearest.map(|candidate| Ok(candidate?.vertex)))
 }
@@ -159,26 +162,26 @@ pub fn nearest_first<'t, T: Embedded<3, Geometry: Metric>>(
 ///
 /// # Complexity
 /// That of [`nearest_first`].
-pub fn within<'t, T: Embedded<3, Geometry: Metric>>(
+pub fn within<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize>(
     t: &'t T,
-    center: &PointOf<T, 3>,
-    rim: &PointOf<T, 3>,
+    center: &PointOf<T, N>,
+    rim: &PointOf<T, N>,
     near: Option<CellId>,
-) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'t, T>, T::Error> {
+) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'t, T, N>, T::Error> {
     let location = if t.geometry().admits(rim) { locate(t, center, near)? } else { Location::Nowhere };
     let nearest = NearestFirst::new(t, center, location)?;
     let rim = *rim;
-    let is_within = move |candidate: &Result<Candidate<'t, T>, T::Error>| {
+    let is_within = move |candidate: &Result<Candidate<'t, T, N>, T::Error>| {
         candidate.as_ref().map_or(true, |candidate| candidate.is_within(&rim))
     };
     Ok(nearest.take_while(is_within).map(|candidate| Ok(candidate?.vertex)))
 }
 
-/// Returns all vertices at the smallest distance. They lie on an empty circle around the point, and
-/// edges along its chords connect them all.
-fn all_nearest<T: Embedded<3, Geometry: Metric>>(
+/// Returns all vertices at the smallest distance. They lie on an empty circle or sphere around the
+/// point, and edges along its chords connect them all.
+fn all_nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize>(
     t: &T,
-    q: &PointOf<T, 3>,
+    q: &PointOf<T, N>,
     location: Location,
 ) -> Result<Vec<VertexId>, T::Error> {
     let complex = t.complex();
@@ -187,7 +190,11 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
         Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
             complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
         }
-        Location::OutsideAffineHull => plane::vertices(complex).next().transpose()?,
+        Location::OutsideAffineHull => {
+            let vertices = (0..complex.vertex_slots()).map(VertexId::new);
+            let mut used = vertices.filter_map(|v| complex.cell_of(v).map(|cell| cell.map(|_| v)).transpose());
+            used.next().transpose()?
+        }
         Location::Nowhere => None,
     };
     let mut nearest: Vec<VertexId> = start.into_iter().collect();
@@ -215,7 +222,10 @@ fn all_nearest<T: Embedded<3, Geometry: Metric>>(
     Ok(nearest)
 }
 
-impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
+impl<G: Metric<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C>
+where
+    Tds<N, V, C>: Neighbors<N, Error = Infallible>,
+{
     /// Returns the vertex nearest to a point; of several, the first in the
     /// [order](crate::geometry::Geometry::compare) of the geometry. `None` if there are no
     /// vertices, or if the geometry does not [admit](crate::geometry::Geometry::admits) the point;
@@ -251,14 +261,14 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         &'a self,
         q: &G::Point,
         near: Option<CellId>,
-    ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
+    ) -> impl Iterator<Item = VertexId> + use<'a, G, N, V, C> {
         let Ok(nearest) = nearest_first(&self.inner, q, self.start(near));
         nearest.map(|Ok(vertex)| vertex)
     }
 
     /// Returns the vertices that are no further from a center than `rim` is, nearest first. Exact:
-    /// a point on the circle gives the radius, because a length would be rounded. Empty if the
-    /// geometry does not [admit](crate::geometry::Geometry::admits) the center or the rim.
+    /// a point on the circle or sphere gives the radius, because a length would be rounded. Empty
+    /// if the geometry does not [admit](crate::geometry::Geometry::admits) the center or the rim.
     ///
     /// # Complexity
     /// That of [`nearest_first`](Self::nearest_first).
@@ -266,7 +276,7 @@ impl<G: Metric, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         &'a self,
         center: &G::Point,
         rim: &G::Point,
-    ) -> impl Iterator<Item = VertexId> + use<'a, G, V, C> {
+    ) -> impl Iterator<Item = VertexId> + use<'a, G, N, V, C> {
         let Ok(within) = within(&self.inner, center, rim, self.start(None));
         within.map(|Ok(vertex)| vertex)
     }

@@ -1,14 +1,19 @@
 //! Power diagrams: the dual of regular triangulations (Aurenhammer 1987).
 
+use std::convert::Infallible;
+
 use crate::geometry::{Metric, Weighted};
 use crate::kernel::{self, Kernel};
-use crate::tds::{CellId, VertexId};
+use crate::tds::{CellId, Neighbors, Tds, VertexId};
 
 use super::super::Regular;
 use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus};
 use super::nearest::nearest;
 
-impl<G: Metric, V, C: Copy + Default> Regular<G, 3, V, C> {
+impl<G: Metric<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C>
+where
+    Tds<N, V, C>: Neighbors<N, Error = Infallible>,
+{
     /// Returns the vertex of the least power at a point, which is its squared distance less its
     /// weight; of several, the first in the [order](crate::geometry::Geometry::compare) of the
     /// geometry.

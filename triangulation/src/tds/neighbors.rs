@@ -1,0 +1,35 @@
+use super::{Complex, VertexId, plane, space};
+
+/// A complex whose vertices list their neighbors: every [`Complex`] of the plane and of space.
+///
+/// For algorithms that are the same in both.
+pub trait Neighbors<const N: usize>: Complex<N> {
+    /// Returns the vertices that a vertex is joined to by an edge, the infinite one included, in
+    /// the order of [`plane::vertices_around`] and [`space::vertices_around`].
+    ///
+    /// # Errors
+    /// If there is no such vertex, or a link around it does not hold.
+    fn neighbors_of(
+        &self,
+        vertex: VertexId,
+    ) -> Result<impl Iterator<Item = Result<VertexId, Self::Error>> + use<'_, Self, N>, Self::Error>;
+}
+
+impl<T: Complex<3>> Neighbors<3> for T {
+    #[inline]
+    fn neighbors_of(
+        &self,
+        vertex: VertexId,
+    ) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
+        plane::vertices_around(self, vertex)
+    }
+}
+
+impl<T: Complex<4>> Neighbors<4> for T {
+    fn neighbors_of(
+        &self,
+        vertex: VertexId,
+    ) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
+        Ok(space::vertices_around(self, vertex)?.into_iter().map(Ok))
+    }
+}
