@@ -18,7 +18,7 @@ type Open<const N: usize> = FxHashMap<[VertexId; N], Side>;
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Replaces the cells around a vertex, each with the index of the vertex in it, by others that
     /// fill the same space. They are given by their vertices, `dimension + 1` of them, and get
-    /// default payloads. Returns false, and changes nothing, if their border is another one.
+    /// default payloads. Returns false, and changes nothing, if they have a different border.
     ///
     /// Expected time linear in the number of cells.
     pub(crate) fn replace_star(&mut self, star: &[(CellId, usize)], cells: &[[VertexId; N]]) -> bool {
