@@ -6,7 +6,7 @@
 //! | dimension | facets | edges | around an edge |
 //! |---|---|---|---|
 //! | 3 | triangles between two cells | sides of triangles | cells in a ring |
-//! | 2 | sides of triangles | the same | nothing |
+//! | 2 | sides of triangles | sides of triangles | nothing |
 //! | 1 | the vertices | the cells | nothing |
 //! | 0, -1 | none | none | nothing |
 
@@ -42,7 +42,8 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
     /// indices of its ends. In order of these triples.
     ///
     /// # Complexity
-    /// For each edge, time in proportion to the square of the number of cells around it.
+    /// Linear in the number of cells. In dimension 3 the iterator holds two bytes for each
+    /// [slot](Self::cell_slots) of a cell.
     pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
         let pairs: &[(usize, usize)] = match self.dimension {
             3 => &[(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)],
@@ -51,8 +52,17 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
             _ => &[],
         };
         let edges = self.cells().flat_map(move |cell| pairs.iter().map(move |&(i, j)| (cell, i, j)));
-        edges.filter(|&(cell, i, j)| match self.dimension {
-            3 => self.cells_around_edge((cell, i, j)).skip(1).all(|(other, ..)| cell < other),
+        // For each cell a bit for each of its edges that was returned from another cell.
+        let mut returned = vec![0u16; if self.dimension == 3 { self.cell_slots() } else { 0 }];
+        let bit_of = |i: usize, j: usize| 1u16 << (4 * i.min(j) + i.max(j));
+        edges.filter(move |&(cell, i, j)| match self.dimension {
+            3 if returned[cell.index()] & bit_of(i, j) != 0 => false,
+            3 => {
+                for (other, k, l) in self.cells_around_edge((cell, i, j)).skip(1) {
+                    returned[other.index()] |= bit_of(k, l);
+                }
+                true
+            }
             2 => cell < self.neighbor(cell, 3 - i - j),
             _ => true,
         })
@@ -104,7 +114,7 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
     }
 
     /// Returns a cell that has these vertices, two to four different ones in any order, one of
-    /// which may be the infinite one. Time in proportion to the number of cells around the first.
+    /// which may be the infinite one. Linear in the number of cells around the first.
     pub fn cell_with(&self, vertices: &[VertexId]) -> Option<CellId> {
         let Ok(cell) = space::cell_with(self, vertices);
         cell
