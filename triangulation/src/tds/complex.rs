@@ -7,8 +7,9 @@ use super::{CellId, Tds, VertexId};
 ///
 /// The conventions are those of the [module](super). A structure that may be damaged, such as one
 /// in a file, returns errors. Where [`Error`](Self::Error) is [`Infallible`], the compiler removes
-/// all error handling. So each algorithm is written once over this trait: those of the plane are in
-/// [`plane`](super::plane), those that need points in [`query`](crate::query).
+/// all error handling. So each algorithm is written once over this trait: those without points are
+/// in [`plane`](super::plane) and [`space`](super::space), those that need points in
+/// [`query`](crate::query).
 ///
 /// A structure of your own may store finite cells only, if it can answer for the infinite ones:
 /// `examples/own_structure.rs` has one, an array of triangles.
@@ -63,7 +64,7 @@ pub trait Complex<const N: usize> {
     /// Returns the cell across the facet opposite vertex `i`, of `dimension + 1` vertices.
     ///
     /// # Errors
-    /// If there is none.
+    /// If the cell does not exist, or has no neighbor there that exists.
     fn neighbor(&self, cell: CellId, i: usize) -> Result<CellId, Self::Error>;
 
     /// Returns a cell that has this vertex; `None` for the infinite vertex of an empty complex, and

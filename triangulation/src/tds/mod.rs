@@ -24,14 +24,17 @@
 //! | to find | use |
 //! |---|---|
 //! | the corners and neighbors of a cell | [`Tds::cell_vertices`], [`Tds::cell_neighbors`] |
-//! | one of them | [`Tds::vertex`], [`Tds::neighbor`] |
+//! | one corner, or one neighbor | [`Tds::vertex`], [`Tds::neighbor`] |
 //! | the index of a cell in its neighbor | [`Tds::index_of_neighbor`] |
 //! | all vertices | [`Tds::vertices`] |
 //! | all cells, with or without the infinite ones | [`Tds::cells`], [`Tds::is_infinite`] |
-//! | the triangles, edges, vertices around a vertex | [`Tds::around`], [`Tds::edges_around`], [`Tds::vertices_around`] |
+//! | the faces, edges and vertices around a vertex, in the plane | [`Tds::around`], [`Tds::edges_around`], [`Tds::vertices_around`] |
 //! | all edges, or one by its ends | [`Tds::edges`], [`Tds::finite_edges`], [`Tds::edge`] |
-//! | the convex hull | [`Tds::hull`] |
-//! | what works for any storage of links | [`Complex`]; in the plane, [`plane`] |
+//! | all facets, in space | [`Tds::facets`], [`Tds::finite_facets`] |
+//! | the cells around a vertex or an edge, in space | [`Tds::cells_around`], [`Tds::cells_around_edge`] |
+//! | a cell with two, three or four given vertices, in space | [`Tds::cell_with`] |
+//! | the convex hull | [`Tds::hull`]; in space [`Tds::hull_facets`] |
+//! | the same for any storage of links | [`Complex`]; [`plane`], [`space`], [`Neighbors`] |
 //!
 //! | to build or edit | use |
 //! |---|---|
