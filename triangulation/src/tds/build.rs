@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{CellId, Links, Tds, TdsError, VertexId};
+use super::{CellId, Links, Tds, TdsError, VertexId, face_without};
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Returns the complex with these cells: a surface of triangles (`N` = 3), or a 3-manifold of
@@ -89,9 +89,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let mut waiting = 0;
         for cell in (0..self.links.len()).map(CellId::new) {
             for i in 0..width {
-                let mut facet = self.links[cell.index()].vertices;
-                facet[i] = VertexId::NONE;
-                facet.sort_unstable();
+                let facet = face_without(self.links[cell.index()].vertices, i);
                 match open.insert(facet, Some((cell, i))) {
                     None => waiting += 1,
                     Some(Some((beside, j))) => {

@@ -11,7 +11,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{CellId, EditError, Links, Tds, VertexId};
+use super::{CellId, EditError, Links, Tds, VertexId, face_without};
 
 /// A facet of a cell, or another face of it: its vertices in order, then `NONE`.
 type Face<const N: usize> = [VertexId; N];
@@ -317,10 +317,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 
     fn facet(&self, cell: CellId, i: usize) -> Face<N> {
-        let mut facet = *self.corners(cell);
-        facet[i] = VertexId::NONE;
-        facet.sort_unstable();
-        facet
+        face_without(*self.corners(cell), i)
     }
 
     /// Returns an error unless this many new cells, and one vertex, can be numbered.
@@ -437,12 +434,7 @@ fn is_sphere<const N: usize>(facets: &[Face<N>]) -> bool {
     let mut on: FxHashMap<Face<N>, Vec<usize>> = FxHashMap::default();
     let ridges = |facet: &Face<N>| {
         let facet = *facet;
-        (0..N).filter(move |&k| facet[k] != VertexId::NONE).map(move |k| {
-            let mut ridge = facet;
-            ridge[k] = VertexId::NONE;
-            ridge.sort_unstable();
-            ridge
-        })
+        (0..N).filter(move |&k| facet[k] != VertexId::NONE).map(move |k| face_without(facet, k))
     };
     for (k, facet) in facets.iter().enumerate() {
         ridges(facet).for_each(|ridge| on.entry(ridge).or_default().push(k));

@@ -541,6 +541,14 @@ fn first_of<T: PartialEq, const N: usize>(list: &[T; N], item: T) -> usize {
     (0..N).rev().fold(N, |found, i| if list[i] == item { i } else { found })
 }
 
+/// Returns the vertices of a face but the one at index `i`, in order of their numbers: a key that
+/// is the same for all cells around that smaller face.
+fn face_without<const N: usize>(mut face: [VertexId; N], i: usize) -> [VertexId; N] {
+    face[i] = VertexId::NONE;
+    face.sort_unstable();
+    face
+}
+
 /// Returns the next corner of a triangle, counter-clockwise.
 ///
 /// `PERF:` a remainder takes twice as many instructions.

@@ -2,10 +2,10 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{CellId, Links, Tds, VertexId};
+use super::{CellId, Links, Tds, VertexId, face_without};
 
-/// A side of a facet: a cell outside, or one of the new cells by its position; and the index of the
-/// vertex opposite.
+/// A side of a facet: a cell outside, or the position of a new cell; and the index of the vertex
+/// opposite.
 #[derive(Clone, Copy)]
 enum Side {
     Outside(CellId, usize),
@@ -26,7 +26,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         for &(cell, i) in star {
             let beyond = self.neighbor(cell, i);
             let side = Side::Outside(beyond, self.index_of_neighbor(beyond, cell));
-            open.insert(without(self.links[cell.index()].vertices, i), side);
+            open.insert(face_without(self.links[cell.index()].vertices, i), side);
         }
         let Some(pairs) = self.paired(open, cells) else { return false };
         for &(cell, _) in star {
@@ -50,13 +50,14 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         pairs.is_some()
     }
 
-    /// Returns the two sides of each facet of new cells; `None` if one has another number of sides.
+    /// Returns the two sides of each facet of new cells, given the facets of which the outer side is
+    /// known; `None` if a facet does not have two sides.
     fn paired(&self, mut open: Open<N>, cells: &[[VertexId; N]]) -> Option<Vec<[Side; 2]>> {
         let width = (self.dimension + 1) as usize;
         let mut pairs = Vec::with_capacity(width * cells.len());
         for (at, &vertices) in cells.iter().enumerate() {
             for i in 0..width {
-                let (key, side) = (without(vertices, i), Side::New(at, i));
+                let (key, side) = (face_without(vertices, i), Side::New(at, i));
                 match open.remove(&key) {
                     Some(other) => pairs.push([side, other]),
                     None => _ = open.insert(key, side),
@@ -66,6 +67,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         open.is_empty().then_some(pairs)
     }
 
+    /// Adds cells, and links them across these facets.
     fn add_cells(&mut self, cells: &[[VertexId; N]], pairs: &[[Side; 2]]) {
         let width = (self.dimension + 1) as usize;
         let mut new = Vec::with_capacity(cells.len());
@@ -82,11 +84,4 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             self.link(a, i, b, j);
         }
     }
-}
-
-/// Returns all vertices of a cell but one, in order: the name of a facet.
-fn without<const N: usize>(mut vertices: [VertexId; N], i: usize) -> [VertexId; N] {
-    vertices[i] = VertexId::NONE;
-    vertices.sort_unstable();
-    vertices
 }
