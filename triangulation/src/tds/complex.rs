@@ -154,6 +154,14 @@ pub trait Complex<const N: usize> {
     }
 }
 
+/// Returns the finite vertices of a complex, in order of their numbers.
+pub(crate) fn vertices_of<const N: usize, T: Complex<N>>(
+    complex: &T,
+) -> impl Iterator<Item = Result<VertexId, T::Error>> {
+    let numbers = (0..complex.vertex_slots()).map(VertexId::new);
+    numbers.filter_map(|vertex| complex.cell_of(vertex).map(|cell| cell.map(|_| vertex)).transpose())
+}
+
 impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {
     type Error = Infallible;
 

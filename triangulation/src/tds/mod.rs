@@ -69,6 +69,7 @@ pub mod space;
 mod zone;
 
 pub use complex::Complex;
+pub(crate) use complex::vertices_of;
 pub use error::{EditError, TdsError};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 pub use neighbors::Neighbors;

@@ -19,7 +19,7 @@
 
 use std::iter::FusedIterator;
 
-use super::{CellId, Complex, VertexId, ccw, cw};
+use super::{CellId, Complex, VertexId, ccw, cw, vertices_of};
 
 /// Returns the ends of the edge opposite vertex `i` of a triangle. From the first to the second,
 /// the triangle is on the left.
@@ -157,8 +157,7 @@ pub fn edges_around<T: Complex<3>>(
 
 /// Returns the finite vertices, in order of their numbers.
 pub fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Result<VertexId, T::Error>> + '_ {
-    let numbers = (0..complex.vertex_slots()).map(VertexId::new);
-    numbers.filter_map(|vertex| complex.cell_of(vertex).map(|cell| cell.map(|_| vertex)).transpose())
+    vertices_of::<3, T>(complex)
 }
 
 /// Returns the cell to the left of the directed edge `a b` and the index of the edge in it (that of

@@ -15,7 +15,7 @@ use std::convert::Infallible;
 use rustc_hash::FxHashSet;
 
 use crate::geometry::{Geometry, Metric};
-use crate::tds::{CellId, Complex, Neighbors, Tds, VertexId};
+use crate::tds::{CellId, Complex, Neighbors, Tds, VertexId, vertices_of};
 
 use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
@@ -190,11 +190,7 @@ fn all_nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const
         Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
             complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
         }
-        Location::OutsideAffineHull => {
-            let vertices = (0..complex.vertex_slots()).map(VertexId::new);
-            let mut used = vertices.filter_map(|v| complex.cell_of(v).map(|cell| cell.map(|_| v)).transpose());
-            used.next().transpose()?
-        }
+        Location::OutsideAffineHull => vertices_of::<N, T::Complex>(complex).next().transpose()?,
         Location::Nowhere => None,
     };
     let mut nearest: Vec<VertexId> = start.into_iter().collect();
