@@ -143,9 +143,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         self.insert_by(&mut Near(None), p, data)
     }
 
-    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell. The
-    /// cell of a nearby vertex is [`cell_of`](crate::tds::Tds::cell_of). With `None`, or a cell
-    /// that does not exist, the search starts where the last insertion ended.
+    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell: the
+    /// strategy [`Near`].
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).

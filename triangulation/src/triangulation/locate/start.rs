@@ -60,7 +60,8 @@ pub trait Locate<G: Geometry<N>, const N: usize> {
     fn removed(&mut self, _vertex: VertexId) {}
 }
 
-/// Starts at a cell nearby; without one, at the last insertion. The strategy of
+/// Starts at a cell, for example [that](crate::tds::Tds::cell_of) of a nearby vertex. With `None`,
+/// or a cell that does not exist, starts where the last insertion ended. The strategy of
 /// [`Triangulation::locate`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Near(pub Option<CellId>);
