@@ -69,7 +69,7 @@ impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
 
 impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
     /// Triangulates many points; also returns the vertex of each. Vertices are numbered in [spatial
-    /// order](super::super::spatial_order). Points on one site share a vertex, which keeps the
+    /// order](crate::spatial_order). Points on one site share a vertex, which keeps the
     /// first of them.
     ///
     /// # Errors

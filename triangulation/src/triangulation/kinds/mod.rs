@@ -24,8 +24,7 @@ pub type Delaunay2<V = (), C = ()> = Delaunay<Plane, 3, V, C>;
 pub type Delaunay3<V = (), C = ()> = Delaunay<Space, 4, V, C>;
 /// A regular triangulation of points `[x, y, weight]`.
 pub type Regular2<V = (), C = ()> = Regular<Weighted, 3, V, C>;
-
-/// A regular triangulation of weighted points `[x, y, z, weight]`.
+/// A regular triangulation of points `[x, y, z, weight]` in space.
 pub type Regular3<V = (), C = ()> = Regular<WeightedSpace, 4, V, C>;
 /// A constrained triangulation of points `[x, y]`, without another law.
 pub type Constrained2<V = (), C = ()> = Constrained<Plane, V, C>;

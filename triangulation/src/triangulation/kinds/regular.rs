@@ -162,12 +162,12 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         Regular { inner, hidden: Hidden::default() }
     }
 
-    /// Builds the table of hidden points: those vertices that are in no cell. Vertices that nothing
-    /// hides are inserted.
+    /// Returns the triangulation with its table of hidden points, which are the vertices in no
+    /// cell. Those that no cell hides are inserted.
     #[cfg(feature = "serde")]
     pub(in super::super) fn with_hidden(inner: Triangulation<G, N, V, C>) -> Self {
         let hidden = inner.tds.detached_vertices();
-        let mut regular = Regular { inner, hidden: Hidden::default() };
+        let mut regular = Self::over(inner);
         regular.connect_again(hidden);
         regular
     }
@@ -366,8 +366,9 @@ where
     /// If no point has this number.
     ///
     /// # Complexity
-    /// As [`Delaunay::remove`](crate::Delaunay::remove), and an insertion for each point that the
-    /// cells around it hide; for each hidden point below full dimension, or if the dimension sinks.
+    /// That of [`Delaunay::remove`](crate::Delaunay::remove), and one insertion for each point that
+    /// the cells around the removed one hide. Below full dimension, or if the dimension decreases,
+    /// one insertion for each hidden point.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if self.hidden.take(vertex) {
             self.inner.tds.attach();
@@ -422,8 +423,8 @@ where
 }
 
 impl<G: Geometry<N>, const N: usize, C: Copy + Default> Regular<G, N, (), C> {
-    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
-    /// already.
+    /// Inserts a point and returns its vertex, which may be [hidden](Self::is_hidden). If a point
+    /// with the same weight is on the site, returns its vertex.
     ///
     /// # Errors
     /// See [`insert_with`](Self::insert_with).

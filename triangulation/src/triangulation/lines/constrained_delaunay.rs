@@ -168,14 +168,15 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
 }
 
 impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
-    /// Triangulates many points; also returns the vertex of each. Vertices are numbered along a
-    /// space filling curve. Points on one site share a vertex, which keeps the first of them.
+    /// Triangulates many points; also returns the vertex of each. Vertices are numbered in [spatial
+    /// order](crate::spatial_order). Points on one site share a vertex, which keeps the first of
+    /// them.
     ///
     /// # Errors
     /// If a point is refused; the error names the position of the first one.
     ///
     /// # Complexity
-    /// O(n log n), on all threads.
+    /// That of [`Delaunay::from_points`](crate::Delaunay::from_points) in the plane.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let (sites, vertices) = Sites::of(&geometry, points, bulk::Grain::default())?;
         Ok((Self::from_sites(geometry, sites, bulk::Grain::default())?, vertices))
