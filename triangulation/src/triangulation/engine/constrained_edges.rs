@@ -110,6 +110,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         edge.map(|edge| self.set_constrained(edge, true)).is_some()
     }
 
+    /// Constrains the edges from a vertex to both ends of the constraint that it split, if any.
+    pub(in super::super) fn constrain_halves(&mut self, split: Option<[VertexId; 2]>, vertex: VertexId) {
+        for end in split.into_iter().flatten() {
+            self.constrain_edge(vertex, end);
+        }
+    }
+
     /// Releases the constrained edge between two vertices and returns the cells on both sides;
     /// `None` if there is no such constraint.
     pub(in super::super) fn release_edge(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {

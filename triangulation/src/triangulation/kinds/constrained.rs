@@ -179,15 +179,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         let split = self.inner.constraint_at(location);
         let inserted = self.inner.insert_at(p, location, data, takes(&p), |constrained, i| constrained.only(i));
-        self.constrain_both_halves(split, inserted.vertex);
+        self.inner.constrain_halves(split, inserted.vertex);
         inserted
-    }
-
-    /// Constrains the edges from a new vertex to the ends of the constraint that it split, if any.
-    fn constrain_both_halves(&mut self, split: Option<[VertexId; 2]>, vertex: VertexId) {
-        for end in split.into_iter().flatten() {
-            self.inner.constrain_edge(vertex, end);
-        }
     }
 
     /// The finite vertices with their payloads, mutable, in order of their numbers.
@@ -306,7 +299,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
                 let split = t.inner.constraint_at(location);
                 let moved = t.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i));
                 let moved = moved.unwrap_or(vertex);
-                t.constrain_both_halves(split, moved);
+                t.inner.constrain_halves(split, moved);
                 moved
             },
         )

@@ -45,9 +45,7 @@ impl Lines {
         let split = t.constraint_at(location);
         let takes = |t: &Mesh<G, V, C>, from, i, beyond| !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p);
         let inserted = t.insert_at(p, location, data, takes, |constrained, i| constrained.only(i));
-        for end in split.into_iter().flatten() {
-            t.constrain_edge(inserted.vertex, end);
-        }
+        t.constrain_halves(split, inserted.vertex);
         if let Some([a, b]) = split {
             self.split_edge(a, b, inserted.vertex);
         }
