@@ -457,9 +457,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         parts.sort_unstable();
         parts.dedup();
 
-        // The triangulation.
-        parts.retain(|part| edges.binary_search(part).map(|at| edges.remove(at)).is_err());
-        for [a, b] in edges {
+        // The triangulation. What is in both lists stays.
+        let released: Vec<Ends> = edges.iter().copied().filter(|edge| parts.binary_search(edge).is_err()).collect();
+        parts.retain(|part| edges.binary_search(part).is_err());
+        for [a, b] in released {
             self.lines.release(self.t, a, b);
         }
         for vertex in leaving {
