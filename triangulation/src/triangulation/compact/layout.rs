@@ -33,7 +33,7 @@ pub(super) struct Header {
     pub(super) infinite_cell: u32,
 }
 
-/// The offset of each array, and of their end.
+/// The offset of each array, and the end of the last.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offsets {
     pub(super) cells_of_vertices: usize,
@@ -112,7 +112,7 @@ impl Header {
     }
 }
 
-/// Rounds up to the next multiple of 8; `None` if there is none.
+/// Rounds up to the next multiple of 8; `None` if that is more than 64 bits hold.
 pub(super) fn padded(bytes: u64) -> Option<u64> {
     bytes.checked_next_multiple_of(8)
 }

@@ -104,7 +104,8 @@ impl std::error::Error for CompactError {}
 /// is anything that can be borrowed as bytes: a slice, a vector, or a file that another crate maps
 /// to memory. Opening reads the header and the number of bytes, in constant time however many
 /// points there are; a query then reads the bytes that it needs. Answers are those of the
-/// triangulation that was written. What a program wants to store with it is a [`CompactSection`].
+/// triangulation that was written. A program can store attributes of its own behind it, each as a
+/// [`CompactSection`].
 ///
 /// Nothing in the bytes is trusted: each number is checked against its limits where it is used,
 /// each point is one that the geometry [admits](Geometry::admits), and walks are bounded by the
@@ -146,12 +147,14 @@ pub struct Compact<G, B> {
 }
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Opens a compact triangulation; checks its header and the number of bytes. Constant time, and
-    /// a step for each section.
+    /// Opens a compact triangulation; checks its header and the number of bytes.
     ///
     /// # Errors
     /// If the header or the number of bytes is wrong, or if the points do not have the geometry's
     /// number of coordinates.
+    ///
+    /// # Complexity
+    /// Linear in the number of sections; constant however many points there are.
     pub fn open(geometry: G, bytes: B) -> Result<Self, CompactError> {
         let all = bytes.as_ref();
         let header = Header::read(&all[..all.len().min(HEADER)])?;
@@ -226,10 +229,15 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// Returns where the contents of [`section`](Self::section) are in [`bytes`](Self::bytes), for
     /// a program that reads them often.
     pub fn section_range(&self, tag: [u8; 8]) -> Option<Range<usize>> {
-        let contents = self.section(tag)?;
-        let before = self.sections().take_while(|section| section.tag != tag).map(|section| section.size());
-        let start = self.offsets.end + before.sum::<usize>() + section::HEAD as usize;
-        Some(start..start + contents.len())
+        let mut start = self.offsets.end;
+        for section in self.sections() {
+            if section.tag == tag {
+                start += section::HEAD as usize;
+                return Some(start..start + section.contents.len());
+            }
+            start += section.size();
+        }
+        None
     }
 
     /// Returns true if the edge opposite vertex `i` of a cell is constrained.

@@ -36,8 +36,8 @@ pub struct CompactSection<'a> {
 }
 
 impl<'a> CompactSection<'a> {
-    /// Writes the section behind a triangulation, which `write_compact` has written to `out`, and
-    /// behind other sections.
+    /// Writes the section. What `out` has received before must be a triangulation, written by
+    /// `write_compact`, and any number of other sections.
     ///
     /// # Errors
     /// Those of `out`.
@@ -53,10 +53,10 @@ impl<'a> CompactSection<'a> {
         HEAD as usize + self.contents.len().next_multiple_of(8)
     }
 
-    /// Splits the first section off some bytes.
+    /// Splits bytes into the first section and the rest.
     ///
     /// # Errors
-    /// The number of bytes of that section, if there are fewer.
+    /// If the section is incomplete: the number of bytes that it should have.
     pub(super) fn split_first(bytes: &'a [u8]) -> Result<(Self, &'a [u8]), u64> {
         let mut rest = bytes;
         let tag = taken(&mut rest);
