@@ -153,8 +153,8 @@ enum Axis {
     Y,
 }
 
-/// Every that many ranges within ranges of equal keys, the recursion goes on with a stack of its
-/// own.
+/// The recursion continues on a new stack each time that this many more ranges of equal keys lie
+/// within each other.
 const NESTED: usize = 4;
 
 /// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
@@ -312,11 +312,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let Range { seen, offset, grain, nesting, .. } = *self;
         let mut range =
             Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain, nesting: nesting + 1 };
-        // Each range with keys of its own is up to 64 calls deep. There may be as many within each
-        // other as the exponents of doubles allow, however few points there are.
+        // Each range with keys of its own is up to 64 calls deep. How many lie within each other is
+        // limited only by the exponents of doubles, however few points there are.
         if range.nesting.is_multiple_of(NESTED) {
-            // The new thread is not of the pool, and blocks one that may be: it must not wait for
-            // the pool.
+            // The new thread is not one of the pool, but the one that waits for it may be. So the
+            // new thread must not wait for the pool.
             range.grain = Grain { points: usize::MAX, range: usize::MAX, ..grain };
             on_new_stack(|| range.build(lo, hi, arcs))
         } else {

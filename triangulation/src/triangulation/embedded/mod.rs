@@ -78,7 +78,7 @@ pub trait Embedded<const N: usize> {
     /// Returns the point of a finite vertex.
     ///
     /// # Errors
-    /// If there is none, or the geometry does not admit it.
+    /// If the vertex does not exist, or the geometry does not admit its point.
     fn point(&self, vertex: VertexId) -> Result<Self::PointRef<'_>, Self::Error>;
 
     /// Converts a point from outside to the type in which points of vertices are returned.

@@ -1,4 +1,4 @@
-//! The engine that all kinds share: insertion, removal, flips, checks, and constraints made edges.
+//! The engine that all kinds share: insertion, removal, flips, checks, and edges for constraints.
 
 pub(super) mod check;
 pub(super) mod constrained_edges;

@@ -6,7 +6,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::Triangulation;
 use super::flip::NoConstraints;
 
-/// A triangulation without constraints from which vertices can be removed: of the plane and of
+/// A triangulation without constraints from which vertices can be removed: one of the plane or of
 /// space.
 pub trait Removal {
     /// Removes a vertex, and restores the law of the geometry's

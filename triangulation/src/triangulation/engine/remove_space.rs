@@ -45,7 +45,7 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
         !is_filled
     }
 
-    /// Returns the cells that fill the hole; `None` if the dimension becomes another one.
+    /// Returns the cells that fill the hole; `None` if the dimension changes.
     fn cells_without(&self, vertex: VertexId, star: &[(CellId, usize)]) -> Option<Vec<[VertexId; 4]>> {
         let mut neighbors = self.tds.vertices_around(vertex);
         neighbors.retain(|&v| v != VertexId::INFINITE);
@@ -68,8 +68,8 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
         Some(to_infinity.collect())
     }
 
-    /// Replaces all cells by those of the other vertices: by the law, if it leads to cells that
-    /// fit.
+    /// Replaces all cells by those of a triangulation of the other vertices: by the law if that
+    /// contains them all, otherwise by splits.
     fn replace_all_without(&mut self, vertex: VertexId) {
         let others: Vec<VertexId> = self.tds.vertices().filter(|&v| v != vertex).collect();
         let mut dimension = self.dimension();
@@ -103,7 +103,8 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
     }
 }
 
-/// Returns true if a vertex is in the cell that is stored for it: no other vertex has swallowed it.
+/// Returns true if a vertex is in the cell that is stored for it, so that no insertion of another
+/// one has removed it from the complex.
 fn has_cell<G: Geometry<4>>(local: &Local<G>, vertex: VertexId) -> bool {
     local.tds.cell_of(vertex).is_some_and(|cell| local.tds.is_used(cell) && local.tds.index_of(cell, vertex).is_some())
 }

@@ -184,7 +184,7 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     }
 }
 
-/// Sub-constraints that are inserted between two looks at the flag that cancels the work.
+/// The number of sub-constraints inserted between two checks of the flag that cancels the work.
 const LOOK_EVERY: usize = 1 << 8;
 
 /// Returns an error if a line names a point that does not exist.
@@ -199,7 +199,7 @@ fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Inpu
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Inserts the sub-constraints of an arrangement. Returns those that cross others; they are
-    /// present up to the first crossing only. Ends early if `grain` says so.
+    /// present up to the first crossing only. Ends early if the flag of `grain` is set.
     pub(in super::super) fn constrain_all(
         &mut self,
         mut parts: Vec<[VertexId; 2]>,

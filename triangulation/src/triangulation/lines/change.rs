@@ -36,8 +36,8 @@ impl Change {
         Change { segment, is_bent, old, new, head, tail }
     }
 
-    /// Takes the parts at a vertex out of the triangulation, too: the part of the old chain with
-    /// this number, and the next one if the vertex is between them.
+    /// Lets the parts at a vertex change, too: the part of the old chain with this number, and the
+    /// next one if the vertex is between them.
     pub(super) fn include(&mut self, part: usize, vertex: VertexId) {
         let sites = self.old_sites();
         let last = if sites.get(part) == Some(&vertex) { part + 1 } else { part };
@@ -56,17 +56,17 @@ impl Change {
         between(&self.new)
     }
 
-    /// The parts of the old chain that are taken out.
+    /// The parts of the old chain that are removed.
     pub(super) fn old_parts(&self) -> impl Iterator<Item = Ends> {
         self.parts(&self.old)
     }
 
-    /// The parts of the new chain that are put in.
+    /// The parts of the new chain that are inserted.
     pub(super) fn new_parts(&self) -> impl Iterator<Item = Ends> {
         self.parts(&self.new)
     }
 
-    /// The sites between what stays, of both chains.
+    /// The sites of both chains that lie between the parts that stay.
     pub(super) fn sites_that_change(&self) -> impl Iterator<Item = VertexId> {
         [&self.old, &self.new].into_iter().flat_map(|chain| self.changed(chain).skip(1).map(|part| chain[part]))
     }
@@ -86,6 +86,7 @@ fn count_shared<'a>(old: impl Iterator<Item = &'a VertexId>, new: impl Iterator<
     old.zip(new).take_while(|(u, v)| u == v).count()
 }
 
+/// Returns the sites of a chain without its ends.
 fn between(chain: &[VertexId]) -> &[VertexId] {
     if let [_, between @ .., _] = chain { between } else { &[] }
 }

@@ -513,8 +513,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         leaving
     }
 
-    /// Returns the changes of chains, ordered by segment: those of other sites, and those that a
-    /// vertex leaves, if only as one that split an edge.
+    /// Returns the changes of chains, ordered by segment: of those whose sites differ, and of those
+    /// with a vertex that is to be removed, even if it only split one of their parts.
     fn changes(&mut self, leaving: &[VertexId]) -> Vec<Change> {
         let paths = &self.lines.paths;
         let from_end_to_end = |[a, b]: Ends, sites: &[VertexId]| [&[a], sites, &[b]].concat();

@@ -150,12 +150,12 @@ impl Location {
         on.into_iter().flat_map(|(cell, facets)| facets.iter().map(move |i| (cell, i)))
     }
 
-    /// Returns all cells that contain the point, infinite ones included: one inside of a cell, two
-    /// in the interior of a facet, those around an edge or a vertex on one of these. Empty outside
-    /// of the hull.
+    /// Returns all cells that contain the point, inside or on their border, infinite ones included:
+    /// one for a point inside of a cell, two in the interior of a facet, and all around the edge or
+    /// vertex that the point lies on. Empty outside of the hull.
     ///
     /// # Errors
-    /// If links of the complex do not hold.
+    /// If a link of the complex does not hold.
     ///
     /// # Complexity
     /// Linear in the number of these cells.
