@@ -77,7 +77,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     /// Inserts the vertex that was removed last again, with another point at its location. Returns
-    /// it, or the vertex that is there already. See [`connect`](Self::connect).
+    /// it, or the vertex that is there already; `None` if none was removed. See
+    /// [`connect`](Self::connect).
     pub(in super::super) fn insert_again(
         &mut self,
         p: G::Point,
@@ -229,13 +230,14 @@ where
 }
 
 /// Moves a vertex of a kind: removes it and inserts it elsewhere, by two steps of the kind. The
-/// second takes over what the first returns. If the site stays, only the point is replaced.
+/// second receives what the first returned; it returns `None` only if the vertex was not removed.
+/// If the site stays, only the point is replaced.
 pub(in super::super) fn move_vertex<K, G: Geometry<N>, const N: usize, V, C: Copy + Default, R>(
     kind: &mut K,
     inner: impl FnOnce(&mut K) -> &mut Triangulation<G, N, V, C>,
     (vertex, p): (VertexId, G::Point),
     remove: impl FnOnce(&mut K, VertexId) -> Result<R, RemovalError>,
-    insert_again: impl FnOnce(&mut K, G::Point, Location, R) -> VertexId,
+    insert_again: impl FnOnce(&mut K, G::Point, Location, R) -> Option<VertexId>,
 ) -> Result<VertexId, MoveError>
 where
     K: Deref<Target = Triangulation<G, N, V, C>>,
@@ -247,7 +249,7 @@ where
     let neighbor = kind.finite_neighbor(vertex);
     let removed = remove(kind, vertex)?;
     let location = kind.locate(&p, neighbor.and_then(|v| kind.tds.cell_of(v)));
-    Ok(insert_again(kind, p, location, removed))
+    Ok(insert_again(kind, p, location, removed).unwrap_or(vertex))
 }
 
 /// Inserts points in an order of their positions, by `insert`, and returns the vertex of each.

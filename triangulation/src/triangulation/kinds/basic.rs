@@ -249,7 +249,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
             |t| &mut t.inner,
             (vertex, p),
             Self::remove,
-            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data).unwrap_or(vertex),
+            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data),
         )
     }
 

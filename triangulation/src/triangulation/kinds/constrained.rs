@@ -297,10 +297,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
             Self::remove,
             |t, p, location, _| {
                 let split = t.inner.constraint_at(location);
-                let moved = t.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i));
-                let moved = moved.unwrap_or(vertex);
+                let moved = t.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i))?;
                 t.inner.constrain_halves(split, moved);
-                moved
+                Some(moved)
             },
         )
     }

@@ -289,7 +289,7 @@ where
             |t| &mut t.inner,
             (vertex, p),
             Self::remove,
-            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data).unwrap_or(vertex),
+            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data),
         )
     }
 }

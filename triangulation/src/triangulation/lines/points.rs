@@ -116,7 +116,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             |t| &mut t.inner,
             (vertex, p),
             Self::extract,
-            |t, p, location, data| t.insert_at(p, data, location).vertex,
+            |t, p, location, data| Some(t.insert_at(p, data, location).vertex),
         )
     }
 
