@@ -16,7 +16,7 @@ use super::space::{self, Edge};
 use super::{CellId, Tds, VertexId};
 
 impl<V, C: Copy + Default> Tds<4, V, C> {
-    /// Returns the ends of an edge, from its start to its end.
+    /// Returns the start and the end of an edge.
     #[inline]
     pub fn edge_ends(&self, edge: Edge) -> [VertexId; 2] {
         let Ok(ends) = space::edge_ends(self, edge);
@@ -95,20 +95,21 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
     /// vertex in it: its star. The facets opposite the vertex are its link.
     ///
     /// # Complexity
-    /// Linear in the number of cells.
+    /// Linear in the number of these cells.
     pub fn cells_around(&self, vertex: VertexId) -> Vec<(CellId, usize)> {
         let Ok(cells) = space::cells_around(self, vertex);
         cells
     }
 
     /// Returns the vertices that a vertex is joined to by an edge, the infinite one included, in
-    /// order of their numbers.
+    /// order of their numbers. O(k log k) for the k cells around the vertex.
     pub fn vertices_around(&self, vertex: VertexId) -> Vec<VertexId> {
         let Ok(vertices) = space::vertices_around(self, vertex);
         vertices
     }
 
-    /// The number of edges at a vertex, including that to the infinite vertex.
+    /// The number of edges at a vertex, including that to the infinite vertex. O(k log k) for the k
+    /// cells around the vertex.
     pub fn degree(&self, vertex: VertexId) -> usize {
         self.vertices_around(vertex).len()
     }

@@ -1,14 +1,13 @@
 use super::{Complex, VertexId, plane, space};
 
-/// A complex whose vertices list their neighbors: every [`Complex`] of the plane and of space.
-///
-/// For algorithms that are the same in both.
+/// A complex whose vertices list their neighbors: every [`Complex`] of the plane or of space.
+/// Algorithms that are the same in both need no more than this.
 pub trait Neighbors<const N: usize>: Complex<N> {
     /// Returns the vertices that a vertex is joined to by an edge, the infinite one included, in
     /// the order of [`plane::vertices_around`] and [`space::vertices_around`].
     ///
     /// # Errors
-    /// If there is no such vertex, or a link around it does not hold.
+    /// If the vertex does not exist, or a link around it does not hold.
     fn neighbors_of(
         &self,
         vertex: VertexId,

@@ -25,7 +25,7 @@ use super::{CellId, Complex, VertexId, ccw, cw, vertices_of};
 /// the triangle is on the left.
 ///
 /// # Errors
-/// If there is no such triangle.
+/// If the triangle does not exist.
 #[inline(always)]
 pub fn edge_ends<T: Complex<3>>(complex: &T, cell: CellId, i: usize) -> Result<[VertexId; 2], T::Error> {
     let corners = complex.corners(cell)?;
@@ -124,7 +124,7 @@ fn turned<T: Complex<3>>(complex: &T, i: usize, turn: impl Fn(usize) -> usize) -
 /// dimension 1.
 ///
 /// # Errors
-/// If there is no such vertex. The iterator ends at the first error.
+/// If the vertex does not exist. The iterator ends at the first error.
 pub fn vertices_around<T: Complex<3>>(
     complex: &T,
     vertex: VertexId,
@@ -144,7 +144,7 @@ pub type DirectedEdge = (CellId, usize);
 /// no vertex of it.
 ///
 /// # Errors
-/// If there is no such vertex. The iterator ends at the first error.
+/// If the vertex does not exist. The iterator ends at the first error.
 pub fn edges_around<T: Complex<3>>(
     complex: &T,
     vertex: VertexId,

@@ -120,10 +120,10 @@ impl<T: Complex<4>> DoubleEndedIterator for Ring<'_, T> {
 
 impl<T: Complex<4>> FusedIterator for Ring<'_, T> {}
 
-/// Returns the ends of an edge, from its start to its end.
+/// Returns the start and the end of an edge.
 ///
 /// # Errors
-/// If there is no such cell.
+/// If the cell does not exist.
 ///
 /// # Panics
 /// If an index is 4 or more.
@@ -141,7 +141,10 @@ pub fn edge_ends<T: Complex<4>>(complex: &T, (cell, i, j): Edge) -> Result<[Vert
 /// each cell: each lies between its cell and the next.
 ///
 /// # Errors
-/// If there is no such cell. The iterator ends at the first error.
+/// If the cell does not exist. The iterator ends at the first error.
+///
+/// # Panics
+/// If an index is 4 or more.
 pub fn cells_around_edge<T: Complex<4>>(
     complex: &T,
     edge: Edge,
@@ -154,14 +157,14 @@ pub fn cells_around_edge<T: Complex<4>>(
 /// Returns the cells that have a vertex, the infinite ones included, each with the index of the
 /// vertex in it: its star. The facets opposite the vertex are its link.
 ///
-/// A cell follows one that it shares a facet with; the first is that of
-/// [`cell_of`](Complex::cell_of). Of any dimension; empty for a vertex without a cell.
+/// The first cell is that of [`cell_of`](Complex::cell_of); each of the others shares a facet with
+/// one before it. The complex may have any dimension. Empty for a vertex without a cell.
 ///
 /// # Errors
-/// If there is no such vertex, or at the first link that does not hold.
+/// If the vertex does not exist, or a link around it does not hold.
 ///
 /// # Complexity
-/// Linear in the number of cells.
+/// Linear in the number of these cells.
 pub fn cells_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<(CellId, usize)>, T::Error> {
     let mut star: Vec<(CellId, usize)> = Vec::with_capacity(32);
     let mut seen: FxHashSet<CellId> = FxHashSet::default();
@@ -192,10 +195,10 @@ pub fn cells_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<
 /// of their numbers. Empty below dimension 1.
 ///
 /// # Errors
-/// As for [`cells_around`].
+/// Those of [`cells_around`].
 ///
 /// # Complexity
-/// As for [`cells_around`], and sorting them.
+/// O(k log k) for the k cells around the vertex.
 pub fn vertices_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<VertexId>, T::Error> {
     let mut vertices = Vec::new();
     if complex.dimension() < 1 {
@@ -214,7 +217,7 @@ pub fn vertices_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<V
 /// may be the infinite one; `None` if there is none.
 ///
 /// # Errors
-/// As for [`cells_around`].
+/// Those of [`cells_around`].
 ///
 /// # Complexity
 /// Linear in the number of cells around the first vertex.
