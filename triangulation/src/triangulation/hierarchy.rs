@@ -23,7 +23,7 @@ const RATIO: usize = 30;
 /// A point is located from the top down; on each level the walk starts at the vertex that was found
 /// nearest on the level above. So it takes expected `O(log n)` steps on any Delaunay triangulation
 /// whose points came in random order, however they are spread (O(n) if a line from there goes
-/// through all triangles). Memory grows by a thirtieth.
+/// through all cells). Memory grows by a thirtieth.
 ///
 /// The geometry of the samples is one for the same type of points, in which a point is the same
 /// site. It is the geometry of the triangulation itself, except for weighted points: their samples
@@ -81,12 +81,12 @@ impl<L: Geometry<N>, const N: usize> Level<L, N> {
 }
 
 impl<L: Geometry<N> + Clone, const N: usize> Hierarchy<L, N> {
-    /// Creates a hierarchy for a triangulation that is still empty.
+    /// Returns a hierarchy for a triangulation that is still empty.
     pub fn new(geometry: L) -> Self {
         Hierarchy { geometry, levels: Vec::new(), dice: Dice::default() }
     }
 
-    /// Creates a hierarchy for the vertices of a triangulation. O(n).
+    /// Returns a hierarchy for the vertices of a triangulation. O(n).
     pub fn of<G, V, C>(geometry: L, triangulation: &Triangulation<G, N, V, C>) -> Self
     where
         G: Geometry<N, Point = L::Point>,
@@ -99,7 +99,7 @@ impl<L: Geometry<N> + Clone, const N: usize> Hierarchy<L, N> {
         hierarchy
     }
 
-    /// Draws the highest level for a vertex, and inserts it into the samples up to that level.
+    /// Draws the number of samples that a vertex belongs to, and inserts it into them.
     fn sample(&mut self, vertex: VertexId, point: &L::Point) {
         let mut height = 0;
         while height <= self.levels.len() && self.dice.below(RATIO) == 0 {

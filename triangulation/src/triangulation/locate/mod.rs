@@ -7,12 +7,12 @@
 //! | [`Buckets`] from a vertex in the same square of a grid | a few; no better than without if all points are in one square |
 //! | [`Hierarchy`](super::Hierarchy) of samples (Devillers 2002) | `log n`, however the points are spread |
 //!
-//! These walk from one triangle to the next across an edge that separates it from the point. At
-//! first they decide by rounded numbers and cross the edge that the point is furthest beyond, for
-//! as long as that makes progress (structural filtering: Funke, Mehlhorn and Näher 1999). Then they
-//! decide by exact predicates and cross any separating edge, chosen pseudo-randomly (the stochastic
-//! walk). [`StraightLine`] goes through the triangles that a line to the point meets (both:
-//! Devillers, Pion and Teillaud 2002).
+//! These walk from one cell to the next across a facet that separates it from the point. At first
+//! they decide by rounded numbers and cross the facet that the point is furthest beyond, for as
+//! long as that makes progress (structural filtering: Funke, Mehlhorn and Näher 1999). Then they
+//! decide by exact predicates and cross any separating facet, chosen pseudo-randomly (the
+//! stochastic walk). [`StraightLine`], for the plane, goes through the triangles that a line to the
+//! point meets (both: Devillers, Pion and Teillaud 2002). [`Buckets`] are for the plane, too.
 //!
 //! A strategy is a value that the caller owns. Some strategies learn from insertions and removals:
 //! pass these to [`Locate::inserted`] and [`Locate::removed`], or insert and remove with the

@@ -7,8 +7,8 @@
 //! | [`along`] | what a segment meets | a triangulation of the plane |
 //! | [`faces_from`] | all faces, without a visited set | a triangulation of the plane |
 //! | [`within_rectangle`] | the vertices in a rectangle | a triangulation of the plane |
-//! | [`nearest`], [`nearest_first`], [`within`] | vertices by distance | a Delaunay triangulation |
-//! | [`conflict_zone`] | what a new point would destroy | a Delaunay triangulation, perhaps with constraints |
+//! | [`nearest`], [`nearest_first`], [`within`] | vertices by distance | a Delaunay triangulation, of the plane or of space |
+//! | [`conflict_zone`] | what a new point would destroy | a Delaunay triangulation of the plane, perhaps with constraints |
 //!
 //! All of them walk from a cell nearby, which may be `None`. A structure of your own implements two
 //! traits: [`Complex`](crate::tds::Complex), for the cells and their neighbors, and
