@@ -68,8 +68,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// [`rearrangements`](Self::rearrangements) counts how often.
     pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, InputError> {
         let points: Vec<G::Point> = lines.iter().flat_map(|line| line.as_ref()).copied().collect();
-        if let Some(bad) = points.iter().position(|p| self.inner.admit(p).is_err()) {
-            return Err(InputError::Coordinate(bad));
+        for (i, p) in points.iter().enumerate() {
+            self.inner.admit(p).map_err(|error| error.at(i))?;
         }
         let (vertices, is_known) = self.insert_owned(&points);
         let mut changes = Vec::with_capacity(lines.len());
