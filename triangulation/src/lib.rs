@@ -42,7 +42,8 @@
 //!
 //! **Dimensions.** Without points the dimension is -1, with one it is 0, 1 while all are collinear,
 //! 2 in the plane or while all are coplanar, and 3 in space. Each is a state of the same structure:
-//! it can be traversed, queried and checked, grows by insertion and shrinks by removal.
+//! it can be traversed, queried and checked, grows by insertion and, but for [`Basic`] in space,
+//! shrinks by removal.
 //!
 //! **Infinity.** Beyond each facet of the convex hull there is a cell that joins the facet to the
 //! one infinite vertex, [`VertexId::INFINITE`](crate::tds::VertexId::INFINITE). So every cell has
@@ -57,7 +58,7 @@
 //! |---|---|
 //! | triangulate many points at once | [`Delaunay::from_points`], [`Regular::from_points`], [`ConstrainedDelaunay::from_points`] |
 //! | insert points one by one | `insert`; insert points near each other one after the other, see [`spatial_order`] |
-//! | remove points again, or move them | `remove`, `move_to`; in the plane |
+//! | remove points again, or move them | `remove`, `move_to`; of [`Basic`] in the plane only |
 //! | keep a value at each vertex, at each cell | [`Delaunay::insert_with`], [`Delaunay::with_cell_data`] |
 //! | triangulate points and lines | [`ConstrainedDelaunay::from_lines`] |
 //! | insert, remove, split, join lines | [`ConstrainedDelaunay::insert_lines`], `remove_line`, `split_line`, `join_lines` |
@@ -79,9 +80,11 @@
 //! | build and edit a surface of any genus | [`tds::Tds::from_cells`] |
 //! | check it | [`Delaunay::check`], [`ConstrainedDelaunay::check`], up to a [`Level`] |
 //!
-//! All queries take `&self`. In space there are location by all strategies but [`Buckets`] and
-//! [`StraightLine`], nearest vertices, stars, rings around edges, insertion, removal and checks;
-//! the other queries, and bulk construction by divide and conquer, are of the plane.
+//! All queries take `&self`. In space, these exist: construction, insertion, and removal and moves
+//! except of [`Basic`]; payloads; location, except by [`Buckets`] and [`StraightLine`]; nearest
+//! vertices, stars, rings around edges; hidden points; and checks. All else is for the plane only:
+//! constraints, other queries, flips by a kind, pictures, serde and [`Compact`]. Construction from
+//! many points is by divide and conquer in the plane only.
 //!
 //! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
 //! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of
