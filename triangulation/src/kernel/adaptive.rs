@@ -77,7 +77,8 @@ impl<const BITS: i32> Filter for FixedBound<BITS> {
 /// the polynomial.
 ///
 /// A polynomial of degree `d` in differences below `2^b` is below `2^(b d + 7)` for every formula
-/// of this crate (in-sphere has 4 * 3 * 6 terms). `most` is the limit of the conversion from
+/// of this crate: none has more than 96 terms, those of [`PowerTest3`](super::PowerTest3) (four
+/// volumes of six terms, each times a lift of four). `most` is the limit of the conversion from
 /// coordinates to differences.
 const fn bits(of_integers: i32, degree: i32, most: i32) -> i32 {
     let bits = (of_integers - 8) / degree;
@@ -106,7 +107,7 @@ impl Filter for OnLattice {
 
 /// Integers of 256 bits, where the coordinates of the predicate at hand, counted in a common unit,
 /// and their differences have up to 62 bits: in the plane, any coordinates of about one size. In an
-/// in-sphere test the limit is 49 bits.
+/// in-sphere test, with weights or without, the limit is 49 bits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OnFineLattice;
 

@@ -119,7 +119,7 @@ pub struct Range {
 ///
 /// *Downwards.* Coordinates are multiples of `2^-160 / 2^52 = 2^-212` (below `2^-160` only these
 /// are admitted), and so are their differences. Every intermediate result of degree `d`, rounded or
-/// not, is a multiple of `2^(-212 d)`, which for degree 5 (in-sphere, the highest) is
+/// not, is a multiple of `2^(-212 d)`, which for degree 5 (in-sphere tests, the highest) is
 /// `2^-1060 > 2^-1074`. So a result is rounded only if it is larger than its unit by 53 bits. It is
 /// never subnormal: a rounded term is at least `2^-1007`, and an error bound relative to it does
 /// not underflow. The error terms of exact products are multiples of `2^-1060` themselves; none is

@@ -33,6 +33,8 @@ pub use integer::Integer;
 pub use interval::Interval;
 pub use pair::Pair;
 
+use std::ops::{Add, Mul, Neg, Sub};
+
 /// Returns zero for negative zero, and any other number as it is, so that equal numbers have equal
 /// bits.
 ///
@@ -46,8 +48,6 @@ pub use pair::Pair;
 pub fn unsigned_zero(x: f64) -> f64 {
     x + 0.0
 }
-
-use std::ops::{Add, Mul, Neg, Sub};
 
 /// The sign of a real number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
