@@ -1,4 +1,4 @@
-//! A geometry by reference: the same predicates, evaluated by one that somebody else owns.
+//! A reference to a geometry is a geometry, too, with the same predicates.
 
 use std::cmp::Ordering;
 

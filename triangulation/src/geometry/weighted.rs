@@ -74,20 +74,21 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
     /// For two points, positive if the lift of `q`, anywhere on the line through them, is below the
     /// line through their lifts. For one, positive if `q`, on the same site, is heavier.
     fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
-        let (a, b) = match *simplex {
-            [a] => return self.compare_weights(q, a).into(),
-            [a, b] => (a, b),
-            _ => return Sign::Negative,
-        };
-        // In lexicographic order, the first has the smaller coordinate on the first axis on which
-        // they differ.
-        let (a, b) = match self.compare(a, b) {
-            Ordering::Less => (a, b),
-            Ordering::Equal => return Sign::Negative,
-            Ordering::Greater => (b, a),
-        };
-        K::sign(&PowerOnLine { points: [*a, *b, *q], along: usize::from(a[0] == b[0]) })
+        match *simplex {
+            [a] => self.compare_weights(q, a).into(),
+            [a, b] => power_on_line::<K, 3>(*a, *b, *q),
+            _ => Sign::Negative,
+        }
     }
+}
+
+/// Returns a positive sign if the lift of `q`, a weighted point on the line through `a` and `b`, is
+/// below the line through their lifts; zero if on it. Negative if `a` and `b` are one site. The
+/// last of the `D` coordinates is the weight.
+pub(super) fn power_on_line<K: Kernel, const D: usize>(a: [f64; D], b: [f64; D], q: [f64; D]) -> Sign {
+    let Some(along) = (0..D - 1).find(|&axis| a[axis] != b[axis]) else { return Sign::Negative };
+    let (a, b) = if a[along] < b[along] { (a, b) } else { (b, a) };
+    K::sign(&PowerOnLine { points: [a, b, q], along })
 }
 
 /// Coordinates for sorting and positions. There is no [`exact_plan`](Coordinates::exact_plan),

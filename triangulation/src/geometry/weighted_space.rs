@@ -2,17 +2,18 @@ use std::cmp::Ordering;
 use std::marker::PhantomData;
 
 use super::space::projection;
+use super::weighted::power_on_line;
 use super::{Coordinates, Geometry, Space, lexicographic};
-use crate::kernel::{Adaptive, Kernel, PowerInPlane, PowerOnLine, PowerTest3};
+use crate::kernel::{Adaptive, Kernel, PowerInPlane, PowerTest3};
 use crate::num::Sign;
 
 /// The geometry of points in space with a weight: `[x, y, z, weight]`, the weight in the square of
 /// the unit of the coordinates.
 ///
-/// A point stands for a sphere of squared radius `weight`. Everything else is as for
-/// [`Weighted`](super::Weighted), one dimension up: orientation and order are those of [`Space`],
-/// and a point is *inside* of the sphere of a simplex if its [lift](PowerTest3) is below the
-/// hyperplane through the lifts of the corners.
+/// Like [`Weighted`](super::Weighted), one dimension up: a point stands for a sphere of squared
+/// radius `weight`, orientation and order are those of [`Space`], and a point is *inside* of the
+/// sphere of a simplex if its [lift](PowerTest3) is below the hyperplane through the lifts of the
+/// corners.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct WeightedSpace<K = Adaptive>(PhantomData<K>);
 
@@ -80,28 +81,18 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
     fn orientation_in_flat(&self, simplex: &[&[f64; 4]]) -> Sign {
         match *simplex {
             [p, q] => self.compare(q, p).into(),
-            [a, b, c] => projection::<K>([a, b, c].map(site)).map_or(Sign::Zero, |(_, sign)| sign),
+            [a, b, c] => self.space().orientation_in_flat(&[a, b, c].map(site).each_ref()),
             _ => Sign::Zero,
         }
     }
 
-    /// As for [`Weighted`](super::Weighted): positive if the lift of `q`, anywhere in the plane or
-    /// on the line of the simplex, is below the flat through the lifts of the corners. For one
-    /// point, positive if `q`, on the same site, is heavier.
+    /// For two or three points, positive if the lift of `q`, anywhere on the line or in the plane
+    /// through them, is below the flat through their lifts. For one, positive if `q`, on the same
+    /// site, is heavier.
     fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 4]], q: &[f64; 4]) -> Sign {
         match *simplex {
             [a] => self.compare_weights(q, a).into(),
-            [a, b] => {
-                let (a, b) = match self.compare(a, b) {
-                    Ordering::Less => (a, b),
-                    Ordering::Equal => return Sign::Negative,
-                    Ordering::Greater => (b, a),
-                };
-                // In lexicographic order, the first has the smaller coordinate on the first axis on
-                // which they differ.
-                let along = (0..2).find(|&axis| a[axis] != b[axis]).unwrap_or(2);
-                K::sign(&PowerOnLine { points: [*a, *b, *q], along })
-            }
+            [a, b] => power_on_line::<K, 4>(*a, *b, *q),
             [a, b, c] => projection::<K>([a, b, c].map(site)).map_or(Sign::Negative, |(axes, turn)| {
                 turn * K::sign(&PowerInPlane { points: [*a, *b, *c, *q], axes })
             }),
