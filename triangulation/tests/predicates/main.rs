@@ -4,11 +4,13 @@
 //! The judge shares nothing with the crate: other numbers (`dashu-ratio`) and other formulas
 //! (determinants of homogeneous coordinates by expansion, circumcenters).
 
-use breakline_triangulation::geometry::{Crossing, Geometry, Plane, Weighted};
+mod weighted;
+
+use breakline_triangulation::geometry::{Crossing, Geometry, Plane};
 use breakline_triangulation::kernel::{
     Adaptive, CompareDistance, ErrorBound, Exact, Expansions, Filter, Fixed, FixedBound, FlooredErrorBound, InCircle,
     InCircleOfPlane, InSphere, Interval, IntervalBound, Kernel, Lattice, OnFineLattice, OnLattice, Orientation2,
-    Orientation3, PairBound, PowerOnLine, PowerTest2, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
+    Orientation3, PairBound, Predicate, RANGE, Scaled, Wide, crossing, twice_area,
 };
 use breakline_triangulation::num::Sign;
 use dashu_ratio::RBig;
@@ -102,53 +104,15 @@ impl Question<3, 5> for InSphere {
     }
 }
 
-impl Question<2, 3> for CompareDistance<2> {
-    fn of(points: [[f64; 2]; 3]) -> Self {
+impl<const D: usize> Question<D, 3> for CompareDistance<D> {
+    fn of(points: [[f64; D]; 3]) -> Self {
         CompareDistance(points)
     }
 
-    fn judge(points: [[f64; 2]; 3]) -> Sign {
+    fn judge(points: [[f64; D]; 3]) -> Sign {
         let [from, p, q] = whole(points);
-        let to = |p: [RBig; 2]| length(&[&p[0] - &from[0], &p[1] - &from[1]]);
+        let to = |p: [RBig; D]| length::<D>(&std::array::from_fn(|k| &p[k] - &from[k]));
         to(p).cmp(&to(q)).into()
-    }
-}
-
-/// Returns the height of a weighted point's lift.
-fn lift(p: &[RBig; 3]) -> RBig {
-    &p[0] * &p[0] + &p[1] * &p[1] - &p[2]
-}
-
-/// Weights are areas, so that a unit of the coordinates is not one of the weights.
-impl Question<3, 4> for PowerTest2 {
-    fn of(points: [[f64; 3]; 4]) -> Self {
-        PowerTest2(points)
-    }
-
-    fn judge(points: [[f64; 3]; 4]) -> Sign {
-        let row = |p: [RBig; 3]| {
-            let lift = lift(&p);
-            let [x, y, _] = p;
-            vec![x, y, lift, RBig::ONE]
-        };
-        sign(&determinant(&points.map(|p| row(p.map(rational)))))
-    }
-}
-
-/// Orders points on a line: the first comes before the second on the axis on which these are
-/// further apart.
-impl Question<3, 3> for PowerOnLine<3> {
-    fn of(points: [[f64; 3]; 3]) -> Self {
-        let along = usize::from(points[0][0] == points[1][0]);
-        PowerOnLine { points, along }
-    }
-
-    /// Returns true if the lift of the third point is to the right of the line from the lift of the
-    /// first to that of the second.
-    fn judge(points: [[f64; 3]; 3]) -> Sign {
-        let PowerOnLine { along, .. } = Self::of(points);
-        let row = |p: [RBig; 3]| vec![p[along].clone(), lift(&p), RBig::ONE];
-        -sign(&determinant(&points.map(|p| row(p.map(rational)))))
     }
 }
 
@@ -193,29 +157,33 @@ fn certain<F: Filter, P: Predicate>(predicate: &P, expected: Sign, context: &imp
 impl Tally {
     /// Evaluates every kernel and every filter.
     fn ask<P: Question<D, N>, const D: usize, const N: usize>(&mut self, points: [[f64; D]; N]) {
-        let (predicate, expected) = (P::of(points), P::judge(points));
+        self.compare(&P::of(points), P::judge(points), &points);
+    }
+
+    /// Compares every kernel and every filter with the expected sign.
+    fn compare<P: Predicate>(&mut self, predicate: &P, expected: Sign, context: &impl std::fmt::Debug) {
         self.asked += 1;
         self.ties += usize::from(expected == Sign::Zero);
-        assert_eq!(Exact::sign(&predicate), expected, "{points:?}");
-        assert_eq!(Wide::sign(&predicate), expected, "{points:?}");
-        right::<Adaptive, P>(&predicate, expected, &points);
-        right::<Expansions, P>(&predicate, expected, &points);
-        right::<Interval, P>(&predicate, expected, &points);
-        right::<Lattice, P>(&predicate, expected, &points);
-        right::<Fixed<31>, P>(&predicate, expected, &points);
-        right::<Fixed<52>, P>(&predicate, expected, &points);
-        self.fixed += right::<Fixed, P>(&predicate, expected, &points);
-        self.by_error_bound += certain::<ErrorBound, P>(&predicate, expected, &points);
-        self.by_floored += certain::<FlooredErrorBound, P>(&predicate, expected, &points);
-        self.by_interval += certain::<IntervalBound, P>(&predicate, expected, &points);
-        let by_pairs = certain::<PairBound, P>(&predicate, expected, &points);
+        assert_eq!(Exact::sign(predicate), expected, "{context:?}");
+        assert_eq!(Wide::sign(predicate), expected, "{context:?}");
+        right::<Adaptive, P>(predicate, expected, context);
+        right::<Expansions, P>(predicate, expected, context);
+        right::<Interval, P>(predicate, expected, context);
+        right::<Lattice, P>(predicate, expected, context);
+        right::<Fixed<31>, P>(predicate, expected, context);
+        right::<Fixed<52>, P>(predicate, expected, context);
+        self.fixed += right::<Fixed, P>(predicate, expected, context);
+        self.by_error_bound += certain::<ErrorBound, P>(predicate, expected, context);
+        self.by_floored += certain::<FlooredErrorBound, P>(predicate, expected, context);
+        self.by_interval += certain::<IntervalBound, P>(predicate, expected, context);
+        let by_pairs = certain::<PairBound, P>(predicate, expected, context);
         self.by_pairs += by_pairs;
         let is_tie = expected == Sign::Zero;
-        self.not_by_pairs += usize::from(!is_tie && by_pairs == 0 && coordinates(&predicate).all(|x| RANGE.admits(x)));
-        self.by_fixed += certain::<FixedBound<24>, P>(&predicate, expected, &points);
-        self.scaled += certain::<Scaled<Adaptive>, P>(&predicate, expected, &points);
-        self.on_lattice += certain::<OnLattice, P>(&predicate, expected, &points);
-        self.on_fine_lattice += certain::<OnFineLattice, P>(&predicate, expected, &points);
+        self.not_by_pairs += usize::from(!is_tie && by_pairs == 0 && coordinates(predicate).all(|x| RANGE.admits(x)));
+        self.by_fixed += certain::<FixedBound<24>, P>(predicate, expected, context);
+        self.scaled += certain::<Scaled<Adaptive>, P>(predicate, expected, context);
+        self.on_lattice += certain::<OnLattice, P>(predicate, expected, context);
+        self.on_fine_lattice += certain::<OnFineLattice, P>(predicate, expected, context);
     }
 }
 
@@ -484,8 +452,8 @@ fn circles_in_planes_in_space() {
         length(&minus(&a, &center)).cmp(&length(&minus(&d, &center))).into()
     };
     let mut random = Random(14);
-    let (mut asked, mut ties) = (0, 0);
-    while asked < 4000 {
+    let mut tally = Tally::default();
+    while tally.asked < 4000 {
         let side = random.pick(&[2, 3, 300]);
         let unit = random.pick(&[1.0, 0.25, 2f64.powi(150), 2f64.powi(-150)]);
         let mut vector = |side: i64| [(); 3].map(|()| random.around(side));
@@ -500,127 +468,11 @@ fn circles_in_planes_in_space() {
             if turn == Sign::Zero {
                 continue;
             }
-            asked += 1;
-            let expected = turn * judge(points);
-            ties += usize::from(expected == Sign::Zero);
             let predicate = InCircleOfPlane { points, axes };
-            right::<Exact, _>(&predicate, expected, &predicate);
-            right::<Adaptive, _>(&predicate, expected, &predicate);
-            right::<Expansions, _>(&predicate, expected, &predicate);
-            right::<Wide, _>(&predicate, expected, &predicate);
-            right::<Interval, _>(&predicate, expected, &predicate);
-            right::<Fixed, _>(&predicate, expected, &predicate);
-            certain::<IntervalBound, _>(&predicate, expected, &predicate);
-            certain::<ErrorBound, _>(&predicate, expected, &predicate);
-            certain::<PairBound, _>(&predicate, expected, &predicate);
-            certain::<OnLattice, _>(&predicate, expected, &predicate);
-            certain::<OnFineLattice, _>(&predicate, expected, &predicate);
+            tally.compare(&predicate, turn * judge(points), &predicate);
         }
     }
-    assert!(ties > 100, "only {ties} ties");
-}
-
-/// Small grids, where ties are the rule, near zero and far from it, with weights of either sign.
-#[test]
-fn weighted_points() {
-    let mut random = Random(20);
-    let mut tallies: [Tally; 2] = Default::default();
-    for round in 0..6000 {
-        let side = random.pick(&[1, 2, 3, 300]);
-        let unit = random.pick(&[1.0, 0.25, 2f64.powi(9), 2f64.powi(-60), 2f64.powi(60)]);
-        let heaviest = random.pick(&[0, 1, 2, side * side]);
-        let origin = random.pick(&[0.0, 0.0, 1000.0, 2f64.powi(22)]);
-        let weight = |random: &mut Random| unit * unit * random.around(heaviest) as f64;
-        let [plane, line] = &mut tallies;
-        plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| {
-            let [x, y] = [(); 2].map(|()| unit * (origin + random.around(side) as f64));
-            [x, y, weight(&mut random)]
-        }));
-        // Along a line that is vertical, or is not.
-        let direction = if round % 3 == 0 { [0, 1] } else { [1 + random.below(2) as i64, random.around(3)] };
-        let mut steps = [(); 3].map(|()| random.around(side));
-        (steps[0], steps[1]) = (steps[0].min(steps[1]), steps[0].max(steps[1]) + 1);
-        line.ask::<PowerOnLine<3>, 3, 3>(steps.map(|step| {
-            let [x, y] = direction.map(|w| unit * (origin + (step * w) as f64));
-            [x, y, weight(&mut random)]
-        }));
-    }
-    assert!(tallies.iter().all(|tally| tally.ties > 300 && tally.fixed > 1000), "{tallies:?}");
-}
-
-/// Lifts on a common plane, or a rounding above or below it.
-#[test]
-fn weights_a_rounding_off() {
-    let mut random = Random(21);
-    let mut tally = Tally::default();
-    for round in 0..3000 {
-        let offset = [0.0, 1.0, 4_649_000.12][round % 3];
-        let size = random.pick(&[0.01, 1.0, 1000.0]);
-        let [s, t] = [random.unit(), random.unit()];
-        tally.ask::<PowerTest2, 3, 4>([(); 4].map(|()| {
-            let [x, y] = [(); 2].map(|()| offset + size * random.unit());
-            let (u, v) = (x - offset, y - offset);
-            [x, y, ulps(u * u + v * v - s * u - t * v, random.around(1))]
-        }));
-    }
-    assert!(10 * tally.by_error_bound < 9 * tally.asked, "{tally:?}");
-}
-
-/// From one end of the range, and of all finite numbers, to the other.
-#[test]
-fn weights_of_every_size() {
-    let (min, max) = (RANGE.min, RANGE.max);
-    let step = min * f64::EPSILON;
-    let within = [0.0, step, 3.0 * step, min, min.next_up(), 2.0 * min, 1.0, max.next_down(), max];
-    let finite = [0.0, 5e-324, 1e-310, f64::MIN_POSITIVE, 1e-160, 1.0, 3.0, 1e150, 1e300, f64::MAX];
-    let mut random = Random(22);
-    let mut tallies: [Tally; 2] = Default::default();
-    for round in 0..1500 {
-        let pool = if round % 3 == 0 { &finite[..] } else { &within[..] };
-        let mut any = || random.pick(pool) * random.pick(&[-1.0, 1.0]);
-        let [plane, line] = &mut tallies;
-        plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| [(); 3].map(|()| any())));
-        // On the diagonal, and vertical.
-        let [a, b, x] = [any(), any(), any()];
-        for upright in [false, true] {
-            line.ask::<PowerOnLine<3>, 3, 3>(
-                [a.min(b), a.max(b), any()].map(|t| if upright { [x, t, any()] } else { [t, t, any()] }),
-            );
-        }
-        let mut any_within = || {
-            let exponent = random.around(180) + 20;
-            (random.unit() + 1.0) * 2f64.powi(exponent as i32).clamp(min, max / 2.0) * random.pick(&[-1.0, 1.0])
-        };
-        plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| [(); 3].map(|()| any_within())));
-    }
-    assert!(tallies.iter().all(|tally| tally.by_interval > 100), "{tallies:?}");
-}
-
-/// Without weights the power test is the in-circle test, and on a line it is betweenness.
-#[test]
-fn equal_weights_do_not_count() {
-    let mut random = Random(23);
-    let (plane, weighted) = (Plane::<Adaptive>::default(), Weighted::<Adaptive>::default());
-    for _ in 0..3000 {
-        let weight = random.around(100) as f64;
-        let points = [(); 4].map(|()| [(); 2].map(|()| random.around(3) as f64));
-        let heavy = points.map(|[x, y]| [x, y, weight]);
-        let ([a, b, c, d], [p, q, r, s]) = (points.each_ref(), heavy.each_ref());
-        assert_eq!(weighted.side_of_sphere([p, q, r], s), plane.side_of_sphere([a, b, c], d), "{points:?}");
-        if plane.orientation([a, b, c]) == Sign::Zero {
-            let between = plane.side_of_sphere_in_flat(&[a, b], c);
-            assert!(a == b || weighted.side_of_sphere_in_flat(&[p, q], r) == between, "{points:?}");
-        }
-    }
-    let [low, middle, high] = [[0.0, 0.0, 0.0], [1.0, 1.0, -3.0], [4.0, 4.0, 0.0]];
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&high, &low], &middle), Sign::Positive);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -6.0]), Sign::Zero);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -7.0]), Sign::Negative);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[-1.0, -1.0, 11.0]), Sign::Positive);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 1.0]), Sign::Positive, "on one site");
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, -1.0]), Sign::Negative, "on one site");
-    assert!(weighted.compare_weights(&low, &middle).is_gt() && weighted.compare(&low, &[0.0, 0.0, 9.0]).is_eq());
-    assert!(!weighted.admits(&[0.0, 0.0, f64::NAN]) && !weighted.admits(&[0.0, 0.0, 1e300]));
+    assert!(tally.ties > 100, "{tally:?}");
 }
 
 /// Pairs of segments that cross, mostly at angles of a few roundings.
