@@ -22,7 +22,8 @@ const SOURCES: [&str; 9] = [
     "triangulation/benches",
 ];
 
-/// Where pages lie. Decisions tell of what was, in the words of their time; the changelog as well.
+/// The pages that are judged. Decisions and the changelog are not: they describe earlier states, in
+/// the words of their time.
 const PAGES: [&str; 5] = ["README.md", "docs", "triangulation/README.md", "triangulation/docs", "fixtures"];
 
 /// The widest comment, indentation included.
