@@ -7,7 +7,7 @@ use breakline_triangulation::geometry::{Coordinates, Crossing, Geometry, Plane};
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing};
 
-/// Points with coordinates below 2^21, so that no determinant exceeds 127 bits.
+/// Points with coordinates below 2^21, so that in-circle determinants stay below 2^92.
 struct Small;
 
 fn minus(p: [i32; 2], q: [i32; 2]) -> [i128; 2] {

@@ -145,7 +145,8 @@ pub trait Geometry<const N: usize> {
     /// span.
     ///
     /// For two points it is their order. For three (with `N = 4` only) it is their turn in the
-    /// plane, seen from a side that is fixed for the plane. Zero if they span less.
+    /// plane, seen from a side that is fixed for the plane. Zero if they span less. The default is
+    /// for `N = 3`: a geometry of space overrides it.
     fn orientation_in_flat(&self, simplex: &[&Self::Point]) -> Sign {
         match simplex {
             [p, q] => self.compare(q, p).into(),
@@ -158,8 +159,8 @@ pub trait Geometry<const N: usize> {
     ///
     /// For two points, inside means between them. A single point is only asked about for weighted
     /// points: `q` is then on the same site, and inside if its weight is larger. The default is
-    /// for points without weights: on one site, none is inside of another. A geometry with weights
-    /// overrides it.
+    /// for `N = 3` and points without weights: on one site, none is inside of another. A geometry
+    /// of space, or one with weights, overrides it.
     fn side_of_sphere_in_flat(&self, simplex: &[&Self::Point], q: &Self::Point) -> Sign {
         match simplex {
             [_] => Sign::Zero,
