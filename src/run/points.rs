@@ -108,8 +108,9 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     let restated = |((info, &number), path): ((PointInfo, &Option<usize>), &PathBuf)| {
         restated(info, &plan, number).map_err(|e| e.in_file(path))
     };
-    let infos: Vec<PointInfo> =
+    let mut infos: Vec<PointInfo> =
         infos.into_iter().zip(of_points).zip(&request.files).map(restated).collect::<Result<_>>()?;
+    share_lattice(&mut infos, of_points);
     let all: Vec<&PointInfo> = infos.iter().collect();
     let mut report = PointsReport::default();
     let mut sink = points::create(target, &all, request.rounding)?;
@@ -210,7 +211,8 @@ fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {
 }
 
 /// Returns what a sink is to be given of a source: the coordinate system of the result and, if the
-/// points are reprojected, a lattice for them.
+/// points are reprojected, a lattice for them. A source without points keeps its lattice, because the
+/// extent in its header means nothing.
 fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<PointInfo> {
     info.crs.clone_from(&plan.crs);
     let Some(head) = &mut info.head else { return Ok(info) };
@@ -218,6 +220,7 @@ fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<P
         las::state_system(head, crs)?;
     }
     if number.is_some()
+        && info.count != Some(0)
         && let Some(lattice) = &mut info.lattice
     {
         let bounds = info.bounds.ok_or_else(|| {
@@ -227,6 +230,17 @@ fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<P
         *lattice = lattice::reprojected(lattice, &bounds, |points| plan.transforms.apply(number, points))?;
     }
     Ok(info)
+}
+
+/// Gives reprojected sources without points the lattice of the first source that has points: their
+/// own belongs to another coordinate system, and must not restrict that of the output.
+fn share_lattice(infos: &mut [PointInfo], numbers: &[Option<usize>]) {
+    let Some(lattice) = infos.iter().find(|info| info.count != Some(0)).map(|info| info.lattice) else { return };
+    for (info, number) in infos.iter_mut().zip(numbers) {
+        if info.head.is_some() && info.count == Some(0) && number.is_some() {
+            info.lattice = lattice;
+        }
+    }
 }
 
 #[cold]

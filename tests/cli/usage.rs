@@ -309,6 +309,26 @@ fn points_are_assigned_a_system() {
     run("points b.las --t-srs EPSG:25832 -o f.las").fails(1, &["b.las: the file states no coordinate system"]);
 }
 
+#[cfg(feature = "proj")]
+#[test]
+fn a_file_without_points_does_not_prevent_reprojecting_the_others() {
+    let folder = folder_with(&[]);
+    let write = |name: &str, file: &[u8]| std::fs::write(folder.path().join(name), file).unwrap();
+    write("a.las", &las(&tile([500_000.0, 5_000_000.0], 2), Some(25832)));
+    // The extent in the header is no box, or zero: neither is where points could be.
+    let mut empty = las(&[], Some(25832));
+    write("no-box.las", &empty);
+    empty[179..227].fill(0);
+    write("zero.las", &empty);
+    let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
+    run("points a.las --t-srs EPSG:25833 -o alone.las").works(&["points      16 points of 16"]);
+    for inputs in ["no-box.las a.las", "a.las no-box.las", "zero.las a.las", "a.las zero.las no-box.las"] {
+        run(&format!("points {inputs} --t-srs EPSG:25833 -o all.las --overwrite")).works(&["16 points of 16"]);
+        assert!(super::bytes(&folder, "all.las") == super::bytes(&folder, "alone.las"), "{inputs}");
+    }
+    run("points zero.las --t-srs EPSG:25833 -o none.las").fails(1, &["no points in the input"]);
+}
+
 #[test]
 fn a_raster_is_no_input_of_tin_or_dem() {
     let folder = folder_with(&[("d.tif", "II*\0"), ("a.xyz", SLOPE)]);
