@@ -1,0 +1,234 @@
+//! What is known of a format: how it is recognized, what it can contain, and its functions.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::crs::Crs;
+use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
+use crate::error::Result;
+use crate::io::contour_summary::ContourSummary;
+use crate::io::geotiff::{GeoTiffReader, RasterSummary};
+use crate::io::las::{Detail, Rounding};
+use crate::io::listing::Listing;
+use crate::io::mapped::Mapped;
+use crate::io::output::Destination;
+use crate::io::point_options::Options;
+use crate::io::stl::Solid;
+use crate::io::triangle::Triangulated;
+use crate::io::watch::Watch;
+
+/// The kind of data that a file is read as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Content {
+    /// Points.
+    Points,
+    /// Lines, polygons and points of a vector layer.
+    Layer,
+    /// Heights in cells.
+    Raster,
+    /// Triangles.
+    Mesh,
+    /// Shades in cells, but no heights.
+    Picture,
+    /// Points and segments in the plane, or part of their triangulation.
+    Plane,
+}
+
+/// The kinds of data that a format can store.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Holding {
+    /// Points with heights.
+    Points,
+    /// Lines.
+    Lines,
+    /// Polygons.
+    Polygons,
+    /// Raster cells.
+    Raster,
+    /// Triangles.
+    Mesh,
+    /// Attributes of lidar points: classes, returns, times and so on.
+    Attributes,
+    /// Marks for the triangle edges that lie on breaklines.
+    Edges,
+    /// A coordinate system, in the file itself or in a file next to it.
+    Crs,
+    /// Compressed data.
+    Compression,
+}
+
+/// The products that can be written to a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Product {
+    /// Points; from LAS with all attributes that they have there.
+    Points,
+    /// A surface, as a mesh.
+    Surface,
+    /// Contours.
+    Contours,
+    /// Heights in cells.
+    Heights,
+    /// Shades in cells.
+    Shades,
+    /// Points and segments in the plane, and their triangulation.
+    Plane,
+}
+
+/// How the format of a file is recognized.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum KnownBy {
+    /// By its first bytes, whatever its name; by its extension if the first bytes differ.
+    Bytes,
+    /// By its extension; by its first bytes if no format has that extension.
+    Name,
+    /// By its extension. The first bytes only serve to name the format in messages, since other
+    /// formats start with the same bytes.
+    NameAlone,
+    /// By its extension and first bytes together, since other formats share the extension.
+    NameAndBytes,
+    /// By neither: the format of files that match no other.
+    Rest,
+}
+
+/// Magic bytes of a format.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Magic {
+    /// These bytes, at this offset.
+    At(usize, &'static [u8]),
+    /// This word, in any case.
+    Word(&'static str),
+}
+
+impl Magic {
+    fn matches(self, head: &[u8]) -> bool {
+        match self {
+            Magic::At(at, bytes) => head.get(at..).is_some_and(|rest| rest.starts_with(bytes)),
+            Magic::Word(word) => {
+                head.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
+            }
+        }
+    }
+}
+
+type Points = Result<Box<dyn PointSource + Send>>;
+
+/// The function that reads a format.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::io) enum Reader {
+    Points {
+        file: fn(&Path, Options) -> Points,
+        /// Reads input that can be read only once; messages show the path as its name.
+        stream: fn(Box<dyn Read + Send>, &Path, Options) -> Points,
+    },
+    Layer(fn(&Path, Option<&str>, Watch) -> Result<Layer>),
+    Raster(fn(&Path) -> Result<GeoTiffReader>),
+    Mesh(fn(&Path, Watch) -> Result<Triangles>),
+    /// A TIN, which is not read, but used where its bytes are.
+    Tin(fn(&Path) -> Result<Mapped>),
+    /// Triangles without exact coordinates: counted, but not read.
+    Solid(fn(&Path) -> Result<Solid>),
+    /// Points and segments of the plane, see [`triangle::read`](crate::io::triangle::read).
+    Own,
+    /// Not read, but `info` describes it.
+    InfoOnly,
+    /// Read by GDAL, in a build with the feature `gdal`.
+    Gdal,
+    /// Not read at all.
+    Unread,
+}
+
+/// A local origin: what was subtracted from all coordinates, and the file that states it.
+pub(in crate::io) type Origin = Option<([f64; 3], PathBuf)>;
+
+pub(super) type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Origin>;
+type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
+type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
+type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
+type WriteContours = fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
+
+pub(super) type Sink<'a> = Result<Box<dyn PointSink + 'a>>;
+
+/// The functions that write points.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::io) struct PointWriter {
+    /// The detail that must be read of the points to be written.
+    pub(in crate::io) detail: Detail,
+    pub(in crate::io) create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
+}
+
+/// The functions that write each product; `None` if the format does not support it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::io) struct Writers {
+    pub(in crate::io) points: Option<PointWriter>,
+    pub(in crate::io) surface: Option<WriteSurface>,
+    pub(in crate::io) contours: Option<WriteContours>,
+    /// Returns an error if contours with this many vertices are too large for the format.
+    pub(in crate::io) check_size: Option<fn(u64) -> Result<()>>,
+    pub(in crate::io) heights: Option<WriteHeights>,
+    pub(in crate::io) shades: Option<WriteShades>,
+    /// Writes several files together, see [`triangle::write`](crate::io::triangle::write).
+    pub(in crate::io) plane: Option<WritePlane>,
+}
+
+/// A file format; [`FORMATS`](super::FORMATS) lists them all.
+#[derive(Debug)]
+pub struct Format {
+    /// The name of the format in lists: "GeoTIFF".
+    pub name: &'static str,
+    /// What a sentence calls a file of this format: "a TIFF file".
+    pub noun: &'static str,
+    /// Extensions in lower case without the dot, the most common one first.
+    pub extensions: &'static [&'static str],
+    pub(super) magic: &'static [Magic],
+    pub(super) known_by: KnownBy,
+    /// The kind of data that a file is read as.
+    pub content: Content,
+    /// The kinds of data that a file can contain.
+    pub holds: &'static [Holding],
+    /// Extensions of the files written along with it. If one starts with the format's own
+    /// extension, the rest is appended to the whole file name.
+    pub beside: &'static [&'static str],
+    /// Extensions of files that belong to a file of this format, whichever program wrote them.
+    pub parts: &'static [&'static str],
+    /// GDAL's name for the format, if breakline writes it.
+    pub gdal_name: Option<&'static str>,
+    pub(in crate::io) reader: Reader,
+    pub(in crate::io) writers: Writers,
+    /// What to do with such a file where points are expected.
+    pub(in crate::io) cure: &'static str,
+    /// What is read or written in this format, in one line.
+    pub help: &'static str,
+}
+
+impl Format {
+    /// Returns true if a file of this format can contain `holding`.
+    pub fn can_hold(&self, holding: Holding) -> bool {
+        self.holds.contains(&holding)
+    }
+
+    /// Returns true if `product` can be written in this format.
+    pub fn writes(&self, product: Product) -> bool {
+        match product {
+            Product::Points => self.writers.points.is_some(),
+            Product::Surface => self.writers.surface.is_some(),
+            Product::Contours => self.writers.contours.is_some(),
+            Product::Heights => self.writers.heights.is_some(),
+            Product::Shades => self.writers.shades.is_some(),
+            Product::Plane => self.writers.plane.is_some(),
+        }
+    }
+
+    /// Returns true if the format is read without GDAL.
+    pub fn is_read(&self) -> bool {
+        !matches!(self.reader, Reader::Gdal | Reader::Unread)
+    }
+
+    pub(super) fn has_extension(&self, path: &Path) -> bool {
+        let extension = path.extension().unwrap_or_default();
+        self.extensions.iter().any(|known| extension.eq_ignore_ascii_case(known))
+    }
+
+    pub(super) fn begins_like(&self, head: &[u8]) -> bool {
+        self.magic.iter().any(|magic| magic.matches(head))
+    }
+}

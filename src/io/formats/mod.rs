@@ -1,0 +1,186 @@
+//! The file formats: how each is recognized, what it can contain, and which functions read and
+//! write it.
+//!
+//! [`FORMATS`] is the only table of formats. The readers that accept any format, the verbs' lists
+//! of outputs, the help of the program and the table in `docs/formats.md` are derived from it. To
+//! add a format, add a row to `table.rs` and a file or folder next to this one; see
+//! `docs/how-to-add-a-format.md`.
+
+mod format;
+mod table;
+
+use std::fmt::Write;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use self::format::KnownBy;
+pub use self::format::{Content, Format, Holding, Product};
+pub(super) use self::format::{PointWriter, Reader, Writers};
+pub use self::table::FORMATS;
+pub(super) use self::table::WITH_GDAL;
+use crate::error::{Error, Result};
+
+/// Returns the format for writing a product, by the extension of the target.
+pub fn for_output(path: &Path, product: Product) -> Option<&'static Format> {
+    FORMATS.iter().find(|format| format.writes(product) && format.has_extension(path))
+}
+
+/// Number of bytes that suffice to recognize a file.
+pub(super) const HEAD: usize = 1024;
+
+/// Returns the format that a file's extension names, whether it can be read or not. Formats that
+/// share their extension with another are not returned.
+pub fn of_name(path: &Path) -> Option<&'static Format> {
+    FORMATS
+        .iter()
+        .find(|format| !matches!(format.known_by, KnownBy::Rest | KnownBy::NameAndBytes) && format.has_extension(path))
+}
+
+/// Returns the format that a file is to be read as, by its first bytes (1024 are enough) and its
+/// name.
+///
+/// Returns `None` for a binary file whose first bytes are unknown, and for a format whose first
+/// bytes only serve to name it.
+pub fn detect(head: &[u8], path: &Path) -> Option<&'static Format> {
+    let find = |rule: KnownBy, matches: &dyn Fn(&Format) -> bool| {
+        FORMATS.iter().find(|format| format.known_by == rule && matches(format))
+    };
+    find(KnownBy::Bytes, &|format| format.begins_like(head))
+        .or_else(|| find(KnownBy::NameAndBytes, &|format| format.has_extension(path) && format.begins_like(head)))
+        .or_else(|| of_name(path))
+        .or_else(|| find(KnownBy::Name, &|format| format.begins_like(head)))
+        .or_else(|| find(KnownBy::Rest, &|_| !is_binary(head) && of_bytes(head).is_none()))
+}
+
+/// Like [`detect`], but opens the file. Input that cannot be read twice (a pipe) is recognized by
+/// its name only.
+///
+/// # Errors
+/// If the file cannot be opened.
+pub fn detect_file(path: &Path) -> Result<Option<&'static Format>> {
+    let read = || -> std::io::Result<Vec<u8>> {
+        let file = File::open(path)?;
+        let mut head = Vec::new();
+        if file.metadata()?.is_file() {
+            file.take(HEAD as u64).read_to_end(&mut head)?;
+        }
+        Ok(head)
+    };
+    let head = read().map_err(|error| Error::from(error).in_file(path))?;
+    Ok(detect(&head, path))
+}
+
+/// Returns the format that matches the first bytes, even if they alone do not decide.
+pub(super) fn of_bytes(head: &[u8]) -> Option<&'static Format> {
+    FORMATS.iter().find(|format| format.begins_like(head))
+}
+
+/// Returns the format that the first bytes or the name suggest, for use in a message.
+pub(super) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
+    of_bytes(head).or_else(|| of_name(path))
+}
+
+/// Returns the format of the layer that a file is only part of, and the extension that shows it,
+/// such as `.dbf`.
+pub(super) fn format_of_part(path: &Path) -> Option<(&'static Format, &'static str)> {
+    let extension = path.extension()?;
+    FORMATS.iter().filter(|format| matches!(format.reader, Reader::Layer(_))).find_map(|format| {
+        let part = format.parts.iter().find(|part| extension.eq_ignore_ascii_case(part))?;
+        Some((format, *part))
+    })
+}
+
+/// Returns true if the bytes are not text. UTF-16 contains zeros too; the text reader refuses it by
+/// name.
+fn is_binary(head: &[u8]) -> bool {
+    let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
+    head.contains(&0) && !is_utf16
+}
+
+/// Returns the extensions in which a product can be written.
+pub fn extensions(product: Product) -> Vec<&'static str> {
+    FORMATS.iter().filter(|format| format.writes(product)).flat_map(|format| format.extensions).copied().collect()
+}
+
+/// Returns the extensions in which a product can be written, for a sentence: ".shp, .geojson or
+/// .json".
+pub(super) fn extensions_or(product: Product) -> String {
+    let all: Vec<String> = extensions(product).iter().map(|extension| format!(".{extension}")).collect();
+    match &all[..] {
+        [most @ .., last] if !most.is_empty() => format!("{} or {last}", most.join(", ")),
+        _ => all.join(", "),
+    }
+}
+
+impl Holding {
+    const fn name(self) -> &'static str {
+        match self {
+            Holding::Points => "points",
+            Holding::Lines => "lines",
+            Holding::Polygons => "polygons",
+            Holding::Raster => "cells",
+            Holding::Mesh => "triangles",
+            Holding::Attributes => "attributes",
+            Holding::Edges => "edges on breaklines",
+            Holding::Crs => "coordinate system",
+            Holding::Compression => "compressed",
+        }
+    }
+}
+
+impl Product {
+    const ALL: [Product; 6] =
+        [Product::Points, Product::Surface, Product::Contours, Product::Heights, Product::Shades, Product::Plane];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Product::Points => "points",
+            Product::Surface => "surface",
+            Product::Contours => "contours",
+            Product::Heights => "heights",
+            Product::Shades => "hillshade",
+            Product::Plane => "triangulation",
+        }
+    }
+}
+
+impl Reader {
+    const fn name(self) -> &'static str {
+        match self {
+            Reader::Points { .. } => "points",
+            Reader::Layer(_) => "lines, polygons, points",
+            Reader::Raster(_) => "heights",
+            Reader::Mesh(_) | Reader::Tin(_) => "surface",
+            Reader::Own => "points and segments",
+            Reader::Solid(_) | Reader::InfoOnly => "by `info` only",
+            Reader::Gdal => "with `gdal`",
+            Reader::Unread => "",
+        }
+    }
+}
+
+/// Returns the formats that this crate reads or writes, one per line, for the help of the program.
+pub fn help() -> String {
+    let mut text = String::from("Formats, by extension (more are read with the feature `gdal`):\n");
+    for format in FORMATS.iter().filter(|format| format.is_read()) {
+        let extensions: Vec<String> = format.extensions.iter().map(|extension| format!(".{extension}")).collect();
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "  {:<28} {}", extensions.join(" "), format.help);
+    }
+    text
+}
+
+/// Returns the table of formats in `docs/formats.md`, in Markdown.
+pub fn markdown() -> String {
+    let mut text = String::from("| format | extensions | read | written | can hold |\n|---|---|---|---|---|\n");
+    for format in FORMATS.iter().filter(|format| !format.extensions.is_empty()) {
+        let extensions: Vec<String> = format.extensions.iter().map(|extension| format!("`.{extension}`")).collect();
+        let written: Vec<_> =
+            Product::ALL.into_iter().filter(|&product| format.writes(product)).map(Product::name).collect();
+        let holds: Vec<_> = format.holds.iter().map(|holding| holding.name()).collect();
+        let cells = [format.name, &extensions.join(", "), format.reader.name(), &written.join(", "), &holds.join(", ")];
+        let _ = writeln!(text, "| {} |", cells.join(" | ").replace("|  |", "| |"));
+    }
+    text
+}

@@ -1,0 +1,403 @@
+//! The table of formats. Most rows override a few fields of another row: of [`ROW`], or of one that
+//! [`raster`], [`vector`] or [`plane`] returns.
+
+use super::format::{Content, Format, Holding, KnownBy, Magic, PointWriter, Reader, Sink, WriteSurface, Writers};
+use crate::data::PointInfo;
+use crate::io::geotiff::CellFormat;
+use crate::io::las::{Detail, Packing, Rounding};
+use crate::io::output::Destination;
+use crate::io::watch::bytes_of;
+use crate::io::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, text, tin, triangle};
+
+const NOT_WRITTEN: Writers =
+    Writers { points: None, surface: None, contours: None, check_size: None, heights: None, shades: None, plane: None };
+
+pub(in crate::io) const WITH_GDAL: &str =
+    "build with the feature `gdal` to read it: cargo build --release --features gdal";
+const AS_RASTER: &str = "this is a raster: points are expected here";
+const AS_PLANE: &str = "`breakline triangulate` reads it and writes its triangulation, to .ele, .ply or .obj";
+const AS_MESH: &str = "save its vertices as text or LAS";
+const UNPACK: &str = "unpack it";
+
+/// A format that only GDAL may read; rows of the table override what differs.
+const ROW: Format = Format {
+    name: "",
+    noun: "",
+    extensions: &[],
+    magic: &[],
+    known_by: KnownBy::NameAlone,
+    content: Content::Points,
+    holds: &[],
+    beside: &[],
+    parts: &[],
+    gdal_name: None,
+    reader: Reader::Gdal,
+    writers: NOT_WRITTEN,
+    cure: WITH_GDAL,
+    help: "",
+};
+
+const LIDAR: Reader = Reader::Points {
+    file: |path, options| Ok(Box::new(las::open_with(path, options.las())?)),
+    stream: |stream, name, options| Ok(Box::new(las::from_stream_with(stream, name, options.las())?)),
+};
+
+const TEXT: Reader = Reader::Points {
+    file: |path, options| Ok(Box::new(text::open(path, options.columns)?)),
+    stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options.columns)?)),
+};
+
+const fn lidar_writer(create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>) -> Writers {
+    Writers { points: Some(PointWriter { detail: Detail::Records, create }), ..NOT_WRITTEN }
+}
+
+const fn surface_writer(write: WriteSurface) -> Writers {
+    Writers { surface: Some(write), ..NOT_WRITTEN }
+}
+
+const fn raster(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    magic: &'static [Magic],
+) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        magic,
+        content: Content::Raster,
+        holds: &[Holding::Raster],
+        cure: AS_RASTER,
+        ..ROW
+    }
+}
+
+const fn vector(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    magic: &'static [Magic],
+) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        magic,
+        content: Content::Layer,
+        holds: &[Holding::Points, Holding::Lines, Holding::Polygons],
+        ..ROW
+    }
+}
+
+/// Returns the row for one of Triangle's files.
+const fn plane(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    help: &'static str,
+) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        content: Content::Plane,
+        reader: Reader::Own,
+        writers: Writers { plane: Some(triangle::write), ..NOT_WRITTEN },
+        cure: AS_PLANE,
+        help,
+        ..ROW
+    }
+}
+
+/// All formats, in the order in which lists show them.
+pub static FORMATS: &[Format] = &[
+    Format {
+        name: "LAS",
+        noun: "a LAS file",
+        extensions: &["las"],
+        magic: &[Magic::At(0, b"LASF")],
+        known_by: KnownBy::Bytes,
+        holds: &[Holding::Points, Holding::Attributes, Holding::Crs],
+        reader: LIDAR,
+        writers: lidar_writer(|target, sources, rounding| {
+            Ok(Box::new(las::create(target, sources, Packing::Plain, rounding)?))
+        }),
+        help: "lidar points",
+        ..ROW
+    },
+    Format {
+        name: "LAZ, COPC",
+        noun: "a LAZ file",
+        extensions: &["laz"],
+        magic: &[Magic::At(0, b"LASF")],
+        known_by: KnownBy::Bytes,
+        holds: &[Holding::Points, Holding::Attributes, Holding::Crs, Holding::Compression],
+        reader: LIDAR,
+        writers: lidar_writer(|target, sources, rounding| {
+            Ok(Box::new(las::create(target, sources, Packing::Compressed, rounding)?))
+        }),
+        help: "lidar points, compressed",
+        ..ROW
+    },
+    Format {
+        name: "text",
+        noun: "a text file",
+        extensions: &["xyz", "txt", "csv"],
+        known_by: KnownBy::Rest,
+        holds: &[Holding::Points],
+        reader: TEXT,
+        writers: Writers {
+            points: Some(PointWriter {
+                detail: Detail::Columns,
+                create: |target, sources, _| Ok(Box::new(text::create(target, sources)?)),
+            }),
+            ..NOT_WRITTEN
+        },
+        help: "points, one per line; also read under any other name",
+        ..ROW
+    },
+    Format {
+        name: "text, by others",
+        noun: "a text file",
+        extensions: &["asc", "pts"],
+        known_by: KnownBy::Rest,
+        holds: &[Holding::Points],
+        reader: TEXT,
+        help: "points, one a line",
+        ..ROW
+    },
+    Format {
+        name: "shapefile",
+        noun: "a shapefile",
+        extensions: &["shp"],
+        // File code 9994, big endian.
+        magic: &[Magic::At(0, &[0, 0, 0x27, 0x0a])],
+        known_by: KnownBy::Name,
+        content: Content::Layer,
+        holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
+        beside: &["shx", "dbf", "prj", "cpg"],
+        parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
+        gdal_name: Some("ESRI Shapefile"),
+        reader: Reader::Layer(shapefile::read_layer_with),
+        writers: Writers {
+            contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
+            check_size: Some(shapefile::check_size),
+            ..NOT_WRITTEN
+        },
+        help: "lines, polygons and points; contours",
+        ..ROW
+    },
+    Format {
+        name: "GeoJSON",
+        noun: "a JSON file",
+        extensions: &["geojson", "json"],
+        magic: &[Magic::At(0, b"{")],
+        content: Content::Layer,
+        holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
+        gdal_name: Some("GeoJSON"),
+        reader: Reader::Layer(geojson::read_layer_with),
+        writers: Writers {
+            contours: Some(|target, lines, crs| geojson::write_contours(target, lines, crs)),
+            ..NOT_WRITTEN
+        },
+        help: "lines, polygons and points; contours",
+        ..ROW
+    },
+    Format {
+        name: "GeoTIFF",
+        noun: "a TIFF file",
+        extensions: &["tif", "tiff"],
+        // TIFF and BigTIFF, in both byte orders.
+        magic: &[Magic::At(0, b"II*\0"), Magic::At(0, b"MM\0*"), Magic::At(0, b"II+\0"), Magic::At(0, b"MM\0+")],
+        known_by: KnownBy::Bytes,
+        content: Content::Raster,
+        holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
+        gdal_name: Some("GTiff"),
+        reader: Reader::Raster(|path| geotiff::open(path)),
+        writers: Writers {
+            heights: Some(|target, source| geotiff::write(target, source, CellFormat::Heights.into())),
+            shades: Some(|target, source| geotiff::write(target, source, CellFormat::Shades.into()).map(drop)),
+            ..NOT_WRITTEN
+        },
+        cure: AS_RASTER,
+        help: "heights in cells; hillshade",
+        ..ROW
+    },
+    Format {
+        name: "PNG",
+        noun: "a PNG picture",
+        extensions: &["png"],
+        magic: &[Magic::At(0, b"\x89PNG")],
+        content: Content::Picture,
+        holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
+        beside: &["pgw", "png.aux.xml"],
+        parts: &["pgw", "png.aux.xml"],
+        gdal_name: Some("PNG"),
+        reader: Reader::InfoOnly,
+        writers: Writers { shades: Some(|target, source| png::write_gray(target, source)), ..NOT_WRITTEN },
+        cure: AS_RASTER,
+        help: "hillshade",
+        ..ROW
+    },
+    Format {
+        name: "PLY",
+        noun: "a PLY mesh",
+        extensions: &["ply"],
+        magic: &[Magic::At(0, b"ply")],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        reader: Reader::Mesh(|path, watch| ply::read(&bytes_of(path, watch)?, watch)),
+        writers: surface_writer(|target, mesh, crs| ply::write(target, mesh, crs).map(|()| None)),
+        cure: AS_MESH,
+        help: "triangles with breaklines and coordinate system",
+        ..ROW
+    },
+    Format {
+        name: "OBJ",
+        noun: "an OBJ mesh",
+        extensions: &["obj"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Crs],
+        reader: Reader::Mesh(|path, watch| obj::read(&bytes_of(path, watch)?, watch)),
+        writers: surface_writer(|target, mesh, crs| obj::write(target, mesh, crs).map(|()| None)),
+        cure: AS_MESH,
+        help: "triangles",
+        ..ROW
+    },
+    Format {
+        name: "OFF",
+        noun: "an OFF mesh",
+        extensions: &["off"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Crs],
+        reader: Reader::Mesh(|path, watch| off::read(&bytes_of(path, watch)?, watch)),
+        writers: surface_writer(|target, mesh, crs| off::write(target, mesh, crs).map(|()| None)),
+        cure: AS_MESH,
+        help: "triangles",
+        ..ROW
+    },
+    Format {
+        name: "STL",
+        noun: "an STL mesh",
+        extensions: &["stl"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh],
+        beside: &["stl.origin.txt"],
+        parts: &["stl.origin.txt"],
+        reader: Reader::Solid(stl::describe),
+        writers: surface_writer(|target, mesh, _| stl::write(target, mesh).map(Some)),
+        cure: AS_MESH,
+        help: "triangles in 32-bit floats from a local origin; written only",
+        ..ROW
+    },
+    Format {
+        name: "TIN",
+        noun: "a TIN of breakline",
+        extensions: &["tin"],
+        magic: &[Magic::At(0, b"brkTIN\n\x1a")],
+        known_by: KnownBy::Bytes,
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        reader: Reader::Tin(tin::map),
+        writers: surface_writer(|target, mesh, _| tin::write(target, mesh).map(|()| None)),
+        cure: AS_MESH,
+        help: "triangulation with breaklines and coordinate system, opened in milliseconds",
+        ..ROW
+    },
+    Format {
+        reader: Reader::Mesh(triangle::read_triangles_with),
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges],
+        beside: &["node"],
+        ..plane("Triangle .ele", "an .ele file of Triangle", &["ele"], "triangles in the plane (Triangle)")
+    },
+    Format {
+        holds: &[Holding::Points],
+        ..plane("Triangle .node", "a .node file of Triangle", &["node"], "points in the plane (Triangle)")
+    },
+    Format {
+        holds: &[Holding::Points, Holding::Lines],
+        beside: &["node"],
+        ..plane("Triangle .poly", "a .poly file of Triangle", &["poly"], "points and segments in the plane (Triangle)")
+    },
+    Format {
+        reader: Reader::InfoOnly,
+        beside: &["node"],
+        ..plane(
+            "Triangle .edge",
+            "an .edge file of Triangle",
+            &["edge"],
+            "edges of a triangulation in the plane (Triangle)",
+        )
+    },
+    Format {
+        reader: Reader::InfoOnly,
+        ..plane(
+            "Triangle .neigh",
+            "a .neigh file of Triangle",
+            &["neigh"],
+            "neighbors in a triangulation in the plane (Triangle)",
+        )
+    },
+    // Formats read by GDAL, or only named in messages.
+    Format {
+        known_by: KnownBy::NameAndBytes,
+        ..raster("Esri ASCII grid", "an ESRI ASCII grid", &["asc"], &[Magic::Word("ncols"), Magic::Word("nrows")])
+    },
+    raster("GDAL virtual raster", "a GDAL virtual raster", &["vrt"], &[Magic::At(0, b"<VRTDataset")]),
+    raster("Erdas Imagine", "an Erdas Imagine file", &["img"], &[Magic::At(0, b"EHFA_HEADER_TAG")]),
+    raster("SRTM height file (HGT)", "an SRTM height file", &["hgt"], &[]),
+    raster("USGS DEM", "a USGS DEM", &["dem"], &[]),
+    raster(
+        "DTED",
+        "a DTED file",
+        &["dt0", "dt1", "dt2"],
+        &[Magic::At(0, b"UHL1"), Magic::At(0, b"HDR1"), Magic::At(80, b"UHL1")],
+    ),
+    raster("raw raster (BIL, FLT)", "a raw raster", &["bil", "flt"], &[]),
+    raster("Surfer grid", "a Surfer grid", &[], &[Magic::At(0, b"DSAA"), Magic::At(0, b"DSBB"), Magic::At(0, b"DSRB")]),
+    raster(
+        "netCDF or HDF",
+        "an HDF5 or netCDF file",
+        &[],
+        &[Magic::At(0, b"CDF\x01"), Magic::At(0, b"CDF\x02"), Magic::At(0, b"\x89HDF")],
+    ),
+    raster("GRIB", "a GRIB file", &[], &[Magic::At(0, b"GRIB")]),
+    raster("JPEG", "a JPEG picture", &[], &[Magic::At(0, b"\xff\xd8\xff")]),
+    raster("JPEG 2000", "a JPEG 2000 picture", &[], &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")]),
+    vector(
+        "GeoPackage (SQLite)",
+        "a GeoPackage or another SQLite database",
+        &["gpkg"],
+        &[Magic::At(0, b"SQLite format 3\0")],
+    ),
+    vector("FlatGeobuf", "a FlatGeobuf file", &["fgb"], &[Magic::At(0, b"fgb\x03fgb")]),
+    vector("XML (GML, KML)", "an XML file (GML, KML, LandXML)", &["kml", "gml"], &[Magic::At(0, b"<?xml")]),
+    vector("DXF", "a DXF drawing", &["dxf"], &[]),
+    vector("DWG", "a DWG drawing", &[], &[Magic::At(0, b"AC10")]),
+    Format {
+        name: "E57",
+        noun: "an E57 scan",
+        magic: &[Magic::At(0, b"ASTM-E57")],
+        reader: Reader::Unread,
+        cure: "save it as LAS or LAZ",
+        ..ROW
+    },
+    Format {
+        name: "ZIP",
+        noun: "a ZIP archive",
+        magic: &[Magic::At(0, b"PK\x03\x04")],
+        reader: Reader::Unread,
+        cure: UNPACK,
+        ..ROW
+    },
+    Format {
+        name: "gzip",
+        noun: "a gzip archive",
+        magic: &[Magic::At(0, b"\x1f\x8b")],
+        reader: Reader::Unread,
+        cure: UNPACK,
+        ..ROW
+    },
+];
