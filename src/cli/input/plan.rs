@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::run::{
     Degrees, EdgeLimit, FrameOptions, Input, MemoryPoints, Source, SurfaceRequest, SystemOptions, TinRequest,
 };
-use crate::terrain::{Classes, CrossingRule, DuplicateRule};
+use crate::terrain::Classes;
 
 /// The request for a surface, and the files that belong to it.
 #[derive(Debug)]
@@ -100,22 +100,9 @@ fn tin_request(points: Vec<Input<MemoryPoints>>, building: TinRequest, args: &Su
             Some(EdgeLength::Length(length)) => EdgeLimit::Length(length),
             None => EdgeLimit::Standard,
         },
-        duplicates: match args.duplicates {
-            DuplicatesArg::Lowest => DuplicateRule::Lowest,
-            DuplicatesArg::Highest => DuplicateRule::Highest,
-            DuplicatesArg::Mean => DuplicateRule::Mean,
-            DuplicatesArg::First => DuplicateRule::First,
-            DuplicatesArg::Last => DuplicateRule::Last,
-        },
+        duplicates: args.duplicates.into(),
         on_crossing: args.on_crossing.into(),
-        crossing_heights: match args.crossing_z {
-            CrossingZArg::Lowest => CrossingRule::Choose(DuplicateRule::Lowest),
-            CrossingZArg::Highest => CrossingRule::Choose(DuplicateRule::Highest),
-            CrossingZArg::Mean => CrossingRule::Choose(DuplicateRule::Mean),
-            CrossingZArg::First => CrossingRule::Choose(DuplicateRule::First),
-            CrossingZArg::Last => CrossingRule::Choose(DuplicateRule::Last),
-            CrossingZArg::Error => CrossingRule::Refuse,
-        },
+        crossing_heights: args.crossing_z.into(),
         crossing_tolerance: args.crossing_tolerance,
         ..building
     }

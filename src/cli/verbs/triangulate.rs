@@ -1,14 +1,14 @@
 //! Triangulation of Triangle's files.
 
 use crate::cli::Exit;
-use crate::cli::input::args::{KernelArg, TriangulateArgs};
+use crate::cli::input::args::TriangulateArgs;
 use crate::cli::input::inputs;
 use crate::cli::input::outputs::{self, Format, Outputs, Target};
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::formats::Product;
-use crate::run::{self, Arithmetic, TriangulateOptions, TriangulateProduct};
+use crate::run::{self, TriangulateOptions, TriangulateProduct};
 use crate::triangulation::refine::Shortfall;
 
 /// The family of formats that an output belongs to.
@@ -63,11 +63,7 @@ fn options(args: &TriangulateArgs) -> TriangulateOptions {
         max_area: args.max_area,
         region_areas: args.region_areas,
         max_added: args.max_added,
-        arithmetic: match args.kernel {
-            KernelArg::Adaptive => Arithmetic::Adaptive,
-            KernelArg::Exact => Arithmetic::Exact,
-            KernelArg::Fast => Arithmetic::Fast,
-        },
+        arithmetic: args.kernel.into(),
     }
 }
 

@@ -6,6 +6,7 @@ use super::parse::{Corners, EdgeLength, not_negative};
 use super::reading::ReadArgs;
 use super::systems::SystemArgs;
 use crate::cli::input::classes;
+use crate::terrain::{CrossingRule, DuplicateRule};
 use crate::triangulation::OnCrossing;
 
 /// Options of building or reading a surface.
@@ -128,6 +129,18 @@ pub(in crate::cli) enum DuplicatesArg {
     Last,
 }
 
+impl From<DuplicatesArg> for DuplicateRule {
+    fn from(arg: DuplicatesArg) -> Self {
+        match arg {
+            DuplicatesArg::Lowest => DuplicateRule::Lowest,
+            DuplicatesArg::Highest => DuplicateRule::Highest,
+            DuplicatesArg::Mean => DuplicateRule::Mean,
+            DuplicatesArg::First => DuplicateRule::First,
+            DuplicatesArg::Last => DuplicateRule::Last,
+        }
+    }
+}
+
 /// What to do where two segments cross.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub(in crate::cli) enum OnCrossingArg {
@@ -163,4 +176,17 @@ pub(in crate::cli) enum CrossingZArg {
     Last,
     /// None: different heights are an error
     Error,
+}
+
+impl From<CrossingZArg> for CrossingRule {
+    fn from(arg: CrossingZArg) -> Self {
+        match arg {
+            CrossingZArg::Lowest => CrossingRule::Choose(DuplicateRule::Lowest),
+            CrossingZArg::Highest => CrossingRule::Choose(DuplicateRule::Highest),
+            CrossingZArg::Mean => CrossingRule::Choose(DuplicateRule::Mean),
+            CrossingZArg::First => CrossingRule::Choose(DuplicateRule::First),
+            CrossingZArg::Last => CrossingRule::Choose(DuplicateRule::Last),
+            CrossingZArg::Error => CrossingRule::Refuse,
+        }
+    }
 }

@@ -7,6 +7,7 @@ use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use crate::cli::input::classes;
+use crate::run::Arithmetic;
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]
@@ -232,6 +233,16 @@ pub(in crate::cli) enum KernelArg {
     Exact,
     /// Plain floating point, for experiments: a wrong result is an error, and the run may not end
     Fast,
+}
+
+impl From<KernelArg> for Arithmetic {
+    fn from(arg: KernelArg) -> Self {
+        match arg {
+            KernelArg::Adaptive => Arithmetic::Adaptive,
+            KernelArg::Exact => Arithmetic::Exact,
+            KernelArg::Fast => Arithmetic::Fast,
+        }
+    }
 }
 
 /// Write a DEM: heights of the TIN at the centers of cells
