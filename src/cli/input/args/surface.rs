@@ -46,7 +46,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Points around the rectangle are used, too: first in a buffer as wide as the longest edge
     /// allowed (or 100 metres), then further out, until every triangle within the rectangle is
     /// proven to be the same as in the TIN of all data. Then the surface is cut. The summary shows
-    /// the final buffer. In the units of the coordinate system of the result; the values are
+    /// the final buffer. The values are in the units of the coordinate system of the result,
     /// separated by commas or blanks.
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Surface")]
     pub(in crate::cli) bounds: Option<Corners>,

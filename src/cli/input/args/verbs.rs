@@ -247,8 +247,9 @@ impl From<KernelArg> for Arithmetic {
 
 /// Write a DEM: heights of the TIN at the centers of cells
 ///
-/// Heights are linear on each triangle, and nodata (-9999) where there is none. GeoTIFF, Float32,
-/// tiled, DEFLATE. It is computed block by block on all cores and may be larger than memory.
+/// Heights are linear on each triangle, and nodata (-9999) where there is none. The output is a
+/// tiled GeoTIFF of 32-bit floats, compressed with DEFLATE. It is computed block by block on all
+/// cores and may be larger than memory.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -267,8 +268,8 @@ pub(in crate::cli) struct DemArgs {
 /// Draw contours of a TIN or of a DEM
 ///
 /// Contours are drawn exactly on the triangles (of a DEM: between the centers of its cells), joined
-/// to the longest possible lines, with higher ground on the right. .shp (PolyLineZ with field ELEV)
-/// or .geojson.
+/// to the longest possible lines, with higher ground on the right. The output is .shp (PolyLineZ
+/// with field ELEV) or .geojson.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -305,8 +306,9 @@ pub(in crate::cli) struct ContourArgs {
 
 /// Shade a TIN or a DEM as the sun would
 ///
-/// Brightness is 1 to 255, and 0 where there is no surface. GeoTIFF (.tif) or .png. The hillshade
-/// of a DEM has the same cells: `--resolution`, `--te` and `--align-to` are for TINs.
+/// Brightness is 1 to 255, and 0 where there is no surface. The output is a GeoTIFF (.tif) or a
+/// .png. The hillshade of a DEM has the cells of the DEM: `--resolution`, `--te` and `--align-to`
+/// are for TINs.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
