@@ -20,7 +20,7 @@ pub struct LineNames {
     lines: Vec<LineName>,
 }
 
-/// Several lines of the surface may come from one line, at the border of a window.
+/// The file, record and part that a line of the surface comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct LineName {
     file: usize,
@@ -38,8 +38,8 @@ impl LineNames {
         self.lines.push(LineName { file, fid: line.fid, part: line.part });
     }
 
-    /// Returns the name of a line, such as "edges.shp fid 12, part 2"; empty if there is no such
-    /// line.
+    /// Returns the name of a line, such as "edges.shp fid 12, part 2", by its position among the
+    /// breaklines; an empty string if there is no such line.
     pub fn name(&self, line: usize) -> String {
         let Some(LineName { file, fid, part }) = self.lines.get(line) else { return String::new() };
         let part = part.map(|part| format!(", part {part}")).unwrap_or_default();

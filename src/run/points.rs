@@ -153,7 +153,7 @@ struct Plan {
     crs: Option<Crs>,
     /// True if the system was requested, not stated by the files.
     is_new: bool,
-    /// Of the files, then of the boundary.
+    /// The transform of each file of points, then of each layer of the boundary.
     transforms: Transforms,
 }
 

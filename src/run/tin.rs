@@ -34,9 +34,9 @@ const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 /// The points and lines that a TIN is built from, and the options of building it. Lengths are in
 /// the units of the coordinate system of the result, heights in its units of heights.
 ///
-/// By default there is no input. Ground points are used (class 2; all points if there are none),
-/// triangles at the rim with edges over 100 metres are left out, the lowest of several heights is
-/// used, and breaklines are split where they cross.
+/// The default has no input, and these options: ground points are used (class 2; all points if no
+/// point has it), triangles at the rim with edges over 100 metres are left out, the lowest of
+/// several heights is used, and breaklines are split where they cross.
 #[derive(Debug, Clone, Default)]
 pub struct TinRequest {
     /// The points. Their order makes no difference, except for [`DuplicateRule::First`] and `Last`.
@@ -60,10 +60,10 @@ pub struct TinRequest {
     pub duplicates: DuplicateRule,
     /// What to do where breaklines cross between their vertices.
     pub on_crossing: OnCrossing,
-    /// Which height is used where they do.
+    /// Which height is used where breaklines cross between their vertices.
     pub crossing_heights: CrossingRule,
-    /// The largest difference of heights of breaklines that meet without a notice. `None` is 0.01
-    /// metres, or 0.01 units if the unit is not known.
+    /// The largest difference of heights at which no notice is given where breaklines meet. `None`
+    /// is 0.01 metres, or 0.01 units if the unit is not known.
     pub crossing_tolerance: Option<f64>,
 }
 
