@@ -1,5 +1,6 @@
 //! The context of a run: the monitor of its progress and notices, and the flag that cancels it.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -133,7 +134,7 @@ impl std::fmt::Debug for Context<'_> {
 }
 
 impl<'a> Context<'a> {
-    /// Returns an error once the flag is set.
+    /// Returns `Ok` as long as the run is not canceled.
     ///
     /// # Errors
     /// An error of the kind [`Canceled`](crate::error::Kind::Canceled) once the flag is set.
@@ -189,6 +190,11 @@ impl<'a> Journal<'a> {
         self.notices.lock().unwrap_or_else(PoisonError::into_inner).push(notice);
     }
 
+    /// Adds the warnings that the reader of a file gave.
+    pub(super) fn add_warnings(&self, path: &Path, warnings: &[String]) {
+        warnings.iter().for_each(|text| self.add(Notice::Reader(path.to_path_buf(), text.clone())));
+    }
+
     /// Begins a stage, see [`Context::start`].
     pub(super) fn start(&self, stage: Stage, size: Size) -> Result<Work<'a>> {
         self.context.start(stage, size)
@@ -208,7 +214,6 @@ mod tests {
         ContourOptions, FrameOptions, HillshadeOptions, Input, Source, SurfaceRequest, TinRequest, check, contour, dem,
         hillshade, triangles, write_mesh,
     };
-    use std::path::Path;
 
     /// Cancels when a given stage begins, and lists the stages.
     struct Canceler {

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use super::context::Journal;
 use super::input::Input;
+use super::lines::{self, Rings};
 use super::notice::Notice;
+use super::open;
 use super::transforms::Transforms;
-use super::{lines, open};
 use crate::data::Layer;
 use crate::error::Result;
 
@@ -26,21 +27,17 @@ pub(super) fn read<'a>(inputs: &'a [Input<Layer>], journal: &Journal) -> Result<
         let layer = open::layer_of(input, &journal.context).map_err(|e| e.in_file(path))?;
         let (format, records) = (layer.format.clone(), layer.shapes.len());
         journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
-        layer.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+        journal.add_warnings(path, &layer.warnings);
         layers.push((path, layer));
     }
     Ok(layers)
 }
 
-/// Returns the polygons of boundaries, each as its rings, in the coordinate system of the result.
+/// Returns the polygons of boundaries in the coordinate system of the result.
 ///
 /// # Errors
-/// If a layer has none, or they cannot be reprojected.
-pub(super) fn polygons(
-    boundary: &Layers,
-    by_file: &[Option<usize>],
-    transforms: &Transforms,
-) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
+/// If a layer has no polygon, or a polygon cannot be reprojected.
+pub(super) fn polygons(boundary: &Layers, by_file: &[Option<usize>], transforms: &Transforms) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
     for ((path, layer), transform) in boundary.iter().zip(by_file) {
         for mut rings in lines::polygons(layer, path)? {

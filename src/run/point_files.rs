@@ -68,7 +68,7 @@ impl PointFiles {
             let source = open::points(input, options, &journal.context).map_err(|e| e.in_file(path))?;
             let info = source.info();
             journal.add(Notice::Opened(path.to_path_buf(), info.format.clone()));
-            info.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+            journal.add_warnings(path, &info.warnings);
             if !info.has_classes && inputs.len() > 1 {
                 journal.add(Notice::WithoutClasses(path.to_path_buf()));
             }
@@ -183,7 +183,7 @@ impl PointFiles {
             }
             extents.push(extent);
             journal.add(Notice::PointsRead(path.to_path_buf(), count));
-            source.warnings().iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+            journal.add_warnings(path, source.warnings());
         }
         progress.end()?;
         if are_several {

@@ -94,7 +94,7 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     for path in &request.files {
         let source = open(path)?;
         let info = source.info().clone();
-        note_warnings(&journal, path, &info.warnings);
+        journal.add_warnings(path, &info.warnings);
         infos.push(info);
         let keep = request.files.len() <= MOST_OPEN || is_read_once(path);
         sources.push(Some(source).filter(|_| keep));
@@ -135,7 +135,7 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
             sink.write(&batch).map_err(|e| e.in_file(path))?;
             work.add(count)?;
         }
-        note_warnings(&journal, path, source.warnings());
+        journal.add_warnings(path, source.warnings());
     }
     if report.read == report.withheld + report.other_class + report.other_return + report.outside {
         return Err(nothing_left(&report, &request.files));
@@ -168,10 +168,6 @@ impl Plan {
         let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
         Ok(Plan { crs, is_new: assign.is_some() || target.is_some(), transforms })
     }
-}
-
-fn note_warnings(journal: &Journal, path: &Path, warnings: &[String]) {
-    warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
 }
 
 /// Removes the points that are not selected from a batch, and counts them.

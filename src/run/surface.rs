@@ -183,7 +183,7 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
         }
         Source::Raster(path) => {
             let (mut grid, warnings) = open::raster(path, &journal)?;
-            warnings.into_iter().for_each(|text| journal.add(Notice::Reader(path.clone(), text)));
+            journal.add_warnings(path, &warnings);
             grid.crs = one_system(path, grid.crs.as_ref(), &request.systems, &journal)?;
             (Model::Raster(Box::new(grid)), None)
         }

@@ -93,7 +93,7 @@ pub struct TriangulateReport {
 pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context) -> Result<TriangulateProduct> {
     let journal = Journal::new(context);
     let graph = open::line_graph(path, context)?;
-    graph.warnings.iter().for_each(|text| journal.add(Notice::Reader(path.to_path_buf(), text.clone())));
+    journal.add_warnings(path, &graph.warnings);
     if !options.region_areas
         && graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute))
     {
