@@ -16,7 +16,7 @@ use crate::terrain::{Classes, Selection};
 const GROUND: u8 = 2;
 
 /// If there are more files than this, they are not kept open but opened a second time.
-const FILES_KEPT_OPEN: usize = 100;
+pub(super) const FILES_KEPT_OPEN: usize = 100;
 
 /// The free memory is checked each time that this many further points are to be used.
 const ASK_EVERY: usize = 1 << 20;

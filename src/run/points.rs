@@ -6,6 +6,7 @@ use super::context::{Context, Journal, Size, Stage};
 use super::input::{Input, is_read_once};
 use super::layers::{self, Layers};
 use super::notice::Notice;
+use super::point_files::FILES_KEPT_OPEN;
 use super::systems::{self, Role, Stated, SystemOptions, Systems};
 use super::transforms::Transforms;
 use super::{lattice, open};
@@ -16,9 +17,6 @@ use crate::io::Destination;
 use crate::io::las::{self, Rounding};
 use crate::io::points::{self, Options};
 use crate::terrain::Inside;
-
-/// The largest number of files that are open at a time; if there are more, each is opened twice.
-const MOST_OPEN: usize = 100;
 
 /// The files to read and the points to write. By default all points are written.
 #[derive(Debug, Clone, Default)]
@@ -96,7 +94,7 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
         let info = source.info().clone();
         journal.add_warnings(path, &info.warnings);
         infos.push(info);
-        let keep = request.files.len() <= MOST_OPEN || is_read_once(path);
+        let keep = request.files.len() <= FILES_KEPT_OPEN || is_read_once(path);
         sources.push(Some(source).filter(|_| keep));
     }
     let boundary: Vec<Input<Layer>> = request.boundary.iter().cloned().map(Input::File).collect();
