@@ -149,12 +149,9 @@ pub enum PlaneFacts {
 /// # Errors
 /// If the file cannot be read, or the run is canceled.
 pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Facts> {
-    let content = open::content(path);
-    if content == Content::Points {
-        return point_facts(path, read, context).map(|facts| Facts::Points(Box::new(facts)));
-    }
-    let facts = match content {
-        Content::Layer | Content::Points => Facts::Layer(Box::new(layer_facts(path, context)?)),
+    let facts = match open::content(path) {
+        Content::Points => Facts::Points(Box::new(point_facts(path, read, context)?)),
+        Content::Layer => Facts::Layer(Box::new(layer_facts(path, context)?)),
         Content::Raster => Facts::Raster(Box::new(raster_facts(path, context)?)),
         Content::Mesh => match open::solid(path) {
             Some(solid) => Facts::Solid(Box::new(solid?)),
