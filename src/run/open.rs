@@ -19,7 +19,7 @@ use crate::io::mesh::{self, Solid};
 use crate::io::png::{self, Picture};
 use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph};
-use crate::io::{gdal, layer, points, raster};
+use crate::io::{Watch, gdal, layer, points, raster};
 use crate::terrain::CompactTin;
 
 /// Returns true if a file is LAS, LAZ or COPC.
@@ -91,7 +91,7 @@ pub(super) fn layer(path: &Path, context: &Context) -> Result<Layer> {
     })
 }
 
-/// Returns the number of bytes of a file.
+/// Returns the number of bytes of a file as the size of a stage.
 fn size(path: &Path) -> Size {
     std::fs::metadata(path).map_or(Size::Unknown, |data| Size::Items(data.len()))
 }
@@ -150,10 +150,15 @@ pub(super) fn raster_frame(path: &Path) -> Result<(Frame, Option<Crs>)> {
 /// Reads a mesh; an error if it is not a surface.
 pub(super) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
     memory::require_for_mesh(path)?;
-    let reading = journal.start(Stage::ReadingTriangles, size(path))?;
-    let mesh = mesh::read_with(path, &|bytes| reading.add(bytes))?;
-    reading.end()?;
-    Ok(mesh)
+    reading(Stage::ReadingTriangles, path, &journal.context, |watch| mesh::read_with(path, watch))
+}
+
+/// Reads a file under watch, as a stage that is counted in bytes.
+fn reading<T>(stage: Stage, path: &Path, context: &Context, read: impl FnOnce(Watch) -> Result<T>) -> Result<T> {
+    let work = context.start(stage, size(path))?;
+    let found = read(&|bytes| work.add(bytes))?;
+    work.end()?;
+    Ok(found)
 }
 
 /// Opens a TIN where its bytes are; `None` if the file has a different format.
@@ -184,16 +189,10 @@ pub(super) fn listed(path: &Path) -> Result<usize> {
 
 /// Reads a `.node` or a `.poly` file.
 pub(super) fn line_graph(path: &Path, context: &Context) -> Result<LineGraph> {
-    let reading = context.start(Stage::Reading, size(path))?;
-    let graph = triangle::read_with(path, &|bytes| reading.add(bytes))?;
-    reading.end()?;
-    Ok(graph)
+    reading(Stage::Reading, path, context, |watch| triangle::read_with(path, watch))
 }
 
 /// Reads the triangles of a mesh, in the order of the file.
 pub(super) fn mesh_triangles(path: &Path, context: &Context) -> Result<Triangles> {
-    let reading = context.start(Stage::ReadingTriangles, size(path))?;
-    let triangles = mesh::read_triangles_with(path, &|bytes| reading.add(bytes))?;
-    reading.end()?;
-    Ok(triangles)
+    reading(Stage::ReadingTriangles, path, context, |watch| mesh::read_triangles_with(path, watch))
 }
