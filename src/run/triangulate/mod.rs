@@ -34,11 +34,24 @@ pub struct TriangulateOptions {
     pub max_area: Option<f64>,
     /// True if the largest areas of regions apply to the triangles in them.
     pub region_areas: bool,
-    /// The number of added vertices after which refinement stops. If `None`, it is an error if 1
-    /// 000 000 are not enough.
+    /// The number of added vertices after which refinement stops. If it is `None`, refinement that
+    /// needs more than 1 000 000 is an error.
     pub max_added: Option<usize>,
     /// The arithmetic of the predicates.
     pub arithmetic: Arithmetic,
+}
+
+impl TriangulateOptions {
+    /// Returns true if vertices are to be added for angles or areas.
+    fn refines(&self) -> bool {
+        self.min_angle.is_some() || self.max_area.is_some() || self.region_areas
+    }
+
+    /// Returns true if triangles between the outer boundary and the convex hull are kept: without
+    /// segments there is no outer boundary.
+    fn keeps_hull(&self, graph: &LineGraph) -> bool {
+        self.convex || graph.segments.is_empty()
+    }
 }
 
 /// The arithmetic that decides on which side of a line a point lies.
@@ -105,11 +118,9 @@ pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context)
         return Err(unfinished(&built).in_file(path));
     }
     note_seeds(&built, &graph, path, &journal);
-    let keeps_hull = options.convex || graph.segments.is_empty();
     // In a refined triangulation the hull is a constraint; triangles beyond it are only effects of
     // rounding.
-    let outside =
-        if keeps_hull && quality(options, &graph, context).is_none() { Outside::Keep } else { Outside::Remove };
+    let outside = if options.keeps_hull(&graph) && !options.refines() { Outside::Keep } else { Outside::Remove };
     let is_kept = carve::kept(&built, &graph, outside);
     let attributes = carve::attributes(&built, &graph, &is_kept);
     let triangulated = assemble::assemble(&graph, &built, &is_kept, &attributes);
@@ -139,7 +150,11 @@ impl TriangulateProduct {
     /// # Errors
     /// If they are not a surface.
     pub fn to_mesh(&self) -> Result<Mesh> {
-        flat_mesh(&self.triangulated)
+        let Triangulated { nodes, triangles, segments, .. } = &self.triangulated;
+        let vertices = nodes.points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+        let edges: Vec<[u32; 2]> = segments.iter().map(|edge| edge.ends).collect();
+        let edges = if triangles.is_empty() { &[] } else { edges.as_slice() };
+        Mesh::new(vertices, triangles.clone(), edges, None)
     }
 
     /// Writes Triangle's files, each in the format of its extension.
@@ -194,11 +209,10 @@ fn build_with<K: Kernel>(
 
 /// Returns the requested quality of triangles, if any.
 fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Context<'a>) -> Option<Quality<'a>> {
-    if options.min_angle.is_none() && options.max_area.is_none() && !options.region_areas {
+    if !options.refines() {
         return None;
     }
     let holes = graph.holes.iter().map(|hole| hole.at).collect();
-    let is_hull = options.convex || graph.segments.is_empty();
     let bounds = graph.regions.iter().filter(|_| options.region_areas);
     Some(Quality {
         min_angle: options.min_angle.unwrap_or(0.0),
@@ -206,7 +220,7 @@ fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Contex
         regions: bounds
             .filter_map(|region| Some(RegionBound { seed: region.at, max_area: region.max_area? }))
             .collect(),
-        domain: if is_hull { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
+        domain: if options.keeps_hull(graph) { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
         max_added: options.max_added.unwrap_or(Quality::MAX_ADDED),
         cancel: Some(context.cancel),
         ..Quality::default()
@@ -281,12 +295,4 @@ fn note_seeds(built: &Built, graph: &LineGraph, path: &Path, journal: &Journal) 
         };
         journal.add(Notice::SeedUnused { path: path.to_path_buf(), line, seed, why });
     }
-}
-
-/// Returns the triangles as a surface of height 0.
-fn flat_mesh(triangulated: &Triangulated) -> Result<Mesh> {
-    let vertices = triangulated.nodes.points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
-    let edges: Vec<[u32; 2]> = triangulated.segments.iter().map(|edge| edge.ends).collect();
-    let edges = if triangulated.triangles.is_empty() { &[] } else { edges.as_slice() };
-    Mesh::new(vertices, triangulated.triangles.clone(), edges, None)
 }
