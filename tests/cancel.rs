@@ -1,22 +1,13 @@
-//! Reading under watch, and how soon a run ends after it was canceled.
-
-#![allow(clippy::print_stdout, reason = "latencies are measured by hand")]
+//! Reading under watch. `examples/cancel_latency.rs` measures how soon whole runs end.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicU64, Ordering};
 
+use breakline::Result;
 use breakline::data::{Frame, Grid};
 use breakline::error::{Error, Kind};
 use breakline::io::{Watch, geojson, geotiff, mesh, shapefile, triangle};
-use breakline::run::{
-    self, Context, ContourOptions, FrameOptions, HillshadeOptions, Monitor, Notice, PointsRequest, Progress, Size,
-    Source, Stage, SurfaceRequest,
-};
-use breakline::{Result, io};
 
 /// The side of a square grid of points, so that every file is larger than the bytes between two
 /// calls of a watch.
@@ -106,100 +97,5 @@ fn every_reader_ends_with_the_error_of_its_watch() {
             assert_eq!((error.kind(), error.to_string().as_str()), (Kind::Canceled, "canceled"), "{name}");
             assert_eq!(done.into_inner(), last + 1, "{name}: the watch is not called again");
         }
-    }
-}
-
-/// What a verb does in a context.
-type Work<'a> = dyn Fn(&Context) -> Result<()> + 'a;
-
-/// Remembers the stage that began last.
-#[derive(Default)]
-struct Stages(Mutex<Option<Stage>>);
-
-impl Monitor for Stages {
-    fn start(&self, stage: Stage, _: Size) -> Box<dyn Progress> {
-        *self.0.lock().unwrap() = Some(stage);
-        Box::new(())
-    }
-
-    fn notice(&self, _: &Notice) {}
-}
-
-/// Prints, for each verb, the longest time from cancellation to its end, and the stage.
-#[test]
-#[ignore = "measures, and judges nothing: --ignored --nocapture"]
-fn latency_of_cancellation() {
-    let folder = tempfile::tempdir().unwrap();
-    let lidar = [1, 2, 3, 4].map(|i| testkit::shared(&format!("lidar/bcts/bcts_{i}.laz")));
-    let raster = testkit::shared("dem/Copernicus_DSM_COG_10_N54_00_W165_00_DEM.tif");
-    let lakes = testkit::shared("shp/ne_10m_lakes_north_america.shp");
-    let of = |files: &[PathBuf]| {
-        let mut request = SurfaceRequest { source: Source::of_files(files).unwrap(), ..SurfaceRequest::default() };
-        request.systems.degrees = run::Degrees::Allow;
-        request
-    };
-    let ply = folder.path().join("a.ply");
-    let tin = run::triangles(&of(&lidar), &Context::default()).unwrap();
-    run::write_mesh(tin.triangles().unwrap(), ply.as_path().into(), &Context::default()).unwrap();
-
-    let out = |name: &str| folder.path().join(name);
-    let work: [(&str, &Work); 7] = [
-        ("tin of LAZ", &|context| {
-            let product = run::triangles(&of(&lidar), context)?;
-            run::write_mesh(product.triangles()?, out("b.ply").as_path().into(), context).map(drop)
-        }),
-        ("dem of LAZ", &|context| {
-            let product = run::triangles(&of(&lidar), context)?;
-            let frame = FrameOptions { resolution: Some(0.2), ..FrameOptions::default() };
-            run::dem(&product, &frame, context)?.write(out("b.tif").as_path().into(), context).map(drop)
-        }),
-        ("contour of PLY", &|context| {
-            let product = run::surface(&of(std::slice::from_ref(&ply)), context)?;
-            run::contour(&product, &ContourOptions::default(), context)?
-                .write(out("b.shp").as_path().into(), context)
-                .map(drop)
-        }),
-        ("contour of GeoTIFF", &|context| {
-            let product = run::surface(&of(std::slice::from_ref(&raster)), context)?;
-            run::contour(&product, &ContourOptions::default(), context)?
-                .write(out("b.shp").as_path().into(), context)
-                .map(drop)
-        }),
-        ("hillshade of GeoTIFF", &|context| {
-            let product = run::surface(&of(std::slice::from_ref(&raster)), context)?;
-            run::hillshade(&product, &HillshadeOptions::default(), context)?
-                .write(out("b.tif").as_path().into(), context)
-                .map(drop)
-        }),
-        ("points of LAZ", &|context| {
-            let request = PointsRequest { files: lidar.to_vec(), ..PointsRequest::default() };
-            run::write_points(&request, out("b.laz").as_path().into(), context).map(drop)
-        }),
-        ("info of a shapefile", &|context| run::facts(&lakes, io::points::Options::default(), context).map(drop)),
-    ];
-    for (name, work) in work {
-        let start = Instant::now();
-        work(&Context::default()).unwrap();
-        let all = start.elapsed();
-        let mut worst = (Duration::ZERO, None);
-        for share in 1..40 {
-            let (cancel, stages) = (AtomicBool::new(false), Stages::default());
-            let context = Context { monitor: &stages, cancel: &cancel };
-            let (set, done) = thread::scope(|scope| {
-                let canceler = scope.spawn(|| {
-                    thread::sleep(all * share / 40);
-                    let stage = *stages.0.lock().unwrap();
-                    cancel.store(true, Ordering::Relaxed);
-                    (Instant::now(), stage)
-                });
-                let result = work(&context);
-                let end = Instant::now();
-                (canceler.join().unwrap(), result.is_err().then_some(end))
-            });
-            if let Some(end) = done {
-                worst = worst.max((end.saturating_duration_since(set.0), set.1.map(|stage| format!("{stage:?}"))));
-            }
-        }
-        println!("{name}: {all:.1?}, canceled within {:.0?} ({})", worst.0, worst.1.unwrap_or_default());
     }
 }
