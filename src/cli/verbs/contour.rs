@@ -3,7 +3,7 @@ use crate::cli::input::args::ContourArgs;
 use crate::cli::input::outputs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
-use crate::cli::report::summary::print_surface;
+use crate::cli::report::summary::{counted, print_surface};
 use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::contours::ContourSummary;
@@ -38,6 +38,6 @@ fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) 
     }
     let units = Units::of(crs);
     let (low, high) = (units.height(drawn.bounds.min[2]), units.height(drawn.bounds.max[2]));
-    let noun = if drawn.lines == 1 { "line" } else { "lines" };
-    console.line(format_args!("contours    {} {noun} ({} closed) from {low} to {high}", drawn.lines, drawn.closed));
+    let lines = counted(drawn.lines as u64, "line");
+    console.line(format_args!("contours    {lines} ({} closed) from {low} to {high}", drawn.closed));
 }

@@ -23,13 +23,14 @@ pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
         written = Some(cells.write(target.within(&outputs.set), &console.context())?);
     }
     print_surface(&product, console);
-    if written.as_ref().is_some_and(|cells| cells.valid == 0) {
-        console.warning("no cell has a height");
-    }
-    if let Some(cells) = written.filter(|cells| cells.valid > 0) {
-        let units = Units::of(product.crs());
-        let (low, high) = (units.height(cells.min), units.height(cells.max));
-        console.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
+    match written {
+        Some(cells) if cells.valid > 0 => {
+            let units = Units::of(product.crs());
+            let (low, high) = (units.height(cells.min), units.height(cells.max));
+            console.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
+        }
+        Some(_) => console.warning("no cell has a height"),
+        None => {}
     }
     outputs.commit(console)?;
     Ok(Exit::Done)

@@ -63,7 +63,6 @@ pub(in crate::cli) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console)
         console.line("");
         console.line(format_args!("$ breakline {}", typed.join(" ")));
         let exit = crate::cli::run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)));
-
         if exit != Exit::Done {
             return Ok(exit);
         }

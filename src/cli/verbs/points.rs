@@ -26,7 +26,7 @@ pub(in crate::cli) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> 
         classes: args.class.clone(),
         returns: args.returns.clone(),
         withheld: if args.drop_withheld { Withheld::Drop } else { Withheld::Keep },
-        bounds: args.bounds.map(|bounds| bounds.bounds()),
+        bounds: args.bounds.map(|corners| corners.bounds()),
         boundary: args.boundary.clone(),
         rounding: if args.round { Rounding::Nearest } else { Rounding::Refuse },
         systems: systems(&args.systems)?,
