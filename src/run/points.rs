@@ -205,8 +205,8 @@ fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {
 }
 
 /// Returns what a sink is to be given of a source: the coordinate system of the result and, if the
-/// points are reprojected, a lattice for them. A source without points keeps its lattice, because the
-/// extent in its header means nothing.
+/// points are reprojected, a lattice for them. A source without points keeps its lattice, because
+/// the extent in its header means nothing.
 fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<PointInfo> {
     info.crs.clone_from(&plan.crs);
     let Some(head) = &mut info.head else { return Ok(info) };
