@@ -50,8 +50,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         pairs.is_some()
     }
 
-    /// Returns the two sides of each facet of new cells, given the facets of which the outer side is
-    /// known; `None` if a facet does not have two sides.
+    /// Returns the two sides of each facet of new cells, given the facets of which the outer side
+    /// is known; `None` if a facet does not have two sides.
     fn paired(&self, mut open: Open<N>, cells: &[[VertexId; N]]) -> Option<Vec<[Side; 2]>> {
         let width = (self.dimension + 1) as usize;
         let mut pairs = Vec::with_capacity(width * cells.len());
