@@ -1,10 +1,11 @@
-//! With and without the feature `parallel`, on any number of threads, results have the same bits.
+//! With and without the features `parallel` and `simd`, on any number of threads, results have the
+//! same bits.
 //!
 //! Each build compares digests of its results with those below, so that builds are compared with
 //! each other. The digests include the numbers of cells and vertices. If a change reorders these
 //! and both builds agree, record the new digests here.
 
-use breakline_triangulation::geometry::Plane;
+use breakline_triangulation::geometry::{Plane, Space};
 use breakline_triangulation::kernel::Wide;
 use breakline_triangulation::refine::Quality;
 use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, spatial_order};
@@ -113,4 +114,21 @@ fn nested_clusters_do_not_exhaust_the_stack() {
         assert_eq!(t.check(Level::Manifold), []);
     };
     std::thread::Builder::new().stack_size(1 << 22).spawn(work).unwrap().join().unwrap();
+}
+
+#[test]
+fn triangulations_in_space() {
+    let mut random = Random(18);
+    let uniform: Vec<[f64; 3]> = (0..20_000).map(|_| [(); 3].map(|()| random.unit())).collect();
+    // Each site several times, and nearly all ties.
+    let lattice: Vec<[f64; 3]> = (0..10_000).map(|_| [(); 3].map(|()| random.below(15) as f64)).collect();
+    for (name, points, recorded) in
+        [("uniform", uniform, 5984256569080211632), ("lattice", lattice, 14372650695366388694)]
+    {
+        let (t, _) = Delaunay::<Space, 4>::from_points(Space::new(), &points).unwrap();
+        assert_eq!(t.check(Level::Law), []);
+        let coordinates = t.points().iter().flatten().map(|x| x.to_bits());
+        let corners = t.tds().cells().flat_map(|cell| t.tds().corners(cell).map(|v| v.index() as u64));
+        assert_eq!(Digest::of(coordinates.chain(corners)), recorded, "{name}");
+    }
 }

@@ -235,6 +235,17 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     fn exact_plan(&self, _: &Self::Point) -> Option<[f64; 2]> {
         None
     }
+
+    /// Returns the position of a point in space, if the predicates are the signs of
+    /// [`Orientation3`](crate::kernel::Orientation3) and [`InSphere`](crate::kernel::InSphere) of
+    /// such positions, within the [range](crate::kernel::RANGE) of floating point.
+    ///
+    /// Only then is construction in bulk possible in space; otherwise the points are inserted one
+    /// by one, which takes several times as long.
+    #[inline(always)]
+    fn exact_site(&self, _: &Self::Point) -> Option<[f64; 3]> {
+        None
+    }
 }
 
 /// A geometry of the plane that can create points where segments meet: what constrained

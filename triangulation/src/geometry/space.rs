@@ -88,4 +88,8 @@ impl<K: Kernel> Coordinates<4> for Space<K> {
     fn coordinates(&self, p: &[f64; 3]) -> [f64; 3] {
         *p
     }
+    #[inline(always)]
+    fn exact_site(&self, p: &[f64; 3]) -> Option<[f64; 3]> {
+        K::RANGE.filtered(*p)
+    }
 }

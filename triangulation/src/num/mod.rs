@@ -22,6 +22,7 @@ mod expansion;
 mod fixed;
 mod integer;
 mod interval;
+pub(crate) mod lanes;
 pub mod lattice;
 mod pair;
 

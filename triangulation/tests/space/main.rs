@@ -1,5 +1,6 @@
 //! Triangulations in space.
 
+mod bulk;
 mod queries;
 mod regular;
 mod removal;

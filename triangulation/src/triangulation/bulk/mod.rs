@@ -1,4 +1,5 @@
-//! Triangulates many points at once, by divide and conquer on faces with ghosts.
+//! Triangulates many points at once: in the plane by divide and conquer on faces with ghosts,
+//! described below; in [`space`] by insertion.
 //!
 //! The algorithm is that of Guibas and Stolfi (1985). The cuts are those of Dwyer's variant (1987),
 //! both directions in turn, but taken from a Morton order. There is no edge structure: a part of
@@ -56,6 +57,7 @@ mod finish;
 mod merge;
 mod order;
 mod small;
+mod space;
 #[cfg(test)]
 mod tests;
 
@@ -64,7 +66,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::geometry::Coordinates;
 use crate::parallel::*;
-use crate::tds::{Links, Tds, VertexId};
+use crate::tds::{CellId, Links, Tds, VertexId};
 
 use curve::Curve;
 use faces::Range;
@@ -158,7 +160,8 @@ enum Axis {
 const NESTED: usize = 4;
 
 /// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
-/// are all collinear, more than [`MAX_POINTS`], or not in the plane, or if the work was stopped.
+/// do not span the plane or the space, if they are too many, or if the work was stopped; in space,
+/// also if they have no [exact sites](Coordinates::exact_site).
 ///
 /// # Complexity
 /// O(n log n) at worst; linear for points that are spread evenly.
@@ -174,6 +177,11 @@ where
 {
     let Sites { points, keys, curve, have_plans } = sites;
     let count = points.len();
+    if N == 4 && have_plans {
+        let built = space::build(geometry, &points, grain);
+        let tds = built.and_then(|built| assemble(built.links, built.of_vertices, built.of_infinite));
+        return (points, tds);
+    }
     if N != 3 || !(3..=MAX_POINTS).contains(&count) {
         return (points, None);
     }
@@ -191,13 +199,20 @@ where
         return (points, None);
     }
     let finished = finish::finish(&mut faces, count, grain);
-    // The same type: `N` is 3 here, but the compiler does not know it.
-    let faces: Box<dyn Any> = Box::new(faces);
-    let tds = match (finished, faces.downcast::<Vec<Links<N>>>()) {
-        (Some(cells), Ok(faces)) => Some(Tds::from_links(*faces, cells.of_vertices, cells.of_infinite)),
-        _ => None,
-    };
+    let tds = finished.and_then(|cells| assemble(faces, cells.of_vertices, cells.of_infinite));
     (points, tds)
+}
+
+/// Returns the complex of cells with `M` vertices, if that is `N`, which the compiler does not
+/// know.
+fn assemble<const M: usize, const N: usize, V: Default, C: Copy + Default>(
+    links: Vec<Links<M>>,
+    of_vertices: Vec<CellId>,
+    of_infinite: CellId,
+) -> Option<Tds<N, V, C>> {
+    let links: Box<dyn Any> = Box::new(links);
+    let links = links.downcast::<Vec<Links<N>>>().ok()?;
+    Some(Tds::from_links(*links, of_vertices, of_infinite))
 }
 
 /// Builds the faces; the slots for neighbors hold twins of edges.

@@ -90,7 +90,7 @@ pub(crate) struct Sites<P> {
     pub(super) keys: Keys,
     /// The curve that the points are ordered along.
     pub(super) curve: Curve,
-    /// True if all points have an exact plan.
+    /// True if all points have an exact plan; in space, an exact site.
     pub(super) have_plans: bool,
 }
 
@@ -190,7 +190,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
 }
 
 /// Checks that the geometry admits all points. Returns the curve through them, and true if all have
-/// an exact plan.
+/// an exact plan, in space an exact site.
 ///
 /// `PERF:` in one pass instead of three.
 fn survey<G: Coordinates<N>, const N: usize>(
@@ -199,7 +199,8 @@ fn survey<G: Coordinates<N>, const N: usize>(
     grain: Grain,
 ) -> Result<(Curve, bool), InputError> {
     let look = |(admitted, planned, span): (bool, bool, Span), p: &G::Point| {
-        let planned = planned & geometry.exact_plan(p).is_some();
+        let planned =
+            planned & if N == 3 { geometry.exact_plan(p).is_some() } else { geometry.exact_site(p).is_some() };
         (admitted & geometry.admits(p), planned, span.with(geometry.coordinates(p).as_ref()))
     };
     let nothing = || (true, true, Span::EMPTY);

@@ -1,0 +1,76 @@
+//! Four numbers at a time: what the algorithms use of the crate `wide`, and a plain twin of it.
+//!
+//! With the feature `simd` these are `wide`'s own types, which are vector registers. Without it,
+//! `plain` has the same names over arrays. Both round alike, so both give the same bits.
+
+#[cfg(feature = "simd")]
+pub(crate) use wide::{f32x4, f64x4, i32x4};
+
+#[cfg(any(test, not(feature = "simd")))]
+mod plain;
+#[cfg(not(feature = "simd"))]
+pub(crate) use plain::*;
+
+/// Rounds each number.
+#[inline(always)]
+pub(crate) fn rounded(x: f64x4) -> f32x4 {
+    f32x4::new(x.to_array().map(|x| x as f32))
+}
+
+/// Returns the bits of each number.
+#[inline(always)]
+pub(crate) fn bits(x: f32x4) -> i32x4 {
+    i32x4::new(x.to_array().map(|x| x.to_bits() as i32))
+}
+
+/// Returns the numbers with these bits.
+#[inline(always)]
+pub(crate) fn of_bits(bits: i32x4) -> f32x4 {
+    f32x4::new(bits.to_array().map(|bits| f32::from_bits(bits as u32)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain;
+
+    /// Runs the same lines on both.
+    macro_rules! results {
+        ($module:path, $rows:expr) => {{
+            use $module as lanes;
+            let [a, b, c, d] = lanes::f32x4::transpose($rows.map(lanes::f32x4::new));
+            let less = a.simd_lt(b);
+            let [e, f, g, _] =
+                lanes::f64x4::transpose($rows.map(|row: [f32; 4]| lanes::f64x4::new(row.map(f64::from))));
+            let i = lanes::i32x4::new($rows[0].map(|x| x.to_bits() as i32));
+            let floats: [lanes::f32x4; 5] = [
+                a + b * c - d,
+                a / b,
+                c.abs().fast_max(d),
+                less.bitselect(c, d),
+                (a.simd_gt(d) & less).bitselect(a, b),
+            ];
+            let doubles: [lanes::f64x4; 3] = [e + f * g - e / f, e.fast_max(f), lanes::f64x4::splat(0.1) * g];
+            let low: lanes::i32x4 = i & lanes::i32x4::splat(31);
+            let up: lanes::i32x4 = lanes::i32x4::splat(7) << 23;
+            let down: lanes::i32x4 = (i - lanes::i32x4::splat(126)) >> 3;
+            let whole: [lanes::i32x4; 2] = [low | up, down];
+            (
+                floats.map(|x| x.to_array().map(f32::to_bits)),
+                doubles.map(|x| x.to_array().map(f64::to_bits)),
+                whole.map(|x| x.to_array()),
+                [a, b, less].map(|x| x.to_bitmask()),
+                lanes::i32x4::splat(3).simd_gt(i).to_bitmask(),
+            )
+        }};
+    }
+
+    #[test]
+    fn the_plain_twin_computes_the_same() {
+        let mut random = testkit::random::Random(1);
+        for _ in 0..10_000 {
+            let mut number = || (random.around(1000) as f32) * 2f32.powi(random.around(20) as i32) + 0.5;
+            let rows = [0; 4].map(|_| [0; 4].map(|_| number()));
+            assert_eq!(results!(plain, rows), results!(crate::num::lanes, rows), "{rows:?}");
+        }
+    }
+}

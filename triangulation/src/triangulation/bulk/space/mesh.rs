@@ -1,0 +1,480 @@
+//! The cells while points are inserted: walk, conflict zone, star.
+
+use crate::kernel::{Orientation3, Predicate};
+use crate::num::Sign;
+
+use super::sphere::{self, Arrow, Frame, MARKED, Sphere, UNKNOWN};
+
+/// Four vertices and the four neighbors opposite to them. A neighbor is `4 cell + face`, where
+/// `face` is the index in the neighbor of the vertex opposite the shared facet. The vertices are
+/// positively oriented, those of infinite cells as if the infinite vertex were beyond the hull.
+#[derive(Clone, Copy)]
+pub(super) struct Cell {
+    pub(super) neighbors: [u32; 4],
+    pub(super) vertices: [u32; 4],
+}
+
+impl Cell {
+    /// A cell that is not in use.
+    const UNUSED: Self = Cell { neighbors: [0; 4], vertices: [u32::MAX; 4] };
+
+    pub(super) fn is_used(&self) -> bool {
+        self.vertices[0] != u32::MAX
+    }
+}
+
+/// The vertices of each facet of a cell, in the order that makes the facet and the vertex opposite
+/// to it a positive cell.
+const FACETS: [[usize; 3]; 4] = [[2, 1, 3], [0, 2, 3], [1, 0, 3], [0, 1, 2]];
+
+/// A cell that takes what is written for lanes that are not chosen.
+pub(super) const DUMMY: u32 = 0;
+
+/// The predicates of the geometry, by the ranks of vertices. They decide what floating point
+/// cannot.
+///
+/// `PERF:` called seldom, so that the rest need not be compiled for each geometry.
+#[derive(Clone, Copy)]
+pub(super) struct Predicates<'a> {
+    /// The orientation of four finite vertices.
+    pub(super) orientation: &'a dyn Fn([u32; 4]) -> Sign,
+    /// True if a vertex is in the sphere of four positively oriented ones, ties decided.
+    pub(super) in_sphere: &'a dyn Fn([u32; 4], u32) -> bool,
+    /// True if a vertex is in the circle of three others in its plane, ties decided.
+    pub(super) in_circle: &'a dyn Fn([u32; 3], u32) -> bool,
+}
+
+/// A vertex.
+#[derive(Clone, Copy)]
+struct Corner {
+    site: [f64; 3],
+    /// The number in the star that was built last with this vertex, above a base that grows.
+    tag: u32,
+}
+
+/// What does not fit the law of spheres: the predicates are not exact.
+#[derive(Debug)]
+pub(super) struct Inexact;
+
+/// The number of vertices up to which a table of all pairs of them links a star.
+const FEW: usize = 64;
+
+/// The last index in that table; as a mask it saves the check of the bounds.
+const LAST: usize = FEW * FEW - 1;
+
+pub(super) struct Mesh<'a> {
+    predicates: Predicates<'a>,
+    /// The finite vertices, then the infinite one, whose site is not a number.
+    corners: Vec<Corner>,
+    pub(super) cells: Vec<Cell>,
+    spheres: Vec<Sphere>,
+    /// Cells that are not in use.
+    unused: Vec<u32>,
+    frame: Frame,
+    /// Determinants of absolute value above it have the right sign.
+    flatness: f64,
+    /// A cell of the last star.
+    last: u32,
+    /// The state of the generator that chooses the direction of walks.
+    random: u32,
+    /// Tags of the next star start here.
+    base: u32,
+    scratch: Scratch,
+}
+
+/// What one insertion uses; kept for the next one.
+#[derive(Default)]
+struct Scratch {
+    /// The cells of the conflict zone, then those of the star.
+    cells: Vec<u32>,
+    /// The boundary of the zone: three vertices as seen from within, and the neighbor beyond.
+    facets: Vec<[u32; 4]>,
+    /// The vertices of each facet by their numbers in the star.
+    numbers: Vec<[u32; 3]>,
+    /// The vertices of the star.
+    vertices: Vec<u32>,
+    /// Seen from the new point.
+    arrows: Vec<Arrow>,
+    /// The face of the star with a directed edge in it, for each pair of numbers.
+    faces: Vec<u32>,
+    /// An open hash table for stars with many vertices: edges, and a face of each.
+    edges: Vec<u64>,
+    faces_of_edges: Vec<u32>,
+}
+
+impl<'a> Mesh<'a> {
+    /// Returns the mesh of a positive cell and the infinite cells around it. `sites` are those of
+    /// the finite vertices.
+    pub(super) fn new(
+        sites: impl ExactSizeIterator<Item = [f64; 3]>,
+        first: [u32; 4],
+        predicates: Predicates<'a>,
+    ) -> Self {
+        let count = sites.len();
+        let mut corners: Vec<Corner> = Vec::with_capacity(count + 1);
+        corners.extend(sites.map(|site| Corner { site, tag: 0 }));
+        let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for corner in &corners {
+            for axis in 0..3 {
+                min[axis] = min[axis].min(corner.site[axis]);
+                max[axis] = max[axis].max(corner.site[axis]);
+            }
+        }
+        corners.push(Corner { site: [f64::NAN; 3], tag: 0 });
+        let extent = [0, 1, 2].map(|axis| max[axis] - min[axis]);
+        let frame = Frame {
+            middle: [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]),
+            scale: 2.0 / extent[0].max(extent[1]).max(extent[2]),
+        };
+        // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
+        let flatness = 6.0 * 9e-16 * extent[0] * extent[1] * extent[2];
+
+        let room = 7 * count + count / 4 + 64;
+        let (mut cells, mut spheres) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        let infinite = count as u32;
+        let alone = |vertices| Cell { neighbors: [0; 4], vertices };
+        cells.extend([Cell::UNUSED, alone(first)]);
+        cells.extend(FACETS.map(|[i, j, k]| alone([first[j], first[i], first[k], infinite])));
+        spheres.resize(cells.len(), UNKNOWN);
+        let mut mesh = Mesh {
+            predicates,
+            corners,
+            cells,
+            spheres,
+            unused: Vec::new(),
+            frame,
+            flatness,
+            last: 1,
+            random: 1,
+            base: 1,
+            scratch: Scratch { faces: vec![0; FEW * FEW], ..Scratch::default() },
+        };
+        mesh.link_first();
+        mesh
+    }
+
+    /// Links the first five cells: any two of them share a facet.
+    fn link_first(&mut self) {
+        for (a, b) in (1..6).flat_map(|a| (1..6).map(move |b| (a, b))).filter(|(a, b)| a != b) {
+            let (of_a, of_b) = (self.cells[a].vertices, self.cells[b].vertices);
+            let lacks = |vertices: [u32; 4], others: [u32; 4]| vertices.iter().position(|v| !others.contains(v));
+            if let (Some(i), Some(j)) = (lacks(of_a, of_b), lacks(of_b, of_a)) {
+                self.cells[a].neighbors[i] = 4 * b as u32 + j as u32;
+            }
+        }
+    }
+
+    /// Returns the cells, those of them that are not in use, and the number of finite vertices.
+    pub(super) fn into_parts(self) -> (Vec<Cell>, Vec<u32>, usize) {
+        (self.cells, self.unused, self.corners.len() - 1)
+    }
+
+    /// Inserts a vertex, which must not be on the site of another one.
+    ///
+    /// # Errors
+    /// If the predicates are not exact. The mesh must not be used any more.
+    #[inline(always)]
+    pub(super) fn insert(&mut self, vertex: u32) -> Result<(), Inexact> {
+        let site = self.corners[vertex as usize].site;
+        let origin = self.frame.of(site);
+        let q = origin.map(|x| x as f32);
+        let first = self.locate(vertex, q)?;
+        let (zone, facets) = self.grow(first, vertex, q);
+        self.assign_cells(zone, facets);
+        let is_small = facets <= 2 * FEW - 4;
+        let numbered = self.number(vertex, facets, is_small);
+        // The zone is a ball, and its boundary a sphere (Euler).
+        if numbered != facets / 2 + 2 {
+            return Err(Inexact);
+        }
+        self.aim(site, numbered);
+        self.wrap(facets, origin);
+        if is_small {
+            self.link(facets);
+        } else {
+            self.link_many(facets);
+        }
+        self.last = self.scratch.cells[0];
+        Ok(())
+    }
+
+    /// Returns a cell in conflict with a vertex, by a walk from the last star (Devillers, Pion and
+    /// Teillaud 2002). It ends as soon as a sphere is known to contain the vertex.
+    #[inline(always)]
+    fn locate(&mut self, vertex: u32, q: [f32; 3]) -> Result<u32, Inexact> {
+        let Mesh { predicates, corners, cells, spheres, last, random, flatness, .. } = self;
+        let (cells, spheres) = (&cells[..], &spheres[..cells.len()]);
+        let infinite = corners.len() as u32 - 1;
+        let mut cell = *last;
+        if let Some(i) = cells[cell as usize].vertices.iter().position(|&v| v == infinite) {
+            cell = cells[cell as usize].neighbors[i] >> 2;
+        }
+        let mut from = DUMMY;
+        // A walk that takes chances ends. Where it takes this long, something is wrong.
+        'walk: for _ in 0..8 * cells.len() + 64 {
+            if sphere::is_inside(spheres[cell as usize], q) {
+                return Ok(cell);
+            }
+            let Cell { neighbors, vertices } = cells[cell as usize];
+            if vertices.contains(&infinite) {
+                return Ok(cell);
+            }
+            *random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let start = (*random >> 30) as usize;
+            for i in (start..start + 4).map(|i| i & 3) {
+                let next = neighbors[i] >> 2;
+                if next != from
+                    && orientation(*predicates, corners, *flatness, FACETS[i].map(|k| vertices[k]), vertex)
+                        == Sign::Negative
+                {
+                    (from, cell) = (cell, next);
+                    continue 'walk;
+                }
+            }
+            return Ok(cell);
+        }
+        Err(Inexact)
+    }
+
+    /// Finds the conflict zone of a vertex from one of its cells. Returns the number of its cells
+    /// and that of the facets of its boundary, both in `scratch`.
+    ///
+    /// `PERF:` the four neighbors of a cell are tested at once, and those chosen appended without
+    /// branches: all four are written, each at the end of those chosen before it.
+    #[inline(always)]
+    fn grow(&mut self, first: u32, vertex: u32, q: [f32; 3]) -> (usize, usize) {
+        let Mesh { predicates, corners, cells, spheres, scratch, flatness, .. } = self;
+        let cells = &cells[..];
+        let spheres = &mut spheres[..cells.len()];
+        let (mut zone, mut facets, mut done) = (1, 0, 0);
+        spheres[first as usize] = MARKED;
+        if scratch.cells.len() < 8 {
+            scratch.cells.resize(64, 0);
+        }
+        scratch.cells[0] = first;
+        while done < zone {
+            if scratch.cells.len() < zone + 8 {
+                scratch.cells.resize(2 * zone + 8, 0);
+            }
+            if scratch.facets.len() < facets + 8 {
+                scratch.facets.resize(2 * facets + 8, [0; 4]);
+            }
+            let Cell { neighbors: n, vertices: v } = cells[scratch.cells[done] as usize];
+            done += 1;
+            let beyond = n.map(|neighbor| neighbor >> 2);
+            let sides = sphere::sides(beyond.map(|cell| spheres[cell as usize]), q);
+            let new = !sides.marked & 15;
+            let mut taken = sides.inside & sides.sure & new;
+            let mut open = !sides.sure & new;
+            while open != 0 {
+                let lane = open.trailing_zeros() as usize & 3;
+                open &= open - 1;
+                let cell = cells[beyond[lane] as usize];
+                taken |= u32::from(conflicts(*predicates, corners, *flatness, cell, vertex)) << lane;
+            }
+            let boundary = !taken & new;
+
+            let bit = |mask: u32, lane: usize| (mask >> lane & 1) as usize;
+            for lane in 0..4 {
+                let chosen = 0u32.wrapping_sub(bit(taken, lane) as u32);
+                spheres[(beyond[lane] & chosen) as usize] = MARKED;
+            }
+            let ends = |mask| {
+                let (a, b, c) = (bit(mask, 0), bit(mask, 1), bit(mask, 2));
+                [a, a + b, a + b + c, a + b + c + bit(mask, 3)]
+            };
+            let end = ends(taken);
+            if let Some((slots, _)) = scratch.cells[zone..].split_first_chunk_mut::<4>() {
+                slots[0] = beyond[0];
+                slots[end[0]] = beyond[1];
+                slots[end[1]] = beyond[2];
+                slots[end[2] & 3] = beyond[3];
+            }
+            zone += end[3];
+            let end = ends(boundary);
+            if let Some((slots, _)) = scratch.facets[facets..].split_first_chunk_mut::<4>() {
+                slots[0] = [v[2], v[1], v[3], n[0]];
+                slots[end[0]] = [v[0], v[2], v[3], n[1]];
+                slots[end[1]] = [v[1], v[0], v[3], n[2]];
+                slots[end[2] & 3] = [v[0], v[1], v[2], n[3]];
+            }
+            facets += end[3];
+        }
+        (zone, facets)
+    }
+
+    /// Assigns a cell to each facet: those of the zone, then unused ones, then new ones.
+    #[inline(always)]
+    fn assign_cells(&mut self, mut zone: usize, facets: usize) {
+        let Mesh { cells, spheres, unused, scratch, .. } = self;
+        if scratch.cells.len() < facets {
+            scratch.cells.resize(2 * facets, 0);
+        }
+        while zone < facets {
+            scratch.cells[zone] = unused.pop().unwrap_or_else(|| {
+                cells.push(Cell::UNUSED);
+                spheres.push(UNKNOWN);
+                cells.len() as u32 - 1
+            });
+            zone += 1;
+        }
+        for &cell in &scratch.cells[facets..zone] {
+            cells[cell as usize] = Cell::UNUSED;
+            unused.push(cell);
+        }
+    }
+
+    /// Numbers the vertices of the boundary and writes the cells of the star, except their links to
+    /// each other. With `is_small`, the table of faces is filled. Returns the number of vertices.
+    #[inline(always)]
+    fn number(&mut self, vertex: u32, facets: usize, is_small: bool) -> usize {
+        let Mesh { corners, cells, scratch, base, .. } = self;
+        if scratch.numbers.len() < facets {
+            scratch.numbers.resize(2 * facets, [0; 3]);
+            scratch.vertices.resize(6 * facets + 1, 0);
+        }
+        if *base > u32::MAX - 3 * facets as u32 - 3 {
+            *base = 1;
+            corners.iter_mut().for_each(|corner| corner.tag = 0);
+        }
+        let Scratch { cells: star, facets: boundary, numbers, vertices, faces, .. } = scratch;
+        let (star, boundary, numbers) = (&star[..facets], &boundary[..facets], &mut numbers[..facets]);
+        let corners = &mut corners[..];
+        let cells = &mut cells[..];
+        let mut count = 0;
+        for i in 0..facets {
+            let [a, b, c, beyond] = boundary[i];
+            let number = [a, b, c].map(|v| {
+                // PERF: without a branch on whether the vertex has a number already.
+                let tag = &mut corners[v as usize].tag;
+                let is_new = *tag < *base;
+                *tag = if is_new { *base + count as u32 } else { *tag };
+                vertices[count] = v;
+                count += usize::from(is_new);
+                *tag - *base
+            });
+            numbers[i] = number;
+            let cell = star[i];
+            cells[cell as usize].vertices = [a, b, c, vertex];
+            cells[cell as usize].neighbors[3] = beyond;
+            cells[(beyond >> 2) as usize].neighbors[(beyond & 3) as usize] = 4 * cell + 3;
+            if is_small {
+                let [a, b, c] = number.map(|k| k as usize);
+                faces[(b * FEW + c) & LAST] = 4 * cell;
+                faces[(c * FEW + a) & LAST] = 4 * cell + 1;
+                faces[(a * FEW + b) & LAST] = 4 * cell + 2;
+            }
+        }
+        *base += count as u32;
+        count
+    }
+
+    /// Computes the vectors from the new point to the vertices of the star.
+    #[inline(always)]
+    fn aim(&mut self, site: [f64; 3], count: usize) {
+        let Scratch { arrows, vertices, .. } = &mut self.scratch;
+        if arrows.len() < count {
+            arrows.resize(2 * count, [0.0; 4]);
+        }
+        for (arrow, &vertex) in arrows.iter_mut().zip(&vertices[..count]) {
+            *arrow = sphere::arrow(site, self.corners[vertex as usize].site);
+        }
+    }
+
+    /// Computes the spheres of the star, four at a time.
+    #[inline(always)]
+    fn wrap(&mut self, facets: usize, origin: [f64; 3]) {
+        let Mesh { scratch, spheres, frame, .. } = self;
+        let (cells, numbers, arrows) = (&scratch.cells[..facets], &scratch.numbers[..facets], &scratch.arrows[..]);
+        let spheres = &mut spheres[..];
+        for first in (0..facets).step_by(4) {
+            // At the end, the last one again.
+            let lanes = [0, 1, 2, 3].map(|lane| (first + lane).min(facets - 1));
+            let corners = lanes.map(|i| numbers[i].map(|number| arrows[number as usize]));
+            let rows = sphere::through(corners, origin, frame.scale);
+            for lane in 0..4 {
+                spheres[cells[lanes[lane]] as usize] = rows[lane];
+            }
+        }
+    }
+
+    /// Links the cells of a star with few vertices. Every entry of the table that is read has been
+    /// written for this star, so that it is never cleared.
+    #[inline(always)]
+    fn link(&mut self, facets: usize) {
+        let Mesh { scratch, cells, .. } = self;
+        let (star, numbers, faces) = (&scratch.cells[..facets], &scratch.numbers[..facets], &scratch.faces[..]);
+        let Some((faces, _)) = faces.split_first_chunk::<{ FEW * FEW }>() else { return };
+        let cells = &mut cells[..];
+        for i in 0..facets {
+            let [a, b, c] = numbers[i].map(|number| number as usize);
+            let neighbors = &mut cells[star[i] as usize].neighbors;
+            neighbors[0] = faces[(c * FEW + b) & LAST];
+            neighbors[1] = faces[(a * FEW + c) & LAST];
+            neighbors[2] = faces[(b * FEW + a) & LAST];
+        }
+    }
+
+    /// Links the cells of a star with many vertices, by a hash table of its edges.
+    #[cold]
+    fn link_many(&mut self, facets: usize) {
+        const NONE: u64 = u64::MAX;
+        let Mesh { scratch: Scratch { cells: star, numbers, edges, faces_of_edges, .. }, cells, .. } = self;
+        let slots = (3 * facets).next_power_of_two();
+        let shift = 64 - slots.trailing_zeros();
+        if edges.len() < slots {
+            edges.resize(slots, NONE);
+            faces_of_edges.resize(slots, 0);
+        }
+        let edges = &mut edges[..slots];
+        edges.fill(NONE);
+        for (&cell, &[a, b, c]) in star.iter().zip(&numbers[..facets]) {
+            for (i, [from, to]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
+                let face = 4 * cell + i as u32;
+                let edge = u64::from(from.min(to)) << 32 | u64::from(from.max(to));
+                let mut slot = (edge.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> shift) as usize;
+                while edges[slot] != NONE && edges[slot] != edge {
+                    slot = (slot + 1) & (slots - 1);
+                }
+                if edges[slot] == NONE {
+                    edges[slot] = edge;
+                    faces_of_edges[slot] = face;
+                } else {
+                    let other = faces_of_edges[slot];
+                    cells[cell as usize].neighbors[i] = other;
+                    cells[(other >> 2) as usize].neighbors[(other & 3) as usize] = face;
+                }
+            }
+        }
+    }
+}
+
+/// Returns the orientation of a facet and a vertex, all finite.
+#[inline(always)]
+fn orientation(predicates: Predicates, corners: &[Corner], flatness: f64, facet: [u32; 3], vertex: u32) -> Sign {
+    let [a, b, c, d] = [facet[0], facet[1], facet[2], vertex];
+    let sites = [a, b, c, d].map(|v| corners[v as usize].site);
+    let determinant = Orientation3(sites).value(|x, y| x - y);
+    if determinant > flatness {
+        Sign::Positive
+    } else if determinant < -flatness {
+        Sign::Negative
+    } else {
+        (predicates.orientation)([a, b, c, d])
+    }
+}
+
+/// Returns true if a vertex destroys a cell.
+#[inline(never)]
+fn conflicts(predicates: Predicates, corners: &[Corner], flatness: f64, cell: Cell, vertex: u32) -> bool {
+    let infinite = corners.len() as u32 - 1;
+    let Some(i) = cell.vertices.iter().position(|&v| v == infinite) else {
+        return (predicates.in_sphere)(cell.vertices, vertex);
+    };
+    let facet = FACETS[i].map(|k| cell.vertices[k]);
+    match orientation(predicates, corners, flatness, facet, vertex) {
+        Sign::Positive => true,
+        Sign::Negative => false,
+        Sign::Zero => (predicates.in_circle)(facet, vertex),
+    }
+}

@@ -1,0 +1,40 @@
+//! The order in which points are inserted: in rounds (Amenta, Choi and Rote 2003).
+//!
+//! Each round has about eight times as many points as all before it, drawn by a hash of the rank in
+//! [spatial order](super::super::spatial_order), so that the first rounds are a sample. Within a
+//! round the points are in spatial order, every other round backward, so that each point is close
+//! to the one inserted before it.
+
+/// The binary logarithm of the ratio of two rounds.
+const RATIO: u32 = 3;
+
+/// The first round has no more points than about this number.
+const FEW: usize = 1000;
+
+/// Returns the ranks `0..count` in the order of insertion.
+pub(super) fn rounds(count: usize) -> Vec<u32> {
+    let last = (0..).find(|round| count >> (RATIO * round) <= FEW).unwrap_or(0);
+    let round = |rank: u32| (last - (mixed(rank).trailing_zeros() / RATIO).min(last)) as usize;
+    let mut starts = vec![0; last as usize + 2];
+    (0..count as u32).for_each(|rank| starts[round(rank) + 1] += 1);
+    for round in 1..starts.len() {
+        starts[round] += starts[round - 1];
+    }
+    let mut order = vec![0; count];
+    let mut next = starts.clone();
+    for rank in 0..count as u32 {
+        let next = &mut next[round(rank)];
+        order[*next] = rank;
+        *next += 1;
+    }
+    starts.windows(2).skip(1).step_by(2).for_each(|ends| order[ends[0]..ends[1]].reverse());
+    order
+}
+
+/// Returns bits that depend on all bits of a number (Steele, Lea and Flood 2014).
+fn mixed(rank: u32) -> u64 {
+    let mut bits = u64::from(rank).wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    bits ^ (bits >> 31)
+}

@@ -1,0 +1,82 @@
+//! Holds the filter against exact arithmetic.
+
+use testkit::random::Random;
+
+use crate::kernel::{Adaptive, InSphere, Kernel, Orientation3};
+use crate::num::Sign;
+
+use super::order::rounds;
+use super::sphere::{self, Frame};
+
+const FRAME: Frame = Frame { middle: [0.0; 3], scale: 1.0 };
+
+/// Returns a number whose magnitude is spread over `2^-exponents..1`, of either sign.
+fn spread(random: &mut Random, exponents: usize) -> f64 {
+    let size = 2f64.powi(-(random.index(exponents) as i32)) * (0.5 + 0.5 * random.unit());
+    if random.below(2) == 0 { size } else { -size }
+}
+
+/// Returns the exact side, and the sure side if there is one, of `q` and the sphere through four
+/// points.
+fn sides_of(points: [[f64; 3]; 4], q: [f64; 3]) -> (Sign, Option<Sign>) {
+    let [a, b, c, d] = points;
+    let arrows = [a, b, c].map(|p| sphere::arrow(d, p));
+    let row = sphere::through([arrows; 4], FRAME.of(d), FRAME.scale)[0];
+    let sides = sphere::sides([row; 4], FRAME.of(q).map(|x| x as f32));
+    assert_eq!(sides.marked, 0);
+    let exact = Adaptive::sign(&InSphere([a, b, c, d, q])) * Adaptive::sign(&Orientation3(points));
+    let sure = (sides.sure & 1 == 1).then_some(if sides.inside & 1 == 1 { Sign::Positive } else { Sign::Negative });
+    assert_eq!(sphere::is_inside(row, FRAME.of(q).map(|x| x as f32)), sure == Some(Sign::Positive));
+    (exact, sure)
+}
+
+/// Points close to the sphere, at any relative distance; spheres of all sizes; tetrahedra from
+/// regular ones to slivers.
+#[test]
+fn what_is_sure_is_right() {
+    let mut random = Random(3);
+    let (mut sure, mut sure_inside, rounds) = (0, 0, 200_000);
+    for _ in 0..rounds {
+        let center = [0, 1, 2].map(|_| 0.5 * spread(&mut random, 12));
+        let radius = spread(&mut random, 20).abs() * 0.5;
+        let flat = spread(&mut random, 24);
+        let mut on_sphere = |near: f64| {
+            let v = [0, 1, 2].map(|_| random.unit() - 0.5);
+            let v = [v[0], v[1], v[2] * near];
+            let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt().max(1e-3);
+            [0, 1, 2].map(|axis| center[axis] + radius * v[axis] / length)
+        };
+        let points = [0; 4].map(|_| on_sphere(flat));
+        let at = on_sphere(1.0);
+        let off = spread(&mut random, 30);
+        let q = [0, 1, 2].map(|axis| (center[axis] + (at[axis] - center[axis]) * (1.0 + off)).clamp(-1.0, 1.0));
+        let (exact, decided) = sides_of(points, q);
+        if let Some(decided) = decided {
+            assert_eq!(decided, exact, "{points:?} {q:?}");
+            sure += 1;
+            sure_inside += usize::from(decided == Sign::Positive);
+        }
+    }
+    assert!(sure > rounds / 4 && sure_inside > rounds / 20, "{sure} and {sure_inside} of {rounds}: hardly a test");
+}
+
+#[test]
+fn nothing_is_sure_of_a_flat_cell_or_an_infinite_one() {
+    let (a, b, c, d) = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.25, 0.0]);
+    assert_eq!(sides_of([a, b, c, d], [0.1, 0.2, 0.3]).1, None);
+    let arrows = [a, b, [f64::NAN; 3]].map(|p| sphere::arrow(d, p));
+    let row = sphere::through([arrows; 4], d, 1.0)[0];
+    assert!(row[3].is_nan() && !sphere::is_marked(row));
+}
+
+#[test]
+fn an_order_has_each_rank_once() {
+    for count in [0, 1, 2, 999, 1001, 8001, 100_000] {
+        let mut order = rounds(count);
+        // All rounds but the last have an eighth of the points, from all over the curve.
+        let sampled = order.iter().take(count / 8).filter(|&&rank| (rank as usize) < count / 2).count();
+        assert!(count < 100_000 || sampled.abs_diff(count / 16) < count / 200, "{sampled}");
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..count as u32));
+    }
+}
