@@ -21,9 +21,5 @@ mod queries;
 mod refine;
 mod regular;
 mod removal;
-#[cfg(feature = "serde")]
-mod saved;
-#[cfg(feature = "serde")]
-mod saved_lines;
 mod sequences;
 mod traversal;

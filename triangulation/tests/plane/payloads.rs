@@ -261,22 +261,3 @@ fn areas_between_constraints_are_marked() {
     assert_eq!(t.tds().cells().filter(|&cell| *t.cell_data(cell) == 'C').count(), 1);
     assert_eq!(t.constrained_edges().count(), 5);
 }
-
-#[cfg(feature = "serde")]
-#[test]
-fn payloads_are_saved() {
-    let points = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [2.0, 2.0], [1.0, 1.0]];
-    let (t, vertices) = Delaunay::from_points(Plane::default(), &points).unwrap();
-    let mut t: Delaunay<Plane, 3, (), u32> = t.with_cell_data(|cell| 7 * cell.index() as u32);
-    let _ = t.remove(vertices[0]);
-    let read: Delaunay<Plane, 3, (), u32> = serde_json::from_str(&serde_json::to_string(&t).unwrap()).unwrap();
-    assert_eq!(seen(&t), seen(&read));
-
-    let (t, _) =
-        ConstrainedDelaunay::<_, ()>::from_lines(Plane::default(), &points, &[[0, 3], [1, 4]], OnCrossing::Split)
-            .unwrap();
-    let t: ConstrainedDelaunay<Plane, (), u32> = t.with_cell_data(another);
-    let read: ConstrainedDelaunay<Plane, (), u32> = serde_json::from_str(&serde_json::to_string(&t).unwrap()).unwrap();
-    assert_eq!(seen_between_constraints(&t), seen_between_constraints(&read));
-    assert!(read.constrained_edges().eq(t.constrained_edges()));
-}

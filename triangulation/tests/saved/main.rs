@@ -1,15 +1,17 @@
 //! Triangulations through serde: what is read is what was saved, and damage is an error.
 
-use std::collections::BTreeSet;
+mod lines;
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use breakline_triangulation::geometry::{Plane, Weighted};
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{Basic, Constrained, Delaunay, Level, Regular};
+use breakline_triangulation::{Basic, Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular};
 use proptest::prelude::*;
 use serde_json::Value;
-use testkit::cells::by_vertices;
+use testkit::cells::{by_vertices, vertices};
 
-pub(crate) fn through<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T) -> T {
+fn through<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T) -> T {
     serde_json::from_str(&serde_json::to_string(t).unwrap()).unwrap()
 }
 
@@ -148,7 +150,7 @@ fn damaged(value: &Value) -> Vec<Value> {
 
 /// Reads everything that is damaged in one entry; whatever is accepted must be sound, and survive
 /// edits.
-pub(crate) fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sound: impl Fn(T) -> bool) {
+fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sound: impl Fn(T) -> bool) {
     let saved = serde_json::to_value(t).unwrap();
     let mut errors = 0;
     for value in damaged(&saved) {
@@ -160,7 +162,7 @@ pub(crate) fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t:
     assert!(errors > 0);
 }
 
-pub(crate) const SITES: [&[[f64; 2]]; 7] = [
+const SITES: [&[[f64; 2]]; 7] = [
     &[],
     &[[1.0, 2.0]],
     &[[0.0, 0.0], [1.0, 1.0]],
@@ -244,4 +246,27 @@ fn a_constraint_to_infinity_is_an_error() {
     }
     let error = serde_json::from_value::<Constrained<Plane>>(saved).unwrap_err().to_string();
     assert_eq!(error, "damaged triangulation: an edge that does not exist is constrained");
+}
+
+#[test]
+fn payloads_of_cells_are_saved() {
+    let points = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [2.0, 2.0], [1.0, 1.0]];
+    let (t, of_points) = Delaunay::from_points(Plane::default(), &points).unwrap();
+    let mut t: Delaunay<Plane, 3, (), u32> = t.with_cell_data(|cell| 7 * cell.index() as u32);
+    let _ = t.remove(of_points[0]);
+    let seen = |t: &Delaunay<Plane, 3, (), u32>| -> BTreeMap<_, _> {
+        t.tds().cells().map(|cell| (vertices(t, cell), *t.tds().cell_data(cell))).collect()
+    };
+    assert_eq!(seen(&t), seen(&through(&t)));
+
+    let lines = [[0, 3], [1, 4]];
+    let (t, _) =
+        ConstrainedDelaunay::<_, ()>::from_lines(Plane::default(), &points, &lines, OnCrossing::Split).unwrap();
+    let t: ConstrainedDelaunay<Plane, (), u32> = t.with_cell_data(|cell| cell.index() as u32 + 1);
+    let seen = |t: &ConstrainedDelaunay<Plane, (), u32>| -> BTreeMap<_, _> {
+        t.tds().cells().map(|cell| (vertices(t, cell), *t.cell_data(cell))).collect()
+    };
+    let read = through(&t);
+    assert_eq!(seen(&t), seen(&read));
+    assert!(read.constrained_edges().eq(t.constrained_edges()));
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::saved::{SITES, read_damaged, through};
+use super::{SITES, read_damaged, through};
 use breakline_triangulation::geometry::Plane;
 use breakline_triangulation::refine::Quality;
 use breakline_triangulation::tds::VertexId;
