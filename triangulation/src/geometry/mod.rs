@@ -241,7 +241,8 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
     /// such positions, within the [range](crate::kernel::RANGE) of floating point.
     ///
     /// Only then is construction in bulk possible in space; otherwise the points are inserted one
-    /// by one, which takes several times as long.
+    /// by one, which takes several times as long. If the positions are not those of the predicates,
+    /// the triangulation is wrong.
     #[inline(always)]
     fn exact_site(&self, _: &Self::Point) -> Option<[f64; 3]> {
         None

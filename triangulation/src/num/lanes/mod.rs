@@ -1,7 +1,8 @@
 //! Four numbers at a time: what the algorithms use of the crate `wide`, and a plain twin of it.
 //!
 //! With the feature `simd` these are `wide`'s own types, which are vector registers. Without it,
-//! `plain` has the same names over arrays. Both round alike, so both give the same bits.
+//! `plain` has the same names over arrays. Both round alike, so both give the same bits, except
+//! for the larger of two of which one is not a number.
 
 #[cfg(feature = "simd")]
 pub(crate) use wide::{f32x4, f64x4, i32x4};

@@ -161,7 +161,8 @@ const NESTED: usize = 4;
 
 /// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
 /// do not span the plane or the space, if they are too many, or if the work was stopped; in space,
-/// also if they have no [exact sites](Coordinates::exact_site).
+/// also if they have no [exact sites](Coordinates::exact_site), or if the predicates contradict
+/// each other.
 ///
 /// # Complexity
 /// O(n log n) at worst; linear for points that are spread evenly.
@@ -178,6 +179,7 @@ where
     let Sites { points, keys, curve, have_plans } = sites;
     let count = points.len();
     if N == 4 && have_plans {
+        drop(keys);
         let built = space::build(geometry, &points, grain);
         let tds = built.and_then(|built| assemble(built.links, built.of_vertices, built.of_infinite));
         return (points, tds);

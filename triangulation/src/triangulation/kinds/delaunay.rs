@@ -80,7 +80,7 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
     /// log n) at worst, linear for points that are spread evenly. Peak memory is 60 bytes for each
     /// point, besides two copies of the points. In space by insertion in rounds (Amenta, Choi and
     /// Rote 2003), on one thread: linear in practice, quadratic at worst, as is the result. Peak
-    /// memory is about 380 bytes for each point.
+    /// memory is about 380 bytes for each point, if they are spread evenly.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
         let grain = bulk::Grain::default();
         let (sites, vertices) = bulk::Sites::of(&geometry, points, grain)?;

@@ -16,7 +16,7 @@ pub(super) struct Cell {
 
 impl Cell {
     /// A cell that is not in use.
-    const UNUSED: Self = Cell { neighbors: [0; 4], vertices: [u32::MAX; 4] };
+    const UNUSED: Self = Cell { neighbors: [DUMMY; 4], vertices: [u32::MAX; 4] };
 
     pub(super) fn is_used(&self) -> bool {
         self.vertices[0] != u32::MAX
@@ -27,7 +27,7 @@ impl Cell {
 /// to it a positive cell.
 const FACETS: [[usize; 3]; 4] = [[2, 1, 3], [0, 2, 3], [1, 0, 3], [0, 1, 2]];
 
-/// A cell that takes what is written for lanes that are not chosen.
+/// A cell that receives the writes of lanes that are not chosen.
 pub(super) const DUMMY: u32 = 0;
 
 /// The predicates of the geometry, by the ranks of vertices. They decide what floating point
@@ -52,9 +52,17 @@ struct Corner {
     tag: u32,
 }
 
-/// What does not fit the law of spheres: the predicates are not exact.
+/// The largest number of cells: their faces are numbered in 32 bits.
+const MAX_CELLS: usize = 1 << 30;
+
+/// Why an insertion failed.
 #[derive(Debug)]
-pub(super) struct Inexact;
+pub(super) enum Failure {
+    /// The predicates contradict each other.
+    Inexact,
+    /// There would be more than [`MAX_CELLS`].
+    TooManyCells,
+}
 
 /// The number of vertices up to which a table of all pairs of them links a star.
 const FEW: usize = 64;
@@ -172,27 +180,27 @@ impl<'a> Mesh<'a> {
     /// Inserts a vertex, which must not be on the site of another one.
     ///
     /// # Errors
-    /// If the predicates are not exact. The mesh must not be used any more.
+    /// If the predicates contradict each other, or there are too many cells. The mesh must not be
+    /// used any more.
     #[inline(always)]
-    pub(super) fn insert(&mut self, vertex: u32) -> Result<(), Inexact> {
+    pub(super) fn insert(&mut self, vertex: u32) -> Result<(), Failure> {
         let site = self.corners[vertex as usize].site;
         let origin = self.frame.of(site);
         let q = origin.map(|x| x as f32);
         let first = self.locate(vertex, q)?;
         let (zone, facets) = self.grow(first, vertex, q);
-        self.assign_cells(zone, facets);
+        self.assign_cells(zone, facets)?;
         let is_small = facets <= 2 * FEW - 4;
         let numbered = self.number(vertex, facets, is_small);
         // The zone is a ball, and its boundary a sphere (Euler).
         if numbered != facets / 2 + 2 {
-            return Err(Inexact);
+            return Err(Failure::Inexact);
         }
         self.aim(site, numbered);
         self.wrap(facets, origin);
-        if is_small {
-            self.link(facets);
-        } else {
-            self.link_many(facets);
+        let is_linked = if is_small { self.link(facets) } else { self.link_many(facets) };
+        if !is_linked {
+            return Err(Failure::Inexact);
         }
         self.last = self.scratch.cells[0];
         Ok(())
@@ -201,7 +209,7 @@ impl<'a> Mesh<'a> {
     /// Returns a cell in conflict with a vertex, by a walk from the last star (Devillers, Pion and
     /// Teillaud 2002). It ends as soon as a sphere is known to contain the vertex.
     #[inline(always)]
-    fn locate(&mut self, vertex: u32, q: [f32; 3]) -> Result<u32, Inexact> {
+    fn locate(&mut self, vertex: u32, q: [f32; 3]) -> Result<u32, Failure> {
         let Mesh { predicates, corners, cells, spheres, last, random, flatness, .. } = self;
         let (cells, spheres) = (&cells[..], &spheres[..cells.len()]);
         let infinite = corners.len() as u32 - 1;
@@ -210,7 +218,8 @@ impl<'a> Mesh<'a> {
             cell = cells[cell as usize].neighbors[i] >> 2;
         }
         let mut from = DUMMY;
-        // A walk that takes chances ends. Where it takes this long, something is wrong.
+        // A random walk ends with probability 1. One as long as this does not expect to: the
+        // predicates contradict each other.
         'walk: for _ in 0..8 * cells.len() + 64 {
             if sphere::is_inside(spheres[cell as usize], q) {
                 return Ok(cell);
@@ -233,7 +242,7 @@ impl<'a> Mesh<'a> {
             }
             return Ok(cell);
         }
-        Err(Inexact)
+        Err(Failure::Inexact)
     }
 
     /// Finds the conflict zone of a vertex from one of its cells. Returns the number of its cells
@@ -304,11 +313,17 @@ impl<'a> Mesh<'a> {
     }
 
     /// Assigns a cell to each facet: those of the zone, then unused ones, then new ones.
+    ///
+    /// # Errors
+    /// If there would be too many cells.
     #[inline(always)]
-    fn assign_cells(&mut self, mut zone: usize, facets: usize) {
+    fn assign_cells(&mut self, mut zone: usize, facets: usize) -> Result<(), Failure> {
         let Mesh { cells, spheres, unused, scratch, .. } = self;
         if scratch.cells.len() < facets {
             scratch.cells.resize(2 * facets, 0);
+        }
+        if cells.len() + facets > MAX_CELLS {
+            return Err(Failure::TooManyCells);
         }
         while zone < facets {
             scratch.cells[zone] = unused.pop().unwrap_or_else(|| {
@@ -322,6 +337,7 @@ impl<'a> Mesh<'a> {
             cells[cell as usize] = Cell::UNUSED;
             unused.push(cell);
         }
+        Ok(())
     }
 
     /// Numbers the vertices of the boundary and writes the cells of the star, except their links to
@@ -398,27 +414,38 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Links the cells of a star with few vertices. Every entry of the table that is read has been
-    /// written for this star, so that it is never cleared.
+    /// Links the cells of a star with few vertices. Returns false if an edge has not exactly two
+    /// facets.
+    ///
+    /// Every entry of the table that is read has been written for this star, so that it is never
+    /// cleared. If two facets had the same directed edge, one would miss its own entry.
     #[inline(always)]
-    fn link(&mut self, facets: usize) {
+    fn link(&mut self, facets: usize) -> bool {
         let Mesh { scratch, cells, .. } = self;
         let (star, numbers, faces) = (&scratch.cells[..facets], &scratch.numbers[..facets], &scratch.faces[..]);
-        let Some((faces, _)) = faces.split_first_chunk::<{ FEW * FEW }>() else { return };
+        let Some((faces, _)) = faces.split_first_chunk::<{ FEW * FEW }>() else { return false };
         let cells = &mut cells[..];
+        let mut differing = 0;
         for i in 0..facets {
             let [a, b, c] = numbers[i].map(|number| number as usize);
+            let first = 4 * star[i];
+            differing |= faces[(b * FEW + c) & LAST] ^ first;
+            differing |= faces[(c * FEW + a) & LAST] ^ (first + 1);
+            differing |= faces[(a * FEW + b) & LAST] ^ (first + 2);
             let neighbors = &mut cells[star[i] as usize].neighbors;
             neighbors[0] = faces[(c * FEW + b) & LAST];
             neighbors[1] = faces[(a * FEW + c) & LAST];
             neighbors[2] = faces[(b * FEW + a) & LAST];
         }
+        differing == 0
     }
 
-    /// Links the cells of a star with many vertices, by a hash table of its edges.
+    /// Links the cells of a star with many vertices, by a hash table of its edges. Returns false if
+    /// an edge has not exactly two facets.
     #[cold]
-    fn link_many(&mut self, facets: usize) {
+    fn link_many(&mut self, facets: usize) -> bool {
         const NONE: u64 = u64::MAX;
+        const LINKED: u32 = u32::MAX;
         let Mesh { scratch: Scratch { cells: star, numbers, edges, faces_of_edges, .. }, cells, .. } = self;
         let slots = (3 * facets).next_power_of_two();
         let shift = 64 - slots.trailing_zeros();
@@ -428,6 +455,7 @@ impl<'a> Mesh<'a> {
         }
         let edges = &mut edges[..slots];
         edges.fill(NONE);
+        let mut pairs = 0;
         for (&cell, &[a, b, c]) in star.iter().zip(&numbers[..facets]) {
             for (i, [from, to]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
                 let face = 4 * cell + i as u32;
@@ -440,12 +468,17 @@ impl<'a> Mesh<'a> {
                     edges[slot] = edge;
                     faces_of_edges[slot] = face;
                 } else {
-                    let other = faces_of_edges[slot];
+                    let other = std::mem::replace(&mut faces_of_edges[slot], LINKED);
+                    if other == LINKED {
+                        return false;
+                    }
+                    pairs += 1;
                     cells[cell as usize].neighbors[i] = other;
                     cells[(other >> 2) as usize].neighbors[(other & 3) as usize] = face;
                 }
             }
         }
+        2 * pairs == 3 * facets
     }
 }
 

@@ -12,8 +12,9 @@
 //!    each edge of the zone's boundary finds the two facets that it belongs to.
 //!
 //! Ties are broken as everywhere else, so that the cells are those of any other algorithm. Where
-//! the predicates contradict each other (with [`Fast`](crate::kernel::Fast)), the builder gives up
-//! and the caller inserts the points one by one.
+//! the predicates are seen to contradict each other (it may happen with
+//! [`Fast`](crate::kernel::Fast)), the builder gives up and the caller inserts the points one by
+//! one.
 
 mod mesh;
 mod order;
@@ -28,12 +29,10 @@ use crate::tds::{CellId, Links, VertexId};
 use super::Grain;
 use mesh::{Cell, DUMMY, Mesh, Predicates};
 
-/// The largest number of points whose cells can be numbered in 30 bits. A point has about 7 cells,
-/// but on some curves as many as there are points: that is checked.
-const MAX_POINTS: usize = 1 << 28;
-
-/// The largest number of cells.
-const MAX_CELLS: usize = 1 << 30;
+/// The largest number of points. Evenly spread ones have about 7 cells each, which are numbered in
+/// 30 bits; where points have more (on the moment curve half as many as there are points), that is
+/// checked.
+const MAX_POINTS: usize = 1 << 27;
 
 /// So many points are inserted before it is asked whether to stop.
 const POLL: usize = 1 << 12;
@@ -45,8 +44,9 @@ pub(super) struct Built {
     pub(super) of_infinite: CellId,
 }
 
-/// Triangulates sites; vertices are numbered like the points. `None` if the sites are coplanar or
-/// too many, if the geometry has no exact sites, or if the work was stopped.
+/// Triangulates sites that are [exact](Coordinates::exact_site); vertices are numbered like the
+/// points. `None` if the sites are coplanar, fewer than four or too many, if the predicates
+/// contradict each other, or if the work was stopped.
 ///
 /// # Complexity
 /// Linear in practice; quadratic at worst, as is the result.
@@ -97,16 +97,14 @@ fn insert_all(mut mesh: Mesh, order: &[u32], grain: Grain) -> Option<Built> {
         }
         for &vertex in chunk {
             mesh.insert(vertex).ok()?;
-            if mesh.cells.len() > MAX_CELLS {
-                return None;
-            }
         }
     }
-    Some(finished(mesh))
+    finished(mesh)
 }
 
-/// Closes the gaps in the numbers of cells and gives vertices and cells their ids.
-fn finished(mesh: Mesh) -> Built {
+/// Closes the gaps in the numbers of cells and gives vertices and cells their ids. `None` if a
+/// vertex has no cell, which happens only if predicates contradict each other.
+fn finished(mesh: Mesh) -> Option<Built> {
     let (mut cells, mut gaps, count) = mesh.into_parts();
     gaps.push(DUMMY);
     gaps.sort_unstable();
@@ -132,11 +130,16 @@ fn finished(mesh: Mesh) -> Built {
             *of_vertices.get_mut(vertex as usize).unwrap_or(&mut of_infinite) = CellId::new(i);
         }
     }
+    if of_infinite == CellId::NONE || of_vertices.contains(&CellId::NONE) {
+        return None;
+    }
     let vertex = |rank: u32| if rank as usize == count { VertexId::INFINITE } else { VertexId::new(rank as usize) };
     let links = |cell: Cell| Links {
         vertices: cell.vertices.map(vertex),
         neighbors: cell.neighbors.map(|neighbor| CellId::new((neighbor >> 2) as usize)),
     };
     // In place.
-    Built { links: cells.into_iter().map(links).collect(), of_vertices, of_infinite }
+    let mut links: Vec<Links<4>> = cells.into_iter().map(links).collect();
+    links.shrink_to_fit();
+    Some(Built { links, of_vertices, of_infinite })
 }

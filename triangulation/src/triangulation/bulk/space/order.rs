@@ -1,9 +1,9 @@
 //! The order in which points are inserted: in rounds (Amenta, Choi and Rote 2003).
 //!
-//! Each round has about eight times as many points as all before it, drawn by a hash of the rank in
-//! [spatial order](super::super::spatial_order), so that the first rounds are a sample. Within a
-//! round the points are in spatial order, every other round backward, so that each point is close
-//! to the one inserted before it.
+//! Each round has about seven times as many points as all before it together, drawn by a hash of
+//! the rank in [spatial order](super::super::spatial_order), so that the first rounds are a sample.
+//! Within a round the points are in spatial order, every other round backward, so that each point
+//! is close to the one inserted before it.
 
 /// The binary logarithm of the ratio of two rounds.
 const RATIO: u32 = 3;

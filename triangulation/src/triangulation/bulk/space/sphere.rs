@@ -23,9 +23,10 @@
 //!
 //! Near the sphere, `x <= 2 r`, the error relative to `r^2` is at most `4 t + t^2 + 63 h + 20 h`
 //! with `t = D / r`, besides that of the radius. If that is less than `1 / 2^j`, then `e` is sure
-//! where it exceeds it. Far from the sphere, `x > 2 r`, the true value is more than `3/4 x^2`, and
-//! the errors are at most `2 x D + D^2 + 5 h x^2 < x^2 / 4` for `t <= 1/8`: the sign is right in
-//! any case.
+//! where it exceeds it. (`R` itself may be less than `r^2` by that error; the reserve in the
+//! constants below covers it.) Far from the sphere, `x > 2 r`, the true value is more than `3/4
+//! x^2`, and the errors are at most `2 x D + D^2 + 5 h x^2`, and that of the radius, less than `x^2
+//! / 3` for `t <= 1/8`: the sign is right in any case.
 //!
 //! *The center.* It is computed in `f64`, relative to one of the corners, from the vectors `a`,
 //! `b`, `c` to the others:
@@ -47,13 +48,14 @@
 //! of three is at most three times the sum of the squares:
 //!
 //! ```text
-//!   3 (500 u)^2 = 9.3e-27    of (L^3 / d)^2              CENTER, with a third more
-//!   3 (7.15 h)^2 = 5.5e-13   of (1 + max |c|)^2 / r^2    POSITION, with a tenth more
-//!   3 (83 h)^2 = 7.4e-11                                 FIXED, with a fifth more
+//!   3 (500 u)^2 = 9.3e-27    of (L^3 / d)^2              CENTER = 1.25e-26
+//!   3 (7.15 h)^2 = 5.5e-13   of (1 + max |c|)^2 / r^2    POSITION = 6.1e-13
+//!   3 (83 h)^2 = 7.4e-11                                 FIXED = 9e-11
 //! ```
 //!
 //! What is left over covers the roundings of the bound itself. Within the
-//! [range](crate::kernel::RANGE) of floating point no product overflows, and none underflows.
+//! [range](crate::kernel::RANGE) of floating point nothing underflows that counts; where the bound
+//! overflows, the sphere is not known.
 
 use crate::num::lanes::{bits, f32x4, f64x4, i32x4, of_bits, rounded};
 
@@ -63,7 +65,7 @@ pub(super) type Sphere = [f32; 4];
 /// A sphere that decides nothing.
 pub(super) const UNKNOWN: Sphere = [0.0, 0.0, 0.0, f32::NAN];
 
-/// What stands for the sphere of a cell in the conflict zone.
+/// The sphere of a cell in the conflict zone.
 pub(super) const MARKED: Sphere = [0.0, 0.0, 0.0, -1.0];
 
 const CENTER: f64 = 1.25e-26;
@@ -165,7 +167,9 @@ pub(super) fn through(arrows: [[Arrow; 3]; 4], origin: [f64; 3], scale: f64) -> 
     // With the exponent of the bound, which is less than 2^(exponent - 126): its root is less than
     // 2^-tolerance.
     let tolerance: i32x4 = (i32x4::splat(126) - (bits(bound) >> 23)) >> 1;
+    // A bound that is not a number may have any sign.
     let is_known = of_bits(tolerance.simd_gt(i32x4::splat(0)))
+        & bound.simd_lt(f32x4::splat(1.0))
         & squared_radius.simd_lt(f32x4::splat(LARGEST))
         & squared_radius.simd_gt(f32x4::splat(1.0 / LARGEST));
     let coded = bits(squared_radius) & i32x4::splat(!TOLERANCE) | tolerance & i32x4::splat(TOLERANCE);

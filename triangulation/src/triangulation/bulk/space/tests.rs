@@ -1,10 +1,16 @@
-//! Holds the filter against exact arithmetic.
+//! Holds the filter against exact arithmetic, and gives the builder predicates that contradict each
+//! other.
+
+use std::cmp::Ordering;
 
 use testkit::random::Random;
 
-use crate::kernel::{Adaptive, InSphere, Kernel, Orientation3};
+use crate::geometry::{Coordinates, Geometry, Space};
+use crate::kernel::{Adaptive, Fast, InSphere, Kernel, Orientation3};
 use crate::num::Sign;
 
+use super::super::Grain;
+use super::build;
 use super::order::rounds;
 use super::sphere::{self, Frame};
 
@@ -79,4 +85,64 @@ fn an_order_has_each_rank_once() {
         order.sort_unstable();
         assert!(order.into_iter().eq(0..count as u32));
     }
+}
+
+/// Predicates of points, and sites that are elsewhere.
+struct Contradictory;
+
+impl Geometry<4> for Contradictory {
+    type Point = [f64; 3];
+
+    fn admits(&self, _: &[f64; 3]) -> bool {
+        true
+    }
+
+    fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
+        Space::new().compare(p, q)
+    }
+
+    fn orientation(&self, simplex: [&[f64; 3]; 4]) -> Sign {
+        Space::new().orientation(simplex)
+    }
+
+    fn side_of_sphere(&self, simplex: [&[f64; 3]; 4], q: &[f64; 3]) -> Sign {
+        Space::new().side_of_sphere(simplex, q)
+    }
+
+    fn orientation_in_flat(&self, simplex: &[&[f64; 3]]) -> Sign {
+        Space::new().orientation_in_flat(simplex)
+    }
+
+    fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
+        Space::new().side_of_sphere_in_flat(simplex, q)
+    }
+}
+
+impl Coordinates<4> for Contradictory {
+    type Coordinates = [f64; 3];
+
+    fn coordinates(&self, p: &[f64; 3]) -> [f64; 3] {
+        *p
+    }
+
+    fn exact_site(&self, [x, y, z]: &[f64; 3]) -> Option<[f64; 3]> {
+        Some([x + 0.3 * (7.0 * y).sin(), y - 0.4 * (5.0 * z + x).cos(), z * x])
+    }
+}
+
+#[test]
+fn contradictions_end_construction_and_nothing_else() {
+    let mut random = Random(4);
+    let (mut built, rounds) = ([0, 0], 4_000);
+    for round in 0..rounds {
+        let count = 5 + random.index(if round % 8 == 0 { 300 } else { 40 });
+        let side = if round % 2 == 0 { 4 } else { 1 << 20 };
+        let points: Vec<[f64; 3]> = (0..count).map(|_| [0; 3].map(|_| random.below(side) as f64 * 0.1)).collect();
+        let grain = Grain::default();
+        let results = [build(&Contradictory, &points, grain), build(&Space::<Fast>::default(), &points, grain)];
+        for (built, result) in built.iter_mut().zip(results) {
+            *built += usize::from(result.is_some());
+        }
+    }
+    assert!(built[0] < rounds, "hardly a test");
 }
