@@ -4,6 +4,9 @@
 //! block as a small TIFF file in memory, whose directory is written here from checked numbers. So
 //! the decoder never sees what a damaged file says about counts, offsets or directories, tiles and
 //! strips need no distinction, and blocks can be decoded on all cores.
+//!
+//! Only ZSTD is decompressed here: `tiff` asks for all of the crate `zstd`, with formats from before
+//! 2016 and a maker of dictionaries, which take 13 seconds to compile.
 
 use std::io::Cursor;
 
@@ -34,7 +37,7 @@ pub(super) fn values(
 ) -> Result<()> {
     let Stored::At { offset, length } = span.stored else { return Ok(()) };
     let in_block = |e: Error| e.at(format!("block {} (rows from {})", span.block, span.first_row));
-    let mut file = header(layout, span, length);
+    let mut file = header(layout, span, layout.compression, length);
     bytes.append(offset, length, &mut file).map_err(in_block)?;
     if layout.compression == tags::COMPRESSION_JPEG {
         let start = file.len() - length as usize;
@@ -43,6 +46,11 @@ pub(super) fn values(
     // The decoders are well tested, but not proven: a panic in one of them means a damaged block
     // and must not end the program.
     let decode_and_pick = || {
+        #[cfg(feature = "zstd")]
+        if layout.compression == tags::COMPRESSION_ZSTD {
+            let start = file.len() - length as usize;
+            file = decompressed(&file[start..], layout, span)?;
+        }
         let decoded = decode(file)?;
         let rows = (BAND_CELLS / part.width.max(1)).max(1);
         for row in (part.row..part.row + part.height).step_by(rows) {
@@ -65,8 +73,25 @@ fn in_compression(error: Error, compression: u16) -> Error {
     }
 }
 
+/// Returns a TIFF file of one strip, not compressed, from one that is compressed by ZSTD.
+#[cfg(feature = "zstd")]
+fn decompressed(data: &[u8], layout: &Layout, span: &Span) -> Result<Vec<u8>> {
+    use std::io::Read;
+
+    let row_bits = span.width as u64 * u64::from(layout.interleaved) * u64::from(layout.sample.bits);
+    let length = row_bits.div_ceil(8) * span.rows as u64;
+    let mut file = header(layout, span, tags::COMPRESSION_NONE, length);
+    let damaged = |e| Error::caused_by(Kind::Format, e);
+    let decoder = zstd::Decoder::with_buffer(data).map_err(damaged)?;
+    let read = decoder.take(length).read_to_end(&mut file).map_err(damaged)?;
+    if (read as u64) < length {
+        return Err(Error::format(format!("{read} bytes where {length} were expected")));
+    }
+    Ok(file)
+}
+
 /// Returns a TIFF header with one directory for one strip, whose bytes follow.
-fn header(layout: &Layout, span: &Span, length: u64) -> Vec<u8> {
+fn header(layout: &Layout, span: &Span, compression: u16, length: u64) -> Vec<u8> {
     let format = match layout.sample.kind {
         super::SampleKind::Unsigned => 1,
         super::SampleKind::Signed => 2,
@@ -81,7 +106,7 @@ fn header(layout: &Layout, span: &Span, length: u64) -> Vec<u8> {
         (tags::IMAGE_WIDTH, long, 1, span.width as u32),
         (tags::IMAGE_LENGTH, long, 1, span.rows as u32),
         (tags::BITS_PER_SAMPLE, short, 1, u32::from(layout.sample.bits)),
-        (tags::COMPRESSION, short, 1, u32::from(layout.compression)),
+        (tags::COMPRESSION, short, 1, u32::from(compression)),
         // BlackIsZero: samples are decoded as they are stored.
         (tags::PHOTOMETRIC, short, 1, 1),
         (tags::STRIP_OFFSETS, long, 1, data_at),
