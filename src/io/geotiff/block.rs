@@ -5,8 +5,8 @@
 //! the decoder never sees what a damaged file says about counts, offsets or directories, tiles and
 //! strips need no distinction, and blocks can be decoded on all cores.
 //!
-//! Only ZSTD is decompressed here: `tiff` asks for all of the crate `zstd`, with formats from before
-//! 2016 and a maker of dictionaries, which take 13 seconds to compile.
+//! Only ZSTD is decompressed here: `tiff` asks for all of the crate `zstd`, with old formats and a
+//! maker of dictionaries, which take 13 seconds to compile.
 
 use std::io::Cursor;
 
