@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! bench_triangulation FILE.xy [FILE.seg] [--threads N] [--one-by-one] [--check]
-//! bench_triangulation FILE.xyz [--threads N] [--one-by-one] [--check]
+//! bench_triangulation FILE.xyz|FILE.xyzw [--threads N] [--one-by-one]
 //! ```
 //!
 //! A file contains coordinates one after the other, little-endian 64-bit floating point: pairs
-//! (`.xy`) to be triangulated in the plane, or triples (`.xyz`) in space. Segments (`.seg`) are
-//! pairs of 32-bit indices of points.
+//! (`.xy`) to be triangulated in the plane, triples (`.xyz`) in space, or quadruples (`.xyzw`) with
+//! weights. Segments (`.seg`) are pairs of 32-bit indices of points.
 //!
 //! The line consists of: program, data, points, threads, seconds, peak memory in MB and the part of
 //! it that the construction added, triangles (or tetrahedra), and processor seconds. The time
@@ -25,12 +25,12 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
-use breakline_triangulation::geometry::{Plane, Space};
+use breakline_triangulation::geometry::{Plane, Space, WeightedSpace};
 use breakline_triangulation::kernel::{
     Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnFineLattice, OnLattice, Predicate, Range,
 };
 use breakline_triangulation::num::Sign;
-use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing};
+use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular};
 
 /// The stages of [`Adaptive`] except the pairs of doubles; each counts its calls.
 type Counting = Filtered<Counted<0, ErrorBound>, Filtered<Counted<1, OnLattice>, OnFineGrid>>;
@@ -84,7 +84,8 @@ fn options() -> Result<Options, String> {
     }
     if options.points.is_empty() {
         return Err(
-            "usage: bench_triangulation FILE.xy|FILE.xyz [FILE.seg] [--threads N] [--one-by-one] [--check]".into()
+            "usage: bench_triangulation FILE.xy|FILE.xyz|FILE.xyzw [FILE.seg] [--threads N] [--one-by-one] [--check]"
+                .into(),
         );
     }
     Ok(options)
@@ -179,13 +180,38 @@ fn plane<K: Kernel>(points: &[[f64; 2]], one_by_one: bool) -> Result<Built<K>, B
     Ok((t, points.len()))
 }
 
+fn space(points: &[[f64; 3]], one_by_one: bool) -> Result<Delaunay<Space, 4>, Box<dyn Error>> {
+    let mut t = Delaunay::new(Space::new());
+    if !one_by_one {
+        return Ok(Delaunay::from_points(Space::new(), points)?.0);
+    }
+    for &p in points {
+        t.insert(p)?;
+    }
+    Ok(t)
+}
+
+fn weighted(points: &[[f64; 4]], one_by_one: bool) -> Result<Regular<WeightedSpace, 4>, Box<dyn Error>> {
+    let mut t = Regular::new(WeightedSpace::new());
+    if !one_by_one {
+        return Ok(Regular::from_points(WeightedSpace::new(), points)?.0);
+    }
+    for &p in points {
+        t.insert(p)?;
+    }
+    Ok(t)
+}
+
 fn run(options: &Options) -> Result<(), String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build_global();
     pool.map_err(|error| error.to_string())?;
     if options.points.ends_with(".xyz") {
         let points = points::<3>(&options.points)?;
-        let build = || Delaunay::<Space<Adaptive>, 4>::from_points(Space::default(), &points);
-        return time(options, points.len(), build, |(t, _)| t.finite_cells().count());
+        return time(options, points.len(), || space(&points, options.one_by_one), |t| t.finite_cells().count());
+    }
+    if options.points.ends_with(".xyzw") {
+        let points = points::<4>(&options.points)?;
+        return time(options, points.len(), || weighted(&points, options.one_by_one), |t| t.finite_cells().count());
     }
     let points = points::<2>(&options.points)?;
     let Some(path) = &options.segments else {

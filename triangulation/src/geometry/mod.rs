@@ -236,15 +236,17 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
         None
     }
 
-    /// Returns the position of a point in space, if the predicates are the signs of
-    /// [`Orientation3`](crate::kernel::Orientation3) and [`InSphere`](crate::kernel::InSphere) of
-    /// such positions, within the [range](crate::kernel::RANGE) of floating point.
+    /// Returns the position of a point in space and its weight, if the predicates are the signs of
+    /// [`Orientation3`](crate::kernel::Orientation3) and
+    /// [`PowerTest3`](crate::kernel::PowerTest3) of such numbers, the positions within the
+    /// [range](crate::kernel::RANGE) of floating point. Without weights the test is
+    /// [`InSphere`](crate::kernel::InSphere), and the weight 0.
     ///
     /// Only then is construction in bulk possible in space; otherwise the points are inserted one
     /// by one, which takes several times as long. If the positions are not those of the predicates,
     /// the triangulation is wrong.
     #[inline(always)]
-    fn exact_site(&self, _: &Self::Point) -> Option<[f64; 3]> {
+    fn exact_site(&self, _: &Self::Point) -> Option<[f64; 4]> {
         None
     }
 }

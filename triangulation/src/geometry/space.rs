@@ -88,8 +88,9 @@ impl<K: Kernel> Coordinates<4> for Space<K> {
     fn coordinates(&self, p: &[f64; 3]) -> [f64; 3] {
         *p
     }
+
     #[inline(always)]
-    fn exact_site(&self, p: &[f64; 3]) -> Option<[f64; 3]> {
-        K::RANGE.filtered(*p)
+    fn exact_site(&self, p: &[f64; 3]) -> Option<[f64; 4]> {
+        K::RANGE.filtered(*p).map(|[x, y, z]| [x, y, z, 0.0])
     }
 }

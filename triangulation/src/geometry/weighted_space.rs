@@ -108,4 +108,9 @@ impl<K: Kernel> Coordinates<4> for WeightedSpace<K> {
     fn coordinates(&self, p: &[f64; 4]) -> [f64; 3] {
         site(p)
     }
+
+    #[inline(always)]
+    fn exact_site(&self, p: &[f64; 4]) -> Option<[f64; 4]> {
+        K::RANGE.filtered(site(p)).map(|[x, y, z]| [x, y, z, p[3]])
+    }
 }

@@ -148,10 +148,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             cell_data: vec![C::default(); links.len()],
             links,
             unused: Vec::new(),
+            detached: vertex_cell.iter().filter(|cell| **cell == CellId::NONE).count(),
             vertex_cell,
             vertex_data,
             unused_vertices: Vec::new(),
-            detached: 0,
             infinite_cell,
         }
     }

@@ -1,6 +1,7 @@
 //! Triangulations in space.
 
 mod bulk;
+mod bulk_regular;
 mod queries;
 mod regular;
 mod removal;

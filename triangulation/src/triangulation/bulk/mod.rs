@@ -162,7 +162,8 @@ const NESTED: usize = 4;
 /// Triangulates sites; vertices are numbered like the points. The structure is `None` if the sites
 /// do not span the plane or the space, if they are too many, or if the work was stopped; in space,
 /// also if they have no [exact sites](Coordinates::exact_site), or if the predicates contradict
-/// each other.
+/// each other. There hidden vertices are in no cell; where the predicates contradict each other,
+/// others may be, too.
 ///
 /// # Complexity
 /// O(n log n) at worst; linear for points that are spread evenly.

@@ -88,7 +88,8 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
         let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, grain);
         let count = points.len();
         triangulation.inner.points = points;
-        if let Some(tds) = tds {
+        // A vertex without a cell: the predicates contradict each other.
+        if let Some(tds) = tds.filter(|tds| tds.vertex_count() == count) {
             triangulation.inner.tds = tds;
             return Ok((triangulation, vertices));
         }

@@ -1,3 +1,4 @@
+use std::cmp::Ordering;
 use std::ops::Deref;
 
 use rustc_hash::FxHashMap;
@@ -6,6 +7,7 @@ use crate::geometry::{Coordinates, Geometry};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 
+use super::super::bulk;
 use super::super::engine::insert::{insert_each, insert_located};
 use super::super::engine::removal::Removal;
 use super::super::{
@@ -100,6 +102,51 @@ impl Hidden {
     }
 }
 
+/// Makes the heaviest of the points on each site its vertex. The others are returned; they get the
+/// numbers after those of the sites, one for all with the same weight.
+fn choose_heaviest<G: Coordinates<N>, const N: usize>(
+    geometry: &G,
+    points: &[G::Point],
+    sites: &mut [G::Point],
+    vertices: &mut [VertexId],
+) -> Vec<G::Point> {
+    let mut lighter = Vec::new();
+    if points.len() == sites.len() {
+        return lighter;
+    }
+    // Positive if the second point is heavier.
+    let compare = |p: &G::Point, q: &G::Point| geometry.side_of_sphere_in_flat(&[p], q);
+    let mut is_mixed = vec![false; sites.len()];
+    for (p, vertex) in points.iter().zip(&*vertices) {
+        is_mixed[vertex.index()] |= compare(&sites[vertex.index()], p) != Sign::Zero;
+    }
+    let mut mixed: Vec<usize> = (0..points.len()).filter(|&i| is_mixed[vertices[i].index()]).collect();
+    mixed.sort_unstable_by(|&i, &j| {
+        let by_weight = || match compare(&points[i], &points[j]) {
+            Sign::Positive => Ordering::Greater,
+            Sign::Zero => i.cmp(&j),
+            Sign::Negative => Ordering::Less,
+        };
+        vertices[i].cmp(&vertices[j]).then_with(by_weight)
+    });
+    let mut last = None;
+    for i in mixed {
+        let site = vertices[i];
+        match last {
+            Some((of, vertex, at)) if of == site && compare(&points[at], &points[i]) == Sign::Zero => {
+                vertices[i] = vertex;
+            }
+            Some((of, ..)) if of == site => {
+                vertices[i] = VertexId::new(sites.len() + lighter.len());
+                lighter.push(points[i]);
+            }
+            _ => sites[site.index()] = points[i],
+        }
+        last = Some((site, vertices[i], i));
+    }
+    lighter
+}
+
 impl<G: Geometry<N>, const N: usize, V, C> Deref for Regular<G, N, V, C> {
     type Target = Triangulation<G, N, V, C>;
 
@@ -128,8 +175,11 @@ impl<G: Geometry<N>, const N: usize, V> Regular<G, N, V> {
 }
 
 impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
-    /// Triangulates many points, inserted in [spatial order](crate::spatial_order); also returns
-    /// the vertex of each. Points on one site with one weight share a vertex.
+    /// Triangulates many points at once; also returns the vertex of each. Points on one site with
+    /// one weight share a vertex.
+    ///
+    /// In the plane they are inserted one by one, in [spatial order](crate::spatial_order); in
+    /// space only if the geometry has no [exact sites](Coordinates::exact_site).
     ///
     /// # Errors
     /// If a point is refused; the error names the position of the first one.
@@ -137,9 +187,35 @@ impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
     /// # Complexity
     /// Linear in the number of points if they are spread evenly.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
-        let mut triangulation = Self::with_capacity(geometry, points.len());
-        let vertices = triangulation.insert_all(points)?;
-        Ok((triangulation, vertices))
+        let mut regular = Self::new(geometry);
+        // The builder of the plane knows no hidden points.
+        let vertices = if N == 4 { regular.build(points)? } else { None };
+        match vertices {
+            Some(vertices) => Ok((regular, vertices)),
+            None => {
+                regular.inner.tds.reserve(points.len());
+                let vertices = regular.insert_all(points)?;
+                Ok((regular, vertices))
+            }
+        }
+    }
+
+    /// Builds an empty triangulation in bulk; `None` if that is impossible, and it is still empty.
+    fn build(&mut self, points: &[G::Point]) -> Result<Option<Vec<VertexId>>, InputError> {
+        let (geometry, grain) = (&self.inner.geometry, bulk::Grain::default());
+        let (mut sites, mut vertices) = bulk::Sites::of(geometry, points, grain)?;
+        let lighter = choose_heaviest(geometry, points, &mut sites.points, &mut vertices);
+        let (sites, Some(tds)) = bulk::build(geometry, sites, grain) else { return Ok(None) };
+        self.inner.points = sites;
+        self.inner.tds = tds;
+        for p in lighter {
+            let vertex = self.inner.add_vertex(p, ());
+            self.inner.tds.detach(vertex);
+        }
+        let numbers = (0..self.tds().vertex_slots()).map(VertexId::new);
+        let hidden = numbers.filter(|&vertex| !self.tds().is_vertex(vertex)).collect();
+        self.connect_again(hidden);
+        Ok(Some(vertices))
     }
 
     /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
@@ -282,10 +358,12 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
 
     /// Inserts or hides vertices again after the cells that hid them are gone.
     fn connect_again(&mut self, hidden: Vec<VertexId>) {
+        let mut near = None;
         for vertex in hidden {
             self.inner.tds.attach();
-            let location = self.inner.locate(self.inner.point(vertex), None);
+            let location = self.inner.locate(self.inner.point(vertex), near);
             self.connect(vertex, location);
+            near = self.hidden.host.get(&vertex).copied();
         }
     }
 

@@ -3,7 +3,8 @@
 use crate::kernel::{Orientation3, Predicate};
 use crate::num::Sign;
 
-use super::sphere::{self, Arrow, Frame, MARKED, Sphere, UNKNOWN};
+use super::sphere::{self, Arrow, Frame, MARKED, Origin, Query, Sphere, UNKNOWN};
+use super::weights::Weights;
 
 /// Four vertices and the four neighbors opposite to them. A neighbor is `4 cell + face`, where
 /// `face` is the index in the neighbor of the vertex opposite the shared facet. The vertices are
@@ -74,6 +75,7 @@ pub(super) struct Mesh<'a> {
     predicates: Predicates<'a>,
     /// The finite vertices, then the infinite one, whose site is not a number.
     corners: Vec<Corner>,
+    weights: Weights,
     pub(super) cells: Vec<Cell>,
     spheres: Vec<Sphere>,
     /// Cells that are not in use.
@@ -111,10 +113,11 @@ struct Scratch {
 }
 
 impl<'a> Mesh<'a> {
-    /// Returns the mesh of a positive cell and the infinite cells around it. `sites` are those of
-    /// the finite vertices.
+    /// Returns the mesh of a positive cell and the infinite cells around it. Sites and weights are
+    /// those of the finite vertices.
     pub(super) fn new(
         sites: impl ExactSizeIterator<Item = [f64; 3]>,
+        weights: Weights,
         first: [u32; 4],
         predicates: Predicates<'a>,
     ) -> Self {
@@ -147,6 +150,7 @@ impl<'a> Mesh<'a> {
         let mut mesh = Mesh {
             predicates,
             corners,
+            weights,
             cells,
             spheres,
             unused: Vec::new(),
@@ -177,7 +181,8 @@ impl<'a> Mesh<'a> {
         (self.cells, self.unused, self.corners.len() - 1)
     }
 
-    /// Inserts a vertex, which must not be on the site of another one.
+    /// Inserts a vertex, which must not be on the site of another one. If it is hidden, nothing
+    /// changes; vertices that it hides lose their cells.
     ///
     /// # Errors
     /// If the predicates contradict each other, or there are too many cells. The mesh must not be
@@ -186,8 +191,9 @@ impl<'a> Mesh<'a> {
     pub(super) fn insert(&mut self, vertex: u32) -> Result<(), Failure> {
         let site = self.corners[vertex as usize].site;
         let origin = self.frame.of(site);
-        let q = origin.map(|x| x as f32);
-        let first = self.locate(vertex, q)?;
+        let lack = self.weights.lack(vertex) * self.frame.scale * self.frame.scale;
+        let q = sphere::query(origin, lack);
+        let Some(first) = self.locate(vertex, q)? else { return Ok(()) };
         let (zone, facets) = self.grow(first, vertex, q);
         self.assign_cells(zone, facets)?;
         let is_small = facets <= 2 * FEW - 4;
@@ -196,8 +202,8 @@ impl<'a> Mesh<'a> {
         if numbered != facets / 2 + 2 {
             return Err(Failure::Inexact);
         }
-        self.aim(site, numbered);
-        self.wrap(facets, origin);
+        self.aim(vertex, numbered);
+        self.wrap(facets, origin, lack);
         let is_linked = if is_small { self.link(facets) } else { self.link_many(facets) };
         if !is_linked {
             return Err(Failure::Inexact);
@@ -207,10 +213,11 @@ impl<'a> Mesh<'a> {
     }
 
     /// Returns a cell in conflict with a vertex, by a walk from the last star (Devillers, Pion and
-    /// Teillaud 2002). It ends as soon as a sphere is known to contain the vertex.
+    /// Teillaud 2002). It ends as soon as a sphere is known to contain the vertex. `None` if the
+    /// vertex is hidden.
     #[inline(always)]
-    fn locate(&mut self, vertex: u32, q: [f32; 3]) -> Result<u32, Failure> {
-        let Mesh { predicates, corners, cells, spheres, last, random, flatness, .. } = self;
+    fn locate(&mut self, vertex: u32, q: Query) -> Result<Option<u32>, Failure> {
+        let Mesh { predicates, corners, weights, cells, spheres, last, random, flatness, .. } = self;
         let (cells, spheres) = (&cells[..], &spheres[..cells.len()]);
         let infinite = corners.len() as u32 - 1;
         let mut cell = *last;
@@ -222,11 +229,11 @@ impl<'a> Mesh<'a> {
         // predicates contradict each other.
         'walk: for _ in 0..8 * cells.len() + 64 {
             if sphere::is_inside(spheres[cell as usize], q) {
-                return Ok(cell);
+                return Ok(Some(cell));
             }
             let Cell { neighbors, vertices } = cells[cell as usize];
             if vertices.contains(&infinite) {
-                return Ok(cell);
+                return Ok(Some(cell));
             }
             *random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let start = (*random >> 30) as usize;
@@ -240,7 +247,9 @@ impl<'a> Mesh<'a> {
                     continue 'walk;
                 }
             }
-            return Ok(cell);
+            let is_hidden =
+                weights.may_hide() && !conflicts(*predicates, corners, *flatness, cells[cell as usize], vertex);
+            return Ok((!is_hidden).then_some(cell));
         }
         Err(Failure::Inexact)
     }
@@ -251,7 +260,7 @@ impl<'a> Mesh<'a> {
     /// `PERF:` the four neighbors of a cell are tested at once, and those chosen appended without
     /// branches: all four are written, each at the end of those chosen before it.
     #[inline(always)]
-    fn grow(&mut self, first: u32, vertex: u32, q: [f32; 3]) -> (usize, usize) {
+    fn grow(&mut self, first: u32, vertex: u32, q: Query) -> (usize, usize) {
         let Mesh { predicates, corners, cells, spheres, scratch, flatness, .. } = self;
         let cells = &cells[..];
         let spheres = &mut spheres[..cells.len()];
@@ -385,9 +394,10 @@ impl<'a> Mesh<'a> {
         count
     }
 
-    /// Computes the vectors from the new point to the vertices of the star.
+    /// Computes the vectors from the new vertex to the others of the star.
     #[inline(always)]
-    fn aim(&mut self, site: [f64; 3], count: usize) {
+    fn aim(&mut self, vertex: u32, count: usize) {
+        let (site, weight) = (self.corners[vertex as usize].site, self.weights.of(vertex));
         let Scratch { arrows, vertices, .. } = &mut self.scratch;
         if arrows.len() < count {
             arrows.resize(2 * count, [0.0; 4]);
@@ -395,12 +405,18 @@ impl<'a> Mesh<'a> {
         for (arrow, &vertex) in arrows.iter_mut().zip(&vertices[..count]) {
             *arrow = sphere::arrow(site, self.corners[vertex as usize].site);
         }
+        if self.weights.may_hide() {
+            for (arrow, &vertex) in arrows.iter_mut().zip(&vertices[..count]) {
+                arrow[3] -= self.weights.of(vertex) - weight;
+            }
+        }
     }
 
     /// Computes the spheres of the star, four at a time.
     #[inline(always)]
-    fn wrap(&mut self, facets: usize, origin: [f64; 3]) {
-        let Mesh { scratch, spheres, frame, .. } = self;
+    fn wrap(&mut self, facets: usize, origin: [f64; 3], lack: f64) {
+        let Mesh { scratch, spheres, frame, weights, .. } = self;
+        let origin = Origin { at: origin, lack, range: weights.range() };
         let (cells, numbers, arrows) = (&scratch.cells[..facets], &scratch.numbers[..facets], &scratch.arrows[..]);
         let spheres = &mut spheres[..];
         for first in (0..facets).step_by(4) {

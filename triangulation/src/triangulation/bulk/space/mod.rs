@@ -11,6 +11,9 @@
 //! 3. [`mesh`]: the star is built in the memory of the zone, and linked by a small table in which
 //!    each edge of the zone's boundary finds the two facets that it belongs to.
 //!
+//! Points may have weights: then the spheres are those that are orthogonal to the points' own
+//! (Edelsbrunner and Shah 1996), and a point in conflict with nothing is hidden.
+//!
 //! Ties are broken as everywhere else, so that the cells are those of any other algorithm. Where
 //! the predicates are seen to contradict each other (it may happen with
 //! [`Fast`](crate::kernel::Fast)), the builder gives up and the caller inserts the points one by
@@ -21,6 +24,7 @@ mod order;
 mod sphere;
 #[cfg(test)]
 mod tests;
+mod weights;
 
 use crate::geometry::{Coordinates, in_sphere, in_sphere_of_flat};
 use crate::num::Sign;
@@ -28,6 +32,7 @@ use crate::tds::{CellId, Links, VertexId};
 
 use super::Grain;
 use mesh::{Cell, DUMMY, Mesh, Predicates};
+use weights::Weights;
 
 /// The largest number of points. Evenly spread ones have about 7 cells each, which are numbered in
 /// 30 bits; where points have more (on the moment curve half as many as there are points), that is
@@ -45,7 +50,7 @@ pub(super) struct Built {
 }
 
 /// Triangulates sites that are [exact](Coordinates::exact_site); vertices are numbered like the
-/// points. `None` if the sites are coplanar, fewer than four or too many, if the predicates
+/// points, and hidden ones have no cell. `None` if the sites are coplanar, fewer than four or too many, if the predicates
 /// contradict each other, or if the work was stopped.
 ///
 /// # Complexity
@@ -68,8 +73,10 @@ pub(super) fn build<G: Coordinates<N>, const N: usize>(
         in_sphere: &|vertices, q| in_sphere(geometry, simplex(vertices), point(q)),
         in_circle: &|facet, q| in_sphere_of_flat::<G, N>(geometry, &facet.map(point), point(q)),
     };
-    let sites = points.iter().map(|p| geometry.exact_site(p).unwrap_or([f64::NAN; 3]));
-    insert_all(Mesh::new(sites, first, predicates), &order[4..], grain)
+    let exact = points.iter().map(|p| geometry.exact_site(p).unwrap_or([f64::NAN; 4]));
+    let weights = Weights::new(exact.clone().map(|[.., weight]| weight));
+    let sites = exact.map(|[x, y, z, _]| [x, y, z]);
+    insert_all(Mesh::new(sites, weights, first, predicates), &order[4..], grain)
 }
 
 /// Moves the first four points that span the space to the front of the order; returns them as a
@@ -102,8 +109,8 @@ fn insert_all(mut mesh: Mesh, order: &[u32], grain: Grain) -> Option<Built> {
     finished(mesh)
 }
 
-/// Closes the gaps in the numbers of cells and gives vertices and cells their ids. `None` if a
-/// vertex has no cell, which happens only if predicates contradict each other.
+/// Closes the gaps in the numbers of cells and gives vertices and cells their ids. `None` if no
+/// cell is infinite, which happens only if predicates contradict each other.
 fn finished(mesh: Mesh) -> Option<Built> {
     let (mut cells, mut gaps, count) = mesh.into_parts();
     gaps.push(DUMMY);
@@ -130,7 +137,7 @@ fn finished(mesh: Mesh) -> Option<Built> {
             *of_vertices.get_mut(vertex as usize).unwrap_or(&mut of_infinite) = CellId::new(i);
         }
     }
-    if of_infinite == CellId::NONE || of_vertices.contains(&CellId::NONE) {
+    if of_infinite == CellId::NONE {
         return None;
     }
     let vertex = |rank: u32| if rank as usize == count { VertexId::INFINITE } else { VertexId::new(rank as usize) };

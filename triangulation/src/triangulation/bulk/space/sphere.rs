@@ -1,7 +1,8 @@
 //! The filter of the in-sphere test: the circumscribed sphere of each cell, rounded to 16 bytes.
 //!
 //! A sphere is stored as its center `c` and its squared radius `R`, four `f32` in a frame in which
-//! all points have coordinates between -1 and 1. For a query point `q` of the frame,
+//! all points have coordinates between -1 and 1. For a query point `q` of the frame, without
+//! weights,
 //!
 //! ```text
 //!   e = |c - q|^2 - R        is sure to have the right sign if |e| > R / 2^j
@@ -53,6 +54,20 @@
 //!   3 (83 h)^2 = 7.4e-11                                 FIXED = 9e-11
 //! ```
 //!
+//! *Weights.* Let `l >= 0` be what a vertex lacks of the greatest weight, in the frame. Points with
+//! weights are points of a space with one more dimension, `(P, sqrt(l))`, and spheres there that
+//! have their centers in `l = 0`: `r^2 = |C - O|^2 + l_o`, where `O` is the corner from which the
+//! center is computed, and `x^2 = |C - P|^2 + l`, of which `|c - q|^2 + l - R` is the test. All
+//! vectors of the point's own space are projections, and not longer. What differs:
+//!
+//! - In the formula of the center, `|a|^2` is less by the difference of two weights, at most `W` if
+//!   that is the range of all. Its rounding, and one of the sum, make 13 on the path and
+//!   `69 u L^2 (L^2 + W)` of the numerator: with `L <= 2 r`, `W` may be added to one `L^2` in the
+//!   bound. `L^2` itself is not greater than the largest term plus `W`.
+//! - The evaluation has one rounding more, and `l` one: `24 h` for `20 h`.
+//!
+//! So the constants are `3 (537 u)^2 = 1.07e-26` and `3 (87 h)^2 = 8.1e-11`, less than those above.
+//!
 //! What is left over covers the roundings of the bound itself. Within the
 //! [range](crate::kernel::RANGE) of floating point nothing underflows that counts; where the bound
 //! overflows, the sphere is not known.
@@ -97,10 +112,18 @@ pub(super) fn is_marked(sphere: Sphere) -> bool {
     sphere[3] < 0.0
 }
 
+/// A point in the frame, and what it lacks of the greatest weight, in the same unit.
+pub(super) type Query = [f32; 4];
+
 #[inline(always)]
-fn power(sphere: Sphere, q: [f32; 3]) -> f32 {
+pub(super) fn query([x, y, z]: [f64; 3], lack: f64) -> Query {
+    [x, y, z, lack].map(|x| x as f32)
+}
+
+#[inline(always)]
+fn power(sphere: Sphere, q: Query) -> f32 {
     let [x, y, z] = [0, 1, 2].map(|axis| sphere[axis] - q[axis]);
-    x * x + y * y + z * z - sphere[3]
+    x * x + y * y + z * z + q[3] - sphere[3]
 }
 
 #[inline(always)]
@@ -110,7 +133,7 @@ fn tolerance(squared_radius: f32) -> f32 {
 
 /// Returns true if a point is sure to lie inside.
 #[inline(always)]
-pub(super) fn is_inside(sphere: Sphere, q: [f32; 3]) -> bool {
+pub(super) fn is_inside(sphere: Sphere, q: Query) -> bool {
     power(sphere, q) < -tolerance(sphere[3])
 }
 
@@ -123,10 +146,10 @@ pub(super) struct Sides {
 
 /// Tests a point against four spheres.
 #[inline(always)]
-pub(super) fn sides(spheres: [Sphere; 4], q: [f32; 3]) -> Sides {
+pub(super) fn sides(spheres: [Sphere; 4], q: Query) -> Sides {
     let [x, y, z, squared_radius] = f32x4::transpose(spheres.map(f32x4::new));
     let (x, y, z) = (x - f32x4::splat(q[0]), y - f32x4::splat(q[1]), z - f32x4::splat(q[2]));
-    let power = x * x + y * y + z * z - squared_radius;
+    let power = x * x + y * y + z * z + f32x4::splat(q[3]) - squared_radius;
     let exponent = i32x4::splat(127) - (bits(squared_radius) & i32x4::splat(TOLERANCE));
     let tolerance = squared_radius * of_bits(exponent << 23);
     Sides {
@@ -136,7 +159,7 @@ pub(super) fn sides(spheres: [Sphere; 4], q: [f32; 3]) -> Sides {
     }
 }
 
-/// A vector and its squared length.
+/// A vector and its squared length, less what its end has more weight than its start.
 pub(super) type Arrow = [f64; 4];
 
 #[inline(always)]
@@ -145,22 +168,33 @@ pub(super) fn arrow(from: [f64; 3], to: [f64; 3]) -> Arrow {
     [x, y, z, x * x + y * y + z * z]
 }
 
+/// The point that arrows start at.
+#[derive(Clone, Copy)]
+pub(super) struct Origin {
+    /// In the frame.
+    pub(super) at: [f64; 3],
+    /// What it lacks of the greatest weight, in the frame.
+    pub(super) lack: f64,
+    /// No two weights differ by more; outside of the frame.
+    pub(super) range: f64,
+}
+
 /// Returns the spheres through a point and the ends of three arrows from it, four at a time.
-/// `origin` is the point in the frame.
 #[inline(always)]
-pub(super) fn through(arrows: [[Arrow; 3]; 4], origin: [f64; 3], scale: f64) -> [Sphere; 4] {
+pub(super) fn through(arrows: [[Arrow; 3]; 4], origin: Origin, scale: f64) -> [Sphere; 4] {
     let [a, b, c] = [0, 1, 2].map(|corner| f64x4::transpose(arrows.map(|arrows| f64x4::new(arrows[corner]))));
     let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
     let volume = a[0] * u[0] + a[1] * u[1] + a[2] * u[2];
     let inverse = f64x4::splat(1.0) / volume;
     let half = inverse * f64x4::splat(0.5 * scale);
     let [x, y, z] = [0, 1, 2].map(|axis| (a[3] * u[axis] + b[3] * v[axis] + c[3] * w[axis]) * half);
-    let squared_radius = rounded(x * x + y * y + z * z);
-    let center = [(x, origin[0]), (y, origin[1]), (z, origin[2])];
+    let squared_radius = rounded(x * x + y * y + z * z + f64x4::splat(origin.lack));
+    let center = [(x, origin.at[0]), (y, origin.at[1]), (z, origin.at[2])];
     let [x, y, z] = center.map(|(offset, origin)| rounded(offset + f64x4::splat(origin)));
 
-    let longest = a[3].fast_max(b[3]).fast_max(c[3]);
-    let ratio = longest * inverse;
+    let range = f64x4::splat(origin.range);
+    let longest = a[3].fast_max(b[3]).fast_max(c[3]) + range;
+    let ratio = (longest + range) * inverse;
     let error = rounded(ratio * ratio * longest * f64x4::splat(CENTER));
     let size = x.abs().fast_max(y.abs()).fast_max(z.abs()) + f32x4::splat(1.0);
     let bound = size * size * f32x4::splat(POSITION) / squared_radius + error + f32x4::splat(FIXED);

@@ -6,13 +6,13 @@ use std::cmp::Ordering;
 use testkit::random::Random;
 
 use crate::geometry::{Coordinates, Geometry, Space};
-use crate::kernel::{Adaptive, Fast, InSphere, Kernel, Orientation3};
+use crate::kernel::{Adaptive, Fast, InSphere, Kernel, Orientation3, PowerTest3};
 use crate::num::Sign;
 
 use super::super::Grain;
 use super::build;
 use super::order::rounds;
-use super::sphere::{self, Frame};
+use super::sphere::{self, Frame, Origin};
 
 const FRAME: Frame = Frame { middle: [0.0; 3], scale: 1.0 };
 
@@ -25,14 +25,34 @@ fn spread(random: &mut Random, exponents: usize) -> f64 {
 /// Returns the exact side, and the sure side if there is one, of `q` and the sphere through four
 /// points.
 fn sides_of(points: [[f64; 3]; 4], q: [f64; 3]) -> (Sign, Option<Sign>) {
+    let exact = Adaptive::sign(&InSphere([points[0], points[1], points[2], points[3], q]));
+    let [points, [q, ..]] = [points, [q; 4]].map(|points| points.map(|[x, y, z]| [x, y, z, 0.0]));
+    let (exact_by_power, sure) = powers_of(points, q, 0.0, 0.0);
+    assert_eq!(exact_by_power, exact * Adaptive::sign(&Orientation3(points.map(site))));
+    (exact_by_power, sure)
+}
+
+fn site([x, y, z, _]: [f64; 4]) -> [f64; 3] {
+    [x, y, z]
+}
+
+/// Returns the exact side, and the sure side if there is one, of `q` and the sphere orthogonal to
+/// four points with weights between `greatest` and `greatest - range`.
+fn powers_of(points: [[f64; 4]; 4], q: [f64; 4], greatest: f64, range: f64) -> (Sign, Option<Sign>) {
     let [a, b, c, d] = points;
-    let arrows = [a, b, c].map(|p| sphere::arrow(d, p));
-    let row = sphere::through([arrows; 4], FRAME.of(d), FRAME.scale)[0];
-    let sides = sphere::sides([row; 4], FRAME.of(q).map(|x| x as f32));
+    let arrows = [a, b, c].map(|p| {
+        let [x, y, z, square] = sphere::arrow(site(d), site(p));
+        [x, y, z, square - (p[3] - d[3])]
+    });
+    let lack = |p: [f64; 4]| (greatest - p[3]) * FRAME.scale * FRAME.scale;
+    let origin = Origin { at: FRAME.of(site(d)), lack: lack(d), range };
+    let row = sphere::through([arrows; 4], origin, FRAME.scale)[0];
+    let query = sphere::query(FRAME.of(site(q)), lack(q));
+    let sides = sphere::sides([row; 4], query);
     assert_eq!(sides.marked, 0);
-    let exact = Adaptive::sign(&InSphere([a, b, c, d, q])) * Adaptive::sign(&Orientation3(points));
+    let exact = Adaptive::sign(&PowerTest3([a, b, c, d, q])) * Adaptive::sign(&Orientation3(points.map(site)));
     let sure = (sides.sure & 1 == 1).then_some(if sides.inside & 1 == 1 { Sign::Positive } else { Sign::Negative });
-    assert_eq!(sphere::is_inside(row, FRAME.of(q).map(|x| x as f32)), sure == Some(Sign::Positive));
+    assert_eq!(sphere::is_inside(row, query), sure == Some(Sign::Positive));
     (exact, sure)
 }
 
@@ -66,12 +86,49 @@ fn what_is_sure_is_right() {
     assert!(sure > rounds / 4 && sure_inside > rounds / 20, "{sure} and {sure_inside} of {rounds}: hardly a test");
 }
 
+/// Weights that differ by as much as the squared distances do, or by far more or less; positions of
+/// all distances; some points close to the sphere, because their weights are chosen so.
+#[test]
+fn what_is_sure_of_weights_is_right() {
+    let mut random = Random(5);
+    let (mut sure, mut sure_inside, rounds) = (0, 0, 200_000);
+    for _ in 0..rounds {
+        let (size, flat, range) =
+            (spread(&mut random, 12).abs(), spread(&mut random, 20).abs(), spread(&mut random, 30).abs());
+        let middle = [0; 3].map(|_| (1.0 - size) * (2.0 * random.unit() - 1.0));
+        let greatest = if random.below(2) == 0 { 0.0 } else { spread(&mut random, 6) };
+        let lowest = if random.below(4) == 0 { 1e-3 } else { 1.0 };
+        let mut point = |flat: f64| {
+            let [x, y, z] = [1.0, 1.0, flat].map(|most| size * most * (2.0 * random.unit() - 1.0));
+            [middle[0] + x, middle[1] + y, middle[2] + z, greatest - range * lowest * random.unit()]
+        };
+        let points = [0; 4].map(|_| point(flat));
+        let mut q = point(1.0);
+        // Moves the weight of q toward the sphere, as far as floating point can.
+        let power = |w: f64| PowerTest3([points[0], points[1], points[2], points[3], [q[0], q[1], q[2], w]]);
+        let (mut low, mut high) = (greatest - range, greatest);
+        let sign = Adaptive::sign(&power(low));
+        for _ in 0..random.below(40) {
+            let mid = 0.5 * (low + high);
+            if Adaptive::sign(&power(mid)) == sign { low = mid } else { high = mid }
+        }
+        q[3] = if random.below(2) == 0 { low } else { high };
+        let (exact, decided) = powers_of(points, q, greatest, range);
+        if let Some(decided) = decided {
+            assert_eq!(decided, exact, "{points:?} {q:?}");
+            sure += 1;
+            sure_inside += usize::from(decided == Sign::Positive);
+        }
+    }
+    assert!(sure > rounds / 8 && sure_inside > rounds / 50, "{sure} and {sure_inside} of {rounds}: hardly a test");
+}
+
 #[test]
 fn nothing_is_sure_of_a_flat_cell_or_an_infinite_one() {
     let (a, b, c, d) = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.25, 0.0]);
     assert_eq!(sides_of([a, b, c, d], [0.1, 0.2, 0.3]).1, None);
     let arrows = [a, b, [f64::NAN; 3]].map(|p| sphere::arrow(d, p));
-    let row = sphere::through([arrows; 4], d, 1.0)[0];
+    let row = sphere::through([arrows; 4], Origin { at: d, lack: 0.0, range: 0.0 }, 1.0)[0];
     assert!(row[3].is_nan() && !sphere::is_marked(row));
 }
 
@@ -125,8 +182,8 @@ impl Coordinates<4> for Contradictory {
         *p
     }
 
-    fn exact_site(&self, [x, y, z]: &[f64; 3]) -> Option<[f64; 3]> {
-        Some([x + 0.3 * (7.0 * y).sin(), y - 0.4 * (5.0 * z + x).cos(), z * x])
+    fn exact_site(&self, [x, y, z]: &[f64; 3]) -> Option<[f64; 4]> {
+        Some([x + 0.3 * (7.0 * y).sin(), y - 0.4 * (5.0 * z + x).cos(), z * x, 0.0])
     }
 }
 
