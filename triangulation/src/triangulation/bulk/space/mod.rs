@@ -50,8 +50,8 @@ pub(super) struct Built {
 }
 
 /// Triangulates sites that are [exact](Coordinates::exact_site); vertices are numbered like the
-/// points, and hidden ones have no cell. `None` if the sites are coplanar, fewer than four or too many, if the predicates
-/// contradict each other, or if the work was stopped.
+/// points, and hidden ones have no cell. `None` if the sites are coplanar, fewer than four or too
+/// many, if the predicates contradict each other, or if the work was stopped.
 ///
 /// # Complexity
 /// Linear in practice; quadratic at worst, as is the result.
