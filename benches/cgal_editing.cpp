@@ -1,10 +1,13 @@
-// What triangulation/examples/bench_editing.rs does, by CGAL's Triangulation_hierarchy_2, in the same line format.
+// What triangulation/examples/bench_editing.rs does, by CGAL's Triangulation_hierarchy_2, in space by
+// Delaunay_triangulation_3 with Fast_location, in the same line format.
 //
 //   g++ -std=c++17 -O3 -DNDEBUG benches/cgal_editing.cpp -o cgal_editing -lgmp -lmpfr     (Debian: libcgal-dev)
-//   ./cgal_editing FILE.xy
+//   ./cgal_editing FILE.xy|FILE.xyz
 #include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_hierarchy_2.h>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -14,6 +17,7 @@ typedef CGAL::Exact_predicates_inexact_constructions_kernel K;
 typedef CGAL::Triangulation_hierarchy_vertex_base_2<CGAL::Triangulation_vertex_base_2<K>> Vb;
 typedef CGAL::Delaunay_triangulation_2<K, CGAL::Triangulation_data_structure_2<Vb, CGAL::Triangulation_face_base_2<K>>> Plain;
 typedef CGAL::Triangulation_hierarchy_2<Plain> Hierarchy;
+typedef CGAL::Delaunay_triangulation_3<K, CGAL::Fast_location> InSpace;
 
 static std::string stem;
 static size_t count;
@@ -25,29 +29,21 @@ template <class Task> void timed(const char* name, Task task) {
     printf("cgal_%s %s %zu 1 %.4f 0 0 %zu %.4f\n", name, stem.c_str(), count, seconds, done, seconds);
 }
 
-int main(int argc, char** argv) {
-    if (argc < 2) return 2;
-    std::string path = argv[1];
-    stem = path.substr(path.find_last_of('/') + 1);
-    stem = stem.substr(0, stem.find_last_of('.'));
-    FILE* file = fopen(path.c_str(), "rb");
-    if (!file) return 1;
-    std::vector<K::Point_2> points;
-    double xy[2];
-    while (fread(xy, sizeof xy, 1, file) == 1) points.emplace_back(xy[0], xy[1]);
-    fclose(file);
-    count = points.size();
+static size_t cells(const Hierarchy& t) { return t.number_of_faces(); }
+static size_t cells(const InSpace& t) { return t.number_of_finite_cells(); }
 
-    Hierarchy t;
-    std::vector<Hierarchy::Vertex_handle> vertices;
+template <class T, class Point> void measure(const std::vector<Point>& points) {
+    count = points.size();
+    T t;
+    std::vector<typename T::Vertex_handle> vertices;
     vertices.reserve(count);
-    timed("insert", [&] { for (auto& p : points) vertices.push_back(t.insert(p)); return t.number_of_faces(); });
+    timed("insert", [&] { for (auto& p : points) vertices.push_back(t.insert(p)); return cells(t); });
     // Beside the vertices: the middle between two points that follow each other in the file.
     timed("locate", [&] {
         size_t inside = 0;
         for (size_t i = 1; i < count; i++) {
-            auto face = t.locate(CGAL::midpoint(points[i - 1], points[i]));
-            inside += face != nullptr && !t.is_infinite(face);
+            auto cell = t.locate(CGAL::midpoint(points[i - 1], points[i]));
+            inside += cell != nullptr && !t.is_infinite(cell);
         }
         return inside;
     });
@@ -58,12 +54,33 @@ int main(int argc, char** argv) {
     });
     // Every second one, in the order of the file; each once.
     timed("remove", [&] {
-        std::vector<Hierarchy::Vertex_handle> half;
+        std::vector<typename T::Vertex_handle> half;
         for (size_t i = 0; i < count; i += 2) half.push_back(vertices[i]);
-        std::sort(half.begin(), half.end());
-        half.erase(std::unique(half.begin(), half.end()), half.end());
-        if (half.size() * 2 == count) { half.clear(); for (size_t i = 0; i < count; i += 2) half.push_back(vertices[i]); }
-        for (auto v : half) t.remove(v);
-        return t.number_of_faces();
+        auto sorted = half;
+        std::sort(sorted.begin(), sorted.end());
+        sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+        for (auto v : sorted.size() == half.size() ? half : sorted) t.remove(v);
+        return cells(t);
     });
+}
+
+int main(int argc, char** argv) {
+    if (argc < 2) return 2;
+    std::string path = argv[1];
+    stem = path.substr(path.find_last_of('/') + 1);
+    auto dot = stem.find_last_of('.');
+    bool in_space = stem.substr(dot) == ".xyz";
+    stem = stem.substr(0, dot);
+    FILE* file = fopen(path.c_str(), "rb");
+    if (!file) return 1;
+    std::vector<K::Point_2> points;
+    std::vector<K::Point_3> points_in_space;
+    double p[3];
+    while (fread(p, (in_space ? 3 : 2) * sizeof *p, 1, file) == 1) {
+        if (in_space) points_in_space.emplace_back(p[0], p[1], p[2]);
+        else points.emplace_back(p[0], p[1]);
+    }
+    fclose(file);
+    if (in_space) measure<InSpace>(points_in_space);
+    else measure<Hierarchy>(points);
 }
