@@ -3,8 +3,9 @@ use super::{Complex, VertexId, plane, space};
 /// A complex whose vertices list their neighbors: every [`Complex`] of the plane or of space.
 /// Algorithms that are the same in both need no more than this.
 pub trait Neighbors<const N: usize>: Complex<N> {
-    /// Returns the vertices that a vertex is joined to by an edge, the infinite one included, in
-    /// the order of [`plane::vertices_around`] and [`space::vertices_around`].
+    /// Returns the vertices that a vertex is joined to by an edge, the infinite one included. In
+    /// the plane each is met once, in the order of [`plane::vertices_around`]; in space at least
+    /// once, while the star of the vertex is still being searched.
     ///
     /// # Errors
     /// If the vertex does not exist, or a link around it does not hold.
@@ -29,6 +30,6 @@ impl<T: Complex<4>> Neighbors<4> for T {
         &self,
         vertex: VertexId,
     ) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
-        Ok(space::vertices_around(self, vertex)?.into_iter().map(Ok))
+        space::neighbors_of(self, vertex)
     }
 }

@@ -177,6 +177,22 @@ pub fn within<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, co
     Ok(nearest.take_while(is_within).map(|candidate| Ok(candidate?.vertex)))
 }
 
+/// Returns the first of the vertices that none of the others is nearer than.
+fn nearest_of<T: Embedded<N, Geometry: Metric<N>>, const N: usize>(
+    t: &T,
+    q: &PointOf<T, N>,
+    vertices: &[VertexId],
+) -> Result<Option<VertexId>, T::Error> {
+    let mut nearest: Option<(VertexId, T::PointRef<'_>)> = None;
+    for &vertex in vertices {
+        let point = t.point(vertex)?;
+        if nearest.is_none_or(|(_, best)| t.geometry().compare_distance(q, point.borrow(), best.borrow()).is_lt()) {
+            nearest = Some((vertex, point));
+        }
+    }
+    Ok(nearest.map(|(vertex, _)| vertex))
+}
+
 /// Returns all vertices at the smallest distance. They lie on an empty circle or sphere around the
 /// point, and edges along its chords connect them all.
 fn all_nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize>(
@@ -188,7 +204,9 @@ fn all_nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const
     let start = match location {
         Location::Vertex(vertex) => Some(vertex), // with weights, another may be nearer
         Location::Cell { cell, .. } | Location::OutsideHull { cell } => {
-            complex.corners(cell)?[..complex.width()].iter().copied().find(|&v| v != VertexId::INFINITE)
+            let mut corners = complex.corners(cell)?[..complex.width()].to_vec();
+            corners.retain(|&v| v != VertexId::INFINITE);
+            nearest_of(t, q, &corners)?
         }
         Location::OutsideAffineHull => vertices_of::<N, T::Complex>(complex).next().transpose()?,
         Location::Nowhere => None,
