@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The points (pairs or triples of 64-bit little-endian floating-point numbers) are inserted in the
-//! order of the file. The midpoints of consecutive points are located, and their nearest vertices found.
-//! Then every second point is removed. The last number but one of a line counts cells, or
+//! order of the file. The midpoints of consecutive points are located, and their nearest vertices
+//! found. Then every second point is removed. The last number but one of a line counts cells, or
 //! points that were found.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
