@@ -3,6 +3,8 @@
 use crate::kernel::{Orientation3, Predicate};
 use crate::num::Sign;
 
+use super::Source;
+use super::blocks::Block;
 use super::sphere::{self, Arrow, Frame, MARKED, Origin, Query, Sphere, UNKNOWN};
 use super::weights::Weights;
 
@@ -17,7 +19,7 @@ pub(super) struct Cell {
 
 impl Cell {
     /// A cell that is not in use.
-    const UNUSED: Self = Cell { neighbors: [DUMMY; 4], vertices: [u32::MAX; 4] };
+    pub(super) const UNUSED: Self = Cell { neighbors: [DUMMY; 4], vertices: [u32::MAX; 4] };
 
     pub(super) fn is_used(&self) -> bool {
         self.vertices[0] != u32::MAX
@@ -26,23 +28,62 @@ impl Cell {
 
 /// The vertices of each facet of a cell, in the order that makes the facet and the vertex opposite
 /// to it a positive cell.
-const FACETS: [[usize; 3]; 4] = [[2, 1, 3], [0, 2, 3], [1, 0, 3], [0, 1, 2]];
+pub(super) const FACETS: [[usize; 3]; 4] = [[2, 1, 3], [0, 2, 3], [1, 0, 3], [0, 1, 2]];
 
 /// A cell that receives the writes of lanes that are not chosen.
 pub(super) const DUMMY: u32 = 0;
 
-/// The predicates of the geometry, by the ranks of vertices. They decide what floating point
-/// cannot.
-///
-/// `PERF:` called seldom, so that the rest need not be compiled for each geometry.
+/// The predicates of the geometry. They decide what floating point cannot.
 #[derive(Clone, Copy)]
-pub(super) struct Predicates<'a> {
-    /// The orientation of four finite vertices.
-    pub(super) orientation: &'a dyn Fn([u32; 4]) -> Sign,
-    /// True if a vertex is in the sphere of four positively oriented ones, ties decided.
-    pub(super) in_sphere: &'a dyn Fn([u32; 4], u32) -> bool,
-    /// True if a vertex is in the circle of three others in its plane, ties decided.
-    pub(super) in_circle: &'a dyn Fn([u32; 3], u32) -> bool,
+struct Predicates<'a> {
+    source: Source<'a>,
+    /// The points of the vertices.
+    ranks: &'a [u32],
+}
+
+impl Predicates<'_> {
+    fn points<const M: usize>(&self, vertices: [u32; M]) -> [u32; M] {
+        vertices.map(|vertex| self.ranks[vertex as usize])
+    }
+
+    fn orientation(&self, vertices: [u32; 4]) -> Sign {
+        (self.source.orientation)(self.points(vertices))
+    }
+
+    fn in_sphere(&self, vertices: [u32; 4], q: u32) -> bool {
+        (self.source.in_sphere)(self.points(vertices), self.ranks[q as usize])
+    }
+
+    fn in_circle(&self, facet: [u32; 3], q: u32) -> bool {
+        (self.source.in_circle)(self.points(facet), self.ranks[q as usize])
+    }
+}
+
+/// What all meshes of the same points have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
+    pub(super) frame: Frame,
+    /// Determinants of absolute value above it have the right sign.
+    flatness: f64,
+    /// The least and the greatest weight.
+    weights: [f64; 2],
+}
+
+impl Extent {
+    pub(super) fn of(source: Source) -> Self {
+        let (mut min, mut max) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+        for site in (0..source.count as u32).map(source.site) {
+            for axis in 0..4 {
+                min[axis] = min[axis].min(site[axis]);
+                max[axis] = max[axis].max(site[axis]);
+            }
+        }
+        let [x, y, z] = [0, 1, 2].map(|axis| max[axis] - min[axis]);
+        let frame =
+            Frame { middle: [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]), scale: 2.0 / x.max(y).max(z) };
+        // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
+        Extent { frame, flatness: 6.0 * 9e-16 * x * y * z, weights: [min[3], max[3]] }
+    }
 }
 
 /// A vertex.
@@ -76,7 +117,7 @@ pub(super) struct Mesh<'a> {
     /// The finite vertices, then the infinite one, whose site is not a number.
     corners: Vec<Corner>,
     weights: Weights,
-    pub(super) cells: Vec<Cell>,
+    cells: Vec<Cell>,
     spheres: Vec<Sphere>,
     /// Cells that are not in use.
     unused: Vec<u32>,
@@ -113,32 +154,15 @@ struct Scratch {
 }
 
 impl<'a> Mesh<'a> {
-    /// Returns the mesh of a positive cell and the infinite cells around it. Sites and weights are
-    /// those of the finite vertices.
-    pub(super) fn new(
-        sites: impl ExactSizeIterator<Item = [f64; 3]>,
-        weights: Weights,
-        first: [u32; 4],
-        predicates: Predicates<'a>,
-    ) -> Self {
-        let count = sites.len();
+    /// Returns the mesh of a positive cell and the infinite cells around it. The vertices are
+    /// points, by their ranks.
+    pub(super) fn new(source: Source<'a>, extent: Extent, ranks: &'a [u32], first: [u32; 4]) -> Self {
+        let count = ranks.len();
         let mut corners: Vec<Corner> = Vec::with_capacity(count + 1);
-        corners.extend(sites.map(|site| Corner { site, tag: 0 }));
-        let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for corner in &corners {
-            for axis in 0..3 {
-                min[axis] = min[axis].min(corner.site[axis]);
-                max[axis] = max[axis].max(corner.site[axis]);
-            }
-        }
+        corners.extend(ranks.iter().map(|&rank| Corner { site: source.position(rank), tag: 0 }));
         corners.push(Corner { site: [f64::NAN; 3], tag: 0 });
-        let extent = [0, 1, 2].map(|axis| max[axis] - min[axis]);
-        let frame = Frame {
-            middle: [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]),
-            scale: 2.0 / extent[0].max(extent[1]).max(extent[2]),
-        };
-        // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
-        let flatness = 6.0 * 9e-16 * extent[0] * extent[1] * extent[2];
+        let weights = Weights::new(extent.weights, ranks.iter().map(|&rank| (source.site)(rank)[3]));
+        let Extent { frame, flatness, .. } = extent;
 
         let room = 7 * count + count / 4 + 64;
         let (mut cells, mut spheres) = (Vec::with_capacity(room), Vec::with_capacity(room));
@@ -148,7 +172,7 @@ impl<'a> Mesh<'a> {
         cells.extend(FACETS.map(|[i, j, k]| alone([first[j], first[i], first[k], infinite])));
         spheres.resize(cells.len(), UNKNOWN);
         let mut mesh = Mesh {
-            predicates,
+            predicates: Predicates { source, ranks },
             corners,
             weights,
             cells,
@@ -176,9 +200,42 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Returns the cells, those of them that are not in use, and the number of finite vertices.
-    pub(super) fn into_parts(self) -> (Vec<Cell>, Vec<u32>, usize) {
-        (self.cells, self.unused, self.corners.len() - 1)
+    /// Returns the cells, and those of them that are not in use.
+    pub(super) fn into_cells(self) -> (Vec<Cell>, Vec<u32>) {
+        (self.cells, self.unused)
+    }
+
+    /// Returns the cells that a point outside of the block may be in conflict with, if all vertices
+    /// are points of the block.
+    ///
+    /// Such a point is outside of the convex hull, so that its conflict zone is connected and
+    /// contains an infinite cell. Hence a flood from these through cells whose spheres are not sure
+    /// to lie within the block reaches all; what it does not reach need not be tested.
+    pub(super) fn open_cells(&self, block: &Block) -> Vec<u32> {
+        let infinite = self.corners.len() as u32 - 1;
+        let is_infinite = |cell: &Cell| cell.vertices.contains(&infinite);
+        let mut is_open = vec![false; self.cells.len()];
+        // One infinite cell: from there the flood finds the others.
+        let mut open: Vec<u32> = self.cells.iter().position(is_infinite).map(|cell| cell as u32).into_iter().collect();
+        open.iter().for_each(|&cell| is_open[cell as usize] = true);
+        let mut done = 0;
+        while let Some(&cell) = open.get(done) {
+            done += 1;
+            for neighbor in self.cells[cell as usize].neighbors.map(|neighbor| neighbor >> 2) {
+                if !is_open[neighbor as usize] && !block.contains(self.spheres[neighbor as usize]) {
+                    is_open[neighbor as usize] = true;
+                    open.push(neighbor);
+                }
+            }
+        }
+        open
+    }
+
+    /// Returns the finite cells, each with its sphere.
+    pub(super) fn spheres(&self) -> impl Iterator<Item = ([u32; 4], Sphere)> {
+        let infinite = self.corners.len() as u32 - 1;
+        let cells = self.cells.iter().zip(&self.spheres).map(|(cell, &sphere)| (cell.vertices, sphere));
+        cells.filter(move |(vertices, _)| vertices.iter().all(|&vertex| vertex < infinite))
     }
 
     /// Inserts a vertex, which must not be on the site of another one. If it is hidden, nothing
@@ -509,7 +566,7 @@ fn orientation(predicates: Predicates, corners: &[Corner], flatness: f64, facet:
     } else if determinant < -flatness {
         Sign::Negative
     } else {
-        (predicates.orientation)([a, b, c, d])
+        predicates.orientation([a, b, c, d])
     }
 }
 
@@ -518,12 +575,12 @@ fn orientation(predicates: Predicates, corners: &[Corner], flatness: f64, facet:
 fn conflicts(predicates: Predicates, corners: &[Corner], flatness: f64, cell: Cell, vertex: u32) -> bool {
     let infinite = corners.len() as u32 - 1;
     let Some(i) = cell.vertices.iter().position(|&v| v == infinite) else {
-        return (predicates.in_sphere)(cell.vertices, vertex);
+        return predicates.in_sphere(cell.vertices, vertex);
     };
     let facet = FACETS[i].map(|k| cell.vertices[k]);
     match orientation(predicates, corners, flatness, facet, vertex) {
         Sign::Positive => true,
         Sign::Negative => false,
-        Sign::Zero => (predicates.in_circle)(facet, vertex),
+        Sign::Zero => predicates.in_circle(facet, vertex),
     }
 }

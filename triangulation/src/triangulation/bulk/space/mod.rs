@@ -11,6 +11,10 @@
 //! 3. [`mesh`]: the star is built in the memory of the zone, and linked by a small table in which
 //!    each edge of the zone's boundary finds the two facets that it belongs to.
 //!
+//! Where a [sample](blocks) shows that it is worth it, the points are divided into blocks of space,
+//! which threads triangulate on their own; what depends on several blocks is triangulated again
+//! ([`merge`]). The blocks are a function of the points, not of the number of threads.
+//!
 //! Points may have weights: then the spheres are those that are orthogonal to the points' own
 //! (Edelsbrunner and Shah 1996), and a point in conflict with nothing is hidden.
 //!
@@ -19,8 +23,11 @@
 //! [`Fast`](crate::kernel::Fast)), the builder gives up and the caller inserts the points one by
 //! one.
 
+mod blocks;
+mod merge;
 mod mesh;
 mod order;
+mod part;
 mod sphere;
 #[cfg(test)]
 mod tests;
@@ -28,11 +35,13 @@ mod weights;
 
 use crate::geometry::{Coordinates, in_sphere, in_sphere_of_flat};
 use crate::num::Sign;
-use crate::tds::{CellId, Links, VertexId};
+use crate::parallel::*;
+use crate::tds::{CellId, Links};
 
 use super::Grain;
-use mesh::{Cell, DUMMY, Mesh, Predicates};
-use weights::Weights;
+use blocks::{Block, Blocks};
+use mesh::{Extent, Mesh};
+use part::Part;
 
 /// The largest number of points. Evenly spread ones have about 7 cells each, which are numbered in
 /// 30 bits; where points have more (on the moment curve half as many as there are points), that is
@@ -49,6 +58,30 @@ pub(super) struct Built {
     pub(super) of_infinite: CellId,
 }
 
+/// Points in spatial order, and the predicates of their geometry, by their ranks.
+///
+/// `PERF:` called seldom, so that the rest need not be compiled for each geometry.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    count: usize,
+    /// Coordinates, and the weight.
+    site: &'a (dyn Fn(u32) -> [f64; 4] + Sync),
+    orientation: &'a (dyn Fn([u32; 4]) -> Sign + Sync),
+    /// The orientation of three points in a plane of theirs; zero if they are collinear.
+    turn: &'a (dyn Fn([u32; 3]) -> Sign + Sync),
+    /// True if a point is in the sphere of four positively oriented ones, ties decided.
+    in_sphere: &'a (dyn Fn([u32; 4], u32) -> bool + Sync),
+    /// True if a point is in the circle of three others in its plane, ties decided.
+    in_circle: &'a (dyn Fn([u32; 3], u32) -> bool + Sync),
+}
+
+impl Source<'_> {
+    fn position(&self, rank: u32) -> [f64; 3] {
+        let [position @ .., _] = (self.site)(rank);
+        position
+    }
+}
+
 /// Triangulates sites that are [exact](Coordinates::exact_site); vertices are numbered like the
 /// points, and hidden ones have no cell. `None` if the sites are coplanar, fewer than four or too
 /// many, if the predicates contradict each other, or if the work was stopped.
@@ -63,42 +96,89 @@ pub(super) fn build<G: Coordinates<N>, const N: usize>(
     if !(4..=MAX_POINTS).contains(&points.len()) {
         return None;
     }
-    let point = |rank: u32| &points[rank as usize];
-    let simplex = |vertices: [u32; 4]| std::array::from_fn::<_, N, _>(|i| point(vertices[i & 3]));
-    let orientation = |vertices: [u32; 4]| geometry.orientation(simplex(vertices));
-    let mut order = order::rounds(points.len());
-    let first = first_cell(geometry, points, orientation, &mut order)?;
-    let predicates = Predicates {
-        orientation: &orientation,
-        in_sphere: &|vertices, q| in_sphere(geometry, simplex(vertices), point(q)),
-        in_circle: &|facet, q| in_sphere_of_flat::<G, N>(geometry, &facet.map(point), point(q)),
-    };
-    let exact = points.iter().map(|p| geometry.exact_site(p).unwrap_or([f64::NAN; 4]));
-    let weights = Weights::new(exact.clone().map(|[.., weight]| weight));
-    let sites = exact.map(|[x, y, z, _]| [x, y, z]);
-    insert_all(Mesh::new(sites, weights, first, predicates), &order[4..], grain)
+    with_source(geometry, points, |source| triangulate(source, grain))
 }
 
-/// Moves the first four points that span the space to the front of the order; returns them as a
-/// positive cell.
-fn first_cell<G: Coordinates<N>, const N: usize>(
+fn with_source<G: Coordinates<N>, const N: usize, T>(
     geometry: &G,
     points: &[G::Point],
-    orientation: impl Fn([u32; 4]) -> Sign,
-    order: &mut [u32],
-) -> Option<[u32; 4]> {
-    let turn = |corners: [u32; 3]| geometry.orientation_in_flat(&corners.map(|rank| &points[rank as usize]));
-    let third = (2..order.len()).find(|&i| turn([order[0], order[1], order[i]]) != Sign::Zero)?;
-    order.swap(2, third);
-    let [a, b, c] = [order[0], order[1], order[2]];
-    let fourth = (3..order.len()).find(|&i| orientation([a, b, c, order[i]]) != Sign::Zero)?;
-    order.swap(3, fourth);
-    let d = order[3];
-    Some(if orientation([a, b, c, d]) == Sign::Positive { [a, b, c, d] } else { [b, a, c, d] })
+    work: impl FnOnce(Source) -> T,
+) -> T {
+    let point = |rank: u32| &points[rank as usize];
+    let simplex = |ranks: [u32; 4]| std::array::from_fn::<_, N, _>(|i| point(ranks[i & 3]));
+    work(Source {
+        count: points.len(),
+        site: &|rank| geometry.exact_site(point(rank)).unwrap_or([f64::NAN; 4]),
+        orientation: &|ranks| geometry.orientation(simplex(ranks)),
+        turn: &|ranks| geometry.orientation_in_flat(&ranks.map(point)),
+        in_sphere: &|ranks, q| in_sphere(geometry, simplex(ranks), point(q)),
+        in_circle: &|ranks, q| in_sphere_of_flat::<G, N>(geometry, &ranks.map(point), point(q)),
+    })
 }
 
-fn insert_all(mut mesh: Mesh, order: &[u32], grain: Grain) -> Option<Built> {
-    for chunk in order.chunks(POLL) {
+/// Triangulates all points, in blocks if that is worth it.
+fn triangulate(source: Source, grain: Grain) -> Option<Built> {
+    let extent = Extent::of(source);
+    let divided = divided(source, extent, grain);
+    divided.and_then(|blocks| by_blocks(source, extent, &blocks, grain)).or_else(|| whole(source, extent, grain))
+}
+
+/// Triangulates all points as one block.
+fn whole(source: Source, extent: Extent, grain: Grain) -> Option<Built> {
+    let ranks: Vec<u32> = (0..source.count as u32).collect();
+    let (cells, unused) = meshed(source, extent, &ranks, grain)?.into_cells();
+    merge::joined(source.count, vec![Part::of(cells, unused, &[], &ranks)])
+}
+
+/// Returns blocks whose triangulations are nearly that of the whole; `None` if there are none, by a
+/// sample.
+fn divided(source: Source, extent: Extent, grain: Grain) -> Option<Blocks> {
+    let levels = blocks::levels(source.count);
+    if levels == 0 {
+        return None;
+    }
+    let ranks = order::sample(source.count);
+    let mut sites: Vec<[f64; 3]> = ranks.iter().map(|&rank| source.position(rank)).collect();
+    let blocks = Blocks::of(&mut sites, levels, extent.frame)?;
+    let mesh = meshed(source, extent, &ranks, grain)?;
+    blocks.are_worth_it(source.count, &mesh).then_some(blocks)
+}
+
+/// Triangulates blocks, each on its own, and merges them. `None` also if the points of a block are
+/// coplanar.
+fn by_blocks(source: Source, extent: Extent, blocks: &Blocks, grain: Grain) -> Option<Built> {
+    let mut ranks: Vec<Vec<u32>> = blocks.each().iter().map(|_| Vec::new()).collect();
+    for rank in 0..source.count as u32 {
+        ranks[blocks.index_of(source.position(rank))].push(rank);
+    }
+    let parts: Vec<Option<Part>> = ranks
+        .par_iter()
+        .zip(blocks.each().par_iter())
+        .map(|(ranks, block)| by_block(source, extent, ranks, block, grain))
+        .collect();
+    let mut parts = parts.into_iter().collect::<Option<Vec<Part>>>()?;
+    let residual = merge::residual(&parts);
+    let (cells, unused) = meshed(source, extent, &residual, grain)?.into_cells();
+    let covered = merge::covered(&parts, &cells, &residual)?;
+    parts.push(Part::of(cells, unused, &covered, &residual));
+    merge::joined(source.count, parts)
+}
+
+/// Triangulates the points of a block, and leaves out the cells that other points may be in
+/// conflict with.
+fn by_block<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], block: &Block, grain: Grain) -> Option<Part<'a>> {
+    let mesh = meshed(source, extent, ranks, grain)?;
+    let open = mesh.open_cells(block);
+    let (cells, unused) = mesh.into_cells();
+    Some(Part::of(cells, unused, &open, ranks))
+}
+
+/// Returns the mesh of points.
+fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], grain: Grain) -> Option<Mesh<'a>> {
+    let mut order = order::rounds(ranks.len());
+    let first = first_cell(source, ranks, &mut order)?;
+    let mut mesh = Mesh::new(source, extent, ranks, first);
+    for chunk in order[4..].chunks(POLL) {
         if grain.stops() {
             return None;
         }
@@ -106,47 +186,19 @@ fn insert_all(mut mesh: Mesh, order: &[u32], grain: Grain) -> Option<Built> {
             mesh.insert(vertex).ok()?;
         }
     }
-    finished(mesh)
+    Some(mesh)
 }
 
-/// Closes the gaps in the numbers of cells and gives vertices and cells their ids. `None` if no
-/// cell is infinite, which happens only if predicates contradict each other.
-fn finished(mesh: Mesh) -> Option<Built> {
-    let (mut cells, mut gaps, count) = mesh.into_parts();
-    gaps.push(DUMMY);
-    gaps.sort_unstable();
-    // The last cells move into the gaps.
-    for &gap in &gaps {
-        while cells.last().is_some_and(|cell| !cell.is_used()) {
-            cells.pop();
-        }
-        if gap as usize >= cells.len() {
-            break;
-        }
-        if let Some(moved) = cells.pop() {
-            cells[gap as usize] = moved;
-            for (i, neighbor) in (0u32..).zip(moved.neighbors) {
-                cells[(neighbor >> 2) as usize].neighbors[(neighbor & 3) as usize] = 4 * gap + i;
-            }
-        }
-    }
-    let mut of_vertices = vec![CellId::NONE; count];
-    let mut of_infinite = CellId::NONE;
-    for (i, cell) in cells.iter().enumerate() {
-        for &vertex in &cell.vertices {
-            *of_vertices.get_mut(vertex as usize).unwrap_or(&mut of_infinite) = CellId::new(i);
-        }
-    }
-    if of_infinite == CellId::NONE {
-        return None;
-    }
-    let vertex = |rank: u32| if rank as usize == count { VertexId::INFINITE } else { VertexId::new(rank as usize) };
-    let links = |cell: Cell| Links {
-        vertices: cell.vertices.map(vertex),
-        neighbors: cell.neighbors.map(|neighbor| CellId::new((neighbor >> 2) as usize)),
-    };
-    // In place.
-    let mut links: Vec<Links<4>> = cells.into_iter().map(links).collect();
-    links.shrink_to_fit();
-    Some(Built { links, of_vertices, of_infinite })
+/// Moves the first four vertices that span the space to the front of the order; returns them as a
+/// positive cell.
+fn first_cell(source: Source, ranks: &[u32], order: &mut [u32]) -> Option<[u32; 4]> {
+    let turn = |vertices: [u32; 3]| (source.turn)(vertices.map(|vertex| ranks[vertex as usize]));
+    let orientation = |vertices: [u32; 4]| (source.orientation)(vertices.map(|vertex| ranks[vertex as usize]));
+    let third = (2..order.len()).find(|&i| turn([order[0], order[1], order[i]]) != Sign::Zero)?;
+    order.swap(2, third);
+    let [a, b, c] = [order[0], order[1], order[2]];
+    let fourth = (3..order.len()).find(|&i| orientation([a, b, c, order[i]]) != Sign::Zero)?;
+    order.swap(3, fourth);
+    let d = order[3];
+    Some(if orientation([a, b, c, d]) == Sign::Positive { [a, b, c, d] } else { [b, a, c, d] })
 }

@@ -11,7 +11,10 @@ const RATIO: u32 = 3;
 /// The first round has no more points than about this number.
 const FEW: usize = 1000;
 
-/// Returns the ranks `0..count` in the order of insertion.
+/// So many points are a sample.
+const SAMPLE: usize = 2000;
+
+/// Returns the numbers `0..count` in the order of insertion.
 pub(super) fn rounds(count: usize) -> Vec<u32> {
     let last = (0..).find(|round| count >> (RATIO * round) <= FEW).unwrap_or(0);
     let round = |rank: u32| (last - (mixed(rank).trailing_zeros() / RATIO).min(last)) as usize;
@@ -29,6 +32,12 @@ pub(super) fn rounds(count: usize) -> Vec<u32> {
     }
     starts.windows(2).skip(1).step_by(2).for_each(|ends| order[ends[0]..ends[1]].reverse());
     order
+}
+
+/// Returns some of the numbers `0..count`, ascending.
+pub(super) fn sample(count: usize) -> Vec<u32> {
+    let one_in = (count / SAMPLE).max(1) as u64;
+    (0..count as u32).filter(|&rank| mixed(rank).is_multiple_of(one_in)).collect()
 }
 
 /// Returns bits that depend on all bits of a number (Steele, Lea and Flood 2014).

@@ -103,7 +103,12 @@ pub(super) struct Frame {
 impl Frame {
     #[inline(always)]
     pub(super) fn of(&self, p: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|axis| (p[axis] - self.middle[axis]) * self.scale)
+        [0, 1, 2].map(|axis| self.on_axis(axis, p[axis]))
+    }
+
+    #[inline(always)]
+    pub(super) fn on_axis(&self, axis: usize, coordinate: f64) -> f64 {
+        (coordinate - self.middle[axis]) * self.scale
     }
 }
 
@@ -135,6 +140,14 @@ fn tolerance(squared_radius: f32) -> f32 {
 #[inline(always)]
 pub(super) fn is_inside(sphere: Sphere, q: Query) -> bool {
     power(sphere, q) < -tolerance(sphere[3])
+}
+
+/// Returns true if no point on the other side of a plane than the center can be inside; the plane
+/// is that of all points with a coordinate. Points of the frame are then sure to be outside.
+#[inline(always)]
+pub(super) fn is_short_of(sphere: Sphere, axis: usize, at: f32) -> bool {
+    let [distance, squared_radius] = [at - sphere[axis], sphere[3]].map(f64::from);
+    distance * distance > squared_radius + f64::from(tolerance(sphere[3]))
 }
 
 /// The results of four tests, one bit each.

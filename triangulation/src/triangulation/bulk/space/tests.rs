@@ -5,14 +5,18 @@ use std::cmp::Ordering;
 
 use testkit::random::Random;
 
-use crate::geometry::{Coordinates, Geometry, Space};
+use crate::geometry::{Coordinates, Geometry, Space, WeightedSpace};
 use crate::kernel::{Adaptive, Fast, InSphere, Kernel, Orientation3, PowerTest3};
 use crate::num::Sign;
+use crate::parallel::on_threads;
+use crate::tds::VertexId;
 
 use super::super::Grain;
-use super::build;
+use super::blocks::Blocks;
+use super::mesh::Extent;
 use super::order::rounds;
 use super::sphere::{self, Frame, Origin};
+use super::{Built, build, by_blocks, whole, with_source};
 
 const FRAME: Frame = Frame { middle: [0.0; 3], scale: 1.0 };
 
@@ -202,4 +206,92 @@ fn contradictions_end_construction_and_nothing_else() {
         }
     }
     assert!(built[0] < rounds, "hardly a test");
+}
+
+/// Asserts that neighbors are mutual, that each pair shares a facet, and that each vertex in a cell
+/// has one. Returns the sorted cells.
+fn sorted_cells(built: &Built) -> Vec<[VertexId; 4]> {
+    for (number, cell) in built.links.iter().enumerate() {
+        for (i, neighbor) in cell.neighbors.iter().enumerate() {
+            let beyond = &built.links[neighbor.index()];
+            let back = beyond.neighbors.iter().position(|n| n.index() == number).expect("mutual");
+            let facets = [(cell, i), (beyond, back)].map(|(cell, i)| {
+                let mut facet = cell.vertices.to_vec();
+                facet.remove(i);
+                facet.sort_unstable();
+                facet
+            });
+            assert_eq!(facets[0], facets[1]);
+        }
+    }
+    for (vertex, cell) in built.of_vertices.iter().enumerate() {
+        let vertex = VertexId::new(vertex);
+        let has = |cell: &crate::tds::Links<4>| cell.vertices.contains(&vertex);
+        assert_eq!(built.links.get(cell.index()).is_some_and(has), built.links.iter().any(has));
+    }
+    let mut cells: Vec<_> = built.links.iter().map(|cell| cell.vertices).collect();
+    cells.iter_mut().for_each(|cell| cell.sort_unstable());
+    cells.sort_unstable();
+    cells
+}
+
+/// Compares blocks of distinct points with the whole. `None` if the points of a block are coplanar.
+fn judge_blocks<G: Coordinates<4>>(geometry: &G, points: &[G::Point], levels: u32) -> Option<()> {
+    with_source(geometry, points, |source| {
+        let extent = Extent::of(source);
+        let mut sites: Vec<[f64; 3]> = (0..source.count as u32).map(|rank| source.position(rank)).collect();
+        let blocks = Blocks::of(&mut sites, levels, extent.frame)?;
+        let built = by_blocks(source, extent, &blocks, Grain::default())?;
+        let whole = whole(source, extent, Grain::default()).expect("blocks span the space");
+        assert_eq!(sorted_cells(&built), sorted_cells(&whole));
+        Some(())
+    })
+}
+
+#[test]
+fn blocks_have_the_cells_of_the_whole() {
+    let mut random = Random(11);
+    let (mut built, rounds) = (0, 600);
+    for round in 0..rounds {
+        let count = 12 + random.index(if round % 20 == 0 { 1500 } else { 120 });
+        let levels = 1 + random.index(3) as u32;
+        let mut points: Vec<[f64; 3]> = (0..count)
+            .map(|_| match round % 5 {
+                // Ties are the rule.
+                0 => [0; 3].map(|_| random.below(6) as f64),
+                1 => [random.below(4) as f64, random.below(30) as f64, random.below(30) as f64],
+                // On two sides of a gap, and thin.
+                2 => [random.below(2) as f64 * 9.0 + random.unit(), random.unit(), random.unit() * 1e-3],
+                3 => [0; 3].map(|_| spread(&mut random, 40)),
+                _ => [0; 3].map(|_| random.unit()),
+            })
+            .collect();
+        points.sort_unstable_by(|p, q| p.partial_cmp(q).expect("numbers"));
+        points.dedup();
+        let range = [0.0, 1e-3, 0.1, 4.0][round / 5 % 4];
+        let weighted: Vec<[f64; 4]> = points.iter().map(|&[x, y, z]| [x, y, z, range * random.unit()]).collect();
+        built += judge_blocks(&Space::<Adaptive>::new(), &points, levels).into_iter().count();
+        built += judge_blocks(&WeightedSpace::<Adaptive>::default(), &weighted, levels).into_iter().count();
+    }
+    assert!(built > rounds, "{built} of {}: hardly a test", 2 * rounds);
+}
+
+#[test]
+fn blocks_give_the_same_numbers_on_any_number_of_threads() {
+    let mut random = Random(12);
+    let points: Vec<[f64; 3]> = (0..4000).map(|_| [0; 3].map(|_| random.unit())).collect();
+    let built = |threads| {
+        on_threads(threads, || {
+            with_source(&Space::<Adaptive>::new(), &points, |source| {
+                let extent = Extent::of(source);
+                let blocks = Blocks::of(&mut points.clone(), 2, extent.frame).expect("blocks");
+                let built = by_blocks(source, extent, &blocks, Grain::default()).expect("cells");
+                (built.links, built.of_vertices, built.of_infinite)
+            })
+        })
+    };
+    let one = built(1);
+    for threads in [2, 4] {
+        assert!(built(threads) == one, "{threads}");
+    }
 }

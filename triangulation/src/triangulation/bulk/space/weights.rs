@@ -12,12 +12,9 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// Returns weights that are numbers.
-    pub(super) fn new(weights: impl Iterator<Item = f64> + Clone) -> Self {
-        let (least, greatest) =
-            weights.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), weight| {
-                (weight.min(least), weight.max(greatest))
-            });
+    /// Returns weights that are numbers. The least and the greatest are those of more vertices than
+    /// these, perhaps.
+    pub(super) fn new([least, greatest]: [f64; 2], weights: impl Iterator<Item = f64>) -> Self {
         if least == greatest {
             return Weights { each: Vec::new(), greatest: 0.0, range: 0.0 };
         }
