@@ -6,7 +6,6 @@
 
 use std::collections::HashMap;
 
-use super::mesh::Mesh;
 use super::sphere::{self, Frame, Sphere};
 
 /// Fewer points are not divided.
@@ -85,14 +84,14 @@ impl Blocks {
         Some(blocks)
     }
 
-    /// Returns true if blocks of all points are expected to take less time than the whole, from the
-    /// mesh of a sample.
+    /// Returns true if blocks of all points are expected to take less time than the whole, by the
+    /// finite cells of a sample.
     ///
     /// A layer of points at the cuts has open cells. In a volume its share of the points decreases
     /// with the root of the density; where it does not, it is large.
-    pub(super) fn are_worth_it(&self, count: usize, sample: &Mesh) -> bool {
+    pub(super) fn are_worth_it(&self, count: usize, sample: impl Iterator<Item = ([u32; 4], Sphere)>) -> bool {
         let mut is_open = HashMap::new();
-        for (vertices, sphere) in sample.spheres() {
+        for (vertices, sphere) in sample {
             let opens = !self.blocks.iter().any(|block| block.contains(sphere));
             for vertex in vertices {
                 *is_open.entry(vertex).or_insert(false) |= opens;

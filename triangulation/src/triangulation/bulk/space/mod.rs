@@ -141,7 +141,7 @@ fn divided(source: Source, extent: Extent, grain: Grain) -> Option<Blocks> {
     let mut sites: Vec<[f64; 3]> = ranks.iter().map(|&rank| source.position(rank)).collect();
     let blocks = Blocks::of(&mut sites, levels, extent.frame)?;
     let mesh = meshed(source, extent, &ranks, grain)?;
-    blocks.are_worth_it(source.count, &mesh).then_some(blocks)
+    blocks.are_worth_it(source.count, mesh.spheres()).then_some(blocks)
 }
 
 /// Triangulates blocks, each on its own, and merges them. `None` also if the points of a block are
