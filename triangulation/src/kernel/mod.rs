@@ -26,6 +26,7 @@ mod adaptive;
 mod center;
 mod formula;
 mod power;
+mod radius;
 mod rounding;
 mod scaled;
 
@@ -37,6 +38,7 @@ pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
 pub use power::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3};
+pub(crate) use radius::{SquaredRadius, squared_radius_bounds};
 pub use rounding::{CornerSide, CrossingSide};
 pub use scaled::Scaled;
 

@@ -1,5 +1,6 @@
 //! Triangulations in space.
 
+mod alpha;
 mod bulk;
 mod bulk_regular;
 mod queries;

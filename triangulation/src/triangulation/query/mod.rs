@@ -10,8 +10,11 @@
 //! | [`nearest`], [`nearest_first`], [`within`] | vertices by distance | a Delaunay triangulation, of the plane or of space |
 //! | [`conflict_zone`] | what a new point would destroy | a Delaunay triangulation of the plane, perhaps with constraints |
 //!
-//! All of them walk from a cell nearby, which may be `None`. A structure of your own implements two
-//! traits: [`Complex`](crate::tds::Complex), for the cells and their neighbors, and
+//! [`AlphaShapes`] are solids of cells in space, from
+//! [`Delaunay::alpha_shapes`](crate::Delaunay::alpha_shapes).
+//!
+//! All of the functions walk from a cell nearby, which may be `None`. A structure of your own
+//! implements two traits: [`Complex`](crate::tds::Complex), for the cells and their neighbors, and
 //! [`Embedded`](crate::Embedded), for the points. The example `examples/own_structure.rs` uses an
 //! array of triangles with indices of vertices.
 //!
@@ -37,6 +40,7 @@
 //! ```
 
 mod along;
+mod alpha;
 mod crossed;
 mod dual;
 mod faces;
@@ -48,6 +52,7 @@ mod svg;
 mod zone;
 
 pub use along::{Passage, along};
+pub use alpha::{AlphaShape, AlphaShapes, Boundary};
 pub use dual::{VoronoiCell, VoronoiEdge};
 pub use faces::faces_from;
 pub use nearest::{nearest, nearest_first, within};
