@@ -239,9 +239,9 @@ fn shapes_at_the_ends_of_floating_point() {
 
 /// The first three numbers of each line of a file of points; of an `.off` file, those of its
 /// vertices.
-fn points_of(path: &std::path::Path) -> Vec<[f64; 3]> {
+pub(crate) fn points_of(path: &std::path::Path) -> Vec<[f64; 3]> {
     let text = String::from_utf8_lossy(&std::fs::read(path).unwrap()).into_owned();
-    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
     let mut count = usize::MAX;
     if path.extension().is_some_and(|extension| extension == "off") {
         count = lines.nth(1).unwrap().split_whitespace().next().unwrap().parse().unwrap();

@@ -3,6 +3,7 @@
 mod alpha;
 mod bulk;
 mod bulk_regular;
+mod facts;
 mod queries;
 mod regular;
 mod removal;

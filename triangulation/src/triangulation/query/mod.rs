@@ -8,7 +8,7 @@
 //! | [`faces_from`] | all faces, without a visited set | a triangulation of the plane |
 //! | [`within_rectangle`] | the vertices in a rectangle | a triangulation of the plane |
 //! | [`nearest`], [`nearest_first`], [`within`] | vertices by distance | a Delaunay triangulation, of the plane or of space |
-//! | [`conflict_zone`] | what a new point would destroy | a Delaunay triangulation of the plane, perhaps with constraints |
+//! | [`conflict_zone`] | what a new point would destroy | a Delaunay or regular triangulation, of the plane (perhaps with constraints) or of space |
 //!
 //! [`AlphaShapes`] are solids of cells in space, from
 //! [`Delaunay::alpha_shapes`](crate::Delaunay::alpha_shapes).
