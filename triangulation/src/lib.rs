@@ -66,7 +66,7 @@
 //! | avoid small angles and large triangles | [`ConstrainedDelaunay::refined`], see [`refine`] |
 //! | locate a point | [`Triangulation::locate`]; from a starting point of your choice, by a [strategy](Locate) |
 //! | find what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
-//! | find what is in a rectangle, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::along`] |
+//! | find what is in a rectangle or box, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::within_box`], [`Triangulation::along`] |
 //! | find what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
 //! | give weights to points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`] |
@@ -81,8 +81,8 @@
 //! | check it | [`Delaunay::check`], [`ConstrainedDelaunay::check`], up to a [`Level`] |
 //!
 //! All queries take `&self`. In space, these exist: construction, insertion, and removal and moves
-//! except of [`Basic`]; payloads; location, except by [`Buckets`] and [`StraightLine`]; nearest
-//! vertices, stars, rings around edges; hidden points; and checks. All else is for the plane only:
+//! except of [`Basic`]; payloads; location by all strategies; what a segment meets; vertices in a
+//! box, nearest vertices, stars, rings around edges; hidden points; and checks. All else is for the plane only:
 //! constraints, other queries, flips by a kind, pictures, serde and [`Compact`]. Construction from
 //! many points is by divide and conquer in the plane only.
 //!

@@ -178,9 +178,10 @@ pub trait Geometry<const N: usize> {
 /// cells, natural neighbor coordinates and pictures, and by [`Crossing`].
 ///
 /// # Laws
-/// - In space, coordinates are for sorting only: no result depends on them.
-/// - In the plane they are exact: different sites have different coordinates, and if the predicates
-///   say that points lie along a line in some order, so do the coordinates.
+/// - In space, coordinates are for sorting, and for the vertices within a box: no other result
+///   depends on them.
+/// - They are exact: different sites have different coordinates, and if the predicates say that
+///   points lie along a line in some order, so do the coordinates.
 ///
 /// # Models
 /// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`] with two coordinates, [`Space`] and

@@ -32,7 +32,7 @@ pub use kinds::{Basic2, Basic3, Constrained2, ConstrainedDelaunay2, Delaunay2, D
 pub use line_id::{LineId, LineTag};
 pub use lines::build::{OnCrossing, Rounding};
 pub use lines::constrained_delaunay::ConstrainedDelaunay;
-pub use locate::{Buckets, Facets, JumpAndWalk, Locate, Location, Near, StraightLine};
+pub use locate::{Buckets, Facets, JumpAndWalk, Locate, Location, Near, SpacePassage, StraightLine};
 pub use query::{AlphaShape, AlphaShapes, Boundary, ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
 
 use crate::geometry::Geometry;

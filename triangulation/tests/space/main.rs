@@ -1,9 +1,12 @@
 //! Triangulations in space.
 
+mod along;
 mod alpha;
 mod bulk;
 mod bulk_regular;
 mod facts;
+mod location;
 mod queries;
 mod regular;
 mod removal;
+mod within_box;

@@ -5,7 +5,7 @@ pub(super) mod sides;
 use std::borrow::Borrow;
 use std::convert::Infallible;
 
-use crate::geometry::Geometry;
+use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{Complex, Tds, VertexId};
 
 use super::Triangulation;
@@ -89,6 +89,18 @@ pub trait Embedded<const N: usize> {
 
 /// The point type of a structure.
 pub type PointOf<T, const N: usize> = <<T as Embedded<N>>::Geometry as Geometry<N>>::Point;
+
+/// Returns the first two coordinates of a point in the plane and a zero, or the three of a point in
+/// space.
+#[inline]
+pub(super) fn position<G: Coordinates<N>, const N: usize>(geometry: &G, p: &G::Point) -> [f64; 3] {
+    let coordinates = geometry.coordinates(p);
+    let mut position = [0.0; 3];
+    for (x, &coordinate) in position[..N - 1].iter_mut().zip(coordinates.as_ref()) {
+        *x = coordinate;
+    }
+    position
+}
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Embedded<N> for Triangulation<G, N, V, C> {
     type Geometry = G;

@@ -4,15 +4,15 @@
 //! |---|---|
 //! | [`Near`] a cell, or the last insertion | as many as cells lie between |
 //! | [`JumpAndWalk`] from the nearest of `n^(1/3)` vertices (Mücke, Saias and Zhu 1996) | `n^(1/3)`, and as many distances |
-//! | [`Buckets`] from a vertex in the same square of a grid | a few; no better than without if all points are in one square |
+//! | [`Buckets`] from a vertex in the same square (cube) of a grid | a few; no better than without if all points are in one |
 //! | [`Hierarchy`](super::Hierarchy) of samples (Devillers 2002) | `log n`, however the points are spread |
 //!
 //! These walk from one cell to the next across a facet that separates it from the point. At first
 //! they decide by rounded numbers and cross the facet that the point is furthest beyond, for as
 //! long as that makes progress (structural filtering: Funke, Mehlhorn and Näher 1999). Then they
 //! decide by exact predicates and cross any separating facet, chosen pseudo-randomly (the
-//! stochastic walk). [`StraightLine`], for the plane, goes through the triangles that a line to the
-//! point meets (both: Devillers, Pion and Teillaud 2002). [`Buckets`] are for the plane, too.
+//! stochastic walk). [`StraightLine`] goes through the cells that a line to the point meets (both:
+//! Devillers, Pion and Teillaud 2002).
 //!
 //! A strategy is a value that the caller owns. Some strategies learn from insertions and removals:
 //! pass these to [`Locate::inserted`] and [`Locate::removed`], or insert and remove with the
@@ -21,6 +21,7 @@
 //! but still correct.
 
 mod buckets;
+pub(super) mod line;
 mod start;
 mod straight;
 mod walk;
@@ -35,8 +36,9 @@ use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
 
 use super::Triangulation;
-pub(super) use walk::Dice;
+pub use line::SpacePassage;
 pub use walk::locate;
+pub(super) use walk::{Dice, leaves_flat};
 use walk::{LOOKS, PATIENCE, Seems};
 
 /// The position of a point relative to a triangulation.

@@ -321,7 +321,11 @@ pub(super) fn nearest_of_some<const N: usize, T: Embedded<N>>(
 }
 
 /// Returns true if `q` lies outside of the line or plane of all points, which a finite cell spans.
-fn leaves_flat<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<bool, T::Error> {
+pub(in super::super) fn leaves_flat<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    q: &PointOf<T, N>,
+) -> Result<bool, T::Error> {
     let points = points_with(t, cell, usize::MAX, q)?;
     let mut simplex: Vec<&PointOf<T, N>> = points.iter().collect();
     simplex.push(q);

@@ -5,8 +5,10 @@
 //! |---|---|---|
 //! | [`locate`] | the vertex or cell that a point lies on or in | a triangulation, of the plane or of space |
 //! | [`along`] | what a segment meets | a triangulation of the plane |
+//! | [`along_in_space`] | what a segment meets | a triangulation of space |
 //! | [`faces_from`] | all faces, without a visited set | a triangulation of the plane |
 //! | [`within_rectangle`] | the vertices in a rectangle | a triangulation of the plane |
+//! | [`within_box`] | the vertices in a box | a triangulation of space |
 //! | [`nearest`], [`nearest_first`], [`within`] | vertices by distance | a Delaunay triangulation, of the plane or of space |
 //! | [`conflict_zone`] | what a new point would destroy | a Delaunay or regular triangulation, of the plane (perhaps with constraints) or of space |
 //!
@@ -40,6 +42,7 @@
 //! ```
 
 mod along;
+mod along_space;
 mod alpha;
 mod crossed;
 mod dual;
@@ -47,20 +50,21 @@ mod faces;
 mod natural;
 mod nearest;
 mod power;
-mod rectangle;
 mod svg;
+mod within_box;
 mod zone;
 
 pub use along::{Passage, along};
+pub use along_space::along_in_space;
 pub use alpha::{AlphaShape, AlphaShapes, Boundary};
 pub use dual::{VoronoiCell, VoronoiEdge};
 pub use faces::faces_from;
 pub use nearest::{nearest, nearest_first, within};
-pub use rectangle::within_rectangle;
 pub use svg::Mark;
+pub use within_box::{within_box, within_rectangle};
 pub use zone::{ConflictZone, conflict_zone};
 
-pub use super::locate::locate;
+pub use super::locate::{SpacePassage, locate};
 
 use std::borrow::Borrow;
 
