@@ -220,6 +220,9 @@ impl<'t, T: Embedded<4>> Line<'t, T> {
                 Ok(is_met.then_some(SpacePassage::Vertex(to)))
             }
             SpacePassage::Vertex(vertex) => {
+                if self.t.geometry().compare(self.t.point(vertex)?.borrow(), &self.b).is_eq() {
+                    return Ok(None);
+                }
                 for (cell, i) in space::cells_around(complex, vertex)? {
                     if let Some(next) = self.onward(cell, span_of([i], [true]))? {
                         return Ok(Some(next));
