@@ -82,9 +82,9 @@
 //!
 //! All queries take `&self`. In space, these exist: construction, insertion, and removal and moves
 //! except of [`Basic`]; payloads; location by all strategies; what a segment meets; vertices in a
-//! box, nearest vertices, stars, rings around edges; hidden points; and checks. All else is for the plane only:
-//! constraints, other queries, flips by a kind, pictures, serde and [`Compact`]. Construction from
-//! many points is by divide and conquer in the plane only.
+//! box, nearest vertices, stars, rings around edges; hidden points; and checks. All else is for the
+//! plane only: constraints, other queries, flips by a kind, pictures, serde and [`Compact`].
+//! Construction from many points is by divide and conquer in the plane only.
 //!
 //! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
 //! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of
