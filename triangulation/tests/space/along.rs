@@ -1,13 +1,14 @@
 //! What a segment meets, against exact arithmetic over all simplices, on small grids where it runs
 //! through vertices, along edges and within facets.
 
+use std::cell::Cell;
 use std::cmp::Ordering;
 
 use breakline_triangulation::geometry::{Geometry, Space, WeightedSpace};
 use breakline_triangulation::kernel::Wide;
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{Basic, Delaunay, Regular, SpacePassage, Triangulation};
+use breakline_triangulation::{Basic, Delaunay, Locate, Regular, SpacePassage, StraightLine, Triangulation};
 use testkit::random::Random;
 
 type Whole = [i128; 3];
@@ -345,4 +346,70 @@ fn nothing_is_met_by_what_is_not_a_segment() {
         assert_eq!(t.along([&[f64::INFINITY; 3], &nan], None).count(), 0);
         assert_eq!(t.along([&origin, &origin], None).count(), 1);
     }
+}
+
+/// Space with signs that are wrong now and then, as those of a kernel without guarantee are.
+#[derive(Debug, Clone, Copy, Default)]
+struct Erring(Space);
+
+thread_local!(static SEED: Cell<Option<u64>> = const { Cell::new(None) });
+
+/// Returns the sign, or any other every fourth time while there is a seed.
+fn erring(sign: Sign) -> Sign {
+    let Some(mut random) = SEED.get().map(Random) else { return sign };
+    let any = random.pick(&[Sign::Negative, Sign::Zero, Sign::Positive]);
+    let drawn = random.pick(&[sign, sign, sign, any]);
+    SEED.set(Some(random.0));
+    drawn
+}
+
+impl Geometry<4> for Erring {
+    type Point = [f64; 3];
+
+    fn admits(&self, p: &[f64; 3]) -> bool {
+        self.0.admits(p)
+    }
+
+    fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
+        self.0.compare(p, q)
+    }
+
+    fn orientation(&self, simplex: [&[f64; 3]; 4]) -> Sign {
+        erring(self.0.orientation(simplex))
+    }
+
+    fn side_of_sphere(&self, simplex: [&[f64; 3]; 4], q: &[f64; 3]) -> Sign {
+        self.0.side_of_sphere(simplex, q)
+    }
+
+    fn orientation_in_flat(&self, simplex: &[&[f64; 3]]) -> Sign {
+        erring(self.0.orientation_in_flat(simplex))
+    }
+
+    fn side_of_sphere_in_flat(&self, simplex: &[&[f64; 3]], q: &[f64; 3]) -> Sign {
+        self.0.side_of_sphere_in_flat(simplex, q)
+    }
+}
+
+/// Whatever the predicates return, a walk ends, and nothing panics.
+#[test]
+fn walks_end_with_wrong_signs() {
+    let mut random = Random(63);
+    let mut longest = 0;
+    for round in 0..300 {
+        SEED.set(None);
+        let mut t = Delaunay::<_, 4>::new(Erring::default());
+        for _ in 0..30 {
+            t.insert(site(&mut random, round, 2).map(|x| x as f64)).unwrap();
+        }
+        SEED.set(Some(round as u64));
+        for _ in 0..20 {
+            let [a, b] = [0; 2].map(|_| site(&mut random, round, 1).map(|x| x as f64));
+            let count = t.along([&a, &b], None).count();
+            assert!(count <= 15 * t.tds().cell_slots());
+            longest = longest.max(count);
+            StraightLine(t.tds().vertices().next()).locate(&t, &b);
+        }
+    }
+    assert!(longest > 10, "{longest}");
 }
