@@ -1,12 +1,10 @@
 //! What the tests of other packages assert, hostile sets, and files of points.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use breakline_triangulation::geometry::{Space, WeightedSpace};
+use breakline_triangulation::geometry::Space;
 use breakline_triangulation::kernel::Wide;
-use breakline_triangulation::tds::{CellId, VertexId};
-use breakline_triangulation::{ConflictZone, Delaunay, Level, Regular, Triangulation};
+use breakline_triangulation::{Delaunay, Level};
 use testkit::random::{Random, ulps};
 
 use super::alpha::points_of;
@@ -24,113 +22,6 @@ fn a_coplanar_grid_has_dimension_two() {
         assert_eq!((t.dimension(), t.vertex_count(), t.finite_cells().count()), (2, 400, 2 * 19 * 19));
         assert_eq!(t.check(Level::Law), []);
     }
-}
-
-/// A cell by its vertices, sorted; infinite ones last.
-fn sorted<G: breakline_triangulation::geometry::Geometry<4>>(t: &Triangulation<G, 4>, cell: CellId) -> Vec<VertexId> {
-    let mut vertices = t.tds().cell_vertices(cell).to_vec();
-    vertices.sort_unstable();
-    vertices
-}
-
-/// The vertices on the facets around a zone in space.
-fn border_vertices<G: breakline_triangulation::geometry::Geometry<4>>(
-    t: &Triangulation<G, 4>,
-    zone: &ConflictZone,
-) -> BTreeSet<VertexId> {
-    let others = |&(cell, i): &(CellId, usize)| {
-        let vertices = t.tds().cell_vertices(cell).iter().enumerate();
-        vertices.filter(move |&(k, _)| k != i).map(|(_, &v)| v).collect::<Vec<_>>()
-    };
-    zone.border.iter().flat_map(others).collect()
-}
-
-/// A zone is what insertion destroys, and its border what it keeps of that.
-#[test]
-fn a_conflict_zone_is_what_insertion_destroys() {
-    let mut random = Random(41);
-    let (mut closed, mut low) = (0, 0);
-    for round in 0..300 {
-        let sizes = [[3, 3, 3], [5, 5, 5], [4, 4, 1], [9, 1, 1], [40, 40, 40]][round % 5];
-        let mut point = |weight: u64| {
-            let [x, y, z] = sizes.map(|size| random.below(size) as f64);
-            [x, y, z, random.below(weight) as f64]
-        };
-        let points: Vec<[f64; 4]> = (0..20).map(|_| point(1)).collect();
-        let sites: Vec<Point> = points.iter().map(|&[x, y, z, _]| [x, y, z]).collect();
-        let (t, _) = Delaunay::<Space, 4>::from_points(Space::new(), &sites).unwrap();
-        for _ in 0..6 {
-            let [x, y, z, _] = point(1);
-            let q = [x, y, z];
-            let mut after = t.clone();
-            let vertex = after.insert(q).unwrap();
-            let cells = |t: &Delaunay<Space, 4>| -> BTreeSet<Vec<VertexId>> {
-                t.tds().cells().map(|cell| sorted(t, cell)).collect()
-            };
-            let (before, kept) = (cells(&t), cells(&after));
-            let Some(zone) = t.conflict_zone(&q, None) else {
-                assert!(before == kept || after.dimension() > t.dimension());
-                continue;
-            };
-            let destroyed: BTreeSet<_> = before.difference(&kept).cloned().collect();
-            assert_eq!(zone.cells.iter().map(|&cell| sorted(&t, cell)).collect::<BTreeSet<_>>(), destroyed);
-            let star: BTreeSet<_> = kept.difference(&before).cloned().collect();
-            assert_eq!(star.len(), zone.border.len());
-            assert!(star.iter().all(|cell| cell.contains(&vertex)));
-            low += usize::from(t.dimension() < 3);
-            if t.dimension() == 3 {
-                closed += 1;
-                assert_eq!(zone.border.len(), 2 * border_vertices(&t, &zone).len() - 4);
-            }
-        }
-    }
-    assert!(closed > 500 && low > 100, "{closed} and {low}: hardly a test");
-}
-
-#[test]
-fn a_hidden_point_destroys_nothing() {
-    let mut random = Random(42);
-    let mut seen = [0, 0];
-    for round in 0..200 {
-        let side = [3, 4, 7][round % 3];
-        let mut point = || {
-            let [x, y, z] = [0; 3].map(|_| random.below(side) as f64);
-            [x, y, z, random.below(8) as f64]
-        };
-        let points: Vec<[f64; 4]> = (0..25).map(|_| point()).collect();
-        let (t, _) = Regular::<WeightedSpace, 4>::from_points(WeightedSpace::new(), &points).unwrap();
-        for _ in 0..6 {
-            let q = point();
-            let mut after = t.clone();
-            after.insert(q).unwrap();
-            let cells = |t: &Regular<WeightedSpace, 4>| -> BTreeSet<Vec<[u64; 4]>> {
-                let bits =
-                    |&v: &VertexId| if v == VertexId::INFINITE { [u64::MAX; 4] } else { t.point(v).map(f64::to_bits) };
-                let corners = |cell| {
-                    let mut corners: Vec<_> = t.tds().cell_vertices(cell).iter().map(bits).collect();
-                    corners.sort_unstable();
-                    corners
-                };
-                t.tds().cells().map(corners).collect()
-            };
-            let is_site = points.iter().any(|p| p[..3] == q[..3]);
-            if is_site || t.dimension() < 3 {
-                continue;
-            }
-            match t.conflict_zone(&q, None) {
-                None => assert_eq!(cells(&t), cells(&after)),
-                Some(zone) => {
-                    let lost = cells(&t).difference(&cells(&after)).count();
-                    assert_eq!(lost, zone.cells.len());
-                    assert_eq!(zone.border.len(), 2 * border_vertices(&t, &zone).len() - 4);
-                    seen[1] += 1;
-                    continue;
-                }
-            }
-            seen[0] += 1;
-        }
-    }
-    assert!(seen.iter().all(|&seen| seen > 50), "{seen:?}: hardly a test");
 }
 
 /// Builds a set at once and one by one, checks both, and returns the number of finite cells.

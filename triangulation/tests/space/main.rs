@@ -10,3 +10,4 @@ mod queries;
 mod regular;
 mod removal;
 mod within_box;
+mod zones;

@@ -1,30 +1,68 @@
-use std::convert::Infallible;
-
 use rustc_hash::FxHashSet;
 
 use crate::geometry::{Crossing, Geometry};
-use crate::tds::{CellId, Complex, Neighbors, Tds};
+use crate::num::Sign;
+use crate::tds::{CellId, Complex};
 
 use super::super::embedded::sides::in_conflict;
 use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::locate;
 use super::super::{ConstrainedDelaunay, Delaunay, Facets, Location, Regular};
 
-/// The cells that a new point would destroy, and the facets around them, from which the star of the
-/// point would be built.
+/// The cells that a new point would destroy, and the facets around them, from which the star of
+/// the point would be built.
 ///
-/// In the plane, where facets are edges, there are two more edges than cells; on a line, where they
-/// are vertices, there are two. In space there are twice as many facets as vertices on them, less
-/// four, with the infinite vertex if it is among them.
+/// The border is a sphere: in the plane, there are two more edges on it than cells in the zone; in
+/// space, it has `2 v - 4` facets if it has `v` vertices, the infinite one included. (If a regular
+/// triangulation loses vertices, they are in the zone and not on its border.) On a line, where a
+/// facet is a vertex, there are two.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConflictZone {
     /// The cells, including infinite ones if the point lies outside of the hull or on it. The point
     /// lies in the first cell, or beyond the finite facet of that cell.
     pub cells: Vec<CellId>,
-    /// The facets around the zone: the cell inside, and the index of the facet in it. In the plane
-    /// they are in counter-clockwise order: each edge ends where the next one starts, which may be
-    /// the infinite vertex.
+    /// The facets around the zone: the cell inside, and the index of the facet in it. The cell
+    /// outside is the [neighbor](Complex::neighbor) there. In dimension 2 they are edges,
+    /// counter-clockwise: each ends where the next one starts, which may be the infinite vertex.
     pub border: Vec<(CellId, usize)>,
+}
+
+impl ConflictZone {
+    /// Returns the facets between two cells of the zone, each once: one of the two cells, and the
+    /// index of the facet in it.
+    ///
+    /// # Errors
+    /// If a cell of the zone, or a neighbor of one, does not exist in the complex.
+    ///
+    /// # Complexity
+    /// Linear in the number of cells.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Space, Delaunay};
+    ///
+    /// let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [4.0, 4.0, 4.0]];
+    /// let (t, _) = Delaunay::from_points(Space::new(), &corners)?;
+    /// let zone = t.conflict_zone(&[2.0, 2.0, 2.0], None).expect("it is inside");
+    /// assert_eq!((zone.cells.len(), zone.border.len()), (2, 6));
+    /// assert_eq!(zone.internal_facets(t.tds()).map(|facets| facets.len()), Ok(1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn internal_facets<T: Complex<N>, const N: usize>(
+        &self,
+        complex: &T,
+    ) -> Result<Vec<(CellId, usize)>, T::Error> {
+        let taken: FxHashSet<CellId> = self.cells.iter().copied().collect();
+        let mut facets = Vec::new();
+        for &cell in &self.cells {
+            for i in 0..complex.width() {
+                let beyond = complex.neighbor(cell, i)?;
+                if cell < beyond && taken.contains(&beyond) {
+                    facets.push((cell, i));
+                }
+            }
+        }
+        Ok(facets)
+    }
 }
 
 /// Returns what the insertion of a point into a Delaunay or regular triangulation would destroy.
@@ -55,28 +93,36 @@ pub(super) fn zone_at<T: Embedded<N>, const N: usize>(
     location: Location,
     passes: impl Fn(CellId, usize) -> Result<bool, T::Error>,
 ) -> Result<Option<ConflictZone>, T::Error> {
+    match location {
+        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => Ok(None),
+        // Only a point with a weight may be hidden; one outside of the hull is not.
+        Location::Cell { cell, .. } if !in_conflict(t, cell, q)? => Ok(None),
+        Location::Cell { cell, facets } => zone_from(t, q, cell, facets, passes).map(Some),
+        Location::OutsideHull { cell } => zone_from(t, q, cell, Facets::default(), passes).map(Some),
+    }
+}
+
+/// Returns the zone that contains a cell, given the facets of it that the point lies on.
+fn zone_from<T: Embedded<N>, const N: usize>(
+    t: &T,
+    q: &PointOf<T, N>,
+    start: CellId,
+    on: Facets,
+    passes: impl Fn(CellId, usize) -> Result<bool, T::Error>,
+) -> Result<ConflictZone, T::Error> {
     let complex = t.complex();
-    let (start, on) = match location {
-        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return Ok(None),
-        Location::Cell { cell, facets } => (cell, facets),
-        Location::OutsideHull { cell } => (cell, Facets::default()),
-    };
     let takes = |from: CellId, i: usize, beyond: CellId| {
         // A point on a facet destroys the cells on both sides, constraint or not.
         let is_split = from == start && on.contains(i);
         Ok(is_split || passes(from, i)? && in_conflict(t, beyond, q)?)
     };
-    // Only a point with a weight may be hidden; one outside of the hull is not.
-    if !matches!(location, Location::OutsideHull { .. }) && !in_conflict(t, start, q)? {
-        return Ok(None);
-    }
     let width = complex.width();
     let mut taken = FxHashSet::from_iter([start]);
     let mut zone = ConflictZone { cells: vec![start], border: Vec::new() };
-    // Depth first, over the sides of each cell counter-clockwise from where it was entered: the
-    // border comes in order, as in `tds::Zone`, which does this with memory of its own.
-    let mut sides: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
-    while let Some((cell, i)) = sides.pop() {
+    // Depth first, over the facets of each cell counter-clockwise from where it was entered: in the
+    // plane the border comes in order, as in `tds::Zone`, which does this with memory of its own.
+    let mut facets: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
+    while let Some((cell, i)) = facets.pop() {
         let beyond = complex.neighbor(cell, i)?;
         if taken.contains(&beyond) {
             continue;
@@ -85,22 +131,19 @@ pub(super) fn zone_at<T: Embedded<N>, const N: usize>(
             taken.insert(beyond);
             zone.cells.push(beyond);
             let entry = complex.index_of_neighbor(beyond, cell)?;
-            sides.extend((1..width).rev().map(|turn| (beyond, (entry + turn) % width)));
+            facets.extend((1..width).rev().map(|turn| (beyond, (entry + turn) % width)));
         } else {
             zone.border.push((cell, i));
         }
     }
-    Ok(Some(zone))
+    Ok(zone)
 }
 
-impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C>
-where
-    Tds<N, V, C>: Neighbors<N, Error = Infallible>,
-{
-    /// Returns what the insertion of a point would destroy: the cells whose circumscribed circle or
-    /// sphere contains the point, with ties broken as insertion breaks them. `None` if the point is
-    /// on a vertex, if it would raise the dimension, or if the geometry does not
-    /// [admit](Geometry::admits) it.
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> {
+    /// Returns what the insertion of a point would destroy, in any dimension: the cells whose
+    /// circumcircle (circumsphere) contains the point, with ties broken as insertion breaks them.
+    /// `None` if the point is on a vertex, if it would raise the dimension, or if the geometry does
+    /// not [admit](Geometry::admits) it.
     ///
     /// # Complexity
     /// A [walk](crate::triangulation::Triangulation::locate) from a cell nearby, and time
@@ -121,18 +164,34 @@ where
     }
 }
 
-impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C>
-where
-    Tds<N, V, C>: Neighbors<N, Error = Infallible>,
-{
-    /// Returns what the insertion of a weighted point would destroy: the cells whose orthogonal
-    /// circle or sphere it has a negative power to. `None` also if the point would be hidden, or
-    /// takes the site of a vertex, of which the heavier counts.
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
+    /// Returns what the insertion of a weighted point would destroy, in any dimension: the cells
+    /// that its lift lies below, with ties broken as insertion breaks them. `None` if the point
+    /// would be hidden, if there is the same point already, if it would raise the dimension, or if
+    /// the geometry does not [admit](Geometry::admits) it.
     ///
     /// # Complexity
-    /// That of [`Delaunay::conflict_zone`](crate::Delaunay::conflict_zone).
+    /// That of [`Delaunay::conflict_zone`].
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Weighted, Regular};
+    ///
+    /// let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 0.0]];
+    /// let (t, _) = Regular::from_points(Weighted::new(), &corners)?;
+    /// let size = |weight| t.conflict_zone(&[2.0, 1.0, weight], None).map(|zone| zone.cells.len());
+    /// assert_eq!([-9.0, 0.0, 9.0].map(size), [None, Some(2), Some(6)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn conflict_zone(&self, q: &G::Point, near: Option<CellId>) -> Option<ConflictZone> {
-        let Ok(zone) = conflict_zone(&**self, q, self.start(near), |_, _| Ok(true));
+        let location = self.locate(q, near);
+        let Ok(zone) = match location {
+            Location::Vertex(vertex) => {
+                let is_heavier = self.geometry().side_of_sphere_in_flat(&[self.point(vertex)], q) == Sign::Positive;
+                let start = self.tds().cell_of(vertex).filter(|_| is_heavier)?;
+                zone_from(&**self, q, start, Facets::default(), |_, _| Ok(true)).map(Some)
+            }
+            _ => zone_at(&**self, q, location, |_, _| Ok(true)),
+        };
         zone
     }
 }
