@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use breakline_triangulation::geometry::{Space, WeightedSpace};
 use breakline_triangulation::tds::{CellId, VertexId};
-use breakline_triangulation::{AlphaShape, AlphaShapes, Delaunay, Regular};
+use breakline_triangulation::{AlphaShape, AlphaShapes, AlphaState, Delaunay, Regular};
 use testkit::random::Random;
 
 type Whole = [i64; 4];
@@ -176,6 +176,45 @@ fn shapes_on_grids_are_those_of_exact_radii() {
         }
     }
     assert!(solids > 150, "{solids}: hardly a test");
+}
+
+/// Among all cells, those that have the vertices.
+#[test]
+fn a_simplex_is_inside_with_all_of_its_cells() {
+    let mut random = Random(33);
+    let mut seen = [0; 3];
+    for round in 0..60 {
+        let sizes = [[3, 3, 3], [5, 4, 3], [40, 40, 40], [4, 4, 1]][round % 4];
+        let points: Vec<[f64; 3]> =
+            (0..random.index(30)).map(|_| sizes.map(|size| random.below(size) as f64)).collect();
+        let (t, _) = Delaunay::<Space, 4>::from_points(Space::default(), &points).unwrap();
+        let (tds, shapes) = (t.tds(), t.alpha_shapes());
+        let alphas = shapes.alphas();
+        for alpha in [0, alphas.len() / 3, alphas.len() - alphas.len().min(1)].map(|k| alphas.get(k).copied()) {
+            let shape = shapes.at(alpha.unwrap_or(f64::INFINITY));
+            let mut judge = |vertices: &[VertexId], found: AlphaState| {
+                let has_all = |&cell: &CellId| vertices.iter().all(|&v| tds.index_of(cell, v).is_some());
+                let around: Vec<CellId> = tds.cells().filter(has_all).collect();
+                let within = around.iter().filter(|&&cell| shape.contains(cell)).count();
+                let expected = match within {
+                    0 => AlphaState::Exterior,
+                    _ if within == around.len() => AlphaState::Interior,
+                    _ => AlphaState::Regular,
+                };
+                assert_eq!(found, expected, "{points:?} {vertices:?}");
+                seen[found as usize] += 1;
+            };
+            tds.cells().for_each(|cell| judge(tds.cell_vertices(cell), shape.classify_cell(cell)));
+            tds.edges().for_each(|edge| judge(&tds.edge_ends(edge), shape.classify_edge(edge)));
+            tds.vertices().for_each(|vertex| judge(&[vertex], shape.classify_vertex(vertex)));
+            for (cell, i) in tds.facets() {
+                let mut vertices = tds.cell_vertices(cell).to_vec();
+                vertices.remove(i);
+                judge(&vertices, shape.classify_facet((cell, i)));
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 300), "{seen:?}: hardly a test");
 }
 
 #[test]

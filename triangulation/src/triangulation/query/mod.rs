@@ -56,7 +56,7 @@ mod zone;
 
 pub use along::{Passage, along};
 pub use along_space::along_in_space;
-pub use alpha::{AlphaShape, AlphaShapes, Boundary};
+pub use alpha::{AlphaShape, AlphaShapes, AlphaState, Boundary};
 pub use dual::{VoronoiCell, VoronoiEdge};
 pub use faces::faces_from;
 pub use nearest::{nearest, nearest_first, within};

@@ -1,5 +1,9 @@
 //! Alpha shapes in space (Edelsbrunner and Muecke 1994), in their regularized form: of a volume.
 
+mod classify;
+
+pub use classify::AlphaState;
+
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
