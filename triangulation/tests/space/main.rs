@@ -9,5 +9,6 @@ mod location;
 mod queries;
 mod regular;
 mod removal;
+mod sequences;
 mod within_box;
 mod zones;
