@@ -9,8 +9,8 @@ use std::cmp::Ordering;
 
 use rustc_hash::FxHashMap;
 
-use crate::geometry::{Space, WeightedSpace};
-use crate::kernel::{Kernel, SquaredRadius, squared_radius_bounds};
+use crate::geometry::{Geometry, Space, WeightedSpace};
+use crate::kernel::{Kernel, Orientation3, Predicate, SquaredRadius, squared_radius_bounds};
 use crate::tds::{CellId, Tds, VertexId};
 
 use super::super::{Delaunay, Regular, Triangulation};
@@ -143,7 +143,7 @@ impl Candidate {
 impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
     fn of<G>(t: &'t Triangulation<G, 4, V, C>, weighted: impl Fn(&G::Point) -> [f64; 4]) -> Self
     where
-        G: crate::geometry::Geometry<4>,
+        G: Geometry<4>,
     {
         let tds = t.tds();
         let mut sites = vec![[f64::NAN; 3]; tds.vertex_slots()];
@@ -191,7 +191,9 @@ impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
     /// than so many [components](AlphaShape::components). `None` if there are no cells, or if
     /// `components` is zero.
     ///
-    /// It is the optimal one of CGAL's `find_optimal_alpha`. O(m) for m cells.
+    /// It is the optimal one of CGAL's `find_optimal_alpha`, which bisects: where a cell that
+    /// appears on its own makes the number of components grow again, CGAL's may be larger. O(m) for
+    /// m cells.
     pub fn with_components(&self, components: usize) -> Option<AlphaShape<'_, V, C>> {
         let solid = self.smallest_with_all_vertices()?;
         let mut forest = Forest::new(self.levels.len());
@@ -265,10 +267,8 @@ impl<'s, V, C: Copy + Default> AlphaShape<'s, V, C> {
     /// roundings of its largest product. O(m) for m cells.
     pub fn volume(&self) -> f64 {
         let six_times = |cell: CellId| {
-            let [a, b, c, d] = self.shapes.tds.corners(cell).map(|vertex| self.shapes.sites[vertex.index()]);
-            let [u, v, w] = [a, b, c].map(|p| [0, 1, 2].map(|axis| p[axis] - d[axis]));
-            let minor = |i: usize, j: usize| v[i] * w[j] - v[j] * w[i];
-            (u[0] * minor(1, 2) + u[1] * minor(2, 0) + u[2] * minor(0, 1)).abs()
+            let corners = self.shapes.tds.corners(cell).map(|vertex| self.shapes.sites[vertex.index()]);
+            Orientation3(corners).value(|x, y| x - y).abs()
         };
         self.cells().map(six_times).sum::<f64>() / 6.0
     }
