@@ -68,6 +68,7 @@
 //! | find what is nearest | [`Delaunay::nearest`], [`Delaunay::nearest_first`], [`Delaunay::within`] |
 //! | find what is in a rectangle or box, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::within_box`], [`Triangulation::along`] |
 //! | find what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
+//! | find the convex hull | [`tds::Tds::hull`]; in space [`Triangulation::convex_hull`] |
 //! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
 //! | give weights to points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`] |
 //! | draw power diagrams | [`Regular::power_center`], [`Regular::power_edge`], [`Regular::power_cell`] |

@@ -29,6 +29,7 @@ mod power;
 mod radius;
 mod rounding;
 mod scaled;
+mod smallest;
 
 pub use adaptive::{
     ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnFineLattice, OnLattice, PairBound, WholeNumbers,
@@ -41,6 +42,7 @@ pub use power::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3}
 pub(crate) use radius::{SquaredRadius, squared_radius_bounds};
 pub use rounding::{CornerSide, CrossingSide};
 pub use scaled::Scaled;
+pub(crate) use smallest::side_of_smallest_sphere;
 
 use std::fmt::Debug;
 use std::marker::PhantomData;

@@ -50,6 +50,10 @@ pub const fn beside(i: usize, j: usize) -> [usize; 2] {
     TABLE[i & 3][j & 3]
 }
 
+/// The indices of the other vertices of a tetrahedron, for each of its vertices, counter-clockwise
+/// as seen from outside.
+pub(crate) const OUTWARD: [[usize; 3]; 4] = [[1, 2, 3], [2, 0, 3], [0, 1, 3], [1, 0, 2]];
+
 /// The cells around an edge, counter-clockwise seen from its end.
 ///
 /// A step across a link is taken only if the link is mutual. So no two steps enter one cell, and

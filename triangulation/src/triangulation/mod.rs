@@ -33,7 +33,9 @@ pub use line_id::{LineId, LineTag};
 pub use lines::build::{OnCrossing, Rounding};
 pub use lines::constrained_delaunay::ConstrainedDelaunay;
 pub use locate::{Buckets, Facets, JumpAndWalk, Locate, Location, Near, SpacePassage, StraightLine};
-pub use query::{AlphaShape, AlphaShapes, AlphaState, Boundary, ConflictZone, Mark, Passage, VoronoiCell, VoronoiEdge};
+pub use query::{
+    AlphaShape, AlphaShapes, AlphaState, Boundary, ConflictZone, ConvexHull, Mark, Passage, VoronoiCell, VoronoiEdge,
+};
 
 use crate::geometry::Geometry;
 use crate::num::Sign;

@@ -5,6 +5,8 @@ mod alpha;
 mod bulk;
 mod bulk_regular;
 mod facts;
+mod gabriel;
+mod hull;
 mod location;
 mod queries;
 mod regular;

@@ -164,6 +164,27 @@ fn points_come_and_go() {
     }
 }
 
+/// The Delaunay triangulation, built at once and one by one, is the lower hull.
+#[test]
+fn the_delaunay_triangulation_is_the_lower_hull() {
+    let mut random = Random(35);
+    for _ in 0..rounds(300) {
+        let sizes = random.pick(&[[2, 2, 2], [3, 3, 3], [3, 2, 2], [6, 6, 6]]);
+        let sites: Vec<[f64; 3]> = (0..random.index(11)).map(|_| sizes.map(|size| random.below(size) as f64)).collect();
+        let (bulk, _) = Delaunay::<Space, 4>::from_points(Space::new(), &sites).unwrap();
+        let mut one_by_one = Delaunay::<Space, 4>::new(Space::new());
+        sites.iter().for_each(|&p| _ = one_by_one.insert(p).unwrap());
+        let expected = lower_hull(&sites.iter().map(|p| [p[0], p[1], p[2], 0.0].map(|x| x as i64)).collect());
+        let expected: BTreeSet<Vec<[i64; 3]>> =
+            expected.into_iter().map(|cell| cell.map(|[x, y, z, _]| [x, y, z]).to_vec()).collect();
+        for t in [bulk, one_by_one] {
+            let found = testkit::cells::cells(&t, |p| p.map(|x| x as i64));
+            assert_eq!(t.dimension() == 3, !expected.is_empty(), "{sites:?}");
+            assert!(t.dimension() < 3 || found == expected, "{sites:?}");
+        }
+    }
+}
+
 /// With equal weights, the cells are those of the Delaunay triangulation.
 #[test]
 fn equal_weights_change_nothing() {

@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::geometry::{Geometry, Space, WeightedSpace};
 use crate::kernel::{Kernel, Orientation3, Predicate, SquaredRadius, squared_radius_bounds};
+use crate::tds::space::OUTWARD;
 use crate::tds::{CellId, Tds, VertexId};
 
 use super::super::{Delaunay, Regular, Triangulation};
@@ -276,8 +277,6 @@ impl<'s, V, C: Copy + Default> AlphaShape<'s, V, C> {
     /// Returns the surface, with the edges and vertices where it is not a manifold. O(m) for m
     /// cells.
     pub fn boundary(&self) -> Boundary {
-        /// The other vertices of a cell, for each, counter-clockwise as seen from outside.
-        const OUTWARD: [[usize; 3]; 4] = [[1, 2, 3], [2, 0, 3], [0, 1, 3], [1, 0, 2]];
         let tds = self.shapes.tds;
         let mut triangles = Vec::new();
         for cell in self.cells() {
