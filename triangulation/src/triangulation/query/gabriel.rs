@@ -83,8 +83,8 @@ impl<K: Kernel, V, C: Copy + Default> Delaunay<Space<K>, 4, V, C> {
     ///
     /// let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, 0.0, 3.0]];
     /// let (t, _) = Delaunay::from_points(Space::new(), &corners)?;
-    /// let gabriel = t.tds().finite_edges().filter(|&edge| t.is_gabriel_edge(edge));
-    /// assert_eq!(gabriel.count(), 3); // those at [2, 1, 0]
+    /// let others = t.tds().finite_edges().filter(|&edge| !t.is_gabriel_edge(edge));
+    /// assert_eq!(others.count(), 1); // [2, 1, 0] is inside of the sphere of the longest
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn is_gabriel_edge(&self, edge: Edge) -> bool {
