@@ -1,4 +1,5 @@
-//! Gabriel facets and edges in space (Gabriel and Sokal 1969): those whose smallest sphere is empty.
+//! Gabriel facets and edges in space (Gabriel and Sokal 1969): those whose smallest sphere is
+//! empty.
 
 use crate::geometry::{Geometry, Space, WeightedSpace};
 use crate::kernel::{Kernel, side_of_smallest_sphere};
