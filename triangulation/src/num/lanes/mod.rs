@@ -12,6 +12,15 @@ mod plain;
 #[cfg(not(feature = "simd"))]
 pub(crate) use plain::*;
 
+/// Asks for memory that will be needed soon. It changes no result.
+#[inline(always)]
+pub(crate) fn prefetch<T>(place: &T) {
+    #[cfg(all(feature = "simd", target_feature = "sse"))]
+    safe_arch::prefetch_t0(place);
+    #[cfg(not(all(feature = "simd", target_feature = "sse")))]
+    let _ = place;
+}
+
 /// Rounds each number.
 #[inline(always)]
 pub(crate) fn rounded(x: f64x4) -> f32x4 {

@@ -1,10 +1,11 @@
 //! The cells while points are inserted: walk, conflict zone, star.
 
-use crate::kernel::{Orientation3, Predicate};
 use crate::num::Sign;
+use crate::num::lanes::prefetch;
 
 use super::Source;
 use super::blocks::Block;
+use super::predicates::{Corner, Predicates};
 use super::sphere::{self, Arrow, Frame, MARKED, Origin, Query, Sphere, UNKNOWN};
 use super::weights::Weights;
 
@@ -33,37 +34,11 @@ pub(super) const FACETS: [[usize; 3]; 4] = [[2, 1, 3], [0, 2, 3], [1, 0, 3], [0,
 /// A cell that receives the writes of lanes that are not chosen.
 pub(super) const DUMMY: u32 = 0;
 
-/// The predicates of the geometry. They decide what floating point cannot.
-#[derive(Clone, Copy)]
-struct Predicates<'a> {
-    source: Source<'a>,
-    /// The points of the vertices.
-    ranks: &'a [u32],
-}
-
-impl Predicates<'_> {
-    fn points<const M: usize>(&self, vertices: [u32; M]) -> [u32; M] {
-        vertices.map(|vertex| self.ranks[vertex as usize])
-    }
-
-    fn orientation(&self, vertices: [u32; 4]) -> Sign {
-        (self.source.orientation)(self.points(vertices))
-    }
-
-    fn in_sphere(&self, vertices: [u32; 4], q: u32) -> bool {
-        (self.source.in_sphere)(self.points(vertices), self.ranks[q as usize])
-    }
-
-    fn in_circle(&self, facet: [u32; 3], q: u32) -> bool {
-        (self.source.in_circle)(self.points(facet), self.ranks[q as usize])
-    }
-}
-
 /// What all meshes of the same points have in common.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
     pub(super) frame: Frame,
-    /// Determinants of absolute value above it have the right sign.
+    /// Determinants of orientations of absolute value above it have the right sign.
     flatness: f64,
     /// The least and the greatest weight.
     weights: [f64; 2],
@@ -84,14 +59,6 @@ impl Extent {
         // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
         Extent { frame, flatness: 6.0 * 9e-16 * x * y * z, weights: [min[3], max[3]] }
     }
-}
-
-/// A vertex.
-#[derive(Clone, Copy)]
-struct Corner {
-    site: [f64; 3],
-    /// The number in the star that was built last with this vertex, above a base that grows.
-    tag: u32,
 }
 
 /// The largest number of cells: their faces are numbered in 32 bits.
@@ -122,8 +89,6 @@ pub(super) struct Mesh<'a> {
     /// Cells that are not in use.
     unused: Vec<u32>,
     frame: Frame,
-    /// Determinants of absolute value above it have the right sign.
-    flatness: f64,
     /// A cell of the last star.
     last: u32,
     /// The state of the generator that chooses the direction of walks.
@@ -162,7 +127,6 @@ impl<'a> Mesh<'a> {
         corners.extend(ranks.iter().map(|&rank| Corner { site: source.position(rank), tag: 0 }));
         corners.push(Corner { site: [f64::NAN; 3], tag: 0 });
         let weights = Weights::new(extent.weights, ranks.iter().map(|&rank| (source.site)(rank)[3]));
-        let Extent { frame, flatness, .. } = extent;
 
         let room = 7 * count + count / 4 + 64;
         let (mut cells, mut spheres) = (Vec::with_capacity(room), Vec::with_capacity(room));
@@ -172,14 +136,13 @@ impl<'a> Mesh<'a> {
         cells.extend(FACETS.map(|[i, j, k]| alone([first[j], first[i], first[k], infinite])));
         spheres.resize(cells.len(), UNKNOWN);
         let mut mesh = Mesh {
-            predicates: Predicates { source, ranks },
+            predicates: Predicates { source, ranks, flatness: extent.flatness, may_hide: weights.may_hide() },
             corners,
             weights,
             cells,
             spheres,
             unused: Vec::new(),
-            frame,
-            flatness,
+            frame: extent.frame,
             last: 1,
             random: 1,
             base: 1,
@@ -200,9 +163,9 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Returns the cells, and those of them that are not in use.
-    pub(super) fn into_cells(self) -> (Vec<Cell>, Vec<u32>) {
-        (self.cells, self.unused)
+    /// Returns the cells, those of them that are not in use, and the points of the vertices.
+    pub(super) fn into_cells(self) -> (Vec<Cell>, Vec<u32>, &'a [u32]) {
+        (self.cells, self.unused, self.predicates.ranks)
     }
 
     /// Returns the cells that a point outside of the block may be in conflict with, if all vertices
@@ -274,7 +237,7 @@ impl<'a> Mesh<'a> {
     /// vertex is hidden.
     #[inline(always)]
     fn locate(&mut self, vertex: u32, q: Query) -> Result<Option<u32>, Failure> {
-        let Mesh { predicates, corners, weights, cells, spheres, last, random, flatness, .. } = self;
+        let Mesh { predicates, corners, cells, spheres, last, random, .. } = self;
         let (cells, spheres) = (&cells[..], &spheres[..cells.len()]);
         let infinite = corners.len() as u32 - 1;
         let mut cell = *last;
@@ -297,15 +260,13 @@ impl<'a> Mesh<'a> {
             for i in (start..start + 4).map(|i| i & 3) {
                 let next = neighbors[i] >> 2;
                 if next != from
-                    && orientation(*predicates, corners, *flatness, FACETS[i].map(|k| vertices[k]), vertex)
-                        == Sign::Negative
+                    && predicates.orientation(corners, FACETS[i].map(|k| vertices[k]), vertex) == Sign::Negative
                 {
                     (from, cell) = (cell, next);
                     continue 'walk;
                 }
             }
-            let is_hidden =
-                weights.may_hide() && !conflicts(*predicates, corners, *flatness, cells[cell as usize], vertex);
+            let is_hidden = predicates.may_hide && !predicates.conflict(corners, cells[cell as usize], vertex);
             return Ok((!is_hidden).then_some(cell));
         }
         Err(Failure::Inexact)
@@ -315,10 +276,12 @@ impl<'a> Mesh<'a> {
     /// and that of the facets of its boundary, both in `scratch`.
     ///
     /// `PERF:` the four neighbors of a cell are tested at once, and those chosen appended without
-    /// branches: all four are written, each at the end of those chosen before it.
+    /// branches: all four are written, each at the end of those chosen before it. Each of the four
+    /// is soon read or linked: asking for their memory early saves 3 % in a cube, 9 % on a surface
+    /// and 20 % on the moment curve.
     #[inline(always)]
     fn grow(&mut self, first: u32, vertex: u32, q: Query) -> (usize, usize) {
-        let Mesh { predicates, corners, cells, spheres, scratch, flatness, .. } = self;
+        let Mesh { predicates, corners, cells, spheres, scratch, .. } = self;
         let cells = &cells[..];
         let spheres = &mut spheres[..cells.len()];
         let (mut zone, mut facets, mut done) = (1, 0, 0);
@@ -337,6 +300,7 @@ impl<'a> Mesh<'a> {
             let Cell { neighbors: n, vertices: v } = cells[scratch.cells[done] as usize];
             done += 1;
             let beyond = n.map(|neighbor| neighbor >> 2);
+            beyond.iter().for_each(|&cell| prefetch(&cells[cell as usize]));
             let sides = sphere::sides(beyond.map(|cell| spheres[cell as usize]), q);
             let new = !sides.marked & 15;
             let mut taken = sides.inside & sides.sure & new;
@@ -345,7 +309,7 @@ impl<'a> Mesh<'a> {
                 let lane = open.trailing_zeros() as usize & 3;
                 open &= open - 1;
                 let cell = cells[beyond[lane] as usize];
-                taken |= u32::from(conflicts(*predicates, corners, *flatness, cell, vertex)) << lane;
+                taken |= u32::from(predicates.conflict(corners, cell, vertex)) << lane;
             }
             let boundary = !taken & new;
 
@@ -491,26 +455,26 @@ impl<'a> Mesh<'a> {
     /// facets.
     ///
     /// Every entry of the table that is read has been written for this star, so that it is never
-    /// cleared. If two facets had the same directed edge, one would miss its own entry.
+    /// cleared. Then each of its faces is read exactly once, and the sums are equal. If two facets
+    /// had the same directed edge, one would be missing (and the sums differ but for a chance of
+    /// `2^-32`, with predicates that contradict each other).
     #[inline(always)]
     fn link(&mut self, facets: usize) -> bool {
         let Mesh { scratch, cells, .. } = self;
         let (star, numbers, faces) = (&scratch.cells[..facets], &scratch.numbers[..facets], &scratch.faces[..]);
         let Some((faces, _)) = faces.split_first_chunk::<{ FEW * FEW }>() else { return false };
         let cells = &mut cells[..];
-        let mut differing = 0;
-        for i in 0..facets {
-            let [a, b, c] = numbers[i].map(|number| number as usize);
-            let first = 4 * star[i];
-            differing |= faces[(b * FEW + c) & LAST] ^ first;
-            differing |= faces[(c * FEW + a) & LAST] ^ (first + 1);
-            differing |= faces[(a * FEW + b) & LAST] ^ (first + 2);
-            let neighbors = &mut cells[star[i] as usize].neighbors;
+        let (mut written, mut read) = (0u32, 0u32);
+        for (&cell, &number) in star.iter().zip(numbers) {
+            let [a, b, c] = number.map(|number| number as usize);
+            let neighbors = &mut cells[cell as usize].neighbors;
             neighbors[0] = faces[(c * FEW + b) & LAST];
             neighbors[1] = faces[(a * FEW + c) & LAST];
             neighbors[2] = faces[(b * FEW + a) & LAST];
+            written = written.wrapping_add(cell.wrapping_mul(12).wrapping_add(3));
+            read = read.wrapping_add(neighbors[0]).wrapping_add(neighbors[1]).wrapping_add(neighbors[2]);
         }
-        differing == 0
+        written == read
     }
 
     /// Links the cells of a star with many vertices, by a hash table of its edges. Returns false if
@@ -552,35 +516,5 @@ impl<'a> Mesh<'a> {
             }
         }
         2 * pairs == 3 * facets
-    }
-}
-
-/// Returns the orientation of a facet and a vertex, all finite.
-#[inline(always)]
-fn orientation(predicates: Predicates, corners: &[Corner], flatness: f64, facet: [u32; 3], vertex: u32) -> Sign {
-    let [a, b, c, d] = [facet[0], facet[1], facet[2], vertex];
-    let sites = [a, b, c, d].map(|v| corners[v as usize].site);
-    let determinant = Orientation3(sites).value(|x, y| x - y);
-    if determinant > flatness {
-        Sign::Positive
-    } else if determinant < -flatness {
-        Sign::Negative
-    } else {
-        predicates.orientation([a, b, c, d])
-    }
-}
-
-/// Returns true if a vertex destroys a cell.
-#[inline(never)]
-fn conflicts(predicates: Predicates, corners: &[Corner], flatness: f64, cell: Cell, vertex: u32) -> bool {
-    let infinite = corners.len() as u32 - 1;
-    let Some(i) = cell.vertices.iter().position(|&v| v == infinite) else {
-        return predicates.in_sphere(cell.vertices, vertex);
-    };
-    let facet = FACETS[i].map(|k| cell.vertices[k]);
-    match orientation(predicates, corners, flatness, facet, vertex) {
-        Sign::Positive => true,
-        Sign::Negative => false,
-        Sign::Zero => predicates.in_circle(facet, vertex),
     }
 }

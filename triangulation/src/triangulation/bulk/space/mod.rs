@@ -7,7 +7,7 @@
 //! 1. [`order`]: points are inserted in rounds, each along a curve, so that a walk from the last
 //!    star is about three cells long.
 //! 2. [`sphere`]: each cell has its sphere, rounded, with the error that it is known to have.
-//!    Nearly all tests are decided by it, four at a time; the others by the geometry.
+//!    Nearly all tests are decided by it, four at a time; the others by [`predicates`].
 //! 3. [`mesh`]: the star is built in the memory of the zone, and linked by a small table in which
 //!    each edge of the zone's boundary finds the two facets that it belongs to.
 //!
@@ -28,6 +28,7 @@ mod merge;
 mod mesh;
 mod order;
 mod part;
+mod predicates;
 mod sphere;
 #[cfg(test)]
 mod tests;
@@ -49,7 +50,7 @@ use part::Part;
 const MAX_POINTS: usize = 1 << 27;
 
 /// So many points are inserted before it is asked whether to stop.
-const POLL: usize = 1 << 12;
+const POLL: u32 = 1 << 12;
 
 /// Cells that fill their numbers, a cell of each vertex, and a cell of the infinite one.
 pub(super) struct Built {
@@ -125,8 +126,8 @@ fn triangulate(source: Source, grain: Grain) -> Option<Built> {
 
 /// Triangulates all points as one block.
 fn whole(source: Source, extent: Extent, grain: Grain) -> Option<Built> {
-    let ranks: Vec<u32> = (0..source.count as u32).collect();
-    let (cells, unused) = meshed(source, extent, &ranks, grain)?.into_cells();
+    let mut ranks: Vec<u32> = (0..source.count as u32).collect();
+    let (cells, unused, _) = meshed(source, extent, &mut ranks, grain)?.into_cells();
     merge::joined(source.count, vec![Part::of(cells, unused, &[], &ranks)])
 }
 
@@ -137,10 +138,10 @@ fn divided(source: Source, extent: Extent, grain: Grain) -> Option<Blocks> {
     if levels == 0 {
         return None;
     }
-    let ranks = order::sample(source.count);
+    let mut ranks = order::sample(source.count);
     let mut sites: Vec<[f64; 3]> = ranks.iter().map(|&rank| source.position(rank)).collect();
     let blocks = Blocks::of(&mut sites, levels, extent.frame)?;
-    let mesh = meshed(source, extent, &ranks, grain)?;
+    let mesh = meshed(source, extent, &mut ranks, grain)?;
     blocks.are_worth_it(source.count, mesh.spheres()).then_some(blocks)
 }
 
@@ -152,13 +153,13 @@ fn by_blocks(source: Source, extent: Extent, blocks: &Blocks, grain: Grain) -> O
         ranks[blocks.index_of(source.position(rank))].push(rank);
     }
     let parts: Vec<Option<Part>> = ranks
-        .par_iter()
+        .par_iter_mut()
         .zip(blocks.each().par_iter())
         .map(|(ranks, block)| by_block(source, extent, ranks, block, grain))
         .collect();
     let mut parts = parts.into_iter().collect::<Option<Vec<Part>>>()?;
-    let residual = merge::residual(&parts);
-    let (cells, unused) = meshed(source, extent, &residual, grain)?.into_cells();
+    let mut residual = merge::residual(&parts);
+    let (cells, unused, _) = meshed(source, extent, &mut residual, grain)?.into_cells();
     let covered = merge::covered(&parts, &cells, &residual)?;
     parts.push(Part::of(cells, unused, &covered, &residual));
     merge::joined(source.count, parts)
@@ -166,39 +167,40 @@ fn by_blocks(source: Source, extent: Extent, blocks: &Blocks, grain: Grain) -> O
 
 /// Triangulates the points of a block, and leaves out the cells that other points may be in
 /// conflict with.
-fn by_block<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], block: &Block, grain: Grain) -> Option<Part<'a>> {
+fn by_block<'a>(
+    source: Source<'a>,
+    extent: Extent,
+    ranks: &'a mut [u32],
+    block: &Block,
+    grain: Grain,
+) -> Option<Part<'a>> {
     let mesh = meshed(source, extent, ranks, grain)?;
     let open = mesh.open_cells(block);
-    let (cells, unused) = mesh.into_cells();
+    let (cells, unused, ranks) = mesh.into_cells();
     Some(Part::of(cells, unused, &open, ranks))
 }
 
-/// Returns the mesh of points.
-fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], grain: Grain) -> Option<Mesh<'a>> {
-    let mut order = order::rounds(ranks.len());
-    let first = first_cell(source, ranks, &mut order)?;
+/// Returns the mesh of points; their ranks are given ascending, and brought into the order of
+/// insertion.
+fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a mut [u32], grain: Grain) -> Option<Mesh<'a>> {
+    order::into_rounds(ranks);
+    let first = first_cell(source, ranks)?;
     let mut mesh = Mesh::new(source, extent, ranks, first);
-    for chunk in order[4..].chunks(POLL) {
-        if grain.stops() {
+    for vertex in 4..ranks.len() as u32 {
+        if vertex % POLL == 0 && grain.stops() {
             return None;
         }
-        for &vertex in chunk {
-            mesh.insert(vertex).ok()?;
-        }
+        mesh.insert(vertex).ok()?;
     }
     Some(mesh)
 }
 
-/// Moves the first four vertices that span the space to the front of the order; returns them as a
-/// positive cell.
-fn first_cell(source: Source, ranks: &[u32], order: &mut [u32]) -> Option<[u32; 4]> {
-    let turn = |vertices: [u32; 3]| (source.turn)(vertices.map(|vertex| ranks[vertex as usize]));
-    let orientation = |vertices: [u32; 4]| (source.orientation)(vertices.map(|vertex| ranks[vertex as usize]));
-    let third = (2..order.len()).find(|&i| turn([order[0], order[1], order[i]]) != Sign::Zero)?;
-    order.swap(2, third);
-    let [a, b, c] = [order[0], order[1], order[2]];
-    let fourth = (3..order.len()).find(|&i| orientation([a, b, c, order[i]]) != Sign::Zero)?;
-    order.swap(3, fourth);
-    let d = order[3];
-    Some(if orientation([a, b, c, d]) == Sign::Positive { [a, b, c, d] } else { [b, a, c, d] })
+/// Moves the first four points that span the space to the front; returns them as a positive cell.
+fn first_cell(source: Source, ranks: &mut [u32]) -> Option<[u32; 4]> {
+    let third = (2..ranks.len()).find(|&i| (source.turn)([ranks[0], ranks[1], ranks[i]]) != Sign::Zero)?;
+    ranks.swap(2, third);
+    let orientation = |ranks: &[u32], i: usize| (source.orientation)([ranks[0], ranks[1], ranks[2], ranks[i]]);
+    let fourth = (3..ranks.len()).find(|&i| orientation(ranks, i) != Sign::Zero)?;
+    ranks.swap(3, fourth);
+    Some(if orientation(ranks, 3) == Sign::Positive { [0, 1, 2, 3] } else { [1, 0, 2, 3] })
 }

@@ -1,12 +1,12 @@
 //! The order in which points are inserted: in rounds (Amenta, Choi and Rote 2003).
 //!
-//! Each round has about seven times as many points as all before it together, drawn by a hash of
+//! Each round has about fifteen times as many points as all before it together, drawn by a hash of
 //! the rank in [spatial order](super::super::spatial_order), so that the first rounds are a sample.
 //! Within a round the points are in spatial order, every other round backward, so that each point
 //! is close to the one inserted before it.
 
 /// The binary logarithm of the ratio of two rounds.
-const RATIO: u32 = 3;
+const RATIO: u32 = 4;
 
 /// The first round has no more points than about this number.
 const FEW: usize = 1000;
@@ -14,24 +14,24 @@ const FEW: usize = 1000;
 /// So many points are a sample.
 const SAMPLE: usize = 2000;
 
-/// Returns the numbers `0..count` in the order of insertion.
-pub(super) fn rounds(count: usize) -> Vec<u32> {
-    let last = (0..).find(|round| count >> (RATIO * round) <= FEW).unwrap_or(0);
+/// Brings ascending ranks into the order of insertion.
+pub(super) fn into_rounds(ranks: &mut [u32]) {
+    let last = (0..).find(|round| ranks.len() >> (RATIO * round) <= FEW).unwrap_or(0);
     let round = |rank: u32| (last - (mixed(rank).trailing_zeros() / RATIO).min(last)) as usize;
     let mut starts = vec![0; last as usize + 2];
-    (0..count as u32).for_each(|rank| starts[round(rank) + 1] += 1);
+    ranks.iter().for_each(|&rank| starts[round(rank) + 1] += 1);
     for round in 1..starts.len() {
         starts[round] += starts[round - 1];
     }
-    let mut order = vec![0; count];
+    let mut order = vec![0; ranks.len()];
     let mut next = starts.clone();
-    for rank in 0..count as u32 {
+    for &rank in &*ranks {
         let next = &mut next[round(rank)];
         order[*next] = rank;
         *next += 1;
     }
     starts.windows(2).skip(1).step_by(2).for_each(|ends| order[ends[0]..ends[1]].reverse());
-    order
+    ranks.copy_from_slice(&order);
 }
 
 /// Returns some of the numbers `0..count`, ascending.
