@@ -11,6 +11,7 @@
 //! | read or write a mesh | [`mesh::read`], [`mesh::write`] | |
 //! | map a TIN to memory | [`mapped::open`], for a [`CompactTin`](crate::terrain::CompactTin) | |
 //! | read or write Triangle's files: points and segments in the plane, and their triangulation | | [`triangle::read`], [`triangle::write`] |
+//! | read or write triangulations in space: files of TetGen, MEDIT, VTK | | [`tetgen::read`], [`tetgen::write`] |
 //! | write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`] |
 //! | write other shapes | | [`shapefile::write_layer`] |
 //! | transform coordinates | | [`proj::transform`] |
@@ -63,6 +64,7 @@ pub mod raster;
 mod rows;
 pub mod shapefile;
 mod stl;
+pub mod tetgen;
 pub mod text;
 mod tin;
 pub mod triangle;

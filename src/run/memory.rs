@@ -12,6 +12,10 @@ const BYTES_A_POINT: u64 = 72;
 /// Bytes per point, including the coordinates.
 const BYTES_A_POINT_READ: u64 = BYTES_A_POINT + 24;
 
+/// Bytes per point while points in space are triangulated and written, without the coordinates:
+/// 400 of the triangulation and 330 of the lists, where a point has seven cells.
+const BYTES_A_POINT_OF_SPACE: u64 = 730;
+
 /// Bytes per byte of a mesh file while it is read, including the triangles.
 const BYTES_A_MESH_BYTE: u64 = 3;
 
@@ -33,6 +37,15 @@ struct Left {
 pub(super) fn require_for_points(count: usize) -> Result<()> {
     require(count as u64 * BYTES_A_POINT, &format!("a surface of {count} points"))
         .map_err(|e| e.cure("use fewer points: a part of the area (--bounds), a class (--class), or tiles one by one"))
+}
+
+/// Returns an error if there is not enough memory to triangulate this many points in space.
+///
+/// # Errors
+/// Those of [`require_for_points`].
+pub(super) fn require_for_space(count: usize) -> Result<()> {
+    require(count as u64 * BYTES_A_POINT_OF_SPACE, &format!("a triangulation of {count} points in space"))
+        .map_err(|e| e.cure("use fewer points: `breakline points` selects them by area or class"))
 }
 
 /// Returns an error if there is not enough memory for a raster of this many cells.

@@ -14,6 +14,7 @@
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`] | [`PointsReport`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
+//! | triangulate points in space | [`SpaceOptions`] | [`triangulate_space`] | [`SpaceProduct`] |
 //! | triangulate Triangle's files | [`TriangulateOptions`] | [`triangulate()`] | [`TriangulateProduct`] |
 //!
 //! # A DEM of points in memory
@@ -81,6 +82,7 @@ mod overlaps;
 mod point_files;
 mod points;
 mod rings;
+mod space;
 mod surface;
 mod systems;
 mod tin;
@@ -100,6 +102,10 @@ pub use input::{Input, MemoryPoints, STDIN};
 pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity};
 pub use overlaps::Overlap;
 pub use points::{PointsReport, PointsRequest, Withheld, write_points};
+pub use space::{
+    Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceOptions, SpaceProduct, SpaceReport, check_space, is_of_space,
+    triangulate_space,
+};
 pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
 pub use systems::{Degrees, SystemOptions};
 pub use tin::{BuildReport, EdgeLimit, TinRequest};

@@ -153,6 +153,11 @@ pub(super) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
     reading(Stage::ReadingTriangles, path, &journal.context, |watch| mesh::read_with(path, watch))
 }
 
+/// Reads vertices, cells or their values under watch.
+pub(super) fn reading_stage<T>(path: &Path, context: &Context, read: impl FnOnce(Watch) -> Result<T>) -> Result<T> {
+    reading(Stage::Reading, path, context, read)
+}
+
 /// Reads a file under watch, as a stage that is counted in bytes.
 fn reading<T>(stage: Stage, path: &Path, context: &Context, read: impl FnOnce(Watch) -> Result<T>) -> Result<T> {
     let work = context.start(stage, size(path))?;

@@ -18,7 +18,7 @@ fn every_damage_is_told_with_line_value_and_cure() {
         ("a.node", "-3 2\n1 0 0\n".into(), "line 1: -3 is out of range for the number of vertices"),
         ("a.node", "3.5 2\n1 0 0\n".into(), "line 1: '3.5' is not a whole number for the number of vertices"),
         ("a.node", "18446744073709551616 2\n".into(), "line 1: '18446744073709551616' is not a whole number"),
-        ("a.node", "1 3\n1 0 0 0\n".into(), "line 1: the dimension is 3, expected 2"),
+        ("a.node", "1 4\n1 0 0 0\n".into(), "line 1: the dimension is 4, expected 2"),
         ("a.node", "1 2 0 2\n1 0 0 0 0\n".into(), "line 1: the number of boundary markers is 2, expected 0 or 1"),
         ("a.node", "1 2\n2 0 0\n".into(), "line 2: the first vertex has the number 2, expected 0 or 1"),
         ("a.node", "1 2\n-1 0 0\n".into(), "line 2: the first vertex has the number -1, expected 0 or 1"),

@@ -1,3 +1,5 @@
+use std::path::Path;
+
 use crate::cli::input::args::CheckArgs;
 use crate::cli::input::outputs::{self, Existing};
 use crate::cli::input::plan::SurfacePlan;
@@ -6,10 +8,15 @@ use crate::cli::report::summary::print_surface;
 use crate::cli::{Exit, print};
 use crate::data::SurfaceFacts;
 use crate::error::Result;
-use crate::run::{self, CheckProduct};
+use crate::run::{self, CheckProduct, SpaceCheck};
 
 /// Lists the flaws of a TIN, or of a mesh that may not be a surface.
 pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
+    if let [path] = &args.surface.inputs[..]
+        && run::is_of_space(path)?
+    {
+        return check_space(path, console);
+    }
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
     let CheckProduct { product, flaws, .. } = run::check(&plan.request, &console.context())?;
@@ -30,5 +37,18 @@ pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
             print(&format!("{what}: {count} flaws\n"))?;
             Ok(Exit::Failed)
         }
+    }
+}
+
+/// Lists the flaws of tetrahedra.
+fn check_space(path: &Path, console: &Console) -> Result<Exit> {
+    let SpaceCheck { vertices, tetrahedra, flaws, .. } = run::check_space(path, &console.context())?;
+    for flaw in &flaws {
+        print(&format!("{flaw}\n"))?;
+    }
+    let what = format!("{vertices} vertices, {tetrahedra} tetrahedra");
+    match flaws.len() {
+        0 => print(&format!("{what}: no flaw found\n")).map(|()| Exit::Done),
+        count => print(&format!("{what}: {count} flaws\n")).map(|()| Exit::Failed),
     }
 }

@@ -9,3 +9,4 @@ pub(super) mod info;
 pub(super) mod points;
 pub(super) mod tin;
 pub(super) mod triangulate;
+mod triangulate_space;

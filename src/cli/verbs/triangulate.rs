@@ -1,5 +1,6 @@
 //! Triangulation of Triangle's files.
 
+use super::triangulate_space;
 use crate::cli::Exit;
 use crate::cli::input::args::TriangulateArgs;
 use crate::cli::input::inputs;
@@ -35,6 +36,12 @@ fn formats(is_poly: bool) -> Vec<Format<Family>> {
 pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     let path = &args.input;
     inputs::require([path])?;
+    if args.space || run::is_of_space(path)? {
+        return triangulate_space::run(args, console);
+    }
+    if let Some(option) = args.option_of_space() {
+        return Err(Error::usage(format!("{option} is for points in space")).in_file(path).cure("add --3d"));
+    }
     let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
     let formats = formats(is_poly);
     // The vertices of a .poly may be in the .node next to it.

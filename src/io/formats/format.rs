@@ -14,6 +14,7 @@ use crate::io::mapped::Mapped;
 use crate::io::output::Destination;
 use crate::io::point_options::Options;
 use crate::io::stl::Solid;
+use crate::io::tetgen::Tetrahedralized;
 use crate::io::triangle::Triangulated;
 use crate::io::watch::Watch;
 
@@ -72,6 +73,8 @@ pub enum Product {
     Shades,
     /// Points and segments in the plane, and their triangulation.
     Plane,
+    /// Points in space, and their triangulation.
+    Space,
 }
 
 /// How the format of a file is recognized.
@@ -143,6 +146,7 @@ pub(in crate::io) type Origin = Option<([f64; 3], PathBuf)>;
 pub(super) type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Origin>;
 type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
 type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
+type WriteSpace = fn(&[Destination], &Tetrahedralized) -> Result<()>;
 type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
 type WriteContours = fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
 
@@ -168,6 +172,8 @@ pub(in crate::io) struct Writers {
     pub(in crate::io) shades: Option<WriteShades>,
     /// Writes several files together, see [`triangle::write`](crate::io::triangle::write).
     pub(in crate::io) plane: Option<WritePlane>,
+    /// Writes several files together, see [`tetgen::write`](crate::io::tetgen::write).
+    pub(in crate::io) space: Option<WriteSpace>,
 }
 
 /// A file format; [`FORMATS`](super::FORMATS) lists them all.
@@ -215,6 +221,7 @@ impl Format {
             Product::Heights => self.writers.heights.is_some(),
             Product::Shades => self.writers.shades.is_some(),
             Product::Plane => self.writers.plane.is_some(),
+            Product::Space => self.writers.space.is_some(),
         }
     }
 

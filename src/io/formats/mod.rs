@@ -130,8 +130,15 @@ impl Holding {
 }
 
 impl Product {
-    const ALL: [Product; 6] =
-        [Product::Points, Product::Surface, Product::Contours, Product::Heights, Product::Shades, Product::Plane];
+    const ALL: [Product; 7] = [
+        Product::Points,
+        Product::Surface,
+        Product::Contours,
+        Product::Heights,
+        Product::Shades,
+        Product::Plane,
+        Product::Space,
+    ];
 
     const fn name(self) -> &'static str {
         match self {
@@ -141,6 +148,7 @@ impl Product {
             Product::Heights => "heights",
             Product::Shades => "hillshade",
             Product::Plane => "triangulation",
+            Product::Space => "triangulation in space",
         }
     }
 }

@@ -7,15 +7,24 @@ use crate::io::geotiff::CellFormat;
 use crate::io::las::{Detail, Packing, Rounding};
 use crate::io::output::Destination;
 use crate::io::watch::bytes_of;
-use crate::io::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, text, tin, triangle};
+use crate::io::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle};
 
-const NOT_WRITTEN: Writers =
-    Writers { points: None, surface: None, contours: None, check_size: None, heights: None, shades: None, plane: None };
+const NOT_WRITTEN: Writers = Writers {
+    points: None,
+    surface: None,
+    contours: None,
+    check_size: None,
+    heights: None,
+    shades: None,
+    plane: None,
+    space: None,
+};
 
 pub(in crate::io) const WITH_GDAL: &str =
     "build with the feature `gdal` to read it: cargo build --release --features gdal";
 const AS_RASTER: &str = "this is a raster: points are expected here";
 const AS_PLANE: &str = "`breakline triangulate` reads it and writes its triangulation, to .ele, .ply or .obj";
+const AS_SPACE: &str = "it is written only, by `breakline triangulate --3d`";
 const AS_MESH: &str = "save its vertices as text or LAS";
 const UNPACK: &str = "unpack it";
 
@@ -106,6 +115,22 @@ const fn plane(
         writers: Writers { plane: Some(triangle::write), ..NOT_WRITTEN },
         cure: AS_PLANE,
         help,
+        ..ROW
+    }
+}
+
+/// What writes those of Triangle's files that TetGen has, too.
+const PLANE_OR_SPACE: Writers = Writers { plane: Some(triangle::write), space: Some(tetgen::write), ..NOT_WRITTEN };
+
+/// Returns the row for a file of a triangulation in space.
+const fn space(name: &'static str, noun: &'static str, extensions: &'static [&'static str]) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        reader: Reader::Unread,
+        writers: Writers { space: Some(tetgen::write), ..NOT_WRITTEN },
+        cure: AS_SPACE,
         ..ROW
     }
 }
@@ -310,11 +335,18 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges],
         beside: &["node"],
-        ..plane("Triangle .ele", "an .ele file of Triangle", &["ele"], "triangles in the plane (Triangle)")
+        writers: PLANE_OR_SPACE,
+        ..plane(
+            "Triangle .ele",
+            "an .ele file of Triangle",
+            &["ele"],
+            "triangles in the plane (Triangle), tetrahedra (TetGen)",
+        )
     },
     Format {
         holds: &[Holding::Points],
-        ..plane("Triangle .node", "a .node file of Triangle", &["node"], "points in the plane (Triangle)")
+        writers: PLANE_OR_SPACE,
+        ..plane("Triangle .node", "a .node file of Triangle", &["node"], "points (Triangle, TetGen)")
     },
     Format {
         holds: &[Holding::Points, Holding::Lines],
@@ -324,22 +356,22 @@ pub static FORMATS: &[Format] = &[
     Format {
         reader: Reader::InfoOnly,
         beside: &["node"],
-        ..plane(
-            "Triangle .edge",
-            "an .edge file of Triangle",
-            &["edge"],
-            "edges of a triangulation in the plane (Triangle)",
-        )
+        writers: PLANE_OR_SPACE,
+        ..plane("Triangle .edge", "an .edge file of Triangle", &["edge"], "edges of a triangulation (Triangle, TetGen)")
     },
     Format {
         reader: Reader::InfoOnly,
+        writers: PLANE_OR_SPACE,
         ..plane(
             "Triangle .neigh",
             "a .neigh file of Triangle",
             &["neigh"],
-            "neighbors in a triangulation in the plane (Triangle)",
+            "neighbors in a triangulation (Triangle, TetGen)",
         )
     },
+    Format { holds: &[Holding::Mesh], beside: &["node"], ..space("TetGen .face", "a .face file of TetGen", &["face"]) },
+    Format { holds: &[Holding::Points, Holding::Mesh], ..space("MEDIT", "a MEDIT mesh", &["mesh"]) },
+    Format { holds: &[Holding::Points], ..space("VTU", "an unstructured grid of VTK", &["vtu"]) },
     // Formats read by GDAL, or only named in messages.
     Format {
         known_by: KnownBy::NameAndBytes,

@@ -39,7 +39,7 @@
 mod edge;
 mod ele;
 mod neigh;
-mod node;
+pub(super) mod node;
 mod poly;
 
 use std::io::Write;
@@ -53,11 +53,11 @@ use crate::io::{Destination, Output};
 
 /// Vertices as in a `.node` file.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Nodes {
+pub struct Nodes<const D: usize = 2> {
     /// The number of the first vertex: 0 or 1.
     pub first_number: u32,
     /// Positions of the vertices.
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<[f64; D]>,
     /// Number of attributes of each vertex.
     pub attribute_count: usize,
     /// The attributes, vertex by vertex.
@@ -66,7 +66,7 @@ pub struct Nodes {
     pub markers: Vec<i32>,
 }
 
-impl Nodes {
+impl<const D: usize> Nodes<D> {
     /// Returns the attributes of one vertex.
     pub fn attributes_of(&self, vertex: usize) -> &[f64] {
         &self.attributes[vertex * self.attribute_count..(vertex + 1) * self.attribute_count]
@@ -207,7 +207,7 @@ pub fn write(targets: &[Destination], triangulated: &Triangulated) -> Result<()>
     for target in targets {
         let mut output = Output::create(target.path())?;
         let written = match extension(&target.format_path()).as_str() {
-            "node" => node::write(&mut output, triangulated),
+            "node" => node::write(&mut output, &triangulated.nodes),
             "ele" => ele::write(&mut output, triangulated),
             "poly" => poly::write(&mut output, triangulated),
             "edge" => edge::write(&mut output, triangulated),
@@ -226,12 +226,12 @@ fn unknown(path: &Path, cure: &str) -> Error {
     Error::usage("the file's extension is not that of a file of Triangle").in_file(path).cure(cure)
 }
 
-fn extension(path: &Path) -> String {
+pub(super) fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 /// Runs `read` on the lines of a file and returns its result; errors name the file.
-fn read_rows<T>(path: &Path, watch: Watch, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> {
+pub(super) fn read_rows<T>(path: &Path, watch: Watch, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> {
     let bytes = bytes_of(path, watch)?;
     read(Rows::new(&bytes, watch)).map_err(|e| e.in_file(path))
 }
@@ -252,7 +252,7 @@ pub fn count(path: &Path) -> Result<usize> {
 }
 
 /// Returns the line that begins a list, and its count.
-fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Result<(Row<'a>, usize)> {
+pub(super) fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Result<(Row<'a>, usize)> {
     let what = format!("number of {items}");
     let mut header = rows.expect(|| format!("the {what}"), pattern)?;
     let count = header.within(&what)?;
@@ -260,7 +260,7 @@ fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Resul
 }
 
 /// Reads the items of a list: calls `read` with each line and the number at its start.
-fn listed<T>(
+pub(super) fn listed<T>(
     rows: &mut Rows,
     count: usize,
     item: &str,
@@ -283,8 +283,12 @@ fn room(count: usize, rows: &Rows) -> usize {
     count.min(rows.bytes_left() / 6 + 1)
 }
 
-fn site(row: &mut Row) -> Result<[f64; 2]> {
-    Ok([row.finite("x coordinate")?, row.finite("y coordinate")?])
+fn site<const D: usize>(row: &mut Row) -> Result<[f64; D]> {
+    let mut site = [0.0; D];
+    for (coordinate, what) in site.iter_mut().zip(["x coordinate", "y coordinate", "z coordinate"]) {
+        *coordinate = row.finite(what)?;
+    }
+    Ok(site)
 }
 
 /// Reads the boundary marker; 0 if the list has none.
@@ -294,14 +298,14 @@ fn marker(row: &mut Row, marker_count: usize) -> Result<i32> {
 
 /// The numbering of vertices.
 #[derive(Clone, Copy)]
-struct Numbering {
-    first: u32,
-    count: usize,
+pub(super) struct Numbering {
+    pub(super) first: u32,
+    pub(super) count: usize,
 }
 
 impl Numbering {
     /// Reads the number of a vertex and returns its index; messages call it `what`.
-    fn vertex(self, row: &mut Row, what: &str) -> Result<u32> {
+    pub(super) fn vertex(self, row: &mut Row, what: &str) -> Result<u32> {
         let number = row.whole(what)?;
         let position = number.checked_sub(i64::from(self.first)).and_then(|position| u32::try_from(position).ok());
         position.filter(|&position| (position as usize) < self.count).ok_or_else(|| {
@@ -311,6 +315,22 @@ impl Numbering {
                 _ => format!("the vertices are numbered {} to {last}", self.first),
             };
             row.wrong(format!("the {what} is vertex {number}, but {there}"))
+        })
+    }
+}
+
+impl Numbering {
+    /// Reads the number of a neighbor and returns its index, or `None` for -1; messages call it
+    /// `what`.
+    pub(super) fn neighbor(self, row: &mut Row, what: &str) -> Result<Option<u32>> {
+        let number = row.whole("neighbor")?;
+        if number == -1 {
+            return Ok(None);
+        }
+        let position = number.checked_sub(i64::from(self.first)).and_then(|position| u32::try_from(position).ok());
+        position.filter(|&position| (position as usize) < self.count).map(Some).ok_or_else(|| {
+            let last = self.count as i64 + i64::from(self.first) - 1;
+            row.wrong(format!("the neighbor is {what} {number}, but they are numbered {} to {last}", self.first))
         })
     }
 }

@@ -8,7 +8,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Triangulated, counted, listed, read_rows};
+use super::{Numbering, Triangulated, counted, listed, read_rows};
 use crate::error::Result;
 use crate::io::Watch;
 use crate::io::rows::Rows;
@@ -25,18 +25,11 @@ fn read(mut rows: Rows, first: u32, triangle_count: usize) -> Result<Vec<[Option
     if count != triangle_count {
         return Err(header.wrong(format!("there are {count} triangles, but the .ele file has {triangle_count}")));
     }
+    let numbering = Numbering { first, count };
     let neighbors = listed(&mut rows, count, "triangle", NEIGHBORS, |row, _| {
         let mut around = [None; 3];
         for beside in &mut around {
-            let number = row.whole("neighbor")?;
-            if number != -1 {
-                let position = number.checked_sub(i64::from(first)).and_then(|position| u32::try_from(position).ok());
-                let there = position.filter(|&position| (position as usize) < count);
-                *beside = Some(there.ok_or_else(|| {
-                    let last = count as i64 + i64::from(first) - 1;
-                    row.wrong(format!("the neighbor is triangle {number}, but they are numbered {first} to {last}"))
-                })?);
-            }
+            *beside = numbering.neighbor(row, "triangle")?;
         }
         Ok(around)
     })?;

@@ -2,38 +2,57 @@
 //!
 //! | line | contains |
 //! |---|---|
-//! | first | number of vertices, dimension (2), number of attributes, number of boundary markers (0 or 1) |
-//! | each of the others | vertex number, x, y, attributes, boundary marker |
+//! | first | number of vertices, dimension (2 or 3), number of attributes, number of boundary markers (0 or 1) |
+//! | each of the others | vertex number, x, y, in space z, attributes, boundary marker |
 //!
 //! Values missing at the end of the first line default to 2, 0 and 0.
 
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{LineGraph, Nodes, Surplus, Triangulated, counted, listed, marker, read_rows, room, site};
+use super::{LineGraph, Nodes, Surplus, counted, listed, marker, read_rows, room, site};
 use crate::error::Result;
 use crate::io::Watch;
 use crate::io::decimal::Decimal;
 use crate::io::rows::Rows;
 
-const COUNTS: &str = "VERTICES 2 ATTRIBUTES MARKERS";
+const COUNTS: &str = "VERTICES DIMENSION ATTRIBUTES MARKERS";
 const VERTEX: &str = "NUMBER X Y ATTRIBUTES MARKER, the last two as many as the first line announces";
+const VERTEX_OF_SPACE: &str = "NUMBER X Y Z ATTRIBUTES MARKER, the last two as many as the first line announces";
 
 /// The vertices of a file, or of part of one.
-pub(super) struct Listed {
-    pub(super) nodes: Nodes,
+pub(in crate::io) struct Listed<const D: usize = 2> {
+    pub(in crate::io) nodes: Nodes<D>,
     pub(super) lines: Vec<usize>,
     pub(super) surplus: Surplus,
 }
 
+impl<const D: usize> Listed<D> {
+    /// Returns a warning if lines have more values than announced.
+    pub(in crate::io) fn warning(&self) -> Option<String> {
+        self.surplus.warning()
+    }
+}
+
+/// Returns the dimension that the first line states.
+pub(in crate::io) fn dimension(rows: &mut Rows) -> Result<u32> {
+    counted(rows, "vertices", COUNTS)?.0.within_or("dimension", 2)
+}
+
 pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
-    let Listed { nodes, lines, surplus } = read_rows(path, watch, |mut rows| {
+    let listed: Listed = read_alone(path, watch)?;
+    let warnings = listed.warning().into_iter().collect();
+    let Listed { nodes, lines, .. } = listed;
+    Ok(LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, warnings, ..Default::default() })
+}
+
+/// Reads a file that contains vertices and nothing else.
+pub(in crate::io) fn read_alone<const D: usize>(path: &Path, watch: Watch) -> Result<Listed<D>> {
+    read_rows(path, watch, |mut rows| {
         let vertices = read(&mut rows)?;
         rows.end("the last vertex")?;
         Ok(vertices)
-    })?;
-    let warnings = surplus.warning().into_iter().collect();
-    Ok(LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, warnings, ..Default::default() })
+    })
 }
 
 /// Reads the `.node` file that contains the vertices of another file.
@@ -45,11 +64,11 @@ pub(super) fn read_beside(path: &Path, watch: Watch) -> Result<LineGraph> {
 }
 
 /// Reads a list of vertices, with the line that counts them.
-pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
+pub(super) fn read<const D: usize>(rows: &mut Rows) -> Result<Listed<D>> {
     let (mut header, count) = counted(rows, "vertices", COUNTS)?;
     let dimension = header.within_or("dimension", 2)?;
-    if dimension != 2 {
-        return Err(header.wrong(format!("the dimension is {dimension}, expected 2")));
+    if dimension != D {
+        return Err(header.wrong(format!("the dimension is {dimension}, expected {D}")));
     }
     let attribute_count: usize = header.within_or("number of attributes", 0)?;
     let marker_count: usize = header.within_or("number of boundary markers", 0)?;
@@ -57,11 +76,12 @@ pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
         return Err(header.wrong(format!("the number of boundary markers is {marker_count}, expected 0 or 1")));
     }
     let room = room(count, rows);
-    let mut nodes = Nodes { attribute_count, ..Nodes::default() };
+    let mut nodes = Nodes { attribute_count, ..Nodes::<D>::default() };
     nodes.points.reserve_exact(room);
     nodes.markers.reserve_exact(room);
     let mut surplus = Surplus::default();
-    let lines = listed(rows, count, "vertex", VERTEX, |row, number| {
+    let pattern = if D == 2 { VERTEX } else { VERTEX_OF_SPACE };
+    let lines = listed(rows, count, "vertex", pattern, |row, number| {
         if nodes.points.is_empty() {
             nodes.first_number = u32::try_from(number)
                 .ok()
@@ -83,11 +103,11 @@ pub(super) fn read(rows: &mut Rows) -> Result<Listed> {
     Ok(Listed { nodes, lines, surplus })
 }
 
-pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {
-    let nodes = &triangulated.nodes;
-    writeln!(out, "{}  2  {}  1", nodes.points.len(), nodes.attribute_count)?;
-    for (i, ([x, y], marker)) in nodes.points.iter().zip(&nodes.markers).enumerate() {
-        write!(out, "{:4}    {}  {}", i + nodes.first_number as usize, Decimal(*x), Decimal(*y))?;
+pub(in crate::io) fn write<const D: usize>(out: &mut impl Write, nodes: &Nodes<D>) -> io::Result<()> {
+    writeln!(out, "{}  {D}  {}  1", nodes.points.len(), nodes.attribute_count)?;
+    for (i, (point, marker)) in nodes.points.iter().zip(&nodes.markers).enumerate() {
+        write!(out, "{:4}  ", i + nodes.first_number as usize)?;
+        point.iter().try_for_each(|&coordinate| write!(out, "  {}", Decimal(coordinate)))?;
         nodes.attributes_of(i).iter().try_for_each(|&value| write!(out, "  {}", Decimal(value)))?;
         writeln!(out, "    {marker}")?;
     }

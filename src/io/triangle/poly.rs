@@ -48,7 +48,7 @@ pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
 /// Returns the segments of a file that has no vertices of its own; `None` if it has some.
 pub(super) fn read_segments_alone(path: &Path, numbering: Numbering, watch: Watch) -> Result<Option<Vec<Segment>>> {
     read_rows(path, watch, |mut rows| {
-        if !node::read(&mut rows)?.nodes.points.is_empty() {
+        if !node::read::<2>(&mut rows)?.nodes.points.is_empty() {
             return Ok(None);
         }
         read_segments(&mut rows, numbering, &mut Surplus::default()).map(Some)

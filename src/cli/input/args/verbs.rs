@@ -7,7 +7,7 @@ use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use crate::cli::input::classes;
-use crate::run::Arithmetic;
+use crate::run::{Alpha, Arithmetic};
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]
@@ -158,13 +158,16 @@ pub(in crate::cli) struct TinArgs {
     pub(in crate::cli) output: OutputArgs,
 }
 
-/// Triangulate points and segments in the plane, in Triangle's file formats
+/// Triangulate points and segments in the plane, or points in space; Triangle's and TetGen's files
 ///
 /// Reads a .node or .poly file of Triangle (Shewchuk) and writes its constrained Delaunay
 /// triangulation. Points are added only where segments cross, unless a smallest angle or a largest
 /// area is given. If a .poly has segments, triangles outside of its outer boundary or in a hole are
 /// removed, and each triangle gets the attribute of its region. Vertices keep their numbers,
 /// attributes and markers; a vertex at the position of an earlier one has no triangle.
+///
+/// Points in space (a .node of dimension 3, or --3d) become tetrahedra, in TetGen's files (.node,
+/// .ele, .face, .edge, .neigh), .vtu or .mesh, and an alpha shape in .ply, .obj, .off or .stl.
 ///
 /// As with Triangle, an .ele is written together with its .node (and, if the input is a .poly, its
 /// .poly); .poly and .edge are written together with their .node. For x.poly, write x.1.ele: inputs
@@ -175,13 +178,34 @@ Example:
   breakline triangulate plate.poly -o plate.1.ele -o plate.1.neigh
   breakline triangulate points.node -o points.1.ele -o points.off
   breakline triangulate -pq30a0.5 plate.poly -o plate.1.ele
+  breakline triangulate --3d tree.laz --alpha auto -o tree.stl -o tree.vtu
   breakline check plate.1.ele")]
 pub(in crate::cli) struct TriangulateArgs {
-    /// A .node or .poly file
+    /// A .node or .poly file; in space also LAS, LAZ, text, PLY, OBJ or OFF
     #[arg(value_name = "IN")]
     pub(in crate::cli) input: PathBuf,
     #[command(flatten)]
     pub(in crate::cli) output: OutputArgs,
+
+    /// Triangulate in space: tetrahedra (assumed for a .node of dimension 3)
+    ///
+    /// Points of all classes are used. Only --weighted, --alpha and --kernel apply then.
+    #[arg(long = "3d", help_heading = "Space")]
+    pub(in crate::cli) space: bool,
+
+    /// Points have weights: a regular triangulation
+    ///
+    /// Weights are in the .weights next to the file, one number a line, or the first attribute of a
+    /// .node.
+    #[arg(long, help_heading = "Space")]
+    pub(in crate::cli) weighted: bool,
+
+    /// Write the alpha shape to .ply, .obj, .off or .stl
+    ///
+    /// It consists of the tetrahedra whose sphere has at most this squared radius. `auto` is the
+    /// smallest that is one solid with all points.
+    #[arg(long, value_name = "SQUARED_RADIUS|auto", value_parser = alpha, allow_negative_numbers = true, help_heading = "Space")]
+    pub(in crate::cli) alpha: Option<Alpha>,
 
     /// Keep the whole convex hull
     ///
@@ -221,6 +245,34 @@ pub(in crate::cli) struct TriangulateArgs {
     /// The arithmetic that decides on which side of a line a point lies
     #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]
     pub(in crate::cli) kernel: KernelArg,
+}
+
+impl TriangulateArgs {
+    /// Returns the first option given that is only for the plane.
+    pub(in crate::cli) fn option_of_the_plane(&self) -> Option<&'static str> {
+        let given = [
+            (self.convex, "--convex"),
+            (self.on_crossing != OnCrossingArg::default(), "--on-crossing"),
+            (self.min_angle.is_some(), "--min-angle"),
+            (self.max_area.is_some(), "--max-area"),
+            (self.region_areas, "--region-areas"),
+            (self.max_added.is_some(), "--max-added"),
+        ];
+        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+    }
+
+    /// Returns the first option given that is only for space.
+    pub(in crate::cli) fn option_of_space(&self) -> Option<&'static str> {
+        let given = [(self.weighted, "--weighted"), (self.alpha.is_some(), "--alpha")];
+        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+    }
+}
+
+fn alpha(text: &str) -> Result<Alpha, String> {
+    match text {
+        "auto" => Ok(Alpha::OneSolid),
+        _ => positive(text).map(Alpha::Given).map_err(|error| format!("{error}, or `auto`")),
+    }
 }
 
 /// The arithmetic of the predicates.

@@ -14,11 +14,11 @@ pub(crate) use plain::*;
 
 /// Asks for memory that will be needed soon. It changes no result.
 #[inline(always)]
-pub(crate) fn prefetch<T>(place: &T) {
+pub(crate) fn prefetch<T>(wanted: &T) {
     #[cfg(all(feature = "simd", target_feature = "sse"))]
-    safe_arch::prefetch_t0(place);
+    safe_arch::prefetch_t0(wanted);
     #[cfg(not(all(feature = "simd", target_feature = "sse")))]
-    let _ = place;
+    let _ = wanted;
 }
 
 /// Rounds each number.

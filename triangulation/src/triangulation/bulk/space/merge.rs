@@ -10,7 +10,7 @@ use crate::parallel::*;
 use crate::tds::{CellId, Links};
 
 use super::Built;
-use super::mesh::Cell;
+use super::cell::Cell;
 use super::part::{Facet, Part, Seam, facet};
 
 /// Returns the ranks of the vertices of open cells.

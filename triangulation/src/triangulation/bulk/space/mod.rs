@@ -24,6 +24,7 @@
 //! one.
 
 mod blocks;
+mod cell;
 mod merge;
 mod mesh;
 mod order;

@@ -2,7 +2,7 @@
 
 use crate::tds::{CellId, Links, VertexId};
 
-use super::mesh::{Cell, DUMMY, FACETS};
+use super::cell::{Cell, DUMMY, FACETS};
 
 /// The neighbor of a cell that is in another part.
 const ELSEWHERE: u32 = u32::MAX;

@@ -4,15 +4,7 @@ use crate::kernel::{ErrorBound, Filter, InSphere, Orientation3, Predicate};
 use crate::num::Sign;
 
 use super::Source;
-use super::mesh::{Cell, FACETS};
-
-/// A vertex.
-#[derive(Clone, Copy)]
-pub(super) struct Corner {
-    pub(super) site: [f64; 3],
-    /// The number in the star that was built last with this vertex, above a base that grows.
-    pub(super) tag: u32,
-}
+use super::cell::{Cell, Corner, FACETS};
 
 /// The predicates of vertices.
 #[derive(Clone, Copy)]
