@@ -96,7 +96,7 @@
 //! | feature | default | effect |
 //! |---|---|---|
 //! | `parallel` | yes | bulk construction and arrangements run on all threads, with rayon; the results are the same without it |
-//! | `simd` | yes | bulk construction in space uses vector instructions, with wide; the results are the same without it |
+//! | `simd` | yes | bulk construction in space uses vector instructions, with wide and safe_arch; the results are the same without it |
 //! | `serde` | no | triangulations can be serialized and deserialized |
 //!
 //! # Modules

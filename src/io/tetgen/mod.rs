@@ -105,8 +105,8 @@ pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<Vec<f64>>
     })
 }
 
-/// Reads an `.ele` file of tetrahedra, the `.node` next to it, and the neighbors as the `.neigh` next
-/// to it states them; without one there are none.
+/// Reads an `.ele` file of tetrahedra and the `.node` next to it, with the neighbors that the
+/// `.neigh` next to it states; without one there are none.
 ///
 /// # Errors
 /// If a file is damaged; the error names the file and the line.
