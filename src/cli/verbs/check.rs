@@ -13,7 +13,7 @@ use crate::run::{self, CheckProduct, SpaceCheck};
 /// Lists the flaws of a TIN, or of a mesh that may not be a surface.
 pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     if let [path] = &args.surface.inputs[..]
-        && run::is_of_space(path)?
+        && run::is_of_space(path)
     {
         return check_space(path, console);
     }

@@ -36,7 +36,7 @@ fn formats(is_poly: bool) -> Vec<Format<Family>> {
 pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     let path = &args.input;
     inputs::require([path])?;
-    if args.space || run::is_of_space(path)? {
+    if args.space || run::is_of_space(path) {
         return triangulate_space::run(args, console);
     }
     if let Some(option) = args.option_of_space() {

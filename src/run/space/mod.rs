@@ -138,18 +138,16 @@ impl Surface for AlphaSolid {
     }
 }
 
-/// Returns true if a file is a `.node` of dimension 3, or an `.ele` next to one.
-///
-/// # Errors
-/// If the `.node` cannot be read or does not begin with a count.
-pub fn is_of_space(path: &Path) -> Result<bool> {
+/// Returns true if a file is a `.node` of dimension 3, or an `.ele` next to one. A `.node` that does
+/// not begin with a count is not.
+pub fn is_of_space(path: &Path) -> bool {
     let has = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
     let nodes = match (has("node"), has("ele")) {
         (true, _) => path.to_path_buf(),
         (_, true) => path.with_extension("node"),
-        _ => return Ok(false),
+        _ => return false,
     };
-    Ok(nodes.exists() && tetgen::dimension(&nodes)? == 3)
+    nodes.is_file() && tetgen::dimension(&nodes).is_ok_and(|dimension| dimension == 3)
 }
 
 /// Triangulates the points of a file in space: a `.node` of dimension 3, points of any format, or
