@@ -138,8 +138,8 @@ impl Surface for AlphaSolid {
     }
 }
 
-/// Returns true if a file is a `.node` of dimension 3, or an `.ele` next to one. A `.node` that does
-/// not begin with a count is not.
+/// Returns true if a file is a `.node` of dimension 3, or an `.ele` next to one. A `.node` that
+/// does not begin with a count is not.
 pub fn is_of_space(path: &Path) -> bool {
     let has = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
     let nodes = match (has("node"), has("ele")) {
