@@ -69,9 +69,9 @@
 //! | find what is in a rectangle or box, what a segment meets | [`Triangulation::within_rectangle`], [`Triangulation::within_box`], [`Triangulation::along`] |
 //! | find what a new point would destroy | [`Delaunay::conflict_zone`], [`ConstrainedDelaunay::conflict_zone`] |
 //! | find the convex hull | [`tds::Tds::hull`]; in space [`Triangulation::convex_hull`] |
-//! | draw Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`] |
+//! | construct Voronoi diagrams | [`Triangulation::circumcenter`], [`Delaunay::voronoi_edge`], [`Delaunay::voronoi_cell`]; in space also [`Delaunay::voronoi_facet`] |
 //! | give weights to points | [`Regular::hidden`], [`Regular::hidden_under`], [`Regular::nearest`] |
-//! | draw power diagrams | [`Regular::power_center`], [`Regular::power_edge`], [`Regular::power_cell`] |
+//! | construct power diagrams | [`Regular::power_center`], [`Regular::power_edge`], [`Regular::power_cell`]; in space also [`Regular::power_facet`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | draw it | [`Triangulation::svg`] |
 //! | save it | serde, with the feature `serde`: all kinds, in the plane |
@@ -83,9 +83,11 @@
 //!
 //! All queries take `&self`. In space, these exist: construction, insertion, and removal and moves
 //! except of [`Basic`]; payloads; location by all strategies; what a segment meets; vertices in a
-//! box, nearest vertices, stars, rings around edges; hidden points; and checks. All else is for the
-//! plane only: constraints, other queries, flips by a kind, pictures, serde and [`Compact`].
-//! Construction from many points is by divide and conquer in the plane only.
+//! box, nearest vertices, conflict zones, stars, rings around edges; hidden points; the convex
+//! hull; Voronoi and power diagrams, natural neighbor coordinates; and checks. Gabriel tests and
+//! [alpha shapes](AlphaShapes) are for space only. All else is for the plane only: constraints,
+//! other queries, flips by a kind, pictures, serde and [`Compact`]. Construction from many points
+//! is by divide and conquer in the plane only.
 //!
 //! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
 //! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of

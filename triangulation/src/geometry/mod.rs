@@ -178,8 +178,8 @@ pub trait Geometry<const N: usize> {
 /// cells, natural neighbor coordinates and pictures, and by [`Crossing`].
 ///
 /// # Laws
-/// - In space, coordinates are for sorting, and for the vertices within a box: no other result
-///   depends on them.
+/// - In space, coordinates are for sorting, for the vertices within a box, for Voronoi cells and
+///   for natural neighbor coordinates: no other result depends on them.
 /// - They are exact: different sites have different coordinates, and if the predicates say that
 ///   points lie along a line in some order, so do the coordinates.
 ///

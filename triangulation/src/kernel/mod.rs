@@ -34,7 +34,8 @@ mod smallest;
 pub use adaptive::{
     ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnFineLattice, OnLattice, PairBound, WholeNumbers,
 };
-pub use center::{circumcenter, power_center};
+pub use center::{circumcenter, circumcenter_in_space, power_center, power_center_in_space};
+pub(crate) use center::{normal_of_facet, power_center_of_facet};
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };

@@ -4,7 +4,8 @@
 
 use std::cmp::Ordering;
 
-use super::formula::{cross, minus, square, squared_length};
+use super::center::offset_in_space;
+use super::formula::{square, squared_length};
 use crate::num::{Bounded, Dyadic, Number, Sign};
 
 /// A quotient `above / below` with a positive `below`.
@@ -16,24 +17,11 @@ struct Quotient<T> {
 
 /// Returns the squared radius, and the volume that it is divided by, which is not zero unless the
 /// points are coplanar.
-///
-/// Relative to the last point, with `|p|^2` for the squared length less the difference of weights,
-/// the center is `(|a|^2 b x c + |b|^2 c x a + |c|^2 a x b) / (2 a . (b x c))`.
-fn quotient<T: Number>([a, b, c, d]: [[f64; 4]; 4], difference: impl Fn(f64, f64) -> T + Copy) -> (Quotient<T>, T) {
-    let [a, b, c] = [a, b, c].map(|p| {
-        let vector = minus([p[0], p[1], p[2]], [d[0], d[1], d[2]], difference);
-        let length = squared_length(&vector) - difference(p[3], d[3]);
-        (vector, length)
-    });
-    let normal = |p: &[T; 3], q: &[T; 3]| [(1, 2), (2, 0), (0, 1)].map(|(i, j)| cross(&p[i], &q[j], &p[j], &q[i]));
-    let (u, v, w) = (normal(&b.0, &c.0), normal(&c.0, &a.0), normal(&a.0, &b.0));
-    let term = |length: &T, normal: &[T; 3], axis: usize| length.clone() * normal[axis].clone();
-    let offset = [0, 1, 2].map(|axis| term(&a.1, &u, axis) + term(&b.1, &v, axis) + term(&c.1, &w, axis));
-    let along = |axis: usize| a.0[axis].clone() * u[axis].clone();
-    let volume = along(0) + along(1) + along(2);
+fn quotient<T: Number>(corners: [[f64; 4]; 4], difference: impl Fn(f64, f64) -> T + Copy) -> (Quotient<T>, T) {
+    let (offset, volume) = offset_in_space(corners, difference);
     let double = volume.clone() + volume.clone();
     let below = square(&double);
-    let above = squared_length(&offset) - difference(d[3], 0.0) * below.clone();
+    let above = squared_length(&offset) - difference(corners[0][3], 0.0) * below.clone();
     (Quotient { above, below }, volume)
 }
 

@@ -91,6 +91,20 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
         self.cells_around_edge(edge).map(|(cell, i, j)| (cell, space::beside(i, j)[0]))
     }
 
+    /// The vertices that form a facet with an edge, the infinite one included: the link of the
+    /// edge. In dimension 3 they are counter-clockwise seen from its end, in dimension 2 there are
+    /// two, below that none.
+    pub fn vertices_around_edge(&self, edge: Edge) -> impl Iterator<Item = VertexId> + '_ {
+        let (cell, i, j) = edge;
+        let sides = (self.dimension == 2 && i != j).then(|| {
+            let side = 3 - i - j;
+            let beyond = self.neighbor(cell, side);
+            [self.vertex(cell, side), self.vertex(beyond, self.index_of_neighbor(beyond, cell))]
+        });
+        let ring = self.cells_around_edge(edge).map(|(cell, i, j)| self.vertex(cell, space::beside(i, j)[0]));
+        ring.chain(sides.into_iter().flatten())
+    }
+
     /// Returns the cells that have a vertex, the infinite ones included, each with the index of the
     /// vertex in it: its star. The facets opposite the vertex are its link.
     ///

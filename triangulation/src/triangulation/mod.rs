@@ -35,6 +35,7 @@ pub use lines::constrained_delaunay::ConstrainedDelaunay;
 pub use locate::{Buckets, Facets, JumpAndWalk, Locate, Location, Near, SpacePassage, StraightLine};
 pub use query::{
     AlphaShape, AlphaShapes, AlphaState, Boundary, ConflictZone, ConvexHull, Mark, Passage, VoronoiCell, VoronoiEdge,
+    VoronoiFacet, VoronoiSolid,
 };
 
 use crate::geometry::Geometry;

@@ -12,25 +12,28 @@ use crate::tds::{CellId, VertexId};
 
 use super::super::{Delaunay, Triangulation};
 
-/// The dual of an edge, in a Voronoi or power diagram: the points that both ends are nearest to.
+/// An edge of a Voronoi or power diagram: the points that both ends of an edge are nearest to, or
+/// in space (`D = 3`) all corners of a facet.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum VoronoiEdge {
-    /// Between the centers of the two faces at an edge; of length zero if these are equal, as when
-    /// all four corners lie on one circle.
-    Segment([[f64; 2]; 2]),
-    /// From the center of the only face at an edge of the hull, outward.
+pub enum VoronoiEdge<const D: usize = 2> {
+    /// Between the centers of the two cells at an edge (facet); of length zero if these are equal,
+    /// as when all corners lie on one circle (sphere).
+    Segment([[f64; D]; 2]),
+    /// From the center of the only cell at an edge (facet) of the hull, outward.
     Ray {
         /// The start of the ray.
-        from: [f64; 2],
-        /// The direction; as long as the edge.
-        direction: [f64; 2],
+        from: [f64; D],
+        /// The direction: perpendicular to the edge, and as long; in space to the facet, and as
+        /// long as twice its area is large.
+        direction: [f64; D],
     },
-    /// Between two neighbors among collinear vertices.
+    /// Between two neighbors among collinear vertices; in space, of a face among coplanar ones.
     Line {
-        /// A point on the line through both; halfway between them if their weights are equal.
-        through: [f64; 2],
-        /// The direction; as long as the edge.
-        direction: [f64; 2],
+        /// A point on the line through both; halfway between them if their weights are equal. In
+        /// space, the center of the face in its plane.
+        through: [f64; D],
+        /// The direction, as that of a ray.
+        direction: [f64; D],
     },
 }
 
@@ -43,28 +46,28 @@ pub struct VoronoiCell {
     pub area: f64,
 }
 
-/// The points whose product with `normal` is at most `offset`.
-pub(super) struct HalfPlane {
-    normal: [f64; 2],
-    offset: f64,
+/// The points whose product with `normal` is at most `offset`: a half plane, or half of space.
+pub(super) struct HalfSpace<const D: usize> {
+    pub(super) normal: [f64; D],
+    pub(super) offset: f64,
 }
 
-impl HalfPlane {
+impl<const D: usize> HalfSpace<D> {
     /// Returns the points nearer to the origin than to `p`.
-    fn nearer_than(p: [f64; 2]) -> Self {
+    fn nearer_than(p: [f64; D]) -> Self {
         Self::of_less_power(p, 0.0)
     }
 
     /// Returns the points of less power to the origin than to `p`, where the weight of the origin
     /// is larger `by` this much.
-    pub(super) fn of_less_power(p: [f64; 2], by: f64) -> Self {
-        HalfPlane { normal: p, offset: (dot(p, p) + by) / 2.0 }
+    pub(super) fn of_less_power(p: [f64; D], by: f64) -> Self {
+        HalfSpace { normal: p, offset: (dot(p, p) + by) / 2.0 }
     }
 
-    /// Returns the part of a convex polygon in the half plane (Sutherland and Hodgman 1974, for one
+    /// Returns the part of a convex polygon in the half space (Sutherland and Hodgman 1974, for one
     /// line).
-    fn clip(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let beyond = |p: [f64; 2]| dot(self.normal, p) - self.offset;
+    pub(super) fn clip(&self, polygon: &[[f64; D]]) -> Vec<[f64; D]> {
+        let beyond = |p: [f64; D]| dot(self.normal, p) - self.offset;
         let mut clipped = Vec::with_capacity(polygon.len() + 1);
         for (k, &p) in polygon.iter().enumerate() {
             let q = polygon[(k + 1) % polygon.len()];
@@ -74,23 +77,23 @@ impl HalfPlane {
             }
             if at_p < 0.0 && at_q > 0.0 || at_p > 0.0 && at_q < 0.0 {
                 let along = at_p / (at_p - at_q);
-                clipped.push([0, 1].map(|k| p[k] + along * (q[k] - p[k])));
+                clipped.push(plus(p, minus(q, p).map(|x| along * x)));
             }
         }
         clipped
     }
 }
 
-pub(super) fn dot(p: [f64; 2], q: [f64; 2]) -> f64 {
-    p[0] * q[0] + p[1] * q[1]
+pub(super) fn dot<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
+    (1..D).fold(p[0] * q[0], |sum, k| sum + p[k] * q[k])
 }
 
-pub(super) fn minus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
-    [p[0] - q[0], p[1] - q[1]]
+pub(super) fn minus<const D: usize>(p: [f64; D], q: [f64; D]) -> [f64; D] {
+    std::array::from_fn(|k| p[k] - q[k])
 }
 
-pub(super) fn plus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
-    [p[0] + q[0], p[1] + q[1]]
+pub(super) fn plus<const D: usize>(p: [f64; D], q: [f64; D]) -> [f64; D] {
+    std::array::from_fn(|k| p[k] + q[k])
 }
 
 /// Returns twice the area of a polygon, positive if it is counter-clockwise.
@@ -103,7 +106,7 @@ pub(super) fn twice_area(polygon: &[[f64; 2]]) -> f64 {
 /// to the site.
 pub(super) fn cell_of(
     site: [f64; 2],
-    half_planes: impl Iterator<Item = HalfPlane>,
+    half_planes: impl Iterator<Item = HalfSpace<2>>,
     within: &[[f64; 2]],
 ) -> VoronoiCell {
     let is_polygon = within.as_flattened().iter().all(|x| x.is_finite());
@@ -208,6 +211,6 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         }
         let site = self.site(vertex);
         let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
-        cell_of(site, neighbors.map(|v| HalfPlane::nearer_than(minus(self.site(v), site))), within)
+        cell_of(site, neighbors.map(|v| HalfSpace::nearer_than(minus(self.site(v), site))), within)
     }
 }

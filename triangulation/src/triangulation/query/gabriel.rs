@@ -51,12 +51,10 @@ fn is_gabriel_edge<G: Geometry<4>, V, C: Copy + Default>(
         return false;
     }
     match t.dimension() {
-        3 => {
-            let cells = tds.cells_around_edge((cell, i, j));
-            let around = cells.map(|(cell, i, j)| tds.vertex(cell, crate::tds::space::beside(i, j)[0]));
-            is_empty(t, &tds.edge_ends((cell, i, j)), around, weighted)
+        2 | 3 => {
+            let edge = (cell, i, j);
+            is_empty(t, &tds.edge_ends(edge), tds.vertices_around_edge(edge), weighted)
         }
-        2 => is_gabriel_facet(t, (cell, 3 - i - j), weighted),
         _ => !tds.is_infinite(cell), // on a line, nothing is between the ends
     }
 }

@@ -46,12 +46,15 @@ mod along_space;
 mod alpha;
 mod crossed;
 mod dual;
+mod dual_space;
 mod faces;
 mod gabriel;
 mod hull;
 mod natural;
+mod natural_space;
 mod nearest;
 mod power;
+mod power_space;
 mod svg;
 mod within_box;
 mod zone;
@@ -60,6 +63,7 @@ pub use along::{Passage, along};
 pub use along_space::along_in_space;
 pub use alpha::{AlphaShape, AlphaShapes, AlphaState, Boundary};
 pub use dual::{VoronoiCell, VoronoiEdge};
+pub use dual_space::{VoronoiFacet, VoronoiSolid};
 pub use faces::faces_from;
 pub use hull::ConvexHull;
 pub use nearest::{nearest, nearest_first, within};
@@ -77,10 +81,10 @@ use crate::tds::VertexId;
 use super::Triangulation;
 use super::embedded::Embedded;
 
-/// Returns the coordinates of a point in the plane.
-fn site_of<G: Coordinates<3>>(geometry: &G, p: &G::Point) -> [f64; 2] {
+/// Returns the coordinates of a point: two in the plane, three in space.
+fn site_of<G: Coordinates<N>, const N: usize, const D: usize>(geometry: &G, p: &G::Point) -> [f64; D] {
     let coordinates = geometry.coordinates(p);
-    [coordinates.as_ref()[0], coordinates.as_ref()[1]]
+    std::array::from_fn(|k| coordinates.as_ref()[k])
 }
 
 /// Returns the coordinates of a finite vertex in the plane.
@@ -93,5 +97,12 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     fn site(&self, vertex: VertexId) -> [f64; 2] {
         let Ok(site) = site(self, vertex);
         site
+    }
+}
+
+impl<G: Coordinates<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
+    /// Returns the coordinates of a finite vertex in space.
+    fn site(&self, vertex: VertexId) -> [f64; 3] {
+        site_of(&self.geometry, self.point(vertex))
     }
 }

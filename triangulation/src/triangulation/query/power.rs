@@ -7,7 +7,7 @@ use crate::kernel::{self, Kernel};
 use crate::tds::{CellId, Neighbors, Tds, VertexId};
 
 use super::super::Regular;
-use super::dual::{HalfPlane, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus};
+use super::dual::{HalfSpace, VoronoiCell, VoronoiEdge, cell_of, dot, minus, plus};
 use super::nearest::nearest;
 
 impl<G: Metric<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C>
@@ -100,7 +100,7 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, 3, V, C> {
         let [x, y, weight] = *self.point(vertex);
         let half_plane = |v: VertexId| {
             let [u, w, other] = *self.point(v);
-            HalfPlane::of_less_power(minus([u, w], [x, y]), weight - other)
+            HalfSpace::of_less_power(minus([u, w], [x, y]), weight - other)
         };
         let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
         cell_of([x, y], neighbors.map(half_plane), within)
