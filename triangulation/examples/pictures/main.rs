@@ -1,6 +1,8 @@
 //! Draws the pictures of the documentation:
 //! `cargo run --example pictures -- triangulation/docs/pictures`.
 
+mod space;
+
 use std::fs;
 use std::path::Path;
 
@@ -16,12 +18,14 @@ type Draw = fn() -> Result<String, Box<dyn std::error::Error>>;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("the folder for the pictures is missing")?;
     fs::create_dir_all(&folder)?;
-    let pictures: [(&str, Draw); 5] = [
+    let pictures: [(&str, Draw); 7] = [
         ("conflict-zone", conflict_zone),
         ("walk", walk),
         ("voronoi-cell", voronoi_cell),
         ("regular", regular),
         ("constrained", constrained),
+        ("conflict-zone-in-space", space::conflict_zone),
+        ("alpha-shape", space::alpha_shape),
     ];
     for (name, draw) in pictures {
         fs::write(Path::new(&folder).join(name).with_extension("svg"), draw()?)?;
