@@ -74,7 +74,7 @@
 //! | construct power diagrams | [`Regular::power_center`], [`Regular::power_edge`], [`Regular::power_cell`]; in space also [`Regular::power_facet`] |
 //! | interpolate | [`Delaunay::sibson`], [`Delaunay::laplace`] |
 //! | draw it | [`Triangulation::svg`] |
-//! | save it | serde, with the feature `serde`: all kinds, in the plane |
+//! | save it | serde, with the feature `serde`: all kinds |
 //! | keep it in a file, and query it without loading it | [`Delaunay::write_compact`], [`Compact`] |
 //! | visit cells, edges, vertices | [`Triangulation::finite_cells`], [`Triangulation::tds`]; outwards from a face: [`Triangulation::faces_from`] |
 //! | run the same queries on a structure of your own | [`query`], over [`Embedded`] |
@@ -84,10 +84,10 @@
 //! All queries take `&self`. In space, these exist: construction, insertion, and removal and moves
 //! except of [`Basic`]; payloads; location by all strategies; what a segment meets; vertices in a
 //! box, nearest vertices, conflict zones, stars, rings around edges; hidden points; the convex
-//! hull; Voronoi and power diagrams, natural neighbor coordinates; and checks. Gabriel tests and
-//! [alpha shapes](AlphaShapes) are for space only. All else is for the plane only: constraints,
-//! other queries, flips by a kind, pictures, serde and [`Compact`]. Construction from many points
-//! is by divide and conquer in the plane only.
+//! hull; Voronoi and power diagrams, natural neighbor coordinates; serde; and checks. Gabriel tests
+//! and [alpha shapes](AlphaShapes) are for space only. All else is for the plane only: constraints,
+//! other queries, flips by a kind, pictures and [`Compact`]. Construction from many points is by
+//! divide and conquer in the plane only.
 //!
 //! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
 //! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of

@@ -157,7 +157,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         if self.dimension() >= 0 && self.cell_of(VertexId::INFINITE).is_none() {
             faults.push(TdsError::Isolated(VertexId::INFINITE));
         }
-        if self.dimension() < 1 || !faults.is_empty() {
+        if self.dimension() < 0 || !faults.is_empty() {
             return faults;
         }
         let mut reached = vec![false; self.cell_slots()];

@@ -25,6 +25,9 @@ pub enum Level {
 pub enum Flaw {
     /// Level 1 or 2: a flaw of the structure.
     Structure(tds::TdsError),
+    /// Level 3: a vertex outside of the line or plane of the first cell, although the dimension is
+    /// that of a line or plane.
+    NotInFlat(VertexId),
     /// Level 3: a cell that is flat or turned around.
     Orientation(CellId),
     /// Level 3: beyond facet `i` of this infinite cell the hull turns inwards.
@@ -46,6 +49,7 @@ impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Flaw::Structure(error) => error.fmt(f),
+            Flaw::NotInFlat(vertex) => write!(f, "vertex {} is outside of the flat of all others", vertex.index()),
             Flaw::Orientation(cell) => write!(f, "cell {cell:?} is flat or turned around"),
             Flaw::NotConvex(cell, i) => write!(f, "beyond facet {i} of infinite cell {cell:?} the hull turns inwards"),
             Flaw::NotDelaunay(cell, i) => {

@@ -1,6 +1,7 @@
 //! Triangulations through serde: what is read is what was saved, and damage is an error.
 
 mod lines;
+mod space;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -32,14 +33,14 @@ fn site([x, y]: [i8; 2]) -> [f64; 2] {
 
 /// Edits a triangulation, saves and reads it, and requires the same answers of both, at once and
 /// after more edits.
-fn goes_on_as_before<T: serde::Serialize + serde::de::DeserializeOwned>(
+fn goes_on_as_before<T: serde::Serialize + serde::de::DeserializeOwned, E: Copy>(
     mut t: T,
-    before: &[Edit],
-    after: &[Edit],
-    edit: impl Fn(&mut T, usize, Edit),
+    before: &[E],
+    after: &[E],
+    edit: impl Fn(&mut T, usize, E),
     same: impl Fn(&T, &T) -> Result<(), TestCaseError>,
 ) -> Result<(), TestCaseError> {
-    let edit_all = |t: &mut T, edits: &[Edit]| edits.iter().enumerate().for_each(|(k, &what)| edit(t, k, what));
+    let edit_all = |t: &mut T, edits: &[E]| edits.iter().enumerate().for_each(|(k, &what)| edit(t, k, what));
     edit_all(&mut t, before);
     let mut read = through(&t);
     for edits in [&[], after] {

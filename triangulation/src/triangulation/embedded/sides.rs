@@ -55,6 +55,22 @@ fn side_of_facet_in_flat<const N: usize, T: Embedded<N>>(
     Ok(t.geometry().orientation_in_flat(&points.iter().collect::<Vec<_>>()))
 }
 
+/// Returns true if `q` lies outside of the line or plane of all points, which a finite cell spans.
+pub(in super::super) fn leaves_flat<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    q: &PointOf<T, N>,
+) -> Result<bool, T::Error> {
+    let points = points_with(t, cell, usize::MAX, q)?;
+    let mut simplex: Vec<&PointOf<T, N>> = points.iter().collect();
+    simplex.push(q);
+    let sign = match <[&PointOf<T, N>; N]>::try_from(simplex) {
+        Ok(full) => t.geometry().orientation(full),
+        Err(flat) => t.geometry().orientation_in_flat(&flat),
+    };
+    Ok(sign != Sign::Zero)
+}
+
 /// Returns the points of a finite cell of full dimension.
 #[inline(always)]
 pub(in super::super) fn simplex<const N: usize, T: Embedded<N>>(

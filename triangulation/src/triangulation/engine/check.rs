@@ -5,11 +5,17 @@ use crate::num::Sign;
 use crate::tds::{self, CellId, Complex, VertexId};
 
 use super::super::embedded::Embedded;
-use super::super::embedded::sides::{in_conflict, side_of_facet, simplex};
+use super::super::embedded::sides::{in_conflict, leaves_flat, points_with, side_of_facet, simplex};
 use super::super::{Flaw, Level, Triangulation};
 
-/// Returns true if a finite cell of full dimension is positively oriented.
+/// Returns true if a finite cell is positively oriented, below full dimension in the line or plane
+/// of all points.
 pub(in super::super) fn is_positive<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<bool, T::Error> {
+    if t.complex().width() < N {
+        let first = t.point(t.complex().vertex(cell, 0)?)?;
+        let points = points_with(t, cell, 0, first.borrow())?;
+        return Ok(t.geometry().orientation_in_flat(&points.iter().collect::<Vec<_>>()) == Sign::Positive);
+    }
     let simplex = simplex(t, cell)?;
     Ok(t.geometry().orientation(simplex.each_ref().map(Borrow::borrow)) == Sign::Positive)
 }
@@ -67,9 +73,16 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     }
 
     fn check_orientation(&self) -> Vec<Flaw> {
+        let width = self.tds.width();
         let mut flaws = Vec::new();
-        if !self.is_full() {
+        if width < 2 {
             return flaws;
+        }
+        if let Some(cell) = self.finite_cells().next().filter(|_| !self.is_full()) {
+            flaws.extend(self.tds.vertices().filter_map(|vertex| {
+                let Ok(leaves) = leaves_flat(self, cell, self.point(vertex));
+                leaves.then_some(Flaw::NotInFlat(vertex))
+            }));
         }
         for cell in self.tds.cells() {
             let Some(infinite) = self.tds.index_of(cell, VertexId::INFINITE) else {
@@ -78,7 +91,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
                 continue;
             };
             // The far vertex of every adjacent hull facet must not see this one.
-            for i in (0..N).filter(|&i| i != infinite) {
+            // On a line, where each edge runs upward, none does.
+            for i in (0..width).filter(|&i| i != infinite && width > 2) {
                 let Ok(is_convex) = is_convex(self, cell, infinite, i);
                 flaws.extend((!is_convex).then_some(Flaw::NotConvex(cell, i)));
             }

@@ -37,8 +37,8 @@ use crate::tds::{CellId, Complex, VertexId};
 
 use super::Triangulation;
 pub use line::SpacePassage;
+pub(super) use walk::Dice;
 pub use walk::locate;
-pub(super) use walk::{Dice, leaves_flat};
 use walk::{LOOKS, PATIENCE, Seems};
 
 /// The position of a point relative to a triangulation.

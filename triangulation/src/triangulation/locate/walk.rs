@@ -5,7 +5,7 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Complex, VertexId};
 
-use super::super::embedded::sides::{points_with, side_of_facet, simplex};
+use super::super::embedded::sides::{leaves_flat, side_of_facet, simplex};
 use super::super::embedded::{Embedded, PointOf};
 use super::{Facets, Location};
 
@@ -318,20 +318,4 @@ pub(super) fn nearest_of_some<const N: usize, T: Embedded<N>>(
         }
     }
     Ok(nearest)
-}
-
-/// Returns true if `q` lies outside of the line or plane of all points, which a finite cell spans.
-pub(in super::super) fn leaves_flat<const N: usize, T: Embedded<N>>(
-    t: &T,
-    cell: CellId,
-    q: &PointOf<T, N>,
-) -> Result<bool, T::Error> {
-    let points = points_with(t, cell, usize::MAX, q)?;
-    let mut simplex: Vec<&PointOf<T, N>> = points.iter().collect();
-    simplex.push(q);
-    let sign = match <[&PointOf<T, N>; N]>::try_from(simplex) {
-        Ok(full) => t.geometry().orientation(full),
-        Err(flat) => t.geometry().orientation_in_flat(&flat),
-    };
-    Ok(sign != Sign::Zero)
 }

@@ -6,9 +6,10 @@ use crate::geometry::Geometry;
 use crate::num::Sign;
 use crate::tds::{CellId, Complex, vertices_of};
 
+use super::super::embedded::sides::leaves_flat;
 use super::super::embedded::{Embedded, PointOf};
 use super::super::locate::line::{Line, at_point, pierced, span_of};
-use super::super::locate::{leaves_flat, locate};
+use super::super::locate::locate;
 use super::super::{Location, SpacePassage, Triangulation};
 
 impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {

@@ -53,7 +53,7 @@ fn number(v: &VertexId) -> u32 {
 
 impl<P, V, C: Copy + Default> WithLines<Owned<P, V, ConstrainedEdges<C>>> {
     fn restore<G: Crossing<Point = P> + Default>(self) -> Result<ConstrainedDelaunay<G, V, C>, Damage> {
-        let inner = self.triangulation.restore::<G>()?;
+        let inner = self.triangulation.restore::<3, G>()?;
         inner.has_no_hidden_points()?;
         inner.constrains_edges_only()?;
         first(inner.flaws(Level::Law, |cell, i| !inner.is_constrained(cell, i)))?;

@@ -1,8 +1,8 @@
-//! Serde, behind the feature `serde`: saves a triangulation of the plane as its points, its
-//! payloads, and the vertices of its cells.
+//! Serde, behind the feature `serde`: saves a triangulation of the plane or of space as its points,
+//! its payloads, and the vertices of its cells.
 //!
 //! The geometry is not saved: a triangulation that is read has the default one. Vertices keep their
-//! numbers, and so do removed ones; cells are numbered anew. Neighbors follow from common edges.
+//! numbers, and so do removed ones; cells are numbered anew. Neighbors follow from common facets.
 //!
 //! Input is not trusted. [Links and manifold](Level::Manifold), orientation and convexity, and the
 //! law of the kind are checked with exact predicates, in linear time. Damage is an error, and never
@@ -16,7 +16,6 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::geometry::Geometry;
-use crate::num::Sign;
 use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
 
 use super::engine::trace::Scratch;
@@ -65,11 +64,11 @@ type Owned<P, V, C> = Saved<Vec<P>, Vec<V>, Vec<C>>;
 impl<P, V, C: Copy + Default> Owned<P, V, C> {
     /// Returns the triangulation if it is one. Not yet checked: the law, and that every point that
     /// is in no cell is hidden.
-    fn restore<G: Geometry<3, Point = P> + Default>(self) -> Result<Triangulation<G, 3, V, C>, Damage> {
+    fn restore<const N: usize, G: Geometry<N, Point = P> + Default>(self) -> Result<Triangulation<G, N, V, C>, Damage> {
         let Saved { dimension, points, vertex_data, removed, cells, cell_data } = self;
         let geometry = G::default();
-        if !(-1..=2).contains(&dimension) {
-            return Err(Damage::Shape("the dimension is not -1, 0, 1 or 2"));
+        if !(-1..N as i32).contains(&dimension) {
+            return Err(Damage::Shape("the dimension is below -1, or above that of the plane or space"));
         }
         if points.len() > MAX_VERTICES {
             return Err(Damage::Point(InputError::TooMany));
@@ -95,15 +94,11 @@ impl<P, V, C: Copy + Default> Owned<P, V, C> {
         let tds = Tds::from_parts(parts).map_err(|error| Damage::Flaw(Flaw::Structure(error)))?;
         let restored = Triangulation { geometry, tds, points, zone: Zone::default(), last: None };
         first(restored.flaws(Level::Orientation, |_, _| false))?;
-        if restored.is_in_order_on_line() {
-            Ok(restored)
-        } else {
-            Err(Damage::Shape("points are not in order on a line"))
-        }
+        Ok(restored)
     }
 }
 
-impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     fn save(&self) -> Saved<&[G::Point], &[V], Vec<C>> {
         let number = |v: &VertexId| (*v != VertexId::INFINITE).then(|| v.index() as u32);
         Saved {
@@ -113,26 +108,6 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             removed: self.tds.free_vertices().iter().map(|v| v.index() as u32).collect(),
             cells: self.tds.cells().flat_map(|cell| self.tds.cell_vertices(cell).iter().map(number)).collect(),
             cell_data: self.tds.cells().map(|cell| *self.tds.cell_data(cell)).collect(),
-        }
-    }
-
-    /// Returns true if the points fit the dimension. In dimension 1: all points are collinear, and
-    /// each edge runs from a smaller point to a larger one, so that no edge overlaps another. In
-    /// dimension 0: there is one finite cell.
-    fn is_in_order_on_line(&self) -> bool {
-        let tds = &self.tds;
-        match self.dimension() {
-            1 => {
-                // From the first vertex to the second.
-                let edges = || self.finite_cells().map(|cell| [0, 1].map(|i| self.point(tds.vertex(cell, i))));
-                let Some([a, b]) = edges().next() else { return false };
-                edges().all(|[p, q]| {
-                    self.geometry.compare(p, q).is_lt()
-                        && [p, q].iter().all(|r| self.geometry.orientation([a, b, r]) == Sign::Zero)
-                })
-            }
-            0 => self.finite_cells().count() == 1 && tds.cell_count() == 2,
-            _ => true,
         }
     }
 
@@ -157,12 +132,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
 }
 
 /// Reads a triangulation of some kind; `finish` does what remains for that kind.
-fn read<'de, D: Deserializer<'de>, G, V, C, T>(
+fn read<'de, D: Deserializer<'de>, G, const N: usize, V, C, T>(
     deserializer: D,
-    finish: impl FnOnce(Triangulation<G, 3, V, C>) -> Result<T, Damage>,
+    finish: impl FnOnce(Triangulation<G, N, V, C>) -> Result<T, Damage>,
 ) -> Result<T, D::Error>
 where
-    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    G: Geometry<N, Point: Deserialize<'de>> + Default,
     V: Deserialize<'de>,
     C: Deserialize<'de> + Copy + Default,
 {
@@ -170,15 +145,19 @@ where
     saved.restore().and_then(finish).map_err(D::Error::custom)
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Basic<G, 3, V, C> {
+impl<G, const N: usize, V: Serialize, C> Serialize for Basic<G, N, V, C>
+where
+    G: Geometry<N, Point: Serialize>,
+    C: Serialize + Copy + Default,
+{
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
 }
 
-impl<'de, G, V, C> Deserialize<'de> for Basic<G, 3, V, C>
+impl<'de, G, const N: usize, V, C> Deserialize<'de> for Basic<G, N, V, C>
 where
-    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    G: Geometry<N, Point: Deserialize<'de>> + Default,
     V: Deserialize<'de>,
     C: Deserialize<'de> + Copy + Default,
 {
@@ -187,15 +166,19 @@ where
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Delaunay<G, 3, V, C> {
+impl<G, const N: usize, V: Serialize, C> Serialize for Delaunay<G, N, V, C>
+where
+    G: Geometry<N, Point: Serialize>,
+    C: Serialize + Copy + Default,
+{
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.inner.save().serialize(serializer)
     }
 }
 
-impl<'de, G, V, C> Deserialize<'de> for Delaunay<G, 3, V, C>
+impl<'de, G, const N: usize, V, C> Deserialize<'de> for Delaunay<G, N, V, C>
 where
-    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    G: Geometry<N, Point: Deserialize<'de>> + Default,
     V: Deserialize<'de>,
     C: Deserialize<'de> + Copy + Default,
 {
@@ -208,15 +191,19 @@ where
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Regular<G, 3, V, C> {
+impl<G, const N: usize, V: Serialize, C> Serialize for Regular<G, N, V, C>
+where
+    G: Geometry<N, Point: Serialize>,
+    C: Serialize + Copy + Default,
+{
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
 }
 
-impl<'de, G, V, C> Deserialize<'de> for Regular<G, 3, V, C>
+impl<'de, G, const N: usize, V, C> Deserialize<'de> for Regular<G, N, V, C>
 where
-    G: Geometry<3, Point: Deserialize<'de>> + Default,
+    G: Geometry<N, Point: Deserialize<'de>> + Default,
     V: Deserialize<'de>,
     C: Deserialize<'de> + Copy + Default,
 {
