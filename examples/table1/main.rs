@@ -9,7 +9,7 @@
 //! one, in an order that looks random, the same in every run. What is printed are seconds; where
 //! the paper has a time, that and how many times as long it is. A ratio says how far machines and
 //! programs have come since, no more. The last row of a set is construction from all points at
-//! once, beside the fastest program of the paper.
+//! once, on all threads, beside the fastest program of the paper.
 //!
 //! The points of the table are made. In the plane: 100 000 whole numbers in a square of 2^24; 120
 //! 658 as airborne lidar leaves them on the ground, in scan lines and steps of a centimeter; 100

@@ -61,7 +61,6 @@ mod error;
 mod id;
 mod neighbors;
 pub mod plane;
-#[cfg(feature = "serde")]
 mod rebuild;
 mod refill;
 mod remove;
@@ -74,7 +73,6 @@ pub use error::{EditError, TdsError};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 pub use neighbors::Neighbors;
 pub(crate) use plane::Star;
-#[cfg(feature = "serde")]
 pub(crate) use rebuild::Parts;
 pub(crate) use zone::Zone;
 

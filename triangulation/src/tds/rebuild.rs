@@ -20,11 +20,13 @@ pub(crate) struct Parts<V, C> {
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// The payloads of all numbers of vertices, unused ones included.
+    #[cfg(feature = "serde")]
     pub(crate) fn payloads(&self) -> &[V] {
         &self.vertex_data
     }
 
     /// The unused numbers of vertices; the last is used next.
+    #[cfg(feature = "serde")]
     pub(crate) fn free_vertices(&self) -> &[VertexId] {
         &self.unused_vertices
     }

@@ -4,6 +4,7 @@ mod along;
 mod alpha;
 mod bulk;
 mod bulk_regular;
+mod compact;
 mod dual;
 mod facts;
 mod gabriel;

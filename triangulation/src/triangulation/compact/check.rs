@@ -1,8 +1,11 @@
+//! The checks of both the plane and space, and those of links in the plane.
+
 use crate::geometry::Geometry;
-use crate::num::Sign;
-use crate::tds::{CellId, Complex, Star, VertexId, plane};
+
+use crate::tds::{CellId, Complex, Star, VertexId, vertices_of};
 
 use super::super::Level;
+use super::super::embedded::sides::leaves_flat;
 use super::super::engine::check::{is_convex, is_empty, is_positive};
 use super::{Compact, CompactError, Law};
 
@@ -14,41 +17,19 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     /// # Errors
     /// The first damage that is found.
     pub fn check(&self, level: Level) -> Result<(), CompactError> {
+        self.check_numbers()?;
         self.check_links()?;
         if level >= Level::Manifold {
             self.check_manifold()?;
         }
-        if level >= Level::Orientation {
-            self.check_orientation()?;
-        }
-        if level >= Level::Law && self.dimension() == 2 {
-            self.check_law()?;
-        }
-        Ok(())
+        self.check_geometry(level)
     }
 
-    fn cells(&self) -> impl Iterator<Item = CellId> {
-        (0..self.cell_count()).map(CellId::new)
-    }
-
-    /// Checks that every number exists, that every point is admitted, and that neighbors know each
-    /// other and share their facet with opposite orientations.
+    /// Checks that neighbors know each other and share their facet with opposite orientations.
     fn check_links(&self) -> Result<(), CompactError> {
-        let vertices = plane::vertices(self).chain(self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE)));
-        for vertex in vertices {
-            let vertex = vertex?;
-            if vertex != VertexId::INFINITE {
-                self.point(vertex)?;
-            }
-            if let Some(cell) = self.cell_of(vertex)? {
-                let has_it = self.index_of(cell, vertex)?.is_some();
-                self.ensure(cell, || has_it)?;
-            }
-        }
         let width = self.width();
         for cell in self.cells() {
             let corners = self.corners(cell)?;
-            self.ensure(cell, || (1..width).all(|i| !corners[..i].contains(&corners[i])))?;
             for i in 0..width {
                 let beside = self.neighbor(cell, i)?;
                 let j = self.index_of_neighbor(beside, cell)?;
@@ -70,7 +51,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
             return Ok(());
         }
         let mut corners = 0;
-        for vertex in plane::vertices(self).chain([Ok(VertexId::INFINITE)]) {
+        for vertex in vertices_of(self).chain([Ok(VertexId::INFINITE)]) {
             for cell in Star::new(self, vertex?, 1)? {
                 cell?;
                 corners += 1;
@@ -82,33 +63,69 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
             Err(CompactError::Header("the cells are not connected"))
         }
     }
+}
 
-    /// Checks that finite cells are counter-clockwise and the hull is convex, see
-    /// [`Level::Orientation`]; on a line, that all points follow each other.
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
+    pub(super) fn cells(&self) -> impl Iterator<Item = CellId> + use<G, B, N, D> {
+        (0..self.cell_count()).map(CellId::new)
+    }
+
+    /// Checks that every number exists, that every point is admitted, and that no cell has a vertex
+    /// twice.
+    pub(super) fn check_numbers(&self) -> Result<(), CompactError> {
+        let infinite = self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE));
+        for vertex in vertices_of(self).chain(infinite) {
+            let vertex = vertex?;
+            if vertex != VertexId::INFINITE {
+                self.point(vertex)?;
+            }
+            if let Some(cell) = self.cell_of(vertex)? {
+                let has_it = self.index_of(cell, vertex)?.is_some();
+                self.ensure(cell, || has_it)?;
+            }
+        }
+        for cell in self.cells() {
+            let corners = self.corners(cell)?;
+            self.ensure(cell, || (1..self.width()).all(|i| !corners[..i].contains(&corners[i])))?;
+        }
+        Ok(())
+    }
+
+    /// Checks the levels that need points.
+    pub(super) fn check_geometry(&self, level: Level) -> Result<(), CompactError> {
+        if level >= Level::Orientation {
+            self.check_orientation()?;
+        }
+        // In the plane, no law is claimed below full dimension.
+        if level >= Level::Law && self.width() > 2 {
+            self.check_law()?;
+        }
+        Ok(())
+    }
+
+    /// Checks that finite cells are positively oriented and the hull is convex, see
+    /// [`Level::Orientation`]; below full dimension, that no vertex is outside of the line or plane
+    /// of all others.
     fn check_orientation(&self) -> Result<(), CompactError> {
-        for cell in self.cells().filter(|_| self.dimension() > 0) {
+        let width = self.width();
+        let mut first = None;
+        for cell in self.cells().filter(|_| width > 1) {
             let corners = self.corners(cell)?;
             let Some(infinite) = corners.iter().position(|&v| v == VertexId::INFINITE) else {
-                let is_positive = if self.dimension() == 2 {
-                    is_positive(self, cell)?
-                } else {
-                    let ends = [&self.point(corners[0])?, &self.point(corners[1])?];
-                    self.geometry.orientation_in_flat(&ends) == Sign::Positive
-                };
+                let is_positive = is_positive(self, cell)?;
                 self.ensure(cell, || is_positive)?;
+                first = first.or(Some(cell));
                 continue;
             };
-            for i in (0..self.width()).filter(|&i| i != infinite && self.dimension() == 2) {
+            for i in (0..width).filter(|&i| i != infinite && width > 2) {
                 let is_convex = is_convex(self, cell, infinite, i)?;
                 self.ensure(cell, || is_convex)?;
             }
         }
-        if self.dimension() == 1 {
-            let [a, b] = [0, 1].map(|index| self.point(VertexId::new(index)));
-            let [a, b] = [a?, b?];
-            for vertex in plane::vertices(self) {
+        if let Some(first) = first.filter(|_| width < N) {
+            for vertex in vertices_of(self) {
                 let vertex = vertex?;
-                if self.geometry.orientation([&a, &b, &self.point(vertex)?]) != Sign::Zero {
+                if leaves_flat(self, first, &self.point(vertex)?)? {
                     return Err(CompactError::Vertex(vertex));
                 }
             }
@@ -116,13 +133,13 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         Ok(())
     }
 
-    /// Checks that constraints are set on both sides, and that circles are empty as far as the law
+    /// Checks that constraints are set on both sides, and that spheres are empty as far as the law
     /// demands.
     fn check_law(&self) -> Result<(), CompactError> {
         let is_delaunay = matches!(self.law(), Law::Delaunay | Law::ConstrainedDelaunay);
         for cell in self.cells() {
             let is_finite = !self.is_infinite(cell)?;
-            for i in 0..3 {
+            for i in 0..self.width() {
                 let beside = self.neighbor(cell, i)?;
                 let is_constrained = self.is_constrained(cell, i)?;
                 let is_other = self.is_constrained(beside, self.index_of_neighbor(beside, cell)?)?;

@@ -10,9 +10,6 @@ const MAGIC: [u8; 8] = *b"brkTIN\n\x1a";
 pub(super) const VERSION: u32 = 2;
 pub(super) const HEADER: usize = 48;
 
-/// Bytes of a cell: three vertices and three neighbors.
-pub(super) const CELL: usize = 24;
-
 /// Stands for the infinite vertex.
 pub(super) const INFINITE: u32 = u32::MAX;
 
@@ -22,6 +19,8 @@ pub(super) const NONE: u32 = u32::MAX - 1;
 /// The contents of the header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Header {
+    /// Vertices of a cell at full dimension: 3 in the plane, 4 in space.
+    pub(super) full: u32,
     /// Vertices of a cell: the dimension plus one.
     pub(super) width: u32,
     /// Coordinates of a point.
@@ -55,7 +54,7 @@ impl Header {
         let numbers = [VERSION, self.width, self.doubles, self.law as u32];
         numbers.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
         [self.vertices, self.cells].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
-        [self.infinite_cell, 0].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        [self.infinite_cell, self.full - 3].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
         bytes
     }
 
@@ -75,24 +74,39 @@ impl Header {
         }
         let [width, doubles, law] = [0; 3].map(|_| u32::from_le_bytes(taken(bytes)));
         let [vertices, cells] = [0; 2].map(|_| u64::from_le_bytes(taken(bytes)));
-        let [infinite_cell, reserved] = [0; 2].map(|_| u32::from_le_bytes(taken(bytes)));
+        let [infinite_cell, is_in_space] = [0; 2].map(|_| u32::from_le_bytes(taken(bytes)));
+        let full = match is_in_space {
+            0 => 3,
+            1 => 4,
+            _ => return Err(CompactError::Header("neither the plane nor space")),
+        };
         let law = Law::from_number(law).ok_or(CompactError::Header("the law"))?;
-        // On a sphere these numbers follow from each other (Euler).
+        if full == 4 && law.has_constraints() {
+            return Err(CompactError::Header("constraints in space"));
+        }
+        // On a sphere these numbers follow from each other (Euler); in space they do not.
         let fits = match width {
             0 => vertices == 0 && cells == 0,
             1 => vertices == 1 && cells == 2,
             2 => vertices >= 2 && cells.checked_sub(1) == Some(vertices),
             3 => vertices >= 3 && cells.checked_add(2) == vertices.checked_mul(2),
+            4 => full == 4 && vertices >= 4 && cells >= 5,
             _ => false,
         };
         if !fits || cells >= CellId::LIMIT as u64 {
             return Err(CompactError::Header("the dimension and the numbers of vertices and cells"));
         }
         let is_cell = u64::from(infinite_cell) < cells || width == 0 && infinite_cell == NONE;
-        if !is_cell || reserved != 0 {
+        if !is_cell {
             return Err(CompactError::Header("the cell of the infinite vertex"));
         }
-        Ok(Header { width, doubles, law, vertices, cells, infinite_cell })
+        Ok(Header { full, width, doubles, law, vertices, cells, infinite_cell })
+    }
+
+    /// Bytes of a cell: its vertices and its neighbors.
+    #[inline(always)]
+    pub(super) fn bytes_of_cell(&self) -> usize {
+        8 * self.full as usize
     }
 
     /// Returns the offsets of the arrays; `None` if they exceed the address space of this machine.
@@ -100,7 +114,7 @@ impl Header {
         let points = self.vertices.checked_mul(8)?.checked_mul(self.doubles.into())?;
         let cells_of_vertices = points.checked_add(HEADER as u64)?;
         let cells = cells_of_vertices.checked_add(padded(self.vertices.checked_mul(4)?)?)?;
-        let constraints = cells.checked_add(CELL as u64 * self.cells)?;
+        let constraints = cells.checked_add(self.bytes_of_cell() as u64 * self.cells)?;
         let end = constraints.checked_add(if self.law.has_constraints() { padded(self.cells)? } else { 0 })?;
         let [cells_of_vertices, cells, constraints] = [cells_of_vertices, cells, constraints].map(usize::try_from);
         Some(Offsets {

@@ -2,8 +2,10 @@
 //! memory.
 
 mod check;
+mod check_space;
 mod layout;
 mod queries;
+mod queries_space;
 mod section;
 mod write;
 
@@ -14,7 +16,7 @@ use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
 
 use super::Embedded;
-use layout::{CELL, HEADER, Header, Offsets};
+use layout::{HEADER, Header, Offsets};
 pub use section::CompactSection;
 
 /// The law that a file claims for its triangulation.
@@ -57,6 +59,13 @@ pub enum CompactError {
         /// Bytes present.
         found: u64,
     },
+    /// The triangulation is one of the plane where one of space is expected, or the other.
+    Space {
+        /// Vertices of a cell at full dimension: 3 in the plane, 4 in space.
+        expected: usize,
+        /// Those of the file.
+        found: usize,
+    },
     /// The number of coordinates of a point is not that of the geometry.
     Coordinates {
         /// Coordinates of a point of the geometry.
@@ -83,6 +92,10 @@ impl fmt::Display for CompactError {
             CompactError::Length { expected, found } => {
                 write!(f, "{found} bytes where {expected} are announced")
             }
+            CompactError::Space { expected, found } => {
+                let name = |corners: usize| if corners == 4 { "space" } else { "the plane" };
+                write!(f, "a triangulation of {}; one of {} is expected", name(*found), name(*expected))
+            }
             CompactError::Coordinates { expected, found } => {
                 write!(f, "points of {found} coordinates; the geometry has {expected}")
             }
@@ -97,7 +110,8 @@ impl fmt::Display for CompactError {
 
 impl std::error::Error for CompactError {}
 
-/// A read-only triangulation of the plane that is used where its bytes are, without being loaded.
+/// A read-only triangulation that is used where its bytes are, without being loaded. `N` is the
+/// number of vertices of a cell: 3 in the plane, 4 in space.
 ///
 /// The kinds write it: [`Delaunay::write_compact`](crate::Delaunay::write_compact),
 /// [`ConstrainedDelaunay::write_compact`](crate::ConstrainedDelaunay::write_compact) and so on. `B`
@@ -121,7 +135,8 @@ impl std::error::Error for CompactError {}
 /// ```
 ///
 /// A point takes 8 bytes a coordinate, 4 bytes for a cell of its vertex, and 48 bytes for its two
-/// triangles; two bytes more with constraints. The format is described in `docs/formats.md`.
+/// triangles; two bytes more with constraints. In space a tetrahedron takes 32 bytes, and a point
+/// has six or seven. The format is described in `docs/formats.md`.
 ///
 /// ```
 /// use breakline_triangulation::{geometry::Plane, Compact, CompactError, Delaunay};
@@ -139,25 +154,29 @@ impl std::error::Error for CompactError {}
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Compact<G, B> {
+pub struct Compact<G, B, const N: usize = 3> {
     geometry: G,
     bytes: B,
     header: Header,
     offsets: Offsets,
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
     /// Opens a compact triangulation; checks its header and the number of bytes.
     ///
     /// # Errors
-    /// If the header or the number of bytes is wrong, or if the points do not have the geometry's
-    /// number of coordinates.
+    /// If the header or the number of bytes is wrong, if the triangulation is one of space and the
+    /// geometry of the plane (or the other), or if the points do not have the geometry's number of
+    /// coordinates.
     ///
     /// # Complexity
     /// Linear in the number of sections; constant however many points there are.
     pub fn open(geometry: G, bytes: B) -> Result<Self, CompactError> {
         let all = bytes.as_ref();
         let header = Header::read(&all[..all.len().min(HEADER)])?;
+        if header.full as usize != N {
+            return Err(CompactError::Space { expected: N, found: header.full as usize });
+        }
         if header.doubles as usize != D {
             return Err(CompactError::Coordinates { expected: D, found: header.doubles as usize });
         }
@@ -182,7 +201,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     }
 
     /// Returns the dimension: -1 without points, 0 for a single point, 1 if all points are
-    /// collinear, else 2.
+    /// collinear, 2 in the plane or if all are coplanar, else 3.
     pub fn dimension(&self) -> i32 {
         Complex::dimension(self)
     }
@@ -262,11 +281,10 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         self.bytes.as_ref().get(at..)?.first_chunk().copied()
     }
 
-    /// Returns a number from the array of cells: a vertex for slots 0 to 2, a neighbor for slots 3
-    /// to 5.
+    /// Returns a number from the array of cells: first the vertices, then the neighbors.
     #[inline]
     fn link(&self, cell: CellId, slot: usize) -> Result<u32, CompactError> {
-        let at = self.offsets.cells + CELL * cell.index() + 4 * slot;
+        let at = self.offsets.cells + 8 * N * cell.index() + 4 * slot;
         let number = self.is_used(cell).then(|| self.number(at)).flatten();
         number.map(u32::from_le_bytes).ok_or(CompactError::Cell(cell))
     }
@@ -276,7 +294,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3> for Compact<G, B> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Complex<N> for Compact<G, B, N> {
     type Error = CompactError;
 
     #[inline]
@@ -300,8 +318,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3
     }
 
     #[inline]
-    fn corners(&self, cell: CellId) -> Result<[VertexId; 3], CompactError> {
-        let mut corners = [VertexId::NONE; 3];
+    fn corners(&self, cell: CellId) -> Result<[VertexId; N], CompactError> {
+        let mut corners = [VertexId::NONE; N];
         for (slot, corner) in corners.iter_mut().enumerate().take(self.width()) {
             *corner = match self.link(cell, slot)? {
                 layout::INFINITE => VertexId::INFINITE,
@@ -317,7 +335,7 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3
         if i >= self.width() {
             return Err(CompactError::Cell(cell));
         }
-        self.cell(self.link(cell, 3 + i)?).ok_or(CompactError::Cell(cell))
+        self.cell(self.link(cell, N + i)?).ok_or(CompactError::Cell(cell))
     }
 
     #[inline]
@@ -339,7 +357,9 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Complex<3
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Embedded<3> for Compact<G, B> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Embedded<N>
+    for Compact<G, B, N>
+{
     type Geometry = G;
     type Complex = Self;
     type Error = CompactError;

@@ -2,23 +2,13 @@
 //! error where bytes are damaged.
 
 use crate::geometry::{Coordinates, Geometry, Metric};
-use crate::tds::{CellId, VertexId, plane};
+use crate::tds::{CellId, Neighbors, VertexId, plane};
 
 use super::super::Location;
 use super::super::query::{self, ConflictZone, Passage};
 use super::{Compact, CompactError, Law};
 
 impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
-    /// Returns where a point lies; see
-    /// [`Triangulation::locate`](crate::triangulation::Triangulation::locate). A long walk
-    /// continues from the nearest of `n^(1/3)` of the `n` vertices.
-    ///
-    /// # Errors
-    /// If a cell or vertex that the walk meets is damaged.
-    pub fn locate(&self, q: &[f64; D], near: Option<CellId>) -> Result<Location, CompactError> {
-        query::locate(self, q, near)
-    }
-
     /// Returns all that a segment meets, in order; see
     /// [`Triangulation::along`](crate::triangulation::Triangulation::along). Ends at the first
     /// error.
@@ -92,6 +82,18 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     pub fn face(&self, corners: [VertexId; 3]) -> Result<Option<CellId>, CompactError> {
         plane::face(self, corners)
     }
+}
+
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
+    /// Returns where a point lies; see
+    /// [`Triangulation::locate`](crate::triangulation::Triangulation::locate). A long walk
+    /// continues from the nearest of `n^(1/3)` of the `n` vertices.
+    ///
+    /// # Errors
+    /// If a cell or vertex that the walk meets is damaged.
+    pub fn locate(&self, q: &[f64; D], near: Option<CellId>) -> Result<Location, CompactError> {
+        query::locate(self, q, near)
+    }
 
     /// Returns what the insertion of a point would destroy; see
     /// [`Delaunay::conflict_zone`](crate::Delaunay::conflict_zone) and
@@ -110,7 +112,10 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     }
 }
 
-impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
+impl<G: Metric<N> + Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N>
+where
+    Self: Neighbors<N, Error = CompactError>,
+{
     /// Returns the vertex nearest to a point; see
     /// [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest).
     ///
@@ -132,7 +137,7 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         &self,
         q: &[f64; D],
         near: Option<CellId>,
-    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, D>, CompactError> {
+    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, N, D>, CompactError> {
         self.demand_delaunay()?;
         query::nearest_first(self, q, near)
     }
@@ -146,7 +151,7 @@ impl<G: Metric + Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> 
         &self,
         center: &[f64; D],
         rim: &[f64; D],
-    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, D>, CompactError> {
+    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, N, D>, CompactError> {
         self.demand_delaunay()?;
         query::within(self, center, rim, None)
     }

@@ -44,18 +44,19 @@ impl Numbers {
     }
 }
 
-fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>(
-    t: &Triangulation<G, 3, V, C>,
+fn write<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize>(
+    t: &Triangulation<G, N, V, C>,
     law: Law,
     constraints: impl Fn(&C) -> u8,
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let tds: &Tds<3, V, C> = t.tds();
+    let tds: &Tds<N, V, C> = t.tds();
     let numbers = Numbers {
         vertices: Dense::of(tds.vertex_slots(), tds.vertices().map(VertexId::index)),
         cells: Dense::of(tds.cell_slots(), tds.cells().map(CellId::index)),
     };
     let header = Header {
+        full: N as u32,
         width: (tds.dimension() + 1) as u32,
         doubles: D as u32,
         law,
@@ -78,7 +79,7 @@ fn write<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize>
         for vertex in tds.corners(cell) {
             out.write_all(&numbers.vertex(*vertex).to_le_bytes())?;
         }
-        for i in 0..3 {
+        for i in 0..N {
             out.write_all(&numbers.cell(tds.neighbor(cell, i)).to_le_bytes())?;
         }
     }
@@ -96,7 +97,7 @@ fn bits<C>(constraints: &ConstrainedEdges<C>) -> u8 {
     (0..3).map(|i| u8::from(constraints.has(i)) << i).sum()
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Basic<G, 3, V, C> {
+impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize> Basic<G, N, V, C> {
     /// Writes the triangulation in the format of [`Compact`](super::Compact), without payloads.
     ///
     /// Vertices and cells keep their numbers, unless some have been removed: then the gaps close.
@@ -109,7 +110,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Bas
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Regular<G, 3, V, C> {
+impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize> Regular<G, N, V, C> {
     /// Writes the triangulation like [`Basic::write_compact`], without its law and without hidden
     /// points.
     ///
@@ -120,7 +121,7 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Reg
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Delaunay<G, 3, V, C> {
+impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize> Delaunay<G, N, V, C> {
     /// Writes the triangulation like [`Basic::write_compact`], with its law, which queries for
     /// nearest vertices need.
     ///
@@ -152,7 +153,7 @@ impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize> Constr
     }
 }
 
-impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G, B> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
     /// Writes the triangulation again, without its sections.
     ///
     /// # Errors
