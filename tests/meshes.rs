@@ -396,7 +396,7 @@ fn errors_name_the_value_and_the_place() {
     }
     assert_eq!(message("odd.obj", b"v 0 0\n"), "line 1: a vertex without z");
     assert_eq!(message("odd.obj", b"v 0 0 z\n"), "line 1: 'z' is not a number for z");
-    assert_eq!(message("odd.obj", b"v 0 0 0\n"), "there are no faces ('f a b c' lines)");
+    assert_eq!(message("odd.obj", b"v 0 0 0\n"), "there are no faces: the file is a point cloud");
     assert_eq!(
         message("odd.obj", b"v 0 0 0\nv 1 0 0\nv 1 1e999 0\nv 0 1 0\nf 1 2 3 4\n"),
         "line 5: vertex 2 is at 1 inf 0, expected finite coordinates"

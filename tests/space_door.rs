@@ -110,10 +110,56 @@ fn weights_hide_points() {
     let nine = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n0.5 0.5 0.5\n";
     let folder = folder_with(&[("p.xyz", nine), ("p.weights", "0\n0\n0\n0\n0\n0\n0\n0\n-1\n"), ("q.xyz", nine)]);
     run(&folder, "triangulate --3d p.xyz --weighted -o p.ele").works(&["1 hidden", "volume      1\n"]);
-    run(&folder, "triangulate --3d q.xyz --weighted -o q.ele").fails(1, &["have no weights", "q.weights"]);
+    run(&folder, "check p.ele --weighted").ends(0, &["9 vertices, 6 tetrahedra: no flaw found"]);
+    assert_eq!(table(&folder, "p.node")[0], [9.0, 3.0, 1.0, 1.0], "weights are an attribute");
+    run(&folder, "check p.ele").ends(1, &["vertex 8: it is in no tetrahedron, but should be", ": 1 flaw\n"]);
+    run(&folder, "triangulate --3d q.xyz --weighted -o q.ele")
+        .fails(1, &["3 fields separated by blanks, expected at least 4", "q.weights"]);
     std::fs::write(folder.path().join("q.weights"), "1\n2\n").unwrap();
     run(&folder, "triangulate --3d q.xyz --weighted -o q.ele").fails(1, &["q.weights", "weight 3 of 9"]);
     assert!(!folder.path().join("q.ele").exists());
+}
+
+#[test]
+fn weights_of_a_column() {
+    let lines = |weight: &str| format!("0 0 0 0\n4 0 0 0\n0 4 0 0\n0 0 4 0\n1 1 1 {weight}\n9 9 9 0\n");
+    let header = "x;y;z;class;weight\n".to_owned()
+        + &lines("-12").replace(' ', ";").replace(";0\n", ";2;0\n").replace(";-12", ";2;-12");
+    let folder = folder_with(&[("p.xyz", &lines("0.5")), ("q.xyz", &lines("-12")), ("r.csv", &header)]);
+    run(&folder, "triangulate --3d p.xyz --weighted -o p.ele").works(&["tetrahedra  6\n"]);
+    for (file, name) in [("q.xyz", "q"), ("r.csv", "r")] {
+        run(&folder, &format!("triangulate --3d {file} --weighted -o {name}.ele")).works(&["1 hidden"]);
+        run(&folder, &format!("check {name}.ele --weighted")).ends(0, &["no flaw found"]);
+        assert_eq!(table(&folder, &format!("{name}.node"))[5][4], -12.0);
+    }
+    run(&folder, "triangulate --3d q.xyz --weighted -o q.xyz.mesh --kernel fast").fails(2, &["--kernel fast"]);
+    run(&folder, "check p.xyz --weighted").fails(2, &["--weighted is for the tetrahedra"]);
+}
+
+/// Point clouds in the formats of meshes, which have no faces.
+#[test]
+fn clouds_without_faces() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    let off = "OFF\n4 0 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    let folder = folder_with(&[("c.ply", ply), ("c.off", off), ("c.obj", obj)]);
+    for extension in ["ply", "off", "obj"] {
+        run(&folder, &format!("triangulate --3d c.{extension} -o {extension}.ele")).works(&["tetrahedra  1\n"]);
+        run(&folder, &format!("check c.{extension}")).fails(1, &["there are no faces", "triangulate --3d"]);
+    }
+}
+
+#[test]
+fn check_finds_vertices_that_were_left_out() {
+    let five = "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 0.2 0.2 0.2\n";
+    let folder = folder_with(&[("c.node", five), ("c.ele", "1 4 0\n0 0 1 2 3\n"), ("d.ele", "0 4 0\n")]);
+    run(&folder, "check c.ele").ends(1, &["vertex 4: it is in no tetrahedron, but should be"]);
+    std::fs::write(folder.path().join("c.node"), five.replace("0.2 0.2 0.2", "1 0 0")).unwrap();
+    run(&folder, "check c.ele").ends(0, &["no flaw found"]);
+    std::fs::write(folder.path().join("c.node"), five.replace("0.2 0.2 0.2", "9 0 0")).unwrap();
+    run(&folder, "check c.ele").ends(1, &["vertex 4"]);
+    std::fs::write(folder.path().join("d.node"), five).unwrap();
+    run(&folder, "check d.ele").ends(1, &["there are no tetrahedra, but the vertices are not in one plane"]);
 }
 
 #[test]

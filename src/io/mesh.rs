@@ -155,6 +155,24 @@ pub fn read_triangles(path: &Path) -> Result<Triangles> {
 /// # Errors
 /// Those of [`read_triangles`], and that of the watch.
 pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
+    let triangles = parse(path, watch)?;
+    if triangles.faces.is_empty() {
+        let error = Error::format("there are no faces: the file is a point cloud").in_file(path);
+        return Err(error.cure("its points can be read in space only, by `breakline triangulate --3d`"));
+    }
+    Ok(triangles)
+}
+
+/// Reads the vertices of a mesh, or the points of a cloud in the format of a mesh.
+///
+/// # Errors
+/// As [`read_triangles_with`], except that there need not be any faces.
+pub fn read_vertices(path: &Path, watch: Watch) -> Result<Vec<[f64; 3]>> {
+    parse(path, watch).map(|triangles| triangles.vertices)
+}
+
+/// Reads a mesh, which may have no faces.
+fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
     let read = match formats::of_name(path).map(|format| (format, format.reader)) {
         Some((_, Reader::Mesh(read))) => read,
         Some((format, Reader::Solid(_))) => {

@@ -55,9 +55,6 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
             _ => (),
         }
     }
-    if polygons.is_empty() {
-        return Err(Error::format("there are no faces ('f a b c' lines)"));
-    }
     let mut faces = Vec::with_capacity(polygons.len());
     for (i, (number, range)) in polygons.into_iter().enumerate() {
         if i % POLYGONS_AT_ONCE == 0 {

@@ -53,9 +53,6 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         polygon::add_polygon(&vertices, &corners, &mut faces).map_err(|e| e.at(format!("line {}", row.line)))?;
     }
     rows.end("the last face")?;
-    if faces.is_empty() {
-        return Err(Error::format("there are no faces: the file is a point cloud"));
-    }
     let comments = bytes.split(|&b| b == b'\n').filter_map(|line| line.strip_prefix(b"# "));
     let comments = comments.map(|text| String::from_utf8_lossy(text).trim_end_matches('\r').to_owned());
     let crs: String = comments.filter_map(|text| crs_text::crs_comment(&text).map(str::to_owned)).collect();

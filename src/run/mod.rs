@@ -103,8 +103,8 @@ pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity};
 pub use overlaps::Overlap;
 pub use points::{PointsReport, PointsRequest, Withheld, write_points};
 pub use space::{
-    Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceOptions, SpaceProduct, SpaceReport, check_space, is_of_space,
-    triangulate_space,
+    Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceLaw, SpaceOptions, SpaceProduct, SpaceReport, check_space,
+    is_of_space, triangulate_space,
 };
 pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
 pub use systems::{Degrees, SystemOptions};

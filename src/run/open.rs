@@ -197,6 +197,11 @@ pub(super) fn line_graph(path: &Path, context: &Context) -> Result<LineGraph> {
     reading(Stage::Reading, path, context, |watch| triangle::read_with(path, watch))
 }
 
+/// Reads the vertices of a mesh, or of a cloud in the format of a mesh.
+pub(super) fn mesh_vertices(path: &Path, context: &Context) -> Result<Vec<[f64; 3]>> {
+    reading(Stage::ReadingTriangles, path, context, |watch| mesh::read_vertices(path, watch))
+}
+
 /// Reads the triangles of a mesh, in the order of the file.
 pub(super) fn mesh_triangles(path: &Path, context: &Context) -> Result<Triangles> {
     reading(Stage::ReadingTriangles, path, context, |watch| mesh::read_triangles_with(path, watch))

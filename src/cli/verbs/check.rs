@@ -4,18 +4,22 @@ use crate::cli::input::args::CheckArgs;
 use crate::cli::input::outputs::{self, Existing};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
-use crate::cli::report::summary::print_surface;
+use crate::cli::report::summary::{counted, print_surface};
 use crate::cli::{Exit, print};
 use crate::data::SurfaceFacts;
-use crate::error::Result;
-use crate::run::{self, CheckProduct, SpaceCheck};
+use crate::error::{Error, Result};
+use crate::run::{self, CheckProduct, SpaceCheck, SpaceLaw};
 
 /// Lists the flaws of a TIN, or of a mesh that may not be a surface.
 pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     if let [path] = &args.surface.inputs[..]
         && run::is_of_space(path)
     {
-        return check_space(path, console);
+        let law = if args.weighted { SpaceLaw::Regular } else { SpaceLaw::Delaunay };
+        return check_space(path, law, console);
+    }
+    if args.weighted {
+        return Err(Error::usage("--weighted is for the tetrahedra of an .ele").cure("leave out --weighted"));
     }
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
@@ -34,21 +38,21 @@ pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
             Ok(Exit::Done)
         }
         count => {
-            print(&format!("{what}: {count} flaws\n"))?;
+            print(&format!("{what}: {}\n", counted(count as u64, "flaw")))?;
             Ok(Exit::Failed)
         }
     }
 }
 
 /// Lists the flaws of tetrahedra.
-fn check_space(path: &Path, console: &Console) -> Result<Exit> {
-    let SpaceCheck { vertices, tetrahedra, flaws, .. } = run::check_space(path, &console.context())?;
+fn check_space(path: &Path, law: SpaceLaw, console: &Console) -> Result<Exit> {
+    let SpaceCheck { vertices, tetrahedra, flaws, .. } = run::check_space(path, law, &console.context())?;
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }
     let what = format!("{vertices} vertices, {tetrahedra} tetrahedra");
     match flaws.len() {
         0 => print(&format!("{what}: no flaw found\n")).map(|()| Exit::Done),
-        count => print(&format!("{what}: {count} flaws\n")).map(|()| Exit::Failed),
+        count => print(&format!("{what}: {}\n", counted(count as u64, "flaw"))).map(|()| Exit::Failed),
     }
 }

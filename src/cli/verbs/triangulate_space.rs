@@ -84,6 +84,9 @@ fn print_report(product: &SpaceProduct, console: &Console) {
     if report.has_classes {
         console.note("points of all classes are used; `breakline points --class` selects some");
     }
+    if report.is_in_degrees {
+        console.warning("the points are in degrees, but not their heights: spheres, radii and volumes have no meaning");
+    }
     if report.duplicates > 0 {
         console.line(format_args!("            {} at the position of another one", report.duplicates));
     }

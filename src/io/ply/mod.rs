@@ -73,11 +73,8 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
 pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let header = Header::read(bytes)?;
     let has = |name: &str| header.elements.iter().any(|e| e.name == name && e.count > 0);
-    if !has("face") {
-        return Err(match has("tristrips") {
-            true => Error::unsupported("the faces are triangle strips ('tristrips')").cure("save them as triangles"),
-            false => Error::format("there are no faces: the file is a point cloud"),
-        });
+    if !has("face") && has("tristrips") {
+        return Err(Error::unsupported("the faces are triangle strips ('tristrips')").cure("save them as triangles"));
     }
     let mut body = Body::new(&bytes[header.length..], header.encoding, watch);
     let mut vertices = Vec::new();

@@ -6,12 +6,23 @@ use std::path::Path;
 
 use super::super::context::{Context, Size, Stage};
 use super::super::open;
-use super::FACETS;
+use super::{FACETS, weights};
 use crate::error::Result;
 use crate::io::Watch;
 use crate::io::tetgen::{self, Tetrahedralized};
-use crate::triangulation::kernel::{InSphere, Kernel, Orientation3, Wide};
+use crate::triangulation::kernel::{InSphere, Kernel, Orientation2, Orientation3, PowerTest3, Wide};
 use crate::triangulation::num::Sign;
+
+/// The law that a triangulation in space is held against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpaceLaw {
+    /// No vertex lies inside of the sphere of a tetrahedron.
+    Delaunay,
+    /// No vertex has a negative power to the sphere that is orthogonal to those of the corners of a
+    /// tetrahedron. The weights are those of the `.weights` next to the file (one number a line),
+    /// else the first attribute of the vertices.
+    Regular,
+}
 
 /// What is wrong with a triangulation in space. Tetrahedra and vertices have the numbers of the
 /// file.
@@ -30,8 +41,13 @@ pub enum SpaceFlaw {
     Dent([u32; 2]),
     /// The tetrahedra are not connected by facets.
     Apart,
-    /// A vertex lies inside the sphere of a tetrahedron next to it.
+    /// A vertex lies inside the sphere of a tetrahedron next to it, or has a negative power to it.
     NotDelaunay(u32, u32),
+    /// A vertex is in no tetrahedron, although no other vertex is at its position, and the weights
+    /// of others do not hide it.
+    LeftOut(u32),
+    /// There are no tetrahedra, but the vertices are not coplanar.
+    Empty,
 }
 
 impl fmt::Display for SpaceFlaw {
@@ -45,6 +61,8 @@ impl fmt::Display for SpaceFlaw {
             }
             SpaceFlaw::Dent([a, b]) => write!(f, "edge {a} {b}: the hull is not convex there"),
             SpaceFlaw::Apart => write!(f, "the tetrahedra are in several parts"),
+            SpaceFlaw::LeftOut(vertex) => write!(f, "vertex {vertex}: it is in no tetrahedron, but should be"),
+            SpaceFlaw::Empty => write!(f, "there are no tetrahedra, but the vertices are not in one plane"),
             SpaceFlaw::NotDelaunay(cell, vertex) => {
                 write!(f, "tetrahedron {cell}: vertex {vertex} is inside of its sphere")
             }
@@ -60,23 +78,28 @@ pub struct SpaceCheck {
     pub vertices: usize,
     /// The number of tetrahedra.
     pub tetrahedra: usize,
-    /// The flaws; empty if it is a Delaunay triangulation of its convex hull.
+    /// The flaws; empty if it is the Delaunay (regular) triangulation of all vertices, or one of
+    /// several where there are ties.
     pub flaws: Vec<SpaceFlaw>,
 }
 
 /// Checks the tetrahedra of an `.ele` with the `.node` next to it, and the `.neigh` if there is
-/// one: neighbors, orientation, a convex hull, and the Delaunay law across each facet, all with
-/// exact predicates.
+/// one: neighbors, orientation, a convex hull, the law across each facet, and vertices that were
+/// left out, all with exact predicates.
 ///
-/// Where all of this holds, the triangulation is Delaunay: what is locally convex in the lifted
-/// space is convex (Devillers et al. 1998, "Checking the Convexity of Polytopes").
+/// Where all of this holds, the law holds everywhere: what is locally convex in the lifted space is
+/// convex (Devillers et al. 1998, "Checking the Convexity of Polytopes").
 ///
 /// # Errors
-/// If a file is damaged, or the run is canceled.
-pub fn check_space(path: &Path, context: &Context) -> Result<SpaceCheck> {
+/// If a file is damaged, weights are missing, or the run is canceled.
+pub fn check_space(path: &Path, law: SpaceLaw, context: &Context) -> Result<SpaceCheck> {
     let triangulated = open::reading_stage(path, context, |watch: Watch| tetgen::read(path, watch))?;
+    let weights = match law {
+        SpaceLaw::Delaunay => None,
+        SpaceLaw::Regular => Some(weights(path, &triangulated.nodes, context)?),
+    };
     let work = context.start(Stage::CheckingFaces, Size::Uncounted)?;
-    let flaws = flaws(&triangulated);
+    let flaws = flaws(&triangulated, weights.as_deref());
     work.end()?;
     Ok(SpaceCheck { vertices: triangulated.nodes.points.len(), tetrahedra: triangulated.tetrahedra.len(), flaws })
 }
@@ -84,11 +107,18 @@ pub fn check_space(path: &Path, context: &Context) -> Result<SpaceCheck> {
 /// A tetrahedron, and one of its facets by the corner opposite to it.
 type Side = (u32, usize);
 
-fn flaws(triangulated: &Tetrahedralized) -> Vec<SpaceFlaw> {
+fn flaws(triangulated: &Tetrahedralized, weights: Option<&[f64]>) -> Vec<SpaceFlaw> {
     let Tetrahedralized { nodes, tetrahedra, neighbors: stated } = triangulated;
     let first = nodes.first_number;
     let point = |v: u32| nodes.points[v as usize];
     let orientation = |corners: [u32; 4]| Wide::sign(&Orientation3(corners.map(point)));
+    let in_sphere = |[a, b, c, d]: [u32; 4], v: u32| match weights {
+        None => Wide::sign(&InSphere([a, b, c, d, v].map(point))),
+        Some(weights) => Wide::sign(&PowerTest3([a, b, c, d, v].map(|v| {
+            let [x, y, z] = point(v);
+            [x, y, z, weights[v as usize]]
+        }))),
+    };
     let signs: Vec<Sign> = tetrahedra.iter().map(|&corners| orientation(corners)).collect();
     let mut flaws: Vec<SpaceFlaw> = Vec::new();
     flaws.extend((first..).zip(&signs).filter(|(_, sign)| **sign == Sign::Zero).map(|(cell, _)| SpaceFlaw::Flat(cell)));
@@ -123,6 +153,9 @@ fn flaws(triangulated: &Tetrahedralized) -> Vec<SpaceFlaw> {
     for (cell, (found, stated)) in (first..).zip(neighbors.iter().zip(stated)) {
         flaws.extend((0..4).filter(|&i| found[i] != stated[i]).map(|i| SpaceFlaw::Neighbor(cell, i)));
     }
+    if tetrahedra.is_empty() && !is_flat(&nodes.points) {
+        flaws.push(SpaceFlaw::Empty);
+    }
     if !flaws.is_empty() || tetrahedra.is_empty() {
         return flaws;
     }
@@ -143,10 +176,8 @@ fn flaws(triangulated: &Tetrahedralized) -> Vec<SpaceFlaw> {
     for (cell, around) in (0u32..).zip(&neighbors) {
         for next in around.iter().flatten().filter(|&&next| next > cell) {
             let corners = tetrahedra[cell as usize];
-            let [a, b, c, d] = corners.map(point);
             for &vertex in tetrahedra[*next as usize].iter().filter(|v| !corners.contains(v)) {
-                let side = Wide::sign(&InSphere([a, b, c, d, point(vertex)])) * signs[cell as usize];
-                if side == Sign::Positive {
+                if in_sphere(corners, vertex) * signs[cell as usize] == Sign::Positive {
                     flaws.push(SpaceFlaw::NotDelaunay(cell + first, vertex + first));
                 }
             }
@@ -155,7 +186,57 @@ fn flaws(triangulated: &Tetrahedralized) -> Vec<SpaceFlaw> {
     flaws.extend(
         dents(tetrahedra, &signs, &hull, &orientation).into_iter().map(|edge| SpaceFlaw::Dent(edge.map(|v| v + first))),
     );
+    if !flaws.is_empty() {
+        return flaws;
+    }
+    let mut is_used = vec![false; nodes.points.len()];
+    tetrahedra.as_flattened().iter().for_each(|&v| is_used[v as usize] = true);
+    let mut cell = 0;
+    for vertex in (0..).zip(&is_used).filter(|(_, is_used)| !**is_used).map(|(vertex, _)| vertex) {
+        let found = walk(tetrahedra, &neighbors, cell, |cell, i| {
+            let mut corners = tetrahedra[cell as usize];
+            corners[i] = vertex;
+            orientation(corners) * signs[cell as usize] == Sign::Negative
+        });
+        cell = found.unwrap_or(cell);
+        let is_hidden =
+            |cell: u32| in_sphere(tetrahedra[cell as usize], vertex) * signs[cell as usize] != Sign::Positive;
+        if !found.is_some_and(is_hidden) {
+            flaws.push(SpaceFlaw::LeftOut(vertex + first));
+        }
+    }
     flaws
+}
+
+/// Returns the tetrahedron that no facet separates from a point; `None` if the point is outside of
+/// all. Such walks end where the law holds (Edelsbrunner 1989, "An acyclicity theorem for cell
+/// complexes in d dimensions"); elsewhere after as many steps as there are tetrahedra.
+fn walk(
+    tetrahedra: &[[u32; 4]],
+    neighbors: &[[Option<u32>; 4]],
+    start: u32,
+    is_beyond: impl Fn(u32, usize) -> bool,
+) -> Option<u32> {
+    let mut cell = start;
+    for _ in tetrahedra {
+        match (0..4).find(|&i| is_beyond(cell, i)) {
+            None => return Some(cell),
+            Some(i) => cell = neighbors[cell as usize][i]?,
+        }
+    }
+    None
+}
+
+/// Returns true if all points lie in a plane.
+fn is_flat(points: &[[f64; 3]]) -> bool {
+    let Some(&a) = points.first() else { return true };
+    let Some(&b) = points.iter().find(|&&b| b != a) else { return true };
+    let turns = |c: [f64; 3]| {
+        let turn = |axes: [usize; 2]| Wide::sign(&Orientation2([a, b, c].map(|p| axes.map(|axis| p[axis]))));
+        [[0, 1], [1, 2], [2, 0]].into_iter().any(|axes| turn(axes) != Sign::Zero)
+    };
+    let Some(&c) = points.iter().find(|&&c| turns(c)) else { return true };
+    points.iter().all(|&d| Wide::sign(&Orientation3([a, b, c, d])) == Sign::Zero)
 }
 
 /// Returns the edges of the hull at which it is not convex: those that have not exactly two facets,

@@ -2,16 +2,16 @@
 
 mod check;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-pub use check::{SpaceCheck, SpaceFlaw, check_space};
+pub use check::{SpaceCheck, SpaceFlaw, SpaceLaw, check_space};
 
 use super::context::{Context, Journal, Size, Stage};
 use super::notice::Notice;
 use super::triangulate::Arithmetic;
 use super::{memory, open};
-use crate::crs::Crs;
-use crate::data::{EdgeKind, PointBatch, Surface};
+use crate::crs::{Crs, CrsKind};
+use crate::data::{Columns, EdgeKind, PointBatch, PointSource, Surface};
 use crate::error::{Error, Result};
 use crate::io::points::Options;
 use crate::io::tetgen::{self, FACETS, Tetrahedralized};
@@ -27,7 +27,8 @@ use crate::triangulation::{AlphaShapes, Delaunay, InputError, Regular, Triangula
 #[derive(Debug, Clone, Default)]
 pub struct SpaceOptions {
     /// True if points have weights, and the triangulation is regular: those of the `.weights` next
-    /// to the file (one number a line), else the first attribute of a `.node`.
+    /// to the file (one number a line), else the first attribute of a `.node`, or the column of a
+    /// text after the coordinates. They become the first attribute of the vertices.
     pub weighted: bool,
     /// The alpha shape to compute, if any.
     pub alpha: Option<Alpha>,
@@ -75,6 +76,8 @@ pub struct SpaceReport {
     pub volume: f64,
     /// True if points have classes; all were used.
     pub has_classes: bool,
+    /// True if two of the three coordinates are in degrees: then radii and volumes have no unit.
+    pub is_in_degrees: bool,
 }
 
 /// The surface of an alpha shape, as a mesh.
@@ -161,10 +164,11 @@ pub fn triangulate_space(path: &Path, options: &SpaceOptions, context: &Context)
         return Err(Error::usage("plain floating point is for the plane only").cure("leave out --kernel fast"));
     }
     let journal = Journal::new(context);
-    let (mut nodes, has_classes) = read(path, &journal)?;
-    let weights = match options.weighted {
-        true => Some(weights(path, &nodes, context)?),
-        false => None,
+    let Cloud { mut nodes, has_classes, is_in_degrees, weight_column } = read(path, &journal)?;
+    let weights = match (options.weighted, weight_column) {
+        (false, _) => None,
+        (true, Some(columns)) if !weights_beside(path).exists() => Some(column_of_weights(path, columns, &journal)?),
+        (true, _) => Some(weights(path, &nodes, context)?),
     };
     memory::require_for_space(nodes.points.len()).map_err(|e| e.in_file(path))?;
     let triangulating = context.start(Stage::Triangulating, Size::Uncounted)?;
@@ -177,11 +181,22 @@ pub fn triangulate_space(path: &Path, options: &SpaceOptions, context: &Context)
         let marker = &mut nodes.markers[vertex as usize];
         *marker = if *marker == 0 { 1 } else { *marker };
     }
+    if let Some(weights) = weights.filter(|_| nodes.attribute_count == 0 || weights_beside(path).exists()) {
+        put_first(&mut nodes, &weights);
+    }
     triangulated.nodes = nodes;
     let points = &triangulated.nodes.points;
     let six =
         triangulated.tetrahedra.iter().fold(0.0, |sum, corners| sum + six_volumes(corners.map(|v| points[v as usize])));
-    let report = SpaceReport { points: points.len(), duplicates, hidden, dimension, volume: six / 6.0, has_classes };
+    let report = SpaceReport {
+        points: points.len(),
+        duplicates,
+        hidden,
+        dimension,
+        volume: six / 6.0,
+        has_classes,
+        is_in_degrees,
+    };
     Ok(SpaceProduct { triangulated, solid, report, notices: journal.take() })
 }
 
@@ -202,19 +217,45 @@ fn six_volumes(corners: [[f64; 3]; 4]) -> f64 {
     Orientation3(corners).value(|x, y| x - y)
 }
 
-/// Reads points; true if they have classes.
-fn read(path: &Path, journal: &Journal) -> Result<(Nodes<3>, bool)> {
+/// Points that were read.
+#[derive(Default)]
+struct Cloud {
+    nodes: Nodes<3>,
+    has_classes: bool,
+    is_in_degrees: bool,
+    /// Of a text: its columns, with that after the coordinates, which may hold weights, as z.
+    weight_column: Option<Columns>,
+}
+
+impl Cloud {
+    fn of(points: Vec<[f64; 3]>) -> Self {
+        Cloud { nodes: Nodes { markers: vec![0; points.len()], points, ..Nodes::default() }, ..Cloud::default() }
+    }
+}
+
+fn read(path: &Path, journal: &Journal) -> Result<Cloud> {
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("node")) {
         let (nodes, warning) =
             open::reading_stage(path, &journal.context, |watch: Watch| tetgen::read_nodes(path, watch))?;
         journal.add_warnings(path, warning.as_slice());
-        return Ok((nodes, false));
+        return Ok(Cloud { nodes, ..Cloud::default() });
     }
-    let of = |points: Vec<[f64; 3]>| Nodes { markers: vec![0; points.len()], points, ..Nodes::default() };
     if open::content(path) == open::Content::Mesh {
-        return Ok((of(open::mesh_triangles(path, &journal.context)?.vertices), false));
+        return open::mesh_vertices(path, &journal.context).map(Cloud::of);
     }
-    let mut source = open::points_of_file(path, Options::default(), &journal.context)?;
+    let source = open::points_of_file(path, Options::default(), &journal.context)?;
+    let info = source.info();
+    let is_in_degrees = info.crs.as_ref().is_some_and(|crs| crs.kind == CrsKind::Geographic);
+    let weight_column = info.columns.map(|columns| {
+        let after = [columns.x, columns.y, columns.z].into_iter().fold(0, usize::max) + 1;
+        Columns { z: after + usize::from(columns.class == Some(after)), class: None, ..columns }
+    });
+    let (points, has_classes) = read_all(path, source, journal)?;
+    Ok(Cloud { has_classes, is_in_degrees, weight_column, ..Cloud::of(points) })
+}
+
+/// Reads all points of a source; true if they have classes.
+fn read_all(path: &Path, mut source: Box<dyn PointSource + Send>, journal: &Journal) -> Result<(Vec<[f64; 3]>, bool)> {
     let count = source.info().count;
     journal.add_warnings(path, &source.info().warnings.clone());
     let work = journal.start(Stage::ReadingPoints, count.map_or(Size::Unknown, Size::Items))?;
@@ -232,12 +273,36 @@ fn read(path: &Path, journal: &Journal) -> Result<(Nodes<3>, bool)> {
     }
     journal.add_warnings(path, source.warnings());
     work.end()?;
-    Ok((of(points), has_classes))
+    Ok((points, has_classes))
 }
 
-/// Returns the weights of points.
+fn weights_beside(path: &Path) -> PathBuf {
+    path.with_extension("weights")
+}
+
+/// Reads the weights of a text, which are in place of z among these columns.
+fn column_of_weights(path: &Path, columns: Columns, journal: &Journal) -> Result<Vec<f64>> {
+    let cure = format!(
+        "give weights as the column after the coordinates, or put {} next to the file, one number a line",
+        weights_beside(path).display()
+    );
+    let options = Options { columns: Some(columns), ..Options::default() };
+    let read = open::points_of_file(path, options, &journal.context).and_then(|source| read_all(path, source, journal));
+    let (points, _) = read.map_err(|e| e.cure(cure))?;
+    Ok(points.into_iter().map(|[_, _, weight]| weight).collect())
+}
+
+/// Makes numbers the first attribute of the vertices.
+fn put_first(nodes: &mut Nodes<3>, numbers: &[f64]) {
+    let rows = numbers.iter().enumerate();
+    let attributes = rows.flat_map(|(i, &number)| [number].into_iter().chain(nodes.attributes_of(i).iter().copied()));
+    nodes.attributes = attributes.collect();
+    nodes.attribute_count += 1;
+}
+
+/// Returns the weights of vertices: those next to the file, else their first attribute.
 fn weights(path: &Path, nodes: &Nodes<3>, context: &Context) -> Result<Vec<f64>> {
-    let beside = path.with_extension("weights");
+    let beside = weights_beside(path);
     let count = nodes.points.len();
     if beside.exists() {
         return open::reading_stage(&beside, context, |watch: Watch| tetgen::read_weights(&beside, count, watch));

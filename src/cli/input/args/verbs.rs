@@ -195,8 +195,9 @@ pub(in crate::cli) struct TriangulateArgs {
 
     /// Points have weights: a regular triangulation
     ///
-    /// Weights are in the .weights next to the file, one number a line, or the first attribute of a
-    /// .node.
+    /// Weights are in the .weights next to the file, one number a line, the first attribute of a
+    /// .node, or the column of a text after the coordinates. They become the first attribute of the
+    /// .node that is written.
     #[arg(long, help_heading = "Space")]
     pub(in crate::cli) weighted: bool,
 
@@ -395,7 +396,9 @@ pub(in crate::cli) struct HillshadeArgs {
 /// points and breaklines: links between neighbors, manifold, orientation, no overlaps, Delaunay
 /// between breaklines. The breaklines of an .ele are the segments of the .poly next to it; .obj and
 /// .off have no breaklines, and the Delaunay law is not checked for them. Flaws number vertices,
-/// faces and edges from 0 and give their positions. The exit code is 1 if there is any.
+/// faces and edges from 0 and give their positions. The exit code is 1 if there is any. Tetrahedra
+/// (an .ele with a .node of dimension 3) are checked, too: neighbors, orientation, a convex hull,
+/// Delaunay.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -404,6 +407,12 @@ Example:
 pub(in crate::cli) struct CheckArgs {
     #[command(flatten)]
     pub(in crate::cli) surface: SurfaceArgs,
+
+    /// The vertices of tetrahedra have weights: check that they are regular
+    ///
+    /// Weights are the first attribute of the .node, or in a .weights next to it.
+    #[arg(long)]
+    pub(in crate::cli) weighted: bool,
 
     /// Replace an existing crossing report
     #[arg(long)]
