@@ -283,7 +283,7 @@ fn a_flaw_is_listed_and_ends_with_1() {
     let run = run_in(&folder, &["check", "kite.ply"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
     let flaw = "face 0, edge 1: the vertex beyond lies in the circumcircle, at (8 0) (0 0)\n";
-    assert_eq!(run.stdout, format!("{flaw}4 vertices, 2 triangles, 0 constrained edges: 1 flaws\n"));
+    assert_eq!(run.stdout, format!("{flaw}4 vertices, 2 triangles, 0 constrained edges: 1 flaw\n"));
     let run = run_in(&folder, &["check", "kite.obj"]);
     run.works(&["note: kite.obj: the format does not store breaklines: the Delaunay law is not checked"]);
     let run = run_in(&folder, &["check", "turned.obj"]);

@@ -66,8 +66,11 @@ impl<const D: usize> HalfSpace<D> {
 
     /// Returns the part of a convex polygon in the half space (Sutherland and Hodgman 1974, for one
     /// line).
-    pub(super) fn clip(&self, polygon: &[[f64; D]]) -> Vec<[f64; D]> {
+    pub(super) fn clip(&self, polygon: Vec<[f64; D]>) -> Vec<[f64; D]> {
         let beyond = |p: [f64; D]| dot(self.normal, p) - self.offset;
+        if polygon.iter().all(|&p| beyond(p) <= 0.0) {
+            return polygon;
+        }
         let mut clipped = Vec::with_capacity(polygon.len() + 1);
         for (k, &p) in polygon.iter().enumerate() {
             let q = polygon[(k + 1) % polygon.len()];
@@ -111,7 +114,7 @@ pub(super) fn cell_of(
 ) -> VoronoiCell {
     let is_polygon = within.as_flattened().iter().all(|x| x.is_finite());
     let polygon = within.iter().filter(|_| is_polygon).map(|&p| minus(p, site)).collect();
-    let cell: Vec<[f64; 2]> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(&polygon));
+    let cell: Vec<[f64; 2]> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(polygon));
     if cell.len() < 3 {
         return VoronoiCell { corners: Vec::new(), area: 0.0 };
     }

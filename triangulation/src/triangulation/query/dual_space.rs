@@ -55,7 +55,7 @@ fn six_volumes(polygon: &[[f64; 3]]) -> f64 {
 
 /// Returns the part of a polygon in all half spaces.
 fn clipped(polygon: Vec<[f64; 3]>, half_spaces: impl IntoIterator<Item = HalfSpace<3>>) -> Vec<[f64; 3]> {
-    half_spaces.into_iter().fold(polygon, |polygon, half_space| half_space.clip(&polygon))
+    half_spaces.into_iter().fold(polygon, |polygon, half_space| half_space.clip(polygon))
 }
 
 /// A box with sides along the axes: the lowest and the highest corner.
@@ -100,9 +100,9 @@ impl Box3 {
         (0..6).map(move |k| side(k / 2, k % 2))
     }
 
-    /// Returns the part in the box of the plane that bounds a half space, counter-clockwise as seen
-    /// from beyond.
-    fn section(self, plane: &HalfSpace<3>) -> Vec<[f64; 3]> {
+    /// Returns a square in the plane that bounds a half space, counter-clockwise as seen from
+    /// beyond: it contains the part of the plane that is in the box. Empty if there is none.
+    fn square_around_section(self, plane: &HalfSpace<3>) -> Vec<[f64; 3]> {
         let [low, high] = self.corners;
         let middle = [0, 1, 2].map(|k| low[k] / 2.0 + high[k] / 2.0);
         let square = dot(plane.normal, plane.normal);
@@ -127,7 +127,7 @@ impl Box3 {
         let across = cross(normal, along);
         let corner = |[s, t]: [f64; 2]| plus(foot, [0, 1, 2].map(|k| width * (s * along[k] + t * across[k])));
         let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner);
-        clipped(square.to_vec(), self.half_spaces())
+        square.to_vec()
     }
 }
 
@@ -189,7 +189,8 @@ impl<G: Geometry<4>, V, C: Copy + Default, W: Fn(&G::Point) -> [f64; 4]> Diagram
         let [start, end] = self.t.tds().edge_ends(edge);
         let of = self.point(start);
         let around = self.t.tds().vertices_around_edge(edge).filter(|&vertex| vertex != VertexId::INFINITE);
-        clipped(within.section(&self.half_space(of, end)), around.map(|vertex| self.half_space(of, vertex)))
+        let square = within.square_around_section(&self.half_space(of, end));
+        clipped(square, around.map(|vertex| self.half_space(of, vertex)).chain(within.half_spaces()))
     }
 
     /// Returns the dual of an edge; see [`Delaunay::voronoi_facet`].
