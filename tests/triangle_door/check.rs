@@ -26,7 +26,7 @@ fn sound_triangles_have_no_flaw() {
 #[test]
 fn each_kind_of_flaw_is_listed() {
     let folded = "faces 0 and 1: both pass their edge";
-    says("1 2 3\n1 2 4", &[], 1, &[folded, "1 flaws"]);
+    says("1 2 3\n1 2 4", &[], 1, &[folded, "1 flaw"]);
     says("1 2 3\n2 3 1", &[], 1, &[folded, "3 flaws"]);
     // One of two is turned around.
     says("1 2 3\n1 4 3", &[], 1, &["in the same direction", "face 1: no area in plan, or clockwise"]);
@@ -35,7 +35,7 @@ fn each_kind_of_flaw_is_listed() {
     says("1 2 3\n4 6 5", &[], 1, &["face 1, edge 0: meets the border of other faces between its ends"]);
     // All six, and none in a circle.
     says("2 3 6\n2 5 3\n1 2 6\n1 6 4\n6 3 4", &[], 0, &["no flaw found"]);
-    says("1 2 3\n1 3 6", &[], 1, &["face 1: no area in plan, or clockwise", "1 flaws"]);
+    says("1 2 3\n1 3 6", &[], 1, &["face 1: no area in plan, or clockwise", "1 flaw"]);
     says(
         "1 2 3\n1 3 4",
         &[("a.neigh", "2 3\n1 -1 -1 -1\n2 -1 -1 1\n")],
@@ -68,7 +68,7 @@ fn constraints_stand_between_a_face_and_the_vertex_beyond() {
         let run = run(&folder_with(&files), "check a.ele");
         match holds {
             true => run.ends(0, &["1 constrained edges: no flaw found"]),
-            false => run.ends(1, &["the vertex beyond lies in the circumcircle", "1 flaws"]),
+            false => run.ends(1, &["the vertex beyond lies in the circumcircle", "1 flaw"]),
         }
     }
 }
@@ -82,7 +82,7 @@ fn meshes_that_are_no_surface_are_listed_and_told_by_info() {
                property int vertex2\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n1 3\n";
     let folder = folder_with(&[("a.off", off), ("b.obj", obj), ("c.ply", ply)]);
     let folded = "faces 0 and 1: both pass their edge 0 1 in the same direction";
-    run(&folder, "check a.off").ends(1, &[folded, "4 vertices, 2 triangles, 0 constrained edges: 1 flaws"]);
+    run(&folder, "check a.off").ends(1, &[folded, "4 vertices, 2 triangles, 0 constrained edges: 1 flaw"]);
     run(&folder, "check b.obj").ends(1, &["vertex 2: a coordinate is not finite"]);
     run(&folder, "check c.ply").ends(1, &["the constrained edge 1 3 is not an edge of any face"]);
     run(&folder, "info a.off").ends(0, &["triangles  2", "warning: a.off: this is not a surface: ", folded]);
