@@ -20,10 +20,10 @@ use super::zone::ConflictZone;
 /// Vertices with weights.
 type Weights = Vec<(VertexId, f64)>;
 
-/// An edge of the new cell, between two facets of the border that share an edge of the
-/// triangulation, from one end of it (the smaller number) to the other: the center at the facet
-/// that is beyond the zone for one who goes around that edge counter-clockwise, seen from its end,
-/// within the zone, and the center at the facet where the zone starts again.
+/// An edge of the new cell. It belongs to an edge of the triangulation on the border of the zone,
+/// and joins the centers over the two facets of the border there. One who goes around that edge,
+/// counter-clockwise seen from the end with the larger number, leaves the zone through one of the
+/// two facets and enters it again through the other.
 #[derive(Default, Clone, Copy)]
 struct Ridge {
     exit: [f64; 3],
