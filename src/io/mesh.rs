@@ -156,7 +156,9 @@ pub fn read_triangles(path: &Path) -> Result<Triangles> {
 /// Those of [`read_triangles`], and that of the watch.
 pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
     let triangles = parse(path, watch)?;
-    if triangles.faces.is_empty() {
+    // The triangulation of an .ele, whose vertices are in another file, may be empty.
+    let may_be_empty = formats::of_name(path).is_some_and(|format| format.beside.contains(&"node"));
+    if triangles.faces.is_empty() && !may_be_empty {
         let error = Error::format("there are no faces: the file is a point cloud").in_file(path);
         return Err(error.cure("its points can be read in space only, by `breakline triangulate --3d`"));
     }
