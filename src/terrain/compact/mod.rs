@@ -289,6 +289,11 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         if let Some(number) = self.fragment_number(face) {
             return Ok(self.fragment(face, number)?.edges[i]);
         }
+        if self.attributes.facts.edges.has_various()
+            && let Some(side) = self.side(face, i)?
+        {
+            return Ok(side.kind);
+        }
         let cell = CellId::new(face as usize);
         if self.triangulation.is_constrained(cell, i)? {
             Ok(EdgeKind::Breakline)
@@ -343,7 +348,7 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
     }
 
     fn has_lines(&self) -> bool {
-        self.attributes.facts.breaklines > 0 || self.attributes.facts.clips > 0 || !self.fragments.is_empty()
+        self.attributes.facts.edges.total() > 0 || !self.fragments.is_empty()
     }
 
     fn is_fragment(&self, face: u32) -> bool {
