@@ -1,11 +1,11 @@
-//! Four numbers at a time: what the algorithms use of the crate `wide`, and a plain twin of it.
+//! Four numbers at a time, or two of 64 bits: what the algorithms use of the crate `wide`, and a plain twin of it.
 //!
 //! With the feature `simd` these are `wide`'s own types, which are vector registers. Without it,
 //! `plain` has the same names over arrays. Both round alike, so both give the same bits, except
 //! for the larger of two of which one is not a number.
 
 #[cfg(feature = "simd")]
-pub(crate) use wide::{f32x4, f64x4, i32x4};
+pub(crate) use wide::{f32x4, f64x2, i32x4};
 
 #[cfg(any(test, not(feature = "simd")))]
 mod plain;
@@ -21,10 +21,11 @@ pub(crate) fn prefetch<T>(wanted: &T) {
     let _ = wanted;
 }
 
-/// Rounds each number.
+/// Rounds each number of two pairs.
 #[inline(always)]
-pub(crate) fn rounded(x: f64x4) -> f32x4 {
-    f32x4::new(x.to_array().map(|x| x as f32))
+pub(crate) fn rounded(first: f64x2, second: f64x2) -> f32x4 {
+    let ([a, b], [c, d]) = (first.to_array(), second.to_array());
+    f32x4::new([a as f32, b as f32, c as f32, d as f32])
 }
 
 /// Returns the bits of each number.
@@ -49,8 +50,7 @@ mod tests {
             use $module as lanes;
             let [a, b, c, d] = lanes::f32x4::transpose($rows.map(lanes::f32x4::new));
             let less = a.simd_lt(b);
-            let [e, f, g, _] =
-                lanes::f64x4::transpose($rows.map(|row: [f32; 4]| lanes::f64x4::new(row.map(f64::from))));
+            let [e, f, g, _] = $rows.map(|row: [f32; 4]| lanes::f64x2::new([f64::from(row[0]), f64::from(row[1])]));
             let i = lanes::i32x4::new($rows[0].map(|x| x.to_bits() as i32));
             let floats: [lanes::f32x4; 5] = [
                 a + b * c - d,
@@ -59,7 +59,7 @@ mod tests {
                 less.bitselect(c, d),
                 (a.simd_gt(d) & less).bitselect(a, b),
             ];
-            let doubles: [lanes::f64x4; 3] = [e + f * g - e / f, e.fast_max(f), lanes::f64x4::splat(0.1) * g];
+            let doubles: [lanes::f64x2; 3] = [e + f * g - e / f, e.fast_max(f), lanes::f64x2::splat(0.1) * g];
             let low: lanes::i32x4 = i & lanes::i32x4::splat(31);
             let up: lanes::i32x4 = lanes::i32x4::splat(7) << 23;
             let down: lanes::i32x4 = (i - lanes::i32x4::splat(126)) >> 3;

@@ -50,7 +50,7 @@ fn powers_of(points: [[f64; 4]; 4], q: [f64; 4], greatest: f64, range: f64) -> (
     });
     let lack = |p: [f64; 4]| (greatest - p[3]) * FRAME.scale * FRAME.scale;
     let origin = Origin { at: FRAME.of(site(d)), lack: lack(d), range };
-    let row = sphere::through([arrows; 4], origin, FRAME.scale)[0];
+    let row = sphere::through([arrows.each_ref(); 4], origin, FRAME.scale)[0];
     let query = sphere::query(FRAME.of(site(q)), lack(q));
     let sides = sphere::sides([row; 4], query);
     assert_eq!(sides.marked, 0);
@@ -132,7 +132,7 @@ fn nothing_is_sure_of_a_flat_cell_or_an_infinite_one() {
     let (a, b, c, d) = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.25, 0.0]);
     assert_eq!(sides_of([a, b, c, d], [0.1, 0.2, 0.3]).1, None);
     let arrows = [a, b, [f64::NAN; 3]].map(|p| sphere::arrow(d, p));
-    let row = sphere::through([arrows; 4], Origin { at: d, lack: 0.0, range: 0.0 }, 1.0)[0];
+    let row = sphere::through([arrows.each_ref(); 4], Origin { at: d, lack: 0.0, range: 0.0 }, 1.0)[0];
     assert!(row[3].is_nan() && !sphere::is_marked(row));
 }
 
