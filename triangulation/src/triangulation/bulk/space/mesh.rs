@@ -1,7 +1,7 @@
 //! The cells while points are inserted: walk, conflict zone, star.
 
 use crate::num::Sign;
-use crate::num::lanes::prefetch;
+use crate::num::lanes::{self, prefetch};
 
 use super::Source;
 use super::blocks::Block;
@@ -299,7 +299,9 @@ impl<'a> Mesh<'a> {
                 let Cell { neighbors: n, vertices: v } = cells[cell as usize];
                 let beyond = n.map(|neighbor| neighbor >> 2);
                 beyond.iter().for_each(|&cell| prefetch(&cells[cell as usize]));
-                let sides = sphere::sides(beyond.map(|cell| spheres[cell as usize]), q);
+                let [a, b, c, d] = beyond;
+                let around = [spheres[a as usize], spheres[b as usize], spheres[c as usize], spheres[d as usize]];
+                let sides = sphere::sides(around, q);
                 let new = !sides.marked & 15;
                 let mut taken = sides.inside & sides.sure & new;
                 let mut open = !sides.sure & new;
@@ -313,8 +315,7 @@ impl<'a> Mesh<'a> {
                 let boundary = !taken & new;
                 let bit = |mask: u32, lane: usize| (mask >> lane & 1) as usize;
                 for lane in 0..4 {
-                    let chosen = 0u32.wrapping_sub(bit(taken, lane) as u32);
-                    spheres[(beyond[lane] & chosen) as usize] = MARKED;
+                    spheres[beyond[lane] as usize] = sphere::marked_if(around[lane], taken >> lane);
                 }
                 let ends = |mask| {
                     let (a, b, c) = (bit(mask, 0), bit(mask, 1), bit(mask, 2));
@@ -327,10 +328,11 @@ impl<'a> Mesh<'a> {
                 slots[end[2] & 3] = beyond[3];
                 zone += end[3];
                 let end = ends(boundary);
-                rows[0] = [v[2], v[1], v[3], n[0]];
-                rows[end[0]] = [v[0], v[2], v[3], n[1]];
-                rows[end[1]] = [v[1], v[0], v[3], n[2]];
-                rows[end[2] & 3] = [v[0], v[1], v[2], n[3]];
+                let faces = lanes::facets(v, n);
+                rows[0] = faces[0];
+                rows[end[0]] = faces[1];
+                rows[end[1]] = faces[2];
+                rows[end[2] & 3] = faces[3];
                 facets += end[3];
             }
             if done == zone {
@@ -437,8 +439,8 @@ impl<'a> Mesh<'a> {
         // The last four may be fewer: the rest repeats the last one, for the dummy.
         let padded = facets.next_multiple_of(4);
         let last = scratch.numbers[facets - 1];
-        scratch.numbers[facets..padded].fill(last);
-        scratch.cells[facets..padded].fill(DUMMY);
+        scratch.numbers[facets..][..3].copy_from_slice(&[last; 3]);
+        scratch.cells[facets..][..3].copy_from_slice(&[DUMMY; 3]);
         let Scratch { cells, numbers, arrows, .. } = &*scratch;
         let (cells, numbers) = (cells[..padded].as_chunks::<4>().0, numbers[..padded].as_chunks::<4>().0);
         let (arrows, spheres) = (&arrows[..], &mut spheres[..]);

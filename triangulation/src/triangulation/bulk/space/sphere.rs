@@ -117,6 +117,12 @@ pub(super) fn is_marked(sphere: Sphere) -> bool {
     sphere[3] < 0.0
 }
 
+/// Returns a sphere, marked if the lowest bit is set.
+#[inline(always)]
+pub(super) fn marked_if(sphere: Sphere, bit: u32) -> Sphere {
+    of_bits(bits(f32x4::new(sphere)) | i32x4::new([0, 0, 0, (bit << 31) as i32])).to_array()
+}
+
 /// A point in the frame, and what it lacks of the greatest weight, in the same unit.
 pub(super) type Query = [f32; 4];
 
