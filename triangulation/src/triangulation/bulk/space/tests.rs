@@ -16,7 +16,7 @@ use super::blocks::Blocks;
 use super::mesh::Extent;
 use super::order::into_rounds;
 use super::sphere::{self, Frame, Origin};
-use super::{Built, build, by_blocks, whole, with_source};
+use super::{Built, build, by_blocks, predicates, whole, with_source};
 
 const FRAME: Frame = Frame { middle: [0.0; 3], scale: 1.0 };
 
@@ -125,6 +125,26 @@ fn what_is_sure_of_weights_is_right() {
         }
     }
     assert!(sure > rounds / 8 && sure_inside > rounds / 50, "{sure} and {sure_inside} of {rounds}: hardly a test");
+}
+
+#[test]
+fn one_evaluation_is_never_wrong() {
+    let mut random = Random(3);
+    let mut sure = 0;
+    for round in 0..20_000 {
+        // Nearly on one sphere, from 1 down to a few roundings off it.
+        let off = 0.5f64.powi(round % 56);
+        let sites = [0; 5].map(|_| {
+            let [x, y, z] = [0; 3].map(|_| random.around(1000) as f64 / 1000.0 + 1e-4);
+            let length = (x * x + y * y + z * z).sqrt() * (1.0 + off * random.around(1000) as f64 / 1000.0);
+            [x / length, y / length, z / length]
+        });
+        if let Some(is_inside) = predicates::is_surely_inside(sites) {
+            sure += 1;
+            assert_eq!(is_inside, Adaptive::sign(&InSphere(sites)) == Sign::Positive, "{sites:?}");
+        }
+    }
+    assert!((10_000..20_000).contains(&sure), "{sure}");
 }
 
 #[test]
