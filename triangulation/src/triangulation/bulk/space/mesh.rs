@@ -387,7 +387,8 @@ impl<'a> Mesh<'a> {
         let (star, boundary, numbers) = (&star[..facets], &boundary[..facets], &mut numbers[..facets]);
         let (corners, cells, vertices) = (&mut corners[..], &mut cells[..], &mut vertices[..]);
         let (first, mut count) = (*base, 0);
-        for ((&cell, &[a, b, c, beyond]), numbers) in star.iter().zip(boundary).zip(numbers) {
+        for ((&cell, &facet), numbers) in star.iter().zip(boundary).zip(numbers) {
+            let [a, b, c, beyond] = facet;
             let mut number = |v: u32| {
                 // PERF: without a branch on whether the vertex has a number already.
                 let tag = &mut corners[v as usize].tag;
@@ -399,7 +400,7 @@ impl<'a> Mesh<'a> {
                 number
             };
             *numbers = [number(a), number(b), number(c)];
-            cells[cell as usize].vertices = [a, b, c, vertex];
+            cells[cell as usize].vertices = lanes::with_last(facet, vertex);
             cells[cell as usize].neighbors[3] = beyond;
             cells[(beyond >> 2) as usize].neighbors[(beyond & 3) as usize] = 4 * cell + 3;
             if is_small {
