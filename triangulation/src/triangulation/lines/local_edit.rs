@@ -23,18 +23,25 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::arrangement::{Rounder, crosses, is_aligned};
 use crate::geometry::Crossing;
-use crate::tds::VertexId;
+use crate::tds::{CellId, VertexId};
 
 use super::super::Rounding;
 use super::Lines;
 use super::change::Change;
 use super::constrain::{Mesh, position};
 use super::index::NotLocal;
-use super::near_segment::{Band, near};
+use super::near_segment::{Band, Nearby, near};
 use super::paths::{Ends, undirected};
 
 /// How many units around a segment or a site are searched. One would suffice, except for rounding.
 const REACH: f64 = 2.0;
+
+/// How many units around an inserted segment are searched: also for segments that meet the pixels
+/// of its crossings, which are up to half a unit away from it.
+const WIDE_REACH: f64 = 3.0;
+
+/// A list of at most this many sites is searched one by one, which is faster than by halves.
+const SHORT: usize = 64;
 
 /// A pending step.
 enum Step {
@@ -55,6 +62,8 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     added: Option<Ends>,
     /// The vertices near the segment to be inserted.
     near_added: Vec<VertexId>,
+    /// The other segments near it, with their ends.
+    beside_added: Vec<(Ends, [[f64; 2]; 2])>,
     /// The segment to be removed.
     removed: Option<Ends>,
     /// The given vertex to be removed.
@@ -63,7 +72,7 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     chains: FxHashMap<Ends, Option<Vec<VertexId>>>,
     hot: FxHashMap<VertexId, bool>,
     active: FxHashSet<VertexId>,
-    /// The segments near a site.
+    /// The segments that meet the pixel of a site and do not end there.
     around: FxHashMap<VertexId, Vec<Ends>>,
     /// Added vertices at which other segments cross than before.
     stale: Vec<VertexId>,
@@ -79,6 +88,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             rounder,
             added: None,
             near_added: Vec::new(),
+            beside_added: Vec::new(),
             removed: None,
             gone: None,
             chains: FxHashMap::default(),
@@ -99,19 +109,23 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             }
         }
         let ends = self.ends(segment);
-        let mut crossed = Vec::new();
-        let (others, vertices) = self.near_segment(segment);
+        let Nearby { edges, vertices } = self.near_segment(segment, WIDE_REACH);
         self.near_added = vertices;
-        for other in others {
-            let Some(center) = self.rounder.crossing(ends, self.ends(other)) else { continue };
-            self.add_site(center, [segment, other])?;
-            crossed.push(other);
+        let mut crossed = Vec::new();
+        for (other, cell) in self.segments_on_each(edges) {
+            let ends_of_other = self.ends(other);
+            self.beside_added.push((other, ends_of_other));
+            crossed.extend(self.rounder.crossing(ends, ends_of_other).map(|center| (other, center, cell)));
         }
         if crossed.is_empty() {
             self.bend_if_attracted(segment);
         } else {
-            crossed.push(segment);
-            self.steps.extend(crossed.into_iter().map(Step::Bend));
+            self.expect(crossed.len() + 1);
+            for &(other, center, cell) in &crossed {
+                self.add_site(center, [segment, other], cell)?;
+            }
+            self.steps.extend(crossed.iter().map(|&(other, ..)| Step::Bend(other)));
+            self.steps.push(Step::Bend(segment));
         }
         self.apply_rules()?;
         self.carry_out()
@@ -157,37 +171,72 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         segment.map(|v| position(self.t, v))
     }
 
-    /// Returns the segments near another one, and the vertices near it; without the segment that is
-    /// inserted or removed.
-    fn near_segment(&self, segment: Ends) -> (Vec<Ends>, Vec<VertexId>) {
-        let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| REACH * unit));
-        let (edges, vertices) = near(self.t, &band, segment[0]);
-        (self.segments_on(edges), vertices)
+    /// Reserves memory for a number of segments and sites.
+    fn expect(&mut self, count: usize) {
+        self.chains.reserve(count);
+        self.hot.reserve(count);
+        self.active.reserve(count);
+        self.around.reserve(count);
+    }
+
+    /// Returns what lies within a number of units around a segment.
+    fn near_segment(&mut self, segment: Ends, reach: f64) -> Nearby {
+        let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| reach * unit));
+        near(self.t, &band, segment[0])
     }
 
     /// Returns all vertices whose pixels a segment meets, in no particular order.
-    fn attractors(&self, segment: Ends) -> Vec<VertexId> {
-        let mut vertices =
-            if Some(segment) == self.added { self.near_added.clone() } else { self.near_segment(segment).1 };
+    fn attractors(&mut self, segment: Ends) -> Vec<VertexId> {
+        let mut vertices = if Some(segment) == self.added {
+            self.near_added.clone()
+        } else {
+            self.near_segment(segment, REACH).vertices
+        };
         vertices.retain(|&v| self.meets_pixel(segment, v));
         vertices
     }
 
-    /// Returns the segments that may meet the pixel of a vertex, with the one that is inserted and
-    /// without the one that is removed.
+    /// Returns the segments that meet the pixel of a vertex and do not end there, with the one that
+    /// is inserted and without the one that is removed.
     fn around(&mut self, vertex: VertexId) -> Vec<Ends> {
-        if !self.around.contains_key(&vertex) {
-            let band = Band::around([position(self.t, vertex); 2], self.rounder.unit().map(|unit| REACH * unit));
-            let segments = self.segments_on(near(self.t, &band, vertex).0);
-            self.around.insert(vertex, segments);
+        if let Some(segments) = self.around.get(&vertex) {
+            return segments.clone();
         }
-        self.around[&vertex].iter().copied().chain(self.added).collect()
+        let edges = self.near_segment([vertex; 2], REACH).edges;
+        let mut segments = self.segments_on(edges.into_iter().map(|(edge, _)| edge));
+        segments.extend(self.added);
+        segments.retain(|&segment| self.meets_pixel(segment, vertex));
+        self.around.insert(vertex, segments.clone());
+        segments
+    }
+
+    /// Determines the segments around a site at which the inserted segment crosses another one.
+    fn look_around_crossing(&mut self, site: VertexId) {
+        if !self.around.contains_key(&site) {
+            let at = position(self.t, site);
+            let beside = self.beside_added.iter().copied();
+            let all = beside.chain(self.added.map(|segment| (segment, self.ends(segment))));
+            let met = all.filter(|&(segment, ends)| !segment.contains(&site) && self.rounder.hits(ends, at));
+            let segments = met.map(|(segment, _)| segment).collect();
+            self.around.insert(site, segments);
+        }
     }
 
     /// Returns the segments that end at a vertex or run through it, without the one that is
     /// inserted or removed.
     fn lines_at(&self, vertex: VertexId) -> Vec<Ends> {
         self.segments_on(self.t.constrained_around(vertex).map(|other| undirected(vertex, other)))
+    }
+
+    /// Returns the segments on edges, each once, in order, with what was given of one of its edges.
+    fn segments_on_each(&self, edges: Vec<(Ends, CellId)>) -> Vec<(Ends, CellId)> {
+        let index = self.lines.index();
+        let on_edge = |(edge, cell)| index.segments_on(&self.lines.paths, edge).map(move |segment| (segment, cell));
+        let mut segments: Vec<(Ends, CellId)> = edges.into_iter().flat_map(on_edge).collect();
+        segments.retain(|&(segment, _)| Some(segment) != self.added && Some(segment) != self.removed);
+        segments.sort_unstable();
+        segments.dedup_by_key(|(segment, _)| *segment);
+        segments
     }
 
     fn segments_on(&self, edges: impl IntoIterator<Item = Ends>) -> Vec<Ends> {
@@ -210,6 +259,9 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             return chain.as_ref().is_some_and(|sites| sites.contains(&vertex));
         }
         let Some(sites) = self.lines.paths.bent.get(&segment) else { return false };
+        if sites.len() <= SHORT {
+            return sites.contains(&vertex);
+        }
         sites.get(self.position_along(segment, sites, vertex)) == Some(&vertex)
     }
 
@@ -224,7 +276,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     fn order_along(&self, segment: Ends) -> impl Fn(VertexId) -> [f64; 2] + use<'_, 'a, G, V, C> {
         let ends = self.ends(segment);
         let sign = if ends[0] <= ends[1] { 1.0 } else { -1.0 };
-        move |vertex| self.rounder.along(ends, position(self.t, vertex)).map(|x| sign * x)
+        let key = self.rounder.along(ends);
+        move |vertex| key(position(self.t, vertex)).map(|x| sign * x)
     }
 
     fn sort_along(&self, segment: Ends, sites: &mut [VertexId]) {
@@ -249,7 +302,12 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Returns the sites of a bent segment, mutable.
     fn sites_mut(&mut self, segment: Ends) -> &mut Vec<VertexId> {
         let table = &self.lines.paths.bent;
-        let in_table = || table.get(&segment).map(|sites| sites.to_vec());
+        let in_table = || {
+            let sites = table.get(&segment)?;
+            let mut copy = Vec::with_capacity(sites.len() + 2); // more will be inserted
+            copy.extend_from_slice(sites);
+            Some(copy)
+        };
         self.chains.entry(segment).or_insert_with(in_table).get_or_insert_default()
     }
 
@@ -285,13 +343,13 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     }
 
     /// Makes the rounded crossing of two segments a hot site.
-    fn add_site(&mut self, center: [f64; 2], segments: [Ends; 2]) -> Result<(), NotLocal> {
+    /// The walk to it starts at a cell nearby.
+    fn add_site(&mut self, center: [f64; 2], segments: [Ends; 2], near: CellId) -> Result<(), NotLocal> {
         let ends = segments.map(|ends| ends.map(|v| *self.t.point(v)));
         let p = self.t.geometry.meet(center, &ends.each_ref().map(|ends| ends.each_ref()));
         self.t.admit(&p).map_err(|_| NotLocal)?;
         let count = self.t.vertex_count();
-        let near = self.t.tds.cell_of(segments[0][0]);
-        let site = self.lines.insert_point(self.t, p, near);
+        let site = self.lines.insert_point(self.t, p, Some(near));
         if self.t.vertex_count() > count {
             self.lines.added.insert(site);
             self.near_added.push(site);
@@ -299,6 +357,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         } else if !self.is_hot(site) {
             self.make_hot(site);
         }
+        self.look_around_crossing(site);
         Ok(())
     }
 
@@ -318,7 +377,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                         return Err(NotLocal); // the grid becomes another one
                     }
                     for segment in self.around(site) {
-                        if self.is_bent(segment) && !self.has_site(segment, site) && self.meets_pixel(segment, site) {
+                        if self.is_bent(segment) && !self.has_site(segment, site) {
                             self.insert_site(segment, site);
                             if !self.is_exact(segment, site) {
                                 self.steps.push(Step::Activate(site));
@@ -329,7 +388,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                 Step::Activate(site) => {
                     if self.active.insert(site) {
                         for segment in self.around(site) {
-                            if !self.is_bent(segment) && self.meets_pixel(segment, site) {
+                            if !self.is_bent(segment) {
                                 self.steps.push(Step::Bend(segment));
                             }
                         }
@@ -552,8 +611,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Updates the point at a crossing, which the geometry computes from the segments that pass
     /// there.
     fn renew_point(&mut self, site: VertexId) {
-        let segments = self.lines_at(site).into_iter().filter(|&segment| self.has_site(segment, site));
-        let ends: Vec<[G::Point; 2]> = segments.map(|ends| ends.map(|v| *self.t.point(v))).collect();
+        let mut segments = self.around.remove(&site).unwrap_or_else(|| self.lines_at(site));
+        segments.sort_unstable();
+        segments.retain(|&segment| self.has_site(segment, site));
+        let ends: Vec<[G::Point; 2]> = segments.into_iter().map(|ends| ends.map(|v| *self.t.point(v))).collect();
         let ends: Vec<[&G::Point; 2]> = ends.iter().map(|ends| ends.each_ref()).collect();
         if !ends.is_empty() {
             let p = self.t.geometry.meet(position(self.t, site), &ends);
