@@ -25,7 +25,7 @@ use crate::arrangement::{Rounder, crosses, is_aligned};
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
-use super::super::Rounding;
+use super::super::{Location, Rounding};
 use super::Lines;
 use super::change::Change;
 use super::constrain::{Mesh, position};
@@ -74,6 +74,8 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     active: FxHashSet<VertexId>,
     /// The segments that meet the pixel of a site and do not end there.
     around: FxHashMap<VertexId, Vec<Ends>>,
+    /// Edges that replaced a part of a segment when a site was inserted beside it.
+    replacing: Vec<(Ends, Ends)>,
     /// Added vertices at which other segments cross than before.
     stale: Vec<VertexId>,
     steps: Vec<Step>,
@@ -95,6 +97,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             hot: FxHashMap::default(),
             active: FxHashSet::default(),
             around: FxHashMap::default(),
+            replacing: Vec::new(),
             stale: Vec::new(),
             steps: Vec::new(),
         })
@@ -262,26 +265,27 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         if sites.len() <= SHORT {
             return sites.contains(&vertex);
         }
-        sites.get(self.position_along(segment, sites, vertex)) == Some(&vertex)
+        sites.get(self.position_along(segment, sites, position(self.t, vertex))) == Some(&vertex)
     }
 
-    /// Returns how many of a segment's sites come before a vertex that is near the segment.
-    fn position_along(&self, segment: Ends, sites: &[VertexId], vertex: VertexId) -> usize {
+    /// Returns how many of a segment's sites come before a site that is near the segment.
+    fn position_along(&self, segment: Ends, sites: &[VertexId], at: [f64; 2]) -> usize {
         let key = self.order_along(segment);
-        let limit = key(vertex);
-        sites.partition_point(|&site| key(site) < limit)
+        let limit = key(at);
+        sites.partition_point(|&site| key(position(self.t, site)) < limit)
     }
 
     /// Returns keys that sort the sites of a segment from its first end to its second.
-    fn order_along(&self, segment: Ends) -> impl Fn(VertexId) -> [f64; 2] + use<'_, 'a, G, V, C> {
+    fn order_along(&self, segment: Ends) -> impl Fn([f64; 2]) -> [f64; 2] + use<G, V, C> {
         let ends = self.ends(segment);
         let sign = if ends[0] <= ends[1] { 1.0 } else { -1.0 };
         let key = self.rounder.along(ends);
-        move |vertex| key(position(self.t, vertex)).map(|x| sign * x)
+        move |at| key(at).map(|x| sign * x)
     }
 
     fn sort_along(&self, segment: Ends, sites: &mut [VertexId]) {
-        let key = self.order_along(segment);
+        let in_order = self.order_along(segment);
+        let key = |site: VertexId| in_order(position(self.t, site));
         sites.sort_unstable_by(|&u, &v| key(u).partial_cmp(&key(v)).unwrap_or(std::cmp::Ordering::Equal));
     }
 
@@ -294,7 +298,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Bends a segment to one more site.
     fn insert_site(&mut self, segment: Ends, site: VertexId) {
         let mut sites = std::mem::take(self.sites_mut(segment));
-        let at = self.position_along(segment, &sites, site);
+        let at = self.position_along(segment, &sites, position(self.t, site));
         sites.insert(at, site);
         self.chains.insert(segment, Some(sites));
     }
@@ -349,7 +353,11 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let p = self.t.geometry.meet(center, &ends.each_ref().map(|ends| ends.each_ref()));
         self.t.admit(&p).map_err(|_| NotLocal)?;
         let count = self.t.vertex_count();
-        let site = self.lines.insert_point(self.t, p, Some(near));
+        let location = self.t.locate(&p, Some(near));
+        let site = match self.constraint_beside(segments[1], center, &p, location) {
+            Some((cell, i)) => self.bend_edge(segments[1], p, cell, i),
+            None => self.lines.insert_at(self.t, p, V::default(), location).vertex,
+        };
         if self.t.vertex_count() > count {
             self.lines.added.insert(site);
             self.near_added.push(site);
@@ -359,6 +367,44 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         }
         self.look_around_crossing(site);
         Ok(())
+    }
+
+    /// Returns the constraint beside a new site of a segment, which the segment, and no other,
+    /// follows now, but not once it bends to the site; as a triangle with the site and an index.
+    /// `None` if it is not an edge of that triangle.
+    fn constraint_beside(
+        &self,
+        segment: Ends,
+        at: [f64; 2],
+        p: &G::Point,
+        location: Location,
+    ) -> Option<(CellId, usize)> {
+        let Location::Cell { cell, facets } = location else { return None };
+        let sites = self.lines.paths.bent.get(&segment).map_or(&[][..], |sites| sites);
+        let next = self.position_along(segment, sites, at);
+        let from = if next == 0 { segment[0] } else { sites[next - 1] };
+        let part = undirected(from, *sites.get(next).unwrap_or(&segment[1]));
+        let is_part = |&i: &usize| {
+            let [a, b] = self.t.tds.edge_ends(cell, i);
+            self.t.is_constrained(cell, i) && undirected(a, b) == part
+        };
+        let i = (0..3).find(is_part).filter(|_| facets.is_empty())?;
+        let mut others = self.lines.index().segments_on(&self.lines.paths, part);
+        let is_only = others.all(|other| other == segment);
+        (is_only && self.t.in_conflict(self.t.tds.neighbor(cell, i), p)).then_some((cell, i))
+    }
+
+    /// Inserts a site of a segment beside a constraint that is bent to it.
+    fn bend_edge(&mut self, segment: Ends, p: G::Point, cell: CellId, i: usize) -> VertexId {
+        let ends = self.t.tds.edge_ends(cell, i);
+        let site = Lines::bend_edge(self.t, p, cell, i);
+        for part in ends.map(|end| undirected(end, site)) {
+            if let Some(index) = self.lines.index.get_mut() {
+                index.add_node(segment, part);
+            }
+            self.replacing.push((segment, part));
+        }
+        site
     }
 
     /// Schedules a segment to be bent if it meets the pixel of an active site.
@@ -496,6 +542,9 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         for change in &changes {
             change.old_parts().for_each(|part| index.remove_part(paths, change.segment, part, &mut edges));
         }
+        for (segment, part) in std::mem::take(&mut self.replacing) {
+            index.remove_part(paths, segment, part, &mut edges);
+        }
         edges.sort_unstable();
         edges.dedup();
         let straight = |edge: &Ends| changes.binary_search_by(|change| change.segment.cmp(edge));
@@ -601,7 +650,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                     changes.insert(at, Change::new(segment, sites.clone(), sites, is_bent));
                     at
                 });
-                let part = self.position_along(segment, changes[at].old_sites(), vertex);
+                let part = self.position_along(segment, changes[at].old_sites(), position(self.t, vertex));
                 changes[at].include(part, vertex);
             }
         }
