@@ -20,8 +20,8 @@ pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, ver
     t.geometry.plan(t.point(vertex)).map(unsigned_zero)
 }
 
-/// Inserts a point that was admitted at its location, unless its site is taken. A constraint that it
-/// is located on is replaced by the edges from the point to its ends.
+/// Inserts a point that was admitted at its location, unless its site is taken. A constraint that
+/// the location names is replaced by the edges from the point to its ends.
 fn insert_through<G: Crossing, V, C: Copy + Default>(
     t: &mut Mesh<G, V, C>,
     p: G::Point,
@@ -75,8 +75,8 @@ impl Lines {
     /// ```text
     ///        c                 c
     ///      /   \             / | \
-    ///     /  p  \           /  p  \
-    ///    a-------b   ==>   a´ ·|· `b      with constraints a p and p b
+    ///     /  p  \           /  |  \
+    ///    a-------b   ==>   a--p--b       p is a little above the line from a to b
     ///     \     /           \  |  /
     ///      \   /             \ | /
     ///        d                 d

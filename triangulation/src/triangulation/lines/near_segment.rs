@@ -62,7 +62,8 @@ fn is_beside(from: [f64; 2], along: [f64; 2], reach: [f64; 2], points: [[f64; 2]
 /// What lies near a segment or a vertex.
 #[derive(Debug)]
 pub(super) struct Nearby {
-    /// The constrained edges that the band may meet, each once, in order, with a triangle beside it.
+    /// The constrained edges that the band may meet, each once, in order, with a triangle beside
+    /// it.
     pub(super) edges: Vec<(Ends, CellId)>,
     /// The finite vertices in the band, each once, in order.
     pub(super) vertices: Vec<VertexId>,
