@@ -371,7 +371,7 @@ impl<'a> Builder<'a> {
 
     /// Phase 4: returns the arrangement, with the sites of each segment in order.
     fn collect(self, crossings: Vec<Crossing>, has_chain: &[bool], passes: Vec<Pass>) -> Arrangement {
-        let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize], self.site(site));
+        let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize])(self.site(site));
         // Grouped by segment, by counting; then each group is sorted along its segment.
         let mut ends = vec![0; self.segments.len()];
         passes.iter().for_each(|pass| ends[pass.segment as usize] += 1);
