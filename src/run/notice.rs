@@ -96,7 +96,7 @@ pub enum Notice {
         count: usize,
         /// The largest difference.
         largest: Quantity,
-        /// Where that difference is.
+        /// The point with the largest difference.
         at: [f64; 2],
         /// The first of these points, at most five.
         first: Vec<CrossingNote>,

@@ -139,7 +139,7 @@ impl Cut {
         self.first_fragment + self.remains.is_fragment.len()
     }
 
-    /// One more than the largest number of a vertex.
+    /// One more than the largest vertex number.
     pub(super) fn vertex_count(&self) -> usize {
         self.first_vertex + self.patch.vertices.len()
     }

@@ -118,8 +118,8 @@ impl<'a> Builder<'a> {
     /// `PERF:` takes half the time of the sweep, on one thread, for segments that are short or
     /// cross most of what they come near.
     fn crossing_pairs_by_boxes<K: Kernel>(&self, number: impl Fn([u32; 2]) -> u64 + Sync) -> Option<Vec<u64>> {
-        /// So many overlaps in vain, for each segment and each pair found, take about as long as
-        /// the sweep.
+        /// The number of overlaps without a crossing, for each segment and each pair found, that
+        /// take about as long as the sweep.
         const PATIENCE: usize = 64;
         const CHUNK: usize = 64;
         let tree = self.tree(0..self.segments.len() as u32);

@@ -85,7 +85,7 @@ impl BitAnd for i32x4 {
     }
 }
 
-/// Of masks.
+/// Intersects masks.
 impl BitAnd for f32x4 {
     type Output = Self;
 

@@ -108,7 +108,7 @@ impl<'a> Grain<'a> {
         Grain { stop: Some(stop), ..Grain::default() }
     }
 
-    /// Returns true if the work is to end; from then on, [`is_stopped`](Self::is_stopped).
+    /// Returns true if the work should stop. Then [`is_stopped`](Self::is_stopped) is true, too.
     pub(crate) fn stops(&self) -> bool {
         self.stop.is_some_and(Stop::is_asked_for)
     }

@@ -285,8 +285,8 @@ impl<P: Copy + Send + Sync> Sites<P> {
     }
 }
 
-/// Checks that the geometry admits all points. Returns the curve through them, and true if all have
-/// an exact plan, in space an exact site.
+/// Checks that the geometry admits all points. Returns the curve through them, and true if all of
+/// them have an exact plan (in the plane) or an exact site (in space).
 ///
 /// `PERF:` in one pass instead of three.
 fn survey<G: Coordinates<N>, const N: usize>(

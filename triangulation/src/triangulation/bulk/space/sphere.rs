@@ -190,9 +190,9 @@ pub(super) fn arrow(from: [f64; 3], to: [f64; 3]) -> Arrow {
 /// The point that arrows start at.
 #[derive(Clone, Copy)]
 pub(super) struct Origin {
-    /// In the frame.
+    /// Its position in the frame.
     pub(super) at: [f64; 3],
-    /// What it lacks of the greatest weight, in the frame.
+    /// The greatest weight minus its own, in the frame.
     pub(super) lack: f64,
     /// No two weights differ by more; outside of the frame.
     pub(super) range: f64,
