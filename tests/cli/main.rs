@@ -9,6 +9,7 @@ mod habits;
 mod inputs;
 mod lidar;
 mod lines;
+mod methods;
 #[cfg(unix)]
 mod outputs;
 mod results;

@@ -10,8 +10,11 @@ mod judge;
 mod known;
 mod scene;
 
-use breakline::data::Surface;
-use breakline::terrain::Tin;
+use std::path::Path;
+
+use breakline::data::{Mesh, Surface};
+use breakline::io::mesh;
+use breakline::terrain::CompactTin;
 use rayon::prelude::*;
 use scene::Scene;
 use testkit::random::Random;
@@ -41,7 +44,7 @@ fn each_kind_keeps_its_promises_whatever_it_meets() {
 }
 
 /// The faces of a surface, with heights and kinds of edges, in an order of their own.
-fn content(tin: &Tin) -> Vec<String> {
+fn content(tin: &dyn Surface) -> Vec<String> {
     let faces = (0..tin.face_count() as u32).filter_map(|face| {
         tin.face(face)?;
         let mut corners: Vec<String> = (0..3)
@@ -53,6 +56,26 @@ fn content(tin: &Tin) -> Vec<String> {
     let mut faces: Vec<String> = faces.collect();
     faces.sort();
     faces
+}
+
+/// A `.tin` and a `.ply` have the same faces with the same kinds of edges.
+#[test]
+fn files_keep_the_kinds() {
+    let folder = tempfile::tempdir().unwrap();
+    for kinds in (1..SELECTIONS).step_by(5) {
+        let scene = Scene::random(&mut Random(500 + kinds), kinds);
+        let Ok(tin) = scene.build(0) else { continue };
+        let expected = content(&tin);
+        let mut bytes = Vec::new();
+        tin.write_tin(&mut bytes).unwrap();
+        let opened = CompactTin::open(bytes, Path::new("x.tin")).unwrap();
+        opened.check().unwrap();
+        assert!(content(&opened) == expected, "kinds {kinds:07b} as .tin");
+        let path = folder.path().join("x.ply");
+        mesh::write(&path, &tin).unwrap();
+        let read: Mesh = mesh::read(&path).unwrap();
+        assert!(content(&read) == expected, "kinds {kinds:07b} as .ply");
+    }
 }
 
 #[test]

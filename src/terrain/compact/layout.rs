@@ -12,8 +12,7 @@ pub(super) const INSIDE: [u8; 8] = *b"inside  ";
 pub(super) const VERTICES: [u8; 8] = *b"vertices";
 /// The fragments of cut triangles.
 pub(super) const FRAGMENTS: [u8; 8] = *b"fragment";
-/// Edges of whole triangles that are next to a fragment, or on a line other than a breakline, in
-/// order.
+/// Edges of triangles that are next to a fragment, or on a line other than a breakline, in order.
 pub(super) const SIDES: [u8; 8] = *b"sides   ";
 
 /// Stands for the neighbor of an edge at the rim.

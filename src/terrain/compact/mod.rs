@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::crs::Crs;
-use crate::data::{EdgeKind, Surface, SurfaceFacts};
+use crate::data::{BaseFace, EdgeKind, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::tds::{CellId, Complex, VertexId};
@@ -282,6 +282,14 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         if beside != face && self.stated_neighbor(beside, j)? == Some(face) { Ok(Some(beside)) } else { Err(broken()) }
     }
 
+    /// The kind of an edge of a whole triangle, if the file states kinds beside the triangulation.
+    fn stated_kind(&self, face: u32, i: usize) -> Found<Option<EdgeKind>> {
+        if !self.attributes.facts.edges.has_various() {
+            return Ok(None);
+        }
+        Ok(self.side(face, i)?.map(|side| side.kind))
+    }
+
     fn kind(&self, face: u32, i: usize) -> Found<EdgeKind> {
         if i > 2 || face as usize >= self.face_numbers() {
             return Ok(EdgeKind::Rim);
@@ -289,10 +297,8 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         if let Some(number) = self.fragment_number(face) {
             return Ok(self.fragment(face, number)?.edges[i]);
         }
-        if self.attributes.facts.edges.has_various()
-            && let Some(side) = self.side(face, i)?
-        {
-            return Ok(side.kind);
+        if let Some(kind) = self.stated_kind(face, i)? {
+            return Ok(kind);
         }
         let cell = CellId::new(face as usize);
         if self.triangulation.is_constrained(cell, i)? {
@@ -302,6 +308,35 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         } else {
             Ok(self.side(face, i)?.map_or(EdgeKind::Rim, |side| side.kind))
         }
+    }
+
+    /// The whole triangle with a number, be it a face of the surface or not; `None` for an infinite
+    /// cell.
+    fn base_face(&self, number: u32) -> Found<Option<BaseFace>> {
+        let cell = CellId::new(number as usize);
+        let is_infinite = |corners: [VertexId; 3]| corners.contains(&VertexId::INFINITE);
+        let corners = self.triangulation.corners(cell)?;
+        if is_infinite(corners) {
+            return Ok(None);
+        }
+        let mut face = BaseFace {
+            number,
+            corners: corners.map(|v| v.index() as u32),
+            neighbors: [None; 3],
+            edges: [EdgeKind::Plain; 3],
+        };
+        for i in 0..3 {
+            let beside = self.triangulation.neighbor(cell, i)?;
+            if !is_infinite(self.triangulation.corners(beside)?) {
+                face.neighbors[i] = Some(beside.index() as u32);
+            }
+            face.edges[i] = match (self.triangulation.is_constrained(cell, i)?, face.neighbors[i]) {
+                (true, _) => self.stated_kind(number, i)?.unwrap_or(EdgeKind::Breakline),
+                (false, Some(_)) => EdgeKind::Plain,
+                (false, None) => EdgeKind::Rim,
+            };
+        }
+        Ok(Some(face))
     }
 
     /// Returns what was found, or records the damage and returns a value that any caller can use.
@@ -357,6 +392,14 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
 
     fn crs(&self) -> Option<&Crs> {
         self.attributes.crs.as_ref()
+    }
+
+    fn base_count(&self) -> usize {
+        self.triangulation.cell_count()
+    }
+
+    fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
+        faces.extend(numbers.filter_map(|number| self.or_record(self.base_face(number), None)));
     }
 
     fn ensure_intact(&self) -> Result<()> {

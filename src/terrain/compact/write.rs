@@ -72,6 +72,9 @@ impl Layers {
         for (at, cell) in tds.cells().enumerate() {
             let face = cell.index() as u32;
             if surface.face(face).is_none() {
+                if edges.has_various() {
+                    sides.extend(kinds_under(surface, face, at as u32));
+                }
                 continue;
             }
             inside[at / 8] |= 1 << (at % 8);
@@ -110,6 +113,16 @@ impl Layers {
         }
         Ok(())
     }
+}
+
+/// The rows of the edges of a triangle that is not a face of the surface: of those on lines other
+/// than breaklines, for which methods of interpolation ask.
+fn kinds_under(surface: &dyn Surface, face: u32, number: u32) -> Vec<u8> {
+    let mut under = Vec::new();
+    surface.base_faces_in(face..face + 1, &mut under);
+    let kinds = under.first().map_or([EdgeKind::Plain; 3], |face| face.edges);
+    let of_lines = kinds.into_iter().zip(0..).filter(|(kind, _)| kind.is_constrained() && *kind != EdgeKind::Breakline);
+    of_lines.flat_map(|(kind, corner)| Side { face: number, corner, kind, neighbor: None }.to_bytes()).collect()
 }
 
 /// Numbers without gaps, in the same order: first those of used slots, then some beyond all slots.
