@@ -18,8 +18,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use breakline::run::{
-    self, Context, ContourOptions, FrameOptions, HillshadeOptions, Monitor, Notice, PointsRequest, Progress, Size,
-    Source, Stage, SurfaceRequest,
+    self, Context, ContourOptions, DemOptions, FrameOptions, HillshadeOptions, Monitor, Notice, PointsRequest,
+    Progress, Size, Source, Stage, SurfaceRequest,
 };
 use breakline::{Result, io};
 
@@ -62,7 +62,8 @@ fn main() -> Result<()> {
         measure("dem of lidar", |context| {
             let product = run::triangles(&request(&lidar)?, context)?;
             let frame = FrameOptions { resolution: Some(0.2), ..FrameOptions::default() };
-            run::dem(&product, &frame, context)?.write(out("a.tif").as_path().into(), context).map(drop)
+            let options = DemOptions { frame, ..DemOptions::default() };
+            run::dem(&product, &options, context)?.write(out("a.tif").as_path().into(), context).map(drop)
         })?;
         measure("points of lidar", |context| {
             let request = PointsRequest { files: lidar.clone(), ..PointsRequest::default() };

@@ -30,6 +30,21 @@ pub struct Face {
     pub edges: [EdgeKind; 3],
 }
 
+/// A triangle under a surface, linked to its neighbors.
+///
+/// See [`Surface::base_faces_in`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BaseFace {
+    /// The number of the triangle.
+    pub number: u32,
+    /// The corners, counter-clockwise.
+    pub corners: [u32; 3],
+    /// The triangle across the edge opposite each corner, if there is one.
+    pub neighbors: [Option<u32>; 3],
+    /// The kind of the edge opposite each corner.
+    pub edges: [EdgeKind; 3],
+}
+
 impl EdgeKind {
     /// All kinds, each at the position of the number that stands for it in files.
     pub const ALL: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
@@ -42,6 +57,12 @@ impl EdgeKind {
             EdgeKind::Clip => 2,
             EdgeKind::Rim => 3,
         }
+    }
+
+    /// Returns true for an edge at which the surface may have a kink: smooth interpolation stops
+    /// there.
+    pub fn is_hard(self) -> bool {
+        matches!(self, EdgeKind::Breakline)
     }
 
     /// Returns true for an edge on a breakline or a clip line.
@@ -151,6 +172,25 @@ pub trait Surface: Sync {
         }));
     }
 
+    /// One more than the largest number of a [base face](Self::base_faces_in).
+    fn base_count(&self) -> usize {
+        self.face_count()
+    }
+
+    /// Appends the triangles in a range of numbers that are under the surface: those that it had
+    /// before it was cut.
+    ///
+    /// A face with a number below [`base_count`](Self::base_count) is the whole triangle of that
+    /// number. A face with a larger number is a fragment of some triangle. Unless a surface keeps
+    /// the triangles that it was cut from, its own faces are returned.
+    fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
+        faces.extend(numbers.filter_map(|number| {
+            let corners = self.face(number)?;
+            let neighbors = [0, 1, 2].map(|i| self.neighbor(number, i));
+            Some(BaseFace { number, corners, neighbors, edges: [0, 1, 2].map(|i| self.edge_kind(number, i)) })
+        }));
+    }
+
     /// Appends the faces in a range of numbers whose heights are wanted, in order, each with the
     /// heights of its corners.
     ///
@@ -200,19 +240,24 @@ const BATCH: u32 = 1 << 11;
 /// `PERF:` `for_each` and the like loop over each batch; `next` checks each time whether the batch
 /// is exhausted.
 pub(crate) fn corners<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
-    batches(surface, S::corners_in)
+    batches(surface, surface.face_count() as u32, S::corners_in)
 }
 
 /// All faces of a surface, in order of their numbers.
 pub(crate) fn faces<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = Face> + '_ {
-    batches(surface, S::faces_in)
+    batches(surface, surface.face_count() as u32, S::faces_in)
+}
+
+/// All [base faces](Surface::base_faces_in) of a surface, in order of their numbers.
+pub(crate) fn faces_under<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = BaseFace> + '_ {
+    batches(surface, surface.base_count() as u32, S::base_faces_in)
 }
 
 fn batches<'s, S: Surface + ?Sized, T: 's>(
     surface: &'s S,
+    count: u32,
     ask: impl Fn(&S, Range<u32>, &mut Vec<T>) + 's,
 ) -> impl Iterator<Item = T> + 's {
-    let count = surface.face_count() as u32;
     (0..count.div_ceil(BATCH)).flat_map(move |batch| {
         let start = batch * BATCH;
         let mut items = Vec::with_capacity(BATCH as usize);

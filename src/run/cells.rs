@@ -10,7 +10,7 @@ use crate::data::{BlockSource, Frame, Grid, Surface, Window};
 use crate::error::{Error, Result};
 use crate::io::geotiff::{self, CellFormat, RasterSummary};
 use crate::io::{Destination, png};
-use crate::terrain::{Dem, Hillshade, Light};
+use crate::terrain::{Dem, Hillshade, Light, Method};
 
 /// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,11 +30,22 @@ impl Default for LightOptions {
     }
 }
 
+/// Options of a DEM.
+#[derive(Debug, Clone, Default)]
+pub struct DemOptions {
+    /// Size and position of the cells.
+    pub frame: FrameOptions,
+    /// How heights between the vertices are computed.
+    pub method: Method,
+}
+
 /// Options of a hillshade.
 #[derive(Debug, Clone, Default)]
 pub struct HillshadeOptions {
     /// Size and position of the cells; a raster keeps its own.
     pub frame: FrameOptions,
+    /// How heights between the vertices are computed; a raster has its heights.
+    pub method: Method,
     /// The light.
     pub light: LightOptions,
 }
@@ -50,8 +61,7 @@ pub struct CellProduct<'a> {
     pub notices: Vec<Notice>,
 }
 
-/// Prepares a DEM: the heights of a surface at the centers of cells, linear on its triangles, NaN
-/// where there is none.
+/// Prepares a DEM: the heights of a surface at the centers of cells, NaN where there is none.
 ///
 /// # Errors
 /// If the surface is a raster, the frame cannot be chosen (see [`FrameOptions`]), or the run is
@@ -59,7 +69,7 @@ pub struct CellProduct<'a> {
 ///
 /// # Complexity
 /// Linear in the triangles.
-pub fn dem<'a>(product: &'a SurfaceProduct, options: &FrameOptions, context: &Context) -> Result<CellProduct<'a>> {
+pub fn dem<'a>(product: &'a SurfaceProduct, options: &DemOptions, context: &Context) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
     let surface = product.triangles()?;
     let source = heights(product, surface, options, &journal)?;
@@ -83,12 +93,13 @@ pub fn hillshade<'a>(
     let journal = Journal::new(context);
     let (source, surface): (Box<dyn BlockSource>, _) = match &product.model {
         Model::Raster(grid) => {
-            refuse_frame(&options.frame)?;
+            refuse_options(options)?;
             (Box::new(grid.as_ref()), None)
         }
         Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => {
             let surface = product.triangles()?;
-            (heights(product, surface, &options.frame, &journal)?, Some(surface))
+            let heights_by = DemOptions { frame: options.frame.clone(), method: options.method };
+            (heights(product, surface, &heights_by, &journal)?, Some(surface))
         }
     };
     let light = light(&options.light, product.crs(), &journal);
@@ -99,19 +110,26 @@ pub fn hillshade<'a>(
 fn heights<'a>(
     product: &SurfaceProduct,
     surface: &'a dyn Surface,
-    options: &FrameOptions,
+    DemOptions { frame, method }: &DemOptions,
     journal: &Journal,
 ) -> Result<Box<dyn BlockSource + 'a>> {
     journal.context.check()?;
-    let frame = frame::choose(options, surface, product.extent(), journal)?;
-    Ok(Box::new(Dem::new(surface, frame)?))
+    let frame = frame::choose(frame, surface, product.extent(), journal)?;
+    let dem = Dem::new(surface, frame)?;
+    journal.context.check()?;
+    Ok(Box::new(dem.with_method(*method)?))
 }
 
-fn refuse_frame(options: &FrameOptions) -> Result<()> {
-    if options.resolution.is_none() && options.extent.is_none() && options.align_to.is_none() {
-        return Ok(());
+/// Returns an error if options are given that only a TIN has a use for.
+fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> Result<()> {
+    if frame.resolution.is_some() || frame.extent.is_some() || frame.align_to.is_some() {
+        return Err(Error::usage("--resolution, --te and --align-to are for a TIN; a DEM keeps its own cells"));
     }
-    Err(Error::usage("--resolution, --te and --align-to are for a TIN; a DEM keeps its own cells"))
+    if *method != Method::default() {
+        return Err(Error::usage("--method is for a TIN; a DEM has a height in each of its cells already")
+            .cure("leave it out, or pass points, a .tin or a .ply"));
+    }
+    Ok(())
 }
 
 fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light {

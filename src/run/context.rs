@@ -211,7 +211,7 @@ mod tests {
     use super::*;
     use crate::error::Kind;
     use crate::run::{
-        ContourOptions, FrameOptions, HillshadeOptions, Input, Source, SurfaceRequest, TinRequest, check, contour, dem,
+        ContourOptions, DemOptions, HillshadeOptions, Input, Source, SurfaceRequest, TinRequest, check, contour, dem,
         hillshade, triangles, write_mesh,
     };
 
@@ -243,7 +243,7 @@ mod tests {
             .write(folder.join("a.geojson").as_path().into(), context)?;
         hillshade(&product, &HillshadeOptions::default(), context)?
             .write_picture(folder.join("a.png").as_path().into(), context)?;
-        dem(&product, &FrameOptions::default(), context)?.write(folder.join("a.tif").as_path().into(), context)?;
+        dem(&product, &DemOptions::default(), context)?.write(folder.join("a.tif").as_path().into(), context)?;
         write_mesh(product.triangles()?, folder.join("a.ply").as_path().into(), context)?;
         check(&request, context).map(drop)
     }

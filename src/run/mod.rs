@@ -8,7 +8,7 @@
 //! |---|---|---|---|
 //! | build or read a surface | [`SurfaceRequest`] | [`surface()`], [`triangles`] | [`SurfaceProduct`] |
 //! | write it as a mesh | | [`write_mesh`] | |
-//! | heights at the centers of cells | [`FrameOptions`] | [`dem`] | [`CellProduct`] |
+//! | heights at the centers of cells | [`DemOptions`] | [`dem`] | [`CellProduct`] |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`] | [`PointsReport`] |
@@ -21,7 +21,7 @@
 //!
 //! ```
 //! use breakline::data::Bounds;
-//! use breakline::run::{self, Context, FrameOptions, Input, Source, SurfaceRequest, TinRequest};
+//! use breakline::run::{self, Context, DemOptions, FrameOptions, Input, Source, SurfaceRequest, TinRequest};
 //!
 //! let points = [[0.0, 0.0, 1.0], [10.0, 0.0, 1.0], [10.0, 10.0, 3.0], [0.0, 10.0, 3.0]];
 //! let tin = TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() };
@@ -29,7 +29,8 @@
 //!
 //! let context = Context::default(); // nothing is reported or canceled
 //! let surface = run::triangles(&request, &context)?;
-//! let cells = run::dem(&surface, &FrameOptions { resolution: Some(5.0), ..FrameOptions::default() }, &context)?;
+//! let frame = FrameOptions { resolution: Some(5.0), ..FrameOptions::default() };
+//! let cells = run::dem(&surface, &DemOptions { frame, ..DemOptions::default() }, &context)?;
 //! let grid = cells.collect(&context)?;
 //! assert_eq!(grid.values, [2.5, 2.5, 1.5, 1.5]);
 //! # Ok::<(), breakline::Error>(())
@@ -38,7 +39,7 @@
 //! # A DEM of a file
 //!
 //! ```
-//! use breakline::run::{self, Context, FrameOptions, Notice, Source, SurfaceRequest};
+//! use breakline::run::{self, Context, DemOptions, Notice, Source, SurfaceRequest};
 //!
 //! # fn main() -> breakline::Result<()> {
 //! # let folder = tempfile::tempdir()?;
@@ -49,7 +50,7 @@
 //! let surface = run::triangles(&request, &context)?;
 //! assert!(surface.notices.contains(&Notice::GroundUsed));
 //!
-//! let cells = run::dem(&surface, &FrameOptions::default(), &context)?;
+//! let cells = run::dem(&surface, &DemOptions::default(), &context)?;
 //! let written = cells.write(target.as_path().into(), &context)?;
 //! assert!(written.valid > 0);
 //! # Ok(())
@@ -91,7 +92,7 @@ mod triangulate;
 pub(crate) mod units;
 mod watched;
 
-pub use cells::{CellProduct, HillshadeOptions, LightOptions, dem, hillshade};
+pub use cells::{CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade};
 pub use check::{CheckProduct, FlawKind, LocatedFlaw, check};
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
 pub use contour::{ContourOptions, ContourProduct, contour};

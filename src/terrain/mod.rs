@@ -6,6 +6,7 @@
 //! | points and breaklines | a surface | [`TinBuilder`], which builds a [`Tin`] |
 //! | a TIN | the height at a position | [`Tin::elevation`] |
 //! | any surface | a DEM | [`Dem`] |
+//! | any surface | smooth heights between its vertices | [`Interpolant`], by a [`Method`] |
 //! | any surface | contours | [`contours()`], at [`Levels`] |
 //! | a DEM | contours | [`GridSurface`], a surface over its cells |
 //! | a DEM | shaded relief | [`Hillshade`] |
@@ -21,7 +22,8 @@
 //!
 //! - Surfaces are seen in plan: x to the east, y to the north, one height at each position.
 //!   Vertical faces and overhangs cannot be represented.
-//! - Lengths and heights are in the units of the data. Heights are linear on each triangle.
+//! - Lengths and heights are in the units of the data. Heights are linear on each triangle,
+//!   unless another [`Method`] is chosen.
 //! - Results depend on the set of points and lines alone, not on their order or on the number of
 //!   threads.
 //! - All queries take `&self`, and may be called from many threads at once.
@@ -29,7 +31,7 @@
 //! # What it does not do
 //!
 //! Coordinates are not reprojected, ground is not separated from vegetation (classes are taken as
-//! given), and nothing is smoothed or thinned out.
+//! given), and points are neither smoothed nor thinned out.
 
 mod admitted;
 mod builder;
@@ -42,6 +44,7 @@ mod duplicates;
 mod grid_surface;
 mod hillshade;
 mod inside;
+mod interpolate;
 mod levels;
 mod linear;
 mod rasterize;
@@ -59,6 +62,7 @@ pub use duplicates::DuplicateRule;
 pub use grid_surface::GridSurface;
 pub use hillshade::{Hillshade, Light};
 pub use inside::Inside;
+pub use interpolate::{Interpolant, Method};
 pub use levels::{Levels, MAX_LEVELS};
 pub use rasterize::Dem;
 pub use selection::{Classes, Selection, SelectionReport};

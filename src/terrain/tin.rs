@@ -2,7 +2,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use crate::crs::Crs;
-use crate::data::{Bounds, EdgeKind, Face, LineEdges, Surface};
+use crate::data::{BaseFace, Bounds, EdgeKind, Face, LineEdges, Surface};
 use crate::error::Result;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::kernel::RANGE;
@@ -255,6 +255,30 @@ impl Surface for Tin {
         faces.extend(numbers.filter_map(|number| {
             let corners = self.face(number)?;
             Some(Face { number, corners, edges: self.kinds(number) })
+        }));
+    }
+
+    fn base_count(&self) -> usize {
+        self.inside.len()
+    }
+
+    /// The faces of the triangulation, which covers the whole convex hull.
+    fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
+        let tds = self.triangulation.tds();
+        let is_face = |cell: CellId| tds.is_used(cell) && !tds.is_infinite(cell);
+        faces.extend(numbers.map(|number| CellId::new(number as usize)).filter(|&cell| is_face(cell)).map(|cell| {
+            let beside = |i| Some(tds.neighbor(cell, i)).filter(|&beside| is_face(beside));
+            let kind = |i| match self.triangulation.is_constrained(cell, i) {
+                true => EdgeKind::Breakline,
+                false if beside(i).is_none() => EdgeKind::Rim,
+                false => EdgeKind::Plain,
+            };
+            BaseFace {
+                number: cell.index() as u32,
+                corners: tds.corners(cell).map(|v| v.index() as u32),
+                neighbors: [0, 1, 2].map(|i| beside(i).map(|beside| beside.index() as u32)),
+                edges: [0, 1, 2].map(kind),
+            }
         }));
     }
 }

@@ -78,6 +78,7 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-off"], verbs: CONTOUR, meaning: Same("--base") },
     Habit { typed: &["-3d"], verbs: CONTOUR, meaning: Nothing },
     Habit { typed: &["-a"], verbs: CONTOUR, meaning: Refused("the heights are always in the field ELEV") },
+    Habit { typed: &["-a"], verbs: &["dem"], meaning: Same("--method") },
     Habit { typed: &["-az"], verbs: SHADE, meaning: Same("--azimuth") },
     Habit { typed: &["-alt"], verbs: SHADE, meaning: Same("--altitude") },
     Habit { typed: &["-z"], verbs: SHADE, meaning: Same("--z-factor") },

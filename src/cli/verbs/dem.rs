@@ -6,8 +6,8 @@ use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
 use crate::error::Result;
 use crate::io::formats::Product;
-use crate::run;
 use crate::run::units::Units;
+use crate::run::{self, DemOptions};
 
 /// Writes the heights of a TIN as a raster.
 pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
@@ -16,7 +16,8 @@ pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), &plan)?;
     let product = run::triangles(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
-    let cells = run::dem(&product, &frame, &console.context())?;
+    let options = DemOptions { frame, method: args.method.into() };
+    let cells = run::dem(&product, &options, &console.context())?;
     outputs.announce(&cells, |()| 4, console)?;
     let mut written = None;
     for target in &outputs.targets {

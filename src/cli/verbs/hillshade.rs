@@ -27,7 +27,8 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
     let outputs = outputs::resolve_with_report(&args.output, &formats, &plan)?;
     let product = run::surface(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
-    let cells = run::hillshade(&product, &HillshadeOptions { frame, light }, &console.context())?;
+    let options = HillshadeOptions { frame, method: args.method.into(), light };
+    let cells = run::hillshade(&product, &options, &console.context())?;
     outputs.announce(&cells, cell_bytes, console)?;
     for target in &outputs.targets {
         let destination = target.within(&outputs.set);

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::crs::Crs;
-use crate::data::{EdgeKind, Surface, SurfaceFacts};
+use crate::data::{BaseFace, EdgeKind, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::tds::{CellId, Complex, VertexId};
@@ -299,6 +299,35 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         }
     }
 
+    /// The whole triangle with a number, be it a face of the surface or not; `None` for an infinite
+    /// cell.
+    fn base_face(&self, number: u32) -> Found<Option<BaseFace>> {
+        let cell = CellId::new(number as usize);
+        let is_infinite = |corners: [VertexId; 3]| corners.contains(&VertexId::INFINITE);
+        let corners = self.triangulation.corners(cell)?;
+        if is_infinite(corners) {
+            return Ok(None);
+        }
+        let mut face = BaseFace {
+            number,
+            corners: corners.map(|v| v.index() as u32),
+            neighbors: [None; 3],
+            edges: [EdgeKind::Plain; 3],
+        };
+        for i in 0..3 {
+            let beside = self.triangulation.neighbor(cell, i)?;
+            if !is_infinite(self.triangulation.corners(beside)?) {
+                face.neighbors[i] = Some(beside.index() as u32);
+            }
+            face.edges[i] = match (self.triangulation.is_constrained(cell, i)?, face.neighbors[i]) {
+                (true, _) => EdgeKind::Breakline,
+                (false, Some(_)) => EdgeKind::Plain,
+                (false, None) => EdgeKind::Rim,
+            };
+        }
+        Ok(Some(face))
+    }
+
     /// Returns what was found, or records the damage and returns a value that any caller can use.
     #[inline]
     fn or_record<T>(&self, found: Found<T>, instead: T) -> T {
@@ -352,6 +381,14 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
 
     fn crs(&self) -> Option<&Crs> {
         self.attributes.crs.as_ref()
+    }
+
+    fn base_count(&self) -> usize {
+        self.triangulation.cell_count()
+    }
+
+    fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
+        faces.extend(numbers.filter_map(|number| self.or_record(self.base_face(number), None)));
     }
 
     fn ensure_intact(&self) -> Result<()> {

@@ -16,17 +16,65 @@ use crate::data::orientation;
 use crate::triangulation::num::Sign;
 
 /// A block of cells into which faces are drawn.
-pub(super) struct Scan<'a> {
+pub(super) struct Scan<'a, T> {
     pub(super) columns: &'a Centers,
     pub(super) rows: &'a Centers,
     /// The cells, row by row, as many columns and rows as there are centers.
-    pub(super) cells: &'a mut [f32],
+    pub(super) cells: &'a mut [T],
 }
 
-impl Scan<'_> {
+/// What is written into the cells of a face.
+pub(super) trait Ink<T> {
+    /// Returns the value of one cell, given its height.
+    fn value(&self, height: f64) -> T;
+
+    /// Writes a row of cells, given their x and the x and height of both ends of the segment in
+    /// which the row cuts the face.
+    fn row(&self, cells: &mut [T], centers: &[f64], ends: [(f64, f64); 2]);
+}
+
+/// Writes heights.
+pub(super) struct Heights;
+
+impl Ink<f32> for Heights {
+    #[inline]
+    fn value(&self, height: f64) -> f32 {
+        height as f32
+    }
+
+    #[inline(always)]
+    fn row(&self, cells: &mut [f32], centers: &[f64], [left, right]: [(f64, f64); 2]) {
+        let slope = (right.1 - left.1) / (right.0 - left.0);
+        for (cell, x) in cells.iter_mut().zip(centers) {
+            *cell = (left.1 + (x - left.0) * slope) as f32;
+        }
+    }
+}
+
+/// Writes the number of the face.
+pub(super) struct Number(pub(super) u32);
+
+impl Ink<u32> for Number {
+    fn value(&self, _height: f64) -> u32 {
+        self.0
+    }
+
+    fn row(&self, cells: &mut [u32], _centers: &[f64], _ends: [(f64, f64); 2]) {
+        cells.fill(self.0);
+    }
+}
+
+impl<T> Scan<'_, T> {
     /// Writes the cells of `rows` and `columns` (counted in the block) whose centers lie in the
     /// triangle or on its border. The corners may be in any order.
-    pub(super) fn draw(&mut self, corners: [[f64; 3]; 3], rows: &Range<usize>, columns: &Range<usize>) {
+    #[inline]
+    pub(super) fn draw(
+        &mut self,
+        corners: [[f64; 3]; 3],
+        rows: &Range<usize>,
+        columns: &Range<usize>,
+        ink: &impl Ink<T>,
+    ) {
         let face = Face::new(corners);
         let [low, middle, high] = &face.corners;
         let first = self.rows.at_or_after(low[1]).max(rows.start);
@@ -51,17 +99,18 @@ impl Scan<'_> {
             let line = &mut self.cells[row * centers.len()..][..centers.len()];
             let mut inside = from..to;
             while !inside.is_empty() && centers[inside.start] <= left.0 + face.error {
-                face.judge(centers[inside.start], y, [left, right], &mut line[inside.start]);
+                if let Some(height) = face.judge(centers[inside.start], y, [left, right]) {
+                    line[inside.start] = ink.value(height);
+                }
                 inside.start += 1;
             }
             while !inside.is_empty() && centers[inside.end - 1] >= right.0 - face.error {
                 inside.end -= 1;
-                face.judge(centers[inside.end], y, [left, right], &mut line[inside.end]);
+                if let Some(height) = face.judge(centers[inside.end], y, [left, right]) {
+                    line[inside.end] = ink.value(height);
+                }
             }
-            let slope = (right.1 - left.1) / (right.0 - left.0);
-            for (cell, x) in line[inside.clone()].iter_mut().zip(&centers[inside]) {
-                *cell = (left.1 + (x - left.0) * slope) as f32;
-            }
+            ink.row(&mut line[inside.clone()], &centers[inside], [left, right]);
         }
     }
 }
@@ -88,35 +137,34 @@ impl Face {
         Face { corners, error: 8.0 * f64::EPSILON * largest }
     }
 
-    /// Writes a cell whose center is close to the border of the face, unless it is outside.
+    /// Returns the height of a cell whose center is close to the border of the face, unless it is
+    /// outside.
     #[cold]
-    fn judge(&self, x: f64, y: f64, [left, right]: [(f64, f64); 2], cell: &mut f32) {
+    fn judge(&self, x: f64, y: f64, [left, right]: [(f64, f64); 2]) -> Option<f64> {
         let [a, b, c] = &self.corners;
         if let Some(corner) = self.corners.iter().find(|p| p[0] == x && p[1] == y) {
-            *cell = corner[2] as f32;
-            return;
+            return Some(corner[2]);
         }
         let center = [x, y, 0.0];
         let turn = orientation([*a, *b, *c]);
         if turn == Sign::Zero {
             // A face without area covers only what its neighbors cover as well.
-            return;
+            return None;
         }
         let mut edge = None;
         for (p, q) in [(a, b), (b, c), (c, a)] {
             match turn * orientation([*p, *q, center]) {
-                Sign::Negative => return,
+                Sign::Negative => return None,
                 // The direction of the edge must not depend on the face.
                 Sign::Zero => edge = Some(if (p[1], p[0]) < (q[1], q[0]) { (p, q) } else { (q, p) }),
                 Sign::Positive => (),
             }
         }
-        let z = match edge {
+        Some(match edge {
             Some((p, q)) => height_on_edge(p, q, x, y),
             None if right.0 > left.0 => between(left.1, right.1, (x - left.0) / (right.0 - left.0)),
             None => left.1,
-        };
-        *cell = z as f32;
+        })
     }
 }
 

@@ -8,6 +8,7 @@ use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use crate::cli::input::classes;
 use crate::run::{Alpha, Arithmetic};
+use crate::terrain::Method;
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]
@@ -300,13 +301,15 @@ impl From<KernelArg> for Arithmetic {
 
 /// Write a DEM: heights of the TIN at the centers of cells
 ///
-/// Heights are linear on each triangle, and nodata (-9999) where there is none. The output is a
+/// Heights are linear on each triangle, or by another --method, and nodata (-9999) where there is
+/// none. The output is a
 /// tiled GeoTIFF of 32-bit floats, compressed with DEFLATE. It is computed block by block on all
 /// cores and may be larger than memory.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
   breakline dem tile.laz --breaklines edges.shp --resolution 0.5 -o dem.tif
+  breakline dem ground.tin --method natural -o round.tif
   breakline dem ground.ply --te 688000 5261000 688400 5261300 -o dem.tif
   breakline dem ground.ply --align-to ortho.tif -o dem.tif")]
 pub(in crate::cli) struct DemArgs {
@@ -316,6 +319,46 @@ pub(in crate::cli) struct DemArgs {
     pub(in crate::cli) output: OutputArgs,
     #[command(flatten)]
     pub(in crate::cli) frame: FrameArgs,
+
+    /// How heights between the vertices are computed
+    ///
+    /// `linear` has kinks at all edges; `natural` is smooth except at vertices and breaklines, and
+    /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
+    /// overshoot.
+    #[arg(long, value_enum, value_name = "METHOD", default_value_t, help_heading = "Raster")]
+    pub(in crate::cli) method: MethodArg,
+}
+
+/// How heights between the vertices are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(in crate::cli) enum MethodArg {
+    /// Linear on each triangle
+    #[default]
+    Linear,
+    /// The height of the nearest vertex
+    Nearest,
+    /// Natural neighbors, Sibson's weights; breaklines are respected
+    Natural,
+    /// Natural neighbors, Laplace's weights; breaklines are respected
+    Laplace,
+    /// Clough-Tocher elements; breaklines are respected
+    Smooth,
+    /// Inverse distance weighting: power 2, the 12 nearest vertices
+    #[value(alias = "invdist")]
+    Idw,
+}
+
+impl From<MethodArg> for Method {
+    fn from(arg: MethodArg) -> Self {
+        match arg {
+            MethodArg::Linear => Method::Linear,
+            MethodArg::Nearest => Method::Nearest,
+            MethodArg::Natural => Method::Natural,
+            MethodArg::Laplace => Method::Laplace,
+            MethodArg::Smooth => Method::Smooth,
+            MethodArg::Idw => Method::Idw,
+        }
+    }
 }
 
 /// Draw contours of a TIN or of a DEM
@@ -360,8 +403,8 @@ pub(in crate::cli) struct ContourArgs {
 /// Shade a TIN or a DEM as the sun would
 ///
 /// Brightness is 1 to 255, and 0 where there is no surface. The output is a GeoTIFF (.tif) or a
-/// .png. The hillshade of a DEM has the cells of the DEM: `--resolution`, `--te` and `--align-to`
-/// are for TINs.
+/// .png. The hillshade of a DEM has the cells of the DEM: `--resolution`, `--te`, `--align-to` and
+/// `--method` are for TINs.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -374,6 +417,14 @@ pub(in crate::cli) struct HillshadeArgs {
     pub(in crate::cli) output: OutputArgs,
     #[command(flatten)]
     pub(in crate::cli) frame: FrameArgs,
+
+    /// How heights between the vertices are computed
+    ///
+    /// `linear` has kinks at all edges; `natural` is smooth except at vertices and breaklines, and
+    /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
+    /// overshoot. For a TIN; a DEM has its heights.
+    #[arg(long, value_enum, value_name = "METHOD", default_value_t, help_heading = "Raster")]
+    pub(in crate::cli) method: MethodArg,
 
     /// Direction that the light comes from, in degrees clockwise from north
     #[arg(long, value_name = "DEGREES", value_parser = finite, default_value = "315", allow_hyphen_values = true, help_heading = "Light")]

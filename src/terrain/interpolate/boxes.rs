@@ -1,0 +1,168 @@
+//! A tree of boxes: finds what is at a position, or nearest to it, wherever the rest is.
+
+use rayon::join;
+
+/// The number of items in a leaf, at most.
+const LEAF: usize = 8;
+
+/// Subtrees with fewer items are built by one thread.
+const ALONE: usize = 1 << 14;
+
+/// A box in plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    pub(super) min: [f64; 2],
+    pub(super) max: [f64; 2],
+}
+
+impl Extent {
+    const EMPTY: Extent = Extent { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+
+    /// Returns the box of some points.
+    pub(super) fn of(points: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |extent, [x, y, _]| extent.with(Extent { min: [x, y], max: [x, y] }))
+    }
+
+    fn with(self, other: Extent) -> Self {
+        Extent {
+            min: [0, 1].map(|i| self.min[i].min(other.min[i])),
+            max: [0, 1].map(|i| self.max[i].max(other.max[i])),
+        }
+    }
+
+    fn middle(&self, axis: usize) -> f64 {
+        self.min[axis] / 2.0 + self.max[axis] / 2.0
+    }
+
+    fn contains(&self, q: [f64; 2]) -> bool {
+        (0..2).all(|i| self.min[i] <= q[i] && q[i] <= self.max[i])
+    }
+
+    /// Returns the square of the distance to a position; 0 within.
+    #[inline]
+    pub(super) fn distance(&self, q: [f64; 2]) -> f64 {
+        let [x, y] = [0, 1].map(|i| (self.min[i] - q[i]).max(q[i] - self.max[i]).max(0.0));
+        x * x + y * y
+    }
+}
+
+/// Items with boxes, halved again and again along the longer side.
+#[derive(Debug)]
+pub(super) struct Boxes<T> {
+    items: Vec<T>,
+    /// The box of each node: its children are at twice its position plus 1 and 2.
+    nodes: Vec<Extent>,
+}
+
+/// An item of a tree.
+pub(super) trait Boxed: Copy + Send + Sync {
+    fn extent(&self) -> Extent;
+}
+
+impl<T: Boxed> Boxes<T> {
+    /// Builds the tree.
+    ///
+    /// # Complexity
+    /// O(n log n); about 8 bytes for each item in addition to the items.
+    pub(super) fn new(mut items: Vec<T>) -> Self {
+        let leaves = items.len().div_ceil(LEAF).max(1).next_power_of_two();
+        let mut levels: Vec<Vec<Extent>> = Vec::new();
+        let mut width = 1;
+        while width <= leaves {
+            levels.push(vec![Extent::EMPTY; width]);
+            width *= 2;
+        }
+        let mut views: Vec<&mut [Extent]> = levels.iter_mut().map(Vec::as_mut_slice).collect();
+        build(&mut items, &mut views);
+        Boxes { items, nodes: levels.concat() }
+    }
+
+    /// Calls `each` with items whose box contains a position, until it returns a value.
+    pub(super) fn find<R>(&self, q: [f64; 2], mut each: impl FnMut(&T) -> Option<R>) -> Option<R> {
+        let mut left = vec![(0, 0, self.items.len())];
+        while let Some((node, start, end)) = left.pop() {
+            if start == end || !self.nodes[node].contains(q) {
+                continue;
+            }
+            if 2 * node + 2 < self.nodes.len() {
+                let middle = halved(start, end);
+                left.extend([(2 * node + 2, middle, end), (2 * node + 1, start, middle)]);
+            } else if let Some(found) = self.items[start..end].iter().find_map(&mut each) {
+                return Some(found);
+            }
+        }
+        None
+    }
+
+    /// Calls `each` with the items around a position, the boxes nearest to it first. It returns the
+    /// square of the distance up to which more are wanted.
+    ///
+    /// `left` is memory that is kept from one call to the next.
+    pub(super) fn around(&self, q: [f64; 2], left: &mut Vec<Near>, mut each: impl FnMut(&T) -> f64) {
+        let mut wanted = f64::INFINITY;
+        left.clear();
+        left.push(Near { node: 0, start: 0, end: self.items.len(), distance: 0.0 });
+        while let Some(Near { node, start, end, distance }) = left.pop() {
+            if start == end || distance > wanted {
+                continue;
+            }
+            if 2 * node + 2 >= self.nodes.len() {
+                self.items[start..end].iter().for_each(|item| wanted = each(item));
+                continue;
+            }
+            let middle = halved(start, end);
+            let child = |node: usize, start, end| Near { node, start, end, distance: self.nodes[node].distance(q) };
+            let mut children = [child(2 * node + 1, start, middle), child(2 * node + 2, middle, end)];
+            if children[0].distance < children[1].distance {
+                children.swap(0, 1);
+            }
+            left.extend(children);
+        }
+    }
+}
+
+/// A node that is still to be searched.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    node: usize,
+    start: usize,
+    end: usize,
+    distance: f64,
+}
+
+fn halved(start: usize, end: usize) -> usize {
+    start + (end - start) / 2
+}
+
+/// Sorts the items of a node into its subtrees, and finds all boxes. `levels` are the nodes below,
+/// its own first.
+fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]]) {
+    let extent = items.iter().fold(Extent::EMPTY, |extent, item| extent.with(item.extent()));
+    let Some((own, below)) = levels.split_first_mut() else { return };
+    if let Some(node) = own.first_mut() {
+        *node = extent;
+    }
+    if below.is_empty() {
+        return;
+    }
+    let axis = usize::from(extent.max[1] - extent.min[1] > extent.max[0] - extent.min[0]);
+    let middle = halved(0, items.len());
+    if middle < items.len() {
+        let key = |item: &T| item.extent().middle(axis);
+        items.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
+    }
+    let is_small = items.len() < ALONE;
+    let (low, high) = items.split_at_mut(middle);
+    let (mut left, mut right) = (Vec::with_capacity(below.len()), Vec::with_capacity(below.len()));
+    for level in below.iter_mut() {
+        let (first, second) = level.split_at_mut(level.len() / 2);
+        left.push(first);
+        right.push(second);
+    }
+    if is_small {
+        build(low, &mut left);
+        build(high, &mut right);
+    } else {
+        join(|| build(low, &mut left), || build(high, &mut right));
+    }
+}

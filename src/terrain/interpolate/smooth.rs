@@ -1,0 +1,208 @@
+//! A surface without kinks except at hard edges: the macro-element of Clough and Tocher.
+//!
+//! Each triangle is divided at its centroid into three cubic polynomials, given by heights and
+//! gradients at the corners. Along an edge the height is a cubic polynomial and the slope across it
+//! is linear, both given by the ends alone. So two triangles fit together without a kink.
+//!
+//! ```text
+//!            2                 coefficients of one of the three polynomials, j = 0 and k = 1,
+//!           /|\                by their weights for (j, k, m), m the centroid:
+//!          / | \
+//!         /  m  \              300 --- 210 --- 120 --- 030
+//!        / /   \ \                \ 201 --- 111 --- 021
+//!       0---------1                  \ 102 --- 012
+//!                                        003
+//! ```
+//!
+//! # At hard edges
+//!
+//! The gradient at a vertex is that of the plane which fits its neighbors best, by least squares
+//! with weights of 1 over the square of the distance. Only neighbors are used that are reached
+//! around the vertex without crossing a hard edge: a vertex of a breakline has a gradient on each
+//! side, and the kink stays.
+//!
+//! Along a hard edge both sides would have cubic curves of their own. There the height must be
+//! linear, as on the breakline. So `E = l_j l_k (A l_j + B l_k) w` is added, with barycentric
+//! coordinates `l`. The cubic factor is the difference on the edge, and the weight `w = e_i / (e_0 +
+//! e_1 + e_2)` with `e_i = (l_j l_k)^2` is 1 on the edge and vanishes on the two others together
+//! with its gradient. So it leaves them free of kinks.
+
+use super::base::{Base, before, cross, minus, next, square};
+
+/// One triangle with its polynomials.
+#[derive(Debug, Clone)]
+pub(super) struct Patch {
+    face: u32,
+    /// From the smallest by x and y, so that sums do not depend on the numbering.
+    corners: [[f64; 3]; 3],
+    /// Twice its area.
+    area: f64,
+    /// For each corner: the coefficients next to it, towards the next corner, the one before, and
+    /// the centroid.
+    beside: [[f64; 3]; 3],
+    /// For each corner, the coefficient in the middle of the opposite polynomial.
+    middle: [f64; 3],
+    /// For each corner, the coefficient next to the centroid.
+    inner: [f64; 3],
+    center: f64,
+    /// For each hard edge, by the opposite corner, what makes it linear.
+    hard: [Option<[f64; 2]>; 3],
+}
+
+impl Patch {
+    /// Returns the patch over a triangle, given the index of its smallest corner.
+    ///
+    /// # Complexity
+    /// Proportional to the number of triangles around its corners.
+    pub(super) fn new(base: &Base, face: u32, first: usize) -> Self {
+        let order = [first, next(first), before(first)];
+        let all = base.corners(face);
+        let corners = order.map(|i| all[i]);
+        let gradients = order.map(|i| gradient(base, face, i));
+        let vector = |i: usize, j: usize| minus(corners[j], corners[i]);
+        let height = |i: usize| corners[i][2];
+        let slope = |i: usize, [x, y]: [f64; 2]| gradients[i][0] * x + gradients[i][1] * y;
+        // From a corner to the centroid.
+        let inward = |i: usize| {
+            let ([ax, ay], [bx, by]) = (vector(i, next(i)), vector(i, before(i)));
+            [(ax + bx) / 3.0, (ay + by) / 3.0]
+        };
+        let beside = [0, 1, 2].map(|i| {
+            [vector(i, next(i)), vector(i, before(i)), inward(i)].map(|vector| height(i) + slope(i, vector) / 3.0)
+        });
+        // The slope across an edge is linear along it.
+        let middle = [0, 1, 2].map(|i| {
+            let (j, k) = (next(i), before(i));
+            let (edge, to_center) = (vector(j, k), inward(j));
+            let part = (edge[0] * to_center[0] + edge[1] * to_center[1]) / square(edge);
+            let ([jk, _, jm], [_, kj, km]) = (beside[j], beside[k]);
+            let between = |from: f64, to: f64| (1.0 - part) * from + part * to;
+            between(jk, kj) + 0.5 * (jm - between(height(j), jk) + km - between(kj, height(k)))
+        });
+        let inner = [0, 1, 2].map(|i| (beside[i][2] + middle[next(i)] + middle[before(i)]) / 3.0);
+        let hard = [0, 1, 2].map(|i| {
+            let (j, k) = (next(i), before(i));
+            let rise = height(k) - height(j);
+            base.face(face).is_hard(order[i]).then(|| [rise - slope(j, vector(j, k)), slope(k, vector(j, k)) - rise])
+        });
+        let area = cross(vector(0, 1), vector(0, 2));
+        Patch { face, corners, area, beside, middle, inner, center: inner.iter().sum::<f64>() / 3.0, hard }
+    }
+
+    /// Returns the number of the triangle.
+    pub(super) fn face(&self) -> u32 {
+        self.face
+    }
+
+    /// Returns the height at a position in the triangle; `None` if a number overflows or underflows.
+    pub(super) fn height(&self, q: [f64; 2]) -> Option<f64> {
+        let to = self.corners.map(|p| minus(p, [q[0], q[1], 0.0]));
+        let parts = [0, 1, 2].map(|i| cross(to[next(i)], to[before(i)]) / self.area);
+        // The polynomial over the part of the triangle between the centroid and the farthest edge.
+        let i = (1..3).fold(0, |least, i| if parts[i] < parts[least] { i } else { least });
+        let (j, k) = (next(i), before(i));
+        let [u, v, w] = [parts[j] - parts[i], parts[k] - parts[i], 3.0 * parts[i]];
+        let ([jk, _, jm], [_, kj, km]) = (self.beside[j], self.beside[k]);
+        let at_edge = self.corners[j][2] * u * u * u + 3.0 * u * v * (jk * u + kj * v) + self.corners[k][2] * v * v * v;
+        let next_to_it = 3.0 * w * (jm * u * u + 2.0 * self.middle[i] * u * v + km * v * v);
+        let next_to_center = 3.0 * w * w * (self.inner[j] * u + self.inner[k] * v);
+        let height = at_edge + next_to_it + next_to_center + self.center * w * w * w + self.correction(parts);
+        height.is_finite().then_some(height)
+    }
+
+    /// Returns what makes the heights linear along hard edges.
+    fn correction(&self, parts: [f64; 3]) -> f64 {
+        if self.hard == [None; 3] {
+            return 0.0;
+        }
+        let products = [0, 1, 2].map(|i| parts[next(i)] * parts[before(i)]);
+        let sum: f64 = products.iter().map(|product| product * product).sum();
+        if sum <= 0.0 {
+            return 0.0;
+        }
+        let of_edge = |i: usize| {
+            self.hard[i].map_or(0.0, |[a, b]| {
+                products[i] * (a * parts[next(i)] + b * parts[before(i)]) * products[i] * products[i] / sum
+            })
+        };
+        of_edge(0) + of_edge(1) + of_edge(2)
+    }
+}
+
+/// The sums of a least squares fit of a plane through a vertex.
+#[derive(Debug, Default)]
+struct Fit {
+    xx: f64,
+    xy: f64,
+    yy: f64,
+    xz: f64,
+    yz: f64,
+}
+
+impl Fit {
+    /// Adds a neighbor.
+    fn add(&mut self, [x, y]: [f64; 2], z: f64) {
+        let weight = 1.0 / (x * x + y * y);
+        self.xx += weight * x * x;
+        self.xy += weight * x * y;
+        self.yy += weight * y * y;
+        self.xz += weight * x * z;
+        self.yz += weight * y * z;
+    }
+
+    /// Returns the gradient. If the neighbors are nearly in a line, the plane is level across it.
+    fn gradient(&self) -> [f64; 2] {
+        /// Of the smaller to the larger spread of the directions.
+        const NARROWEST: f64 = 1e-5;
+        let spread = self.xx + self.yy;
+        let determinant = self.xx * self.yy - self.xy * self.xy;
+        if determinant > NARROWEST * spread * spread {
+            [
+                (self.xz * self.yy - self.yz * self.xy) / determinant,
+                (self.yz * self.xx - self.xz * self.xy) / determinant,
+            ]
+        } else {
+            [self.xz / spread, self.yz / spread]
+        }
+    }
+}
+
+/// Returns the gradient at corner `i` of a triangle, from the neighbors on the same side of hard
+/// edges.
+fn gradient(base: &Base, face: u32, i: usize) -> [f64; 2] {
+    let vertex = base.face(face).corners[i];
+    let at = base.point(vertex);
+    let mut fit = Fit::default();
+    let mut add = |neighbor: u32| {
+        let p = base.point(neighbor);
+        fit.add(minus(p, at), p[2] - at[2]);
+    };
+    let [first, last] = [next, before].map(|turn| base.face(face).corners[turn(i)]);
+    add(first);
+    // Counter-clockwise, then clockwise if that does not lead all around.
+    let (mut at_face, mut at_corner, mut steps) = (face, i, 0);
+    loop {
+        let neighbor = base.face(at_face).corners[before(at_corner)];
+        if neighbor == first {
+            return fit.gradient();
+        }
+        add(neighbor);
+        match base.across(at_face, next(at_corner)) {
+            // The edge passed ends at the vertex, and its other end is next to it.
+            Some((beyond, j)) if steps < base.count() => (at_face, at_corner) = (beyond, next(j)),
+            _ => break,
+        }
+        steps += 1;
+    }
+    (at_face, at_corner, steps) = (face, i, 0);
+    while let Some((beyond, j)) = base.across(at_face, before(at_corner)).filter(|_| steps < base.count()) {
+        (at_face, at_corner) = (beyond, before(j));
+        let neighbor = base.face(at_face).corners[next(at_corner)];
+        if neighbor == last {
+            break;
+        }
+        add(neighbor);
+        steps += 1;
+    }
+    fit.gradient()
+}
