@@ -212,11 +212,15 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
     ) -> Option<f64> {
         let hint = if base.is_face(face) { Some(face) } else { self.triangle_under(base, q) };
         let site = base.site(q, hint?)?;
-        let at = match site {
+        height(site).or_else(|| match site {
             Site::Height(_) => None,
-            Site::Inside { face, .. } | Site::Rim { face, .. } => Some(face),
-        };
-        height(site).or_else(|| Some(linear(base.corners(at?), q)))
+            Site::Inside { face, first } | Site::Rim { face, first, .. } => {
+                // In an order that does not depend on the numbering.
+                let mut corners = base.corners(face);
+                corners.rotate_left(first);
+                Some(linear(corners, q))
+            }
+        })
     }
 
     /// Returns a triangle at a position that is in a fragment.

@@ -1,4 +1,5 @@
-//! Four numbers at a time, or two of 64 bits: what the algorithms use of the crate `wide`, and a plain twin of it.
+//! Four numbers at a time, or two of 64 bits: what the algorithms use of the crate `wide`, and a
+//! plain twin of it.
 //!
 //! With the feature `simd` these are `wide`'s own types, which are vector registers. Without it,
 //! `plain` has the same names over arrays. Both round alike, so both give the same bits, except
@@ -21,8 +22,8 @@ pub(crate) fn prefetch<T>(wanted: &T) {
     let _ = wanted;
 }
 
-/// Returns the facets of a positive cell of vertices `v`, each as the cell sees it, and its neighbors
-/// `n` beyond them.
+/// Returns the facets of a positive cell of vertices `v`, each as the cell sees it, and its
+/// neighbors `n` beyond them.
 ///
 /// `PERF:` the compiler would move sixteen numbers one by one.
 #[inline(always)]

@@ -79,8 +79,8 @@ impl Predicates<'_> {
 ///
 /// Let `X`, `Y` and `Z` be the largest absolute differences to the last site. The determinant is a
 /// sum of 24 terms, none above `X Y Z (X^2 + Y^2 + Z^2)`, and on the path of each there are 16
-/// roundings: of five differences, four products and seven sums (Higham 2002, lemma 3.1). So the error
-/// is below `24 * 16 u = 4.27e-14` of it; the rest covers the roundings of the bound.
+/// roundings: of five differences, four products and seven sums (Higham 2002, lemma 3.1). So the
+/// error is below `24 * 16 u = 4.27e-14` of it; the rest covers the roundings of the bound.
 #[inline(always)]
 pub(super) fn is_surely_inside(sites: [[f64; 3]; 5]) -> Option<bool> {
     let [a, b, c, d, e] = sites;
