@@ -214,7 +214,7 @@ impl PointFacts {
 }
 
 fn layer_facts(path: &Path, context: &Context) -> Result<LayerFacts> {
-    let layer = open::layer(path, context)?;
+    let layer = open::layer(path, &[], context)?;
     let mut facts = LayerFacts { records: layer.shapes.len(), ..LayerFacts::default() };
     for shape in &layer.shapes {
         *facts.kinds.entry(shape.kind()).or_default() += 1;

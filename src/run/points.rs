@@ -98,7 +98,7 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
         sources.push(Some(source).filter(|_| keep));
     }
     let boundary: Vec<Input<Layer>> = request.boundary.iter().cloned().map(Input::File).collect();
-    let boundary = layers::read(&boundary, &journal)?;
+    let boundary = layers::read(&boundary, &[], &journal)?;
     let plan = Plan::new(request, &infos, &boundary, &journal)?;
     let (of_points, of_boundary) = plan.transforms.by_file.split_at(infos.len());
     let polygons = layers::polygons(&boundary, of_boundary, &plan.transforms)?;

@@ -137,8 +137,8 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     }
     request.check_layers()?;
     let mut files = PointFiles::open(&request.points, request.read, journal)?;
-    let breaklines = layers::read(&request.breaklines, journal)?;
-    let boundary = layers::read(&request.boundary, journal)?;
+    let breaklines = layers::read(&request.breaklines, &[], journal)?;
+    let boundary = layers::read(&request.boundary, &[], journal)?;
 
     let mut stated = files.stated(&request.classes, journal)?;
     stated.extend(
