@@ -35,8 +35,9 @@ pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
 /// Like [`read_layer`], but with the numbers of the attributes that `columns` names, and watched.
 /// Nothing is counted.
 ///
-/// # Errors Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a
-/// value is not a number.
+/// # Errors
+/// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value is
+/// not a number.
 pub fn read_layer_with(path: &Path, name: Option<&str>, columns: &[&str], watch: Watch) -> Result<Layer> {
     messages::listen();
     let (path, behind) = super::split(path);
