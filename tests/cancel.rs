@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use breakline::Result;
 use breakline::data::{Frame, Grid};
 use breakline::error::{Error, Kind};
+use breakline::io::layer::Options;
 use breakline::io::{Watch, geojson, geotiff, mesh, shapefile, triangle};
 
 /// The side of a square grid of points, so that every file is larger than the bytes between two
@@ -65,8 +66,8 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 
 fn read(path: &Path, watch: Watch) -> Result<usize> {
     match path.extension().and_then(|e| e.to_str()) {
-        Some("geojson") => geojson::read_layer_with(path, None, watch).map(|layer| layer.shapes.len()),
-        Some("shp") => shapefile::read_layer_with(path, None, watch).map(|layer| layer.shapes.len()),
+        Some("geojson") => geojson::read_layer_with(path, &Options::default(), watch).map(|layer| layer.shapes.len()),
+        Some("shp") => shapefile::read_layer_with(path, &Options::default(), watch).map(|layer| layer.shapes.len()),
         Some("tif") => geotiff::open(path)?.read_grid_with(watch).map(|grid| grid.values.len()),
         Some("node") => triangle::read_with(path, watch).map(|graph| graph.nodes.points.len()),
         _ => mesh::read_triangles_with(path, watch).map(|mesh| mesh.vertices.len()),

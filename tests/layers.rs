@@ -295,6 +295,37 @@ fn an_index_in_another_order_decides_the_rows() {
 }
 
 #[test]
+fn columns_follow_their_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = three_lines(folder.path());
+    let read = |columns: &[&str]| {
+        let options = layer::Options { columns, ..layer::Options::default() };
+        shapefile::read_layer_with(&path, &options, &|_| Ok(()))
+    };
+    assert_eq!(read(&["h"]).unwrap().column("H").unwrap().values, [10., 20., 30.]);
+    change(&path.with_extension("shx"), |bytes| {
+        let (a, b) = bytes[100..].split_at_mut(8);
+        a.swap_with_slice(&mut b[..8]);
+    });
+    let layer = read(&["h", "H"]).unwrap();
+    assert_eq!(layer.columns[0].values, [20., 10., 30.]);
+    assert_eq!((layer.columns.len(), layer.columns[1].name.as_str()), (2, "H"));
+    assert_eq!(x_and_height(&layer), [(1., 0.), (2., 0.), (3., 0.)], "heights are those of the geometry");
+
+    let error = read(&["H", "WIDTH"]).unwrap_err().to_string();
+    assert!(error.ends_with("three.dbf: there is no field WIDTH"), "{error}");
+    change(&path.with_extension("dbf"), |bytes| {
+        let at = bytes.windows(2).rposition(|text| text == b"20").unwrap();
+        bytes[at..at + 2].copy_from_slice(b"no");
+    });
+    let error = read(&["H"]).unwrap_err().to_string();
+    assert!(error.contains("three.shp: record 1: field H: expected a number, found 'no"), "{error}");
+    std::fs::remove_file(path.with_extension("dbf")).unwrap();
+    let error = read(&["H"]).unwrap_err().to_string();
+    assert!(error.contains("no .dbf next to it with the field H"), "{error}");
+}
+
+#[test]
 fn older_copies_of_records_are_left_out() {
     let folder = tempfile::tempdir().unwrap();
     let path = three_lines(folder.path());

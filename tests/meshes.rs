@@ -74,8 +74,7 @@ fn ply_tells_breaklines_clip_lines_rim_and_pieces_apart() {
     let cut = Mesh::of(Triangles {
         vertices: (0..8).map(|i| at(i / 2, i % 2)).collect(),
         faces: (0..3).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect(),
-        constrained_edges: vec![[3, 2]],
-        clip_edges: vec![[1, 0], [6, 7]],
+        lines: vec![([1, 0], EdgeKind::Clip), ([6, 7], EdgeKind::Clip), ([3, 2], EdgeKind::Breakline)],
         fragments: vec![1, 4],
         ..Triangles::default()
     });
@@ -373,11 +372,11 @@ fn errors_name_the_value_and_the_place() {
         ),
         (ply("18446744073709551616", "1", square), "line 3: '18446744073709551616' is not a count"),
         (
-            ply("4", "1", &format!("{square} 3 0 1 2 7 0 0 0")).replace(
+            ply("4", "1", &format!("{square} 3 0 1 2 9 0 0 0")).replace(
                 "end_header",
                 "property uchar edge1\nproperty uchar edge2\nproperty uchar edge3\nproperty uchar piece\nend_header",
             ),
-            "face 0: edge1 is 7, expected 0 (plain), 1 (breakline), 2 (clip line) or 3 (rim)",
+            "face 0: edge1 is 9, expected the number of a kind of edges, 0 to 8",
         ),
         ("solid x\n".into(), "the file does not begin with 'ply'"),
         ("ply\nformat ascii 1.0\n".into(), "the header has no end"),

@@ -49,7 +49,7 @@ fn check(points: &[&str], ground_only: bool, breaklines: Option<&str>, expected:
     lines.iter().for_each(|line| builder.add_breakline(line));
     let tin = builder.build().unwrap();
     let report = tin.report();
-    assert_eq!([report.vertices, report.triangles, report.constrained_edges], expected);
+    assert_eq!([report.vertices, report.triangles, report.edges.total()], expected);
     assert_eq!(missing(&tin, &lines), 0);
     assert_eq!(tin.check(Level::Law), []);
 }

@@ -66,7 +66,7 @@ fn error(tin: &Tin) -> [f64; 2] {
 fn the_surface_has_the_counts_of_triangle() {
     let report = tin(&parts("breaklines.shp")).report().clone();
     assert_eq!([report.vertices, report.triangles], [60_492, 120_954]);
-    assert_eq!([report.breaklines, report.constrained_edges, report.crossings], [9, 1334, 0]);
+    assert_eq!([report.breaklines, report.edges.total(), report.crossings], [9, 1334, 0]);
     assert_eq!([report.points, report.duplicates, report.points_on_breaklines], [59_177, 25, 0]);
 }
 

@@ -9,7 +9,7 @@ use super::wkt_tree::Node;
 
 /// The names of a datum in a definition.
 pub(super) struct DatumNames {
-    /// With underscores for blanks, as in WKT 1.
+    /// The name of the datum, with underscores for blanks, as in WKT 1.
     pub(super) name: String,
     /// Code of the prime meridian.
     pub(super) meridian: Option<u32>,

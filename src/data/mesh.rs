@@ -12,7 +12,7 @@ pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
     neighbors: Vec<[u32; 3]>,
-    /// Plain, breakline or clip; rim edges follow from the neighbors.
+    /// Rim edges are plain here; they follow from the neighbors.
     kinds: Vec<[EdgeKind; 3]>,
     /// In ascending order.
     fragments: Vec<u32>,
@@ -85,8 +85,8 @@ impl Mesh {
         constrained_edges: &[[u32; 2]],
         crs: Option<Crs>,
     ) -> Result<Self> {
-        let constrained_edges = constrained_edges.to_vec();
-        Self::of(Triangles { vertices, faces, constrained_edges, crs, ..Triangles::default() })
+        let lines = constrained_edges.iter().map(|&edge| (edge, EdgeKind::Breakline)).collect();
+        Self::of(Triangles { vertices, faces, lines, crs, ..Triangles::default() })
     }
 
     /// Like [`new`](Self::new), but from everything that a file can contain.
@@ -96,7 +96,7 @@ impl Mesh {
     /// # Errors
     /// Those of [`new`](Self::new), and if a clip edge is not an edge of a face.
     pub fn of(triangles: Triangles) -> Result<Self> {
-        let Triangles { vertices, mut faces, constrained_edges, clip_edges, fragments, crs, .. } = triangles;
+        let Triangles { vertices, mut faces, lines, fragments, crs, .. } = triangles;
         check_numbers(&vertices, &faces)?;
         check_values(&vertices, &faces)?;
         turn_counter_clockwise(&vertices, &mut faces)?;
@@ -105,7 +105,7 @@ impl Mesh {
             (neighbors, flaws) if flaws.is_empty() => neighbors,
             (_, flaws) => return Err(folded(flaws[0])),
         };
-        let (kinds, unmet) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
+        let (kinds, unmet) = edges.kinds(faces.len(), &lines);
         if let Some(flaw) = unmet.first() {
             return Err(Error::format(flaw.to_string()));
         }
@@ -124,8 +124,7 @@ impl Mesh {
     /// # Complexity
     /// That of [`new`](Self::new).
     pub fn link(triangles: Triangles) -> Result<(Self, Vec<LinkFlaw>)> {
-        let Triangles { vertices, mut faces, constrained_edges, clip_edges, fragments, neighbors: stated, crs } =
-            triangles;
+        let Triangles { vertices, mut faces, lines, fragments, neighbors: stated, crs } = triangles;
         check_numbers(&vertices, &faces)?;
         let is_turned = is_clockwise(&vertices, &faces);
         if is_turned {
@@ -134,7 +133,7 @@ impl Mesh {
         let edges = EdgeTable::new(vertices.len(), &faces);
         let (neighbors, mut flaws) = edges.neighbors(&faces);
         flaws.extend(strays(&vertices, &faces));
-        let (kinds, unmet) = edges.kinds(faces.len(), &constrained_edges, &clip_edges);
+        let (kinds, unmet) = edges.kinds(faces.len(), &lines);
         flaws.extend(unmet);
         for (face, mut stated) in (0u32..).zip(stated.into_iter().flatten()).take(faces.len()) {
             if is_turned {
@@ -315,21 +314,13 @@ impl EdgeTable {
 
     /// Returns the kinds of the sides of `face_count` faces, and a flaw for each listed edge that
     /// is not a side of any face.
-    fn kinds(
-        &self,
-        face_count: usize,
-        constrained_edges: &[[u32; 2]],
-        clip_edges: &[[u32; 2]],
-    ) -> (Vec<[EdgeKind; 3]>, Vec<LinkFlaw>) {
+    fn kinds(&self, face_count: usize, lines: &[([u32; 2], EdgeKind)]) -> (Vec<[EdgeKind; 3]>, Vec<LinkFlaw>) {
         let mut kinds = vec![[EdgeKind::Plain; 3]; face_count];
         let mut strays = Vec::new();
-        // Breaklines last: an edge that is both is a breakline.
-        for (edges, kind) in [(clip_edges, EdgeKind::Clip), (constrained_edges, EdgeKind::Breakline)] {
-            for &edge in edges {
-                let halves = self.find(edge);
-                strays.extend(halves.is_empty().then_some(LinkFlaw::NoEdge(edge)));
-                halves.iter().for_each(|half| kinds[half.face()][half.side()] = kind);
-            }
+        for &(edge, kind) in lines {
+            let halves = self.find(edge);
+            strays.extend(halves.is_empty().then_some(LinkFlaw::NoEdge(edge)));
+            halves.iter().for_each(|half| kinds[half.face()][half.side()] = kind);
         }
         (kinds, strays)
     }

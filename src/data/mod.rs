@@ -8,7 +8,7 @@
 //! | what | record | stream |
 //! |---|---|---|
 //! | points | [`PointBatch`] (columns), [`PointInfo`], [`Columns`], [`Lattice`], [`LasHead`] | [`PointSource`], [`PointSink`] |
-//! | lines, polygons, points of a vector file | [`Shape`], [`Layer`] | |
+//! | lines, polygons, points of a vector file | [`Shape`], [`Layer`], [`Column`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
 //! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked, [`SurfaceFacts`] counted | [`Surface`] |
@@ -49,8 +49,8 @@ pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{not_finite, orientation};
 pub use points::{Columns, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
-pub use shape::{Layer, Shape, ShapeKind};
-pub use surface::{BaseFace, EdgeKind, Face, Surface};
-pub(crate) use surface::{LineEdges, corners, faces, faces_under};
+pub use shape::{Column, Layer, Shape, ShapeKind};
+pub use surface::{BaseFace, EdgeKind, Face, LineEdges, Surface};
+pub(crate) use surface::{corners, faces, faces_under};
 pub use surface_facts::SurfaceFacts;
 pub use triangles::{LinkFlaw, Triangles};

@@ -66,6 +66,15 @@ impl Shape {
     }
 }
 
+/// The numbers of one attribute of a vector layer.
+#[derive(Debug, Clone, Default)]
+pub struct Column {
+    /// The name of the attribute, as it was requested from the reader.
+    pub name: String,
+    /// One number per shape, in the order of [`Layer::shapes`]; NaN if the record has none.
+    pub values: Vec<f64>,
+}
+
 /// The shapes of a vector file.
 #[derive(Debug, Clone, Default)]
 pub struct Layer {
@@ -77,11 +86,19 @@ pub struct Layer {
     pub crs: Option<Crs>,
     /// The names of the attributes.
     pub fields: Vec<String>,
+    /// The numbers of the attributes that were requested, in the order of the request.
+    pub columns: Vec<Column>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl Layer {
+    /// Returns the column with this name: as written, else in any case.
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        let exact = self.columns.iter().find(|column| column.name == name);
+        exact.or_else(|| self.columns.iter().find(|column| column.name.eq_ignore_ascii_case(name)))
+    }
+
     /// Returns the parts of all lines and the rings of all polygons.
     pub fn lines(&self) -> impl Iterator<Item = &[[f64; 3]]> + '_ {
         self.shapes.iter().flat_map(|shape| match shape {

@@ -11,12 +11,22 @@ pub enum EdgeKind {
     /// Inside the surface, with no line along it.
     #[default]
     Plain,
-    /// Part of a breakline (or of another constraint of the triangulation).
+    /// Part of a hard breakline (or of another constraint of the triangulation).
     Breakline,
     /// Part of a line that the surface was cut along: a boundary or bounds.
     Clip,
     /// At the rim of the surface, with no line along it.
     Rim,
+    /// Part of a soft line: smooth methods of interpolation pass over it.
+    Soft,
+    /// Part of a line that was draped over the finished surface.
+    Draped,
+    /// Part of the upper or the lower chain of a wall.
+    Wall,
+    /// Part of the shore of level water.
+    Shore,
+    /// Part of a bank of a river.
+    Bank,
 }
 
 /// A face of a surface, with its corners and the kinds of its edges.
@@ -47,7 +57,17 @@ pub struct BaseFace {
 
 impl EdgeKind {
     /// All kinds, each at the position of the number that stands for it in files.
-    pub const ALL: [EdgeKind; 4] = [EdgeKind::Plain, EdgeKind::Breakline, EdgeKind::Clip, EdgeKind::Rim];
+    pub const ALL: [EdgeKind; 9] = [
+        EdgeKind::Plain,
+        EdgeKind::Breakline,
+        EdgeKind::Clip,
+        EdgeKind::Rim,
+        EdgeKind::Soft,
+        EdgeKind::Draped,
+        EdgeKind::Wall,
+        EdgeKind::Shore,
+        EdgeKind::Bank,
+    ];
 
     /// Returns the number that stands for the kind in files.
     pub fn number(self) -> u8 {
@@ -56,18 +76,54 @@ impl EdgeKind {
             EdgeKind::Breakline => 1,
             EdgeKind::Clip => 2,
             EdgeKind::Rim => 3,
+            EdgeKind::Soft => 4,
+            EdgeKind::Draped => 5,
+            EdgeKind::Wall => 6,
+            EdgeKind::Shore => 7,
+            EdgeKind::Bank => 8,
         }
     }
 
-    /// Returns true for an edge at which the surface may have a kink: smooth interpolation stops
-    /// there.
-    pub fn is_hard(self) -> bool {
-        matches!(self, EdgeKind::Breakline)
+    /// Returns true for an edge on a line of any kind.
+    pub fn is_constrained(self) -> bool {
+        !matches!(self, EdgeKind::Plain | EdgeKind::Rim)
     }
 
-    /// Returns true for an edge on a breakline or a clip line.
-    pub fn is_constrained(self) -> bool {
-        matches!(self, EdgeKind::Breakline | EdgeKind::Clip)
+    /// Returns true for an edge that smooth methods of interpolation do not pass over: on a hard
+    /// breakline, a wall, a shore or a bank.
+    pub fn is_hard(self) -> bool {
+        matches!(self, EdgeKind::Breakline | EdgeKind::Wall | EdgeKind::Shore | EdgeKind::Bank)
+    }
+
+    /// Returns the position of the kind among all kinds: where several lines share an edge, or meet
+    /// with different heights, the one with the lowest rank counts.
+    pub(crate) fn rank(self) -> u8 {
+        match self {
+            EdgeKind::Shore => 0,
+            EdgeKind::Bank => 1,
+            EdgeKind::Wall => 2,
+            EdgeKind::Breakline => 3,
+            EdgeKind::Soft => 4,
+            EdgeKind::Draped => 5,
+            EdgeKind::Clip => 6,
+            EdgeKind::Rim => 7,
+            EdgeKind::Plain => 8,
+        }
+    }
+
+    /// Returns what the edges are part of, in the plural: "breaklines", "clip lines".
+    pub fn noun(self) -> &'static str {
+        match self {
+            EdgeKind::Plain => "plain edges",
+            EdgeKind::Breakline => "breaklines",
+            EdgeKind::Clip => "clip lines",
+            EdgeKind::Rim => "rim",
+            EdgeKind::Soft => "soft lines",
+            EdgeKind::Draped => "draped lines",
+            EdgeKind::Wall => "walls",
+            EdgeKind::Shore => "shores",
+            EdgeKind::Bank => "banks",
+        }
     }
 }
 
@@ -104,16 +160,16 @@ pub trait Surface: Sync {
 
     /// The kind of the edge opposite corner `i`; both faces of an edge return the same.
     ///
-    /// Where a clip line runs along a breakline, the edge is a [`Breakline`](EdgeKind::Breakline).
+    /// Where several lines share an edge, the first of these counts: shore, bank, wall, breakline,
+    /// soft line, draped line, clip line.
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind;
 
-    /// Returns false if no edge is on a breakline or a clip line, so that callers can skip a
-    /// search.
+    /// Returns false if no edge is on a line, so that callers can skip a search.
     fn has_lines(&self) -> bool {
         true
     }
 
-    /// Returns true if the edge opposite corner `i` lies on a breakline or a clip line.
+    /// Returns true if the edge opposite corner `i` lies on a line.
     fn is_constrained(&self, face: u32, i: usize) -> bool {
         self.edge_kind(face, i).is_constrained()
     }
@@ -208,26 +264,45 @@ pub trait Surface: Sync {
     }
 }
 
-/// The numbers of edges of a surface that lie on lines.
+/// The numbers of edges of a surface that lie on lines, by their kinds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct LineEdges {
-    /// On breaklines.
-    pub(crate) breaklines: usize,
-    /// On clip lines.
-    pub(crate) clips: usize,
-}
+pub struct LineEdges([usize; EdgeKind::ALL.len()]);
 
 impl LineEdges {
+    /// Returns the number of edges of a kind; 0 for plain edges and the rim, which are not counted.
+    pub fn of(&self, kind: EdgeKind) -> usize {
+        self.0[usize::from(kind.number())]
+    }
+
+    /// Returns the number of edges of all kinds.
+    pub fn total(&self) -> usize {
+        self.0.iter().sum()
+    }
+
+    /// Returns the kinds of which there are edges, with their numbers.
+    pub fn kinds(&self) -> impl Iterator<Item = (EdgeKind, usize)> + '_ {
+        EdgeKind::ALL.into_iter().map(|kind| (kind, self.of(kind))).filter(|(_, count)| *count > 0)
+    }
+
+    /// Returns true if there are edges of kinds other than breaklines and clip lines.
+    pub(crate) fn has_various(&self) -> bool {
+        self.kinds().any(|(kind, _)| !matches!(kind, EdgeKind::Breakline | EdgeKind::Clip))
+    }
+
+    /// Adds edges of a kind; plain edges and the rim do not count.
+    pub(crate) fn add_edges(&mut self, kind: EdgeKind, count: usize) {
+        if kind.is_constrained() {
+            self.0[usize::from(kind.number())] += count;
+        }
+    }
+
     /// Adds the edges of a face. An edge between two faces counts with the face of the smaller
     /// number, so that it counts once when all faces are added.
     pub(crate) fn add<S: Surface + ?Sized>(&mut self, surface: &S, face: u32, edges: [EdgeKind; 3]) {
         for (i, kind) in edges.into_iter().enumerate() {
-            let count = match kind {
-                EdgeKind::Breakline => &mut self.breaklines,
-                EdgeKind::Clip => &mut self.clips,
-                EdgeKind::Plain | EdgeKind::Rim => continue,
-            };
-            *count += usize::from(surface.neighbor(face, i).is_none_or(|other| face < other));
+            if kind.is_constrained() && surface.neighbor(face, i).is_none_or(|other| face < other) {
+                self.add_edges(kind, 1);
+            }
         }
     }
 }

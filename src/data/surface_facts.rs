@@ -8,10 +8,8 @@ pub struct SurfaceFacts {
     pub vertices: usize,
     /// Triangles.
     pub triangles: usize,
-    /// Edges on breaklines.
-    pub breaklines: usize,
-    /// Edges on clip lines.
-    pub clips: usize,
+    /// Edges on lines.
+    pub edges: LineEdges,
     /// The box around these vertices.
     pub extent: Bounds,
 }
@@ -23,11 +21,11 @@ impl SurfaceFacts {
     /// Linear.
     pub fn of(surface: &dyn Surface) -> Self {
         let mut is_used = vec![false; surface.vertex_count()];
-        let mut lines = LineEdges::default();
+        let mut edges = LineEdges::default();
         let (mut vertices, mut triangles, mut extent) = (0, 0, Bounds::default());
         faces(surface).for_each(|face| {
             triangles += 1;
-            lines.add(surface, face.number, face.edges);
+            edges.add(surface, face.number, face.edges);
             for vertex in face.corners {
                 if !std::mem::replace(&mut is_used[vertex as usize], true) {
                     vertices += 1;
@@ -35,7 +33,6 @@ impl SurfaceFacts {
                 }
             }
         });
-        let LineEdges { breaklines, clips } = lines;
-        SurfaceFacts { vertices, triangles, breaklines, clips, extent }
+        SurfaceFacts { vertices, triangles, edges, extent }
     }
 }

@@ -1,4 +1,4 @@
-use super::Surface;
+use super::{EdgeKind, Surface};
 use crate::crs::Crs;
 
 /// Triangles as a file lists them; they need not form a surface.
@@ -8,10 +8,8 @@ pub struct Triangles {
     pub vertices: Vec<[f64; 3]>,
     /// The corners of each face, as indices of vertices.
     pub faces: Vec<[u32; 3]>,
-    /// Edges that are breaklines or other constraints.
-    pub constrained_edges: Vec<[u32; 2]>,
-    /// Edges along which the surface was cut.
-    pub clip_edges: Vec<[u32; 2]>,
+    /// Edges on lines, with their kinds. An edge that is listed with several kinds has the last.
+    pub lines: Vec<([u32; 2], EdgeKind)>,
     /// The indices of the faces that are fragments of triangles that were cut, in ascending order.
     pub fragments: Vec<u32>,
     /// The face opposite each corner of each face, if the file states neighbors.

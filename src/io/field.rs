@@ -2,6 +2,9 @@
 
 use crate::error::Error;
 
+/// Limit for the characters of a value in a message.
+const MAX_SHOWN: usize = 60;
+
 /// Returns the error for an attribute that does not exist; it lists the ones that do.
 pub(super) fn no_such_field<'a>(name: &str, fields: impl Iterator<Item = &'a str>) -> Error {
     let fields: Vec<&str> = fields.collect();
@@ -10,4 +13,11 @@ pub(super) fn no_such_field<'a>(name: &str, fields: impl Iterator<Item = &'a str
         [] => error.cure("the file has no fields; heights can only come from its geometry"),
         _ => error.cure(format!("name one of {}", fields.join(", "))),
     }
+}
+
+/// Returns the error for a value of a requested attribute that is not a number.
+pub(super) fn not_a_number(field: &str, value: &str) -> Error {
+    let start: String = value.chars().take(MAX_SHOWN).collect();
+    Error::format(format!("field {field}: expected a number, found '{start}'"))
+        .cure("correct the value, or leave it empty if there is none")
 }

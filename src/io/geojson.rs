@@ -7,13 +7,14 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::contour_summary::ContourSummary;
-use super::field::no_such_field;
+use super::field::{no_such_field, not_a_number};
+use super::layer_options::Options;
 use super::shapefile::parse_number;
 use super::watch::{Watch, bytes_of, unwatched};
 use super::watched_value;
 use super::{Destination, Output};
 use crate::crs::{Crs, CrsKind};
-use crate::data::{ContourLine, Layer, Shape};
+use crate::data::{Column, ContourLine, Layer, Shape};
 use crate::error::{Error, Result};
 use crate::triangulation::num::unsigned_zero;
 
@@ -42,19 +43,20 @@ type Object = Map<String, Value>;
 /// Linear. The file and all its values are in memory while it is read, which is many times the size
 /// of the shapes.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
-    read_layer_with(path, z_field, &unwatched)
+    read_layer_with(path, &Options { height_field: z_field, ..Options::default() }, &unwatched)
 }
 
-/// Like [`read_layer`], but watched. Nothing is counted.
+/// Like [`read_layer`], but with the numbers of properties, and watched. Nothing is counted.
 ///
 /// # Errors
-/// Those of [`read_layer`], and that of the watch.
-pub fn read_layer_with(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
+/// Those of [`read_layer`], and that of the watch; if no feature has a requested property, or a
+/// value of one is not a number.
+pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes_of(path, watch)?;
-    parse(&bytes, z_field, watch).map_err(|e| e.in_file(path))
+    parse(&bytes, options, watch).map_err(|e| e.in_file(path))
 }
 
-fn parse(bytes: &[u8], z_field: Option<&str>, watch: Watch) -> Result<Layer> {
+fn parse(bytes: &[u8], options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let value = watched_value::of(bytes, watch)?.map_err(|e| {
         Error::format(format!("not JSON: {e}")).cure("GeoJSON that is cut short cannot be read in part")
@@ -62,7 +64,11 @@ fn parse(bytes: &[u8], z_field: Option<&str>, watch: Watch) -> Result<Layer> {
     let Value::Object(root) = value else {
         return Err(Error::format("not GeoJSON: no object with a type"));
     };
-    let mut reader = Reader { layer: Layer { format: "GeoJSON".to_owned(), ..Layer::default() }, ..Reader::default() };
+    let columns = options.columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() });
+    let layer = Layer { format: "GeoJSON".to_owned(), columns: columns.collect(), ..Layer::default() };
+    let has_column = vec![false; options.columns.len()];
+    let mut reader = Reader { layer, has_column, ..Reader::default() };
+    let z_field = options.height_field;
     match kind(&root)? {
         "FeatureCollection" => {
             for (i, feature) in array(&root, "features")?.iter().enumerate() {
@@ -86,6 +92,8 @@ struct Reader {
     found: usize,
     not_numbers: usize,
     first_text: Option<String>,
+    /// For each column, true if a feature has it.
+    has_column: Vec<bool>,
 }
 
 impl Reader {
@@ -109,32 +117,33 @@ impl Reader {
         }
         let height = z_field.map(|name| self.height(properties, name));
         match feature.get("geometry") {
-            Some(Value::Object(geometry)) => self.geometry(geometry, height),
-            Some(Value::Null) | None => {
-                self.layer.shapes.push(Shape::Null);
-                Ok(())
-            }
-            Some(_) => Err(Error::format("its geometry is not an object")),
+            Some(Value::Object(geometry)) => self.geometry(geometry, height)?,
+            Some(Value::Null) | None => self.layer.shapes.push(Shape::Null),
+            Some(_) => return Err(Error::format("its geometry is not an object")),
         }
+        self.add_to_columns(properties)
     }
 
     fn height(&mut self, properties: &Object, name: &str) -> f64 {
-        let value = properties
-            .get(name)
-            .or_else(|| properties.iter().find(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value));
+        let value = property(properties, name);
         self.found += usize::from(value.is_some());
-        let text = match value {
-            None | Some(Value::Null) => return f64::NAN,
-            Some(Value::Number(number)) => return number.as_f64().unwrap_or(f64::NAN),
-            Some(Value::String(text)) => match parse_number(text.trim()) {
-                Ok(z) => return z,
-                Err(text) => text,
-            },
-            Some(other) => other.to_string(),
-        };
-        self.not_numbers += 1;
-        self.first_text.get_or_insert(text);
-        f64::NAN
+        value.map_or(Ok(f64::NAN), number).unwrap_or_else(|text| {
+            self.not_numbers += 1;
+            self.first_text.get_or_insert(text);
+            f64::NAN
+        })
+    }
+
+    /// Adds the properties of a feature to the columns, once for each of its shapes.
+    fn add_to_columns(&mut self, properties: &Object) -> Result<()> {
+        let shapes = self.layer.shapes.len();
+        for (column, has_column) in self.layer.columns.iter_mut().zip(&mut self.has_column) {
+            let value = property(properties, &column.name);
+            *has_column |= value.is_some();
+            let value = value.map_or(Ok(f64::NAN), number).map_err(|text| not_a_number(&column.name, &text))?;
+            column.values.resize(shapes, value);
+        }
+        Ok(())
     }
 
     /// Adds a geometry; if `height` is given, it replaces the heights.
@@ -176,7 +185,12 @@ impl Reader {
     }
 
     fn finish(self, root: &Object, z_field: Option<&str>) -> Result<Layer> {
-        let Reader { mut layer, fields, found, not_numbers, first_text } = self;
+        let Reader { mut layer, fields, found, not_numbers, first_text, has_column } = self;
+        if let Some((column, _)) = layer.columns.iter().zip(has_column).find(|&(_, has_column)| !has_column)
+            && !layer.shapes.is_empty()
+        {
+            return Err(no_such_field(&column.name, fields.iter().map(String::as_str)));
+        }
         if let Some(name) = z_field {
             if found == 0 && !layer.shapes.is_empty() {
                 return Err(no_such_field(name, fields.iter().map(String::as_str)));
@@ -212,6 +226,23 @@ impl Reader {
             }
         };
         Ok(layer)
+    }
+}
+
+/// Returns the property with this name: as written, else in any case.
+fn property<'a>(properties: &'a Object, name: &str) -> Option<&'a Value> {
+    let in_any_case = || properties.iter().find(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value);
+    properties.get(name).or_else(in_any_case)
+}
+
+/// Returns the number in a property or in its text, NaN if it is null. If it contains something
+/// else, the error is its text.
+fn number(value: &Value) -> std::result::Result<f64, String> {
+    match value {
+        Value::Null => Ok(f64::NAN),
+        Value::Number(number) => Ok(number.as_f64().unwrap_or(f64::NAN)),
+        Value::String(text) => parse_number(text.trim()),
+        other => Err(other.to_string()),
     }
 }
 
@@ -353,7 +384,15 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Layer> {
-        parse(text.as_bytes(), None, &unwatched)
+        parse(text.as_bytes(), &Options::default(), &unwatched)
+    }
+
+    fn read_heights(text: &str, field: &str) -> Result<Layer> {
+        parse(text.as_bytes(), &Options { height_field: Some(field), ..Options::default() }, &unwatched)
+    }
+
+    fn read_columns(text: &str, columns: &[&str]) -> Result<Layer> {
+        parse(text.as_bytes(), &Options { columns, ..Options::default() }, &unwatched)
     }
 
     fn features(list: &[&str]) -> String {
@@ -414,22 +453,39 @@ mod tests {
     #[test]
     fn heights_from_a_property() {
         let text = features(&[LINE, "null", LINE]).replace("2.5", "\"12,5\"");
-        let layer = parse(text.as_bytes(), Some("z"), &unwatched).unwrap();
+        let layer = read_heights(&text, "z").unwrap();
         let heights: Vec<f64> = layer.shapes.iter().flat_map(Shape::vertices).map(|v| v[2]).collect();
         assert_eq!(heights, [0.5, 0.5, 12.5, 12.5]);
-        let error = parse(text.as_bytes(), Some("ELEV"), &unwatched).unwrap_err();
+        let error = read_heights(&text, "ELEV").unwrap_err();
         assert_eq!(
             (error.to_string().as_str(), error.cure_text()),
             ("there is no field ELEV", Some("name one of Z, name"))
         );
-        let error = parse(text.as_bytes(), Some("name"), &unwatched).unwrap_err();
+        let error = read_heights(&text, "name").unwrap_err();
         assert_eq!(error.to_string(), "property name holds no numbers; the first value is n");
         let text = features(&[LINE, LINE]).replace("1.5", "\"high\"");
-        let layer = parse(text.as_bytes(), Some("Z"), &unwatched).unwrap();
+        let layer = read_heights(&text, "Z").unwrap();
         assert!(layer.warnings[0].contains("no number in 1 features (the first: high)"));
         let text = features(&[LINE, LINE]).replace("1.5", "null");
-        let layer = parse(text.as_bytes(), Some("Z"), &unwatched).unwrap();
+        let layer = read_heights(&text, "Z").unwrap();
         assert!(layer.shapes[1].vertices().all(|v| v[2].is_nan()));
+    }
+
+    #[test]
+    fn columns_have_a_number_for_each_shape() {
+        let both = format!(r#"{{"type":"GeometryCollection","geometries":[{LINE},{LINE}]}}"#);
+        let text = features(&[&both, "null", LINE, LINE]).replace("2.5", "null").replace(r#""Z":3.5"#, r#""z":"3,5""#);
+        let layer = read_columns(&text, &["z"]).unwrap();
+        assert_eq!((layer.shapes.len(), layer.columns.len()), (5, 1));
+        let values = &layer.column("Z").unwrap().values;
+        assert_eq!((&values[..3], values[3].is_nan(), values[4]), (&[0.5, 0.5, 1.5][..], true, 3.5));
+        let error = read_columns(&text, &["Z", "WIDTH"]).unwrap_err();
+        assert_eq!(error.to_string(), "there is no field WIDTH");
+        assert_eq!(error.cure_text(), Some("name one of Z, name, z"));
+        let error = read_columns(&text.replace("1.5", "true"), &["Z"]).unwrap_err();
+        assert_eq!(error.to_string(), "feature 2: field Z: expected a number, found 'true'");
+        assert!(read_columns(LINE, &["Z"]).unwrap_err().to_string().contains("no field Z"));
+        assert_eq!(read_columns(&features(&[]), &["Z"]).unwrap().columns[0].values, [0.0; 0]);
     }
 
     #[test]
@@ -472,15 +528,15 @@ mod tests {
         let mut bytes = Vec::new();
         let summary = write(&mut bytes, &mut lines.clone().into_iter(), None).unwrap();
         assert_eq!((summary.lines, summary.vertices, summary.closed), (2, 6, 1));
-        let layer = parse(&bytes, Some("ELEV"), &unwatched).unwrap();
+        let layer = read_heights(std::str::from_utf8(&bytes).unwrap(), "ELEV").unwrap();
         assert_eq!(layer.fields, ["ELEV", "ID"]);
         for (shape, line) in layer.shapes.iter().zip([&lines[0], &lines[2]]) {
             let vertices: Vec<[f64; 3]> = line.points.iter().map(|p| [p[0], p[1], line.level]).collect();
             assert_eq!(*shape, Shape::Lines(vec![vertices]));
         }
-        assert_eq!(parse(&bytes, None, &unwatched).unwrap().shapes, layer.shapes);
+        assert_eq!(read(std::str::from_utf8(&bytes).unwrap()).unwrap().shapes, layer.shapes);
         let mut bytes = Vec::new();
         write(&mut bytes, &mut std::iter::empty(), None).unwrap();
-        assert!(parse(&bytes, None, &unwatched).unwrap().shapes.is_empty());
+        assert!(read(std::str::from_utf8(&bytes).unwrap()).unwrap().shapes.is_empty());
     }
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::formats::{self, Reader};
+pub use super::layer_options::Options;
 use super::watch::{Watch, unwatched};
 use crate::data::Layer;
 use crate::error::{Error, Result};
@@ -17,14 +18,16 @@ use crate::error::{Error, Result};
 /// # Errors
 /// If the file does not exist or is not a vector layer.
 pub fn read(spec: &str) -> Result<Layer> {
-    read_with(spec, &unwatched)
+    read_with(spec, &[], &unwatched)
 }
 
-/// Like [`read`], but watched: the bytes that were parsed are counted, if the format allows it.
+/// Like [`read`], but with the numbers of the attributes that `columns` names, and watched: the
+/// bytes that were parsed are counted, if the format allows it.
 ///
 /// # Errors
-/// Those of [`read`], and that of the watch.
-pub fn read_with(spec: &str, watch: Watch) -> Result<Layer> {
+/// Those of [`read`], and that of the watch; if an attribute does not exist, or a value is not a
+/// number.
+pub fn read_with(spec: &str, columns: &[&str], watch: Watch) -> Result<Layer> {
     let (path, field) = split(spec);
     if field == Some("") {
         return Err(Error::usage(format!("{spec}: no field after the colon")).cure("write FILE or FILE:FIELD"));
@@ -38,7 +41,7 @@ pub fn read_with(spec: &str, watch: Watch) -> Result<Layer> {
         )));
     }
     match formats::detect_file(&path)?.map(|format| format.reader) {
-        Some(Reader::Layer(read)) => read(&path, field, watch),
+        Some(Reader::Layer(read)) => read(&path, &Options { height_field: field, columns }, watch),
         _ => Err(unsupported(&path)),
     }
 }

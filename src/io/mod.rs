@@ -49,6 +49,7 @@ pub mod geojson;
 pub mod geotiff;
 pub mod las;
 pub mod layer;
+mod layer_options;
 mod listing;
 pub mod mapped;
 pub mod mesh;

@@ -12,6 +12,7 @@ use std::path::Path;
 
 use super::formats::{self, Format, HEAD, PointWriter, Product, Reader};
 use super::las::{Detail, Rounding};
+use super::layer_options;
 use super::output::Destination;
 pub use super::point_options::Options;
 use super::watch::unwatched;
@@ -47,9 +48,9 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     let head = head(&mut file).map_err(named)?;
     match formats::detect(&head, path).map(|format| format.reader) {
         Some(Reader::Points { file, .. }) => file(path, options),
-        Some(Reader::Layer(read)) => {
-            Ok(Box::new(from_layer(read(path, None, &unwatched)?).map_err(|e| e.in_file(path))?))
-        }
+        Some(Reader::Layer(read)) => Ok(Box::new(
+            from_layer(read(path, &layer_options::Options::default(), &unwatched)?).map_err(|e| e.in_file(path))?,
+        )),
         _ => Err(refusal(&head, path)),
     }
 }

@@ -60,7 +60,7 @@ pub struct PointFacts {
 /// Counts over all records of a vector layer.
 #[derive(Debug, Clone, Default)]
 pub struct LayerFacts {
-    /// As the reader calls it.
+    /// The name of the format, as the reader gives it.
     pub format: String,
     /// Records.
     pub records: usize,
@@ -85,7 +85,8 @@ pub struct LayerFacts {
 /// The header of a raster, and counts over its cells.
 #[derive(Debug, Clone)]
 pub struct RasterFacts {
-    /// As the reader calls it: "GeoTIFF, float32, 1 band, compression DEFLATE, tiles of 256 x 256".
+    /// The format, as the reader describes it: "GeoTIFF, float32, 1 band, compression DEFLATE,
+    /// tiles of 256 x 256".
     pub format: String,
     /// The type of a cell, such as "float32", unless it is part of the format.
     pub sample: Option<String>,
@@ -214,7 +215,7 @@ impl PointFacts {
 }
 
 fn layer_facts(path: &Path, context: &Context) -> Result<LayerFacts> {
-    let layer = open::layer(path, context)?;
+    let layer = open::layer(path, &[], context)?;
     let mut facts = LayerFacts { records: layer.shapes.len(), ..LayerFacts::default() };
     for shape in &layer.shapes {
         *facts.kinds.entry(shape.kind()).or_default() += 1;

@@ -15,16 +15,16 @@ use crate::error::Result;
 /// Layers, each with its path.
 pub(super) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
 
-/// Reads layers, and adds a notice about each.
+/// Reads layers with these columns, and adds a notice about each layer.
 ///
 /// # Errors
-/// If one cannot be read, or the run is canceled.
-pub(super) fn read<'a>(inputs: &'a [Input<Layer>], journal: &Journal) -> Result<Layers<'a>> {
+/// If one cannot be read or lacks a column, or the run is canceled.
+pub(super) fn read<'a>(inputs: &'a [Input<Layer>], columns: &[&str], journal: &Journal) -> Result<Layers<'a>> {
     let mut layers = Vec::with_capacity(inputs.len());
     for input in inputs {
         journal.context.check()?;
         let path = input.path();
-        let layer = open::layer_of(input, &journal.context).map_err(|e| e.in_file(path))?;
+        let layer = open::layer_of(input, columns, &journal.context).map_err(|e| e.in_file(path))?;
         let (format, records) = (layer.format.clone(), layer.shapes.len());
         journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
         journal.add_warnings(path, &layer.warnings);
@@ -33,21 +33,34 @@ pub(super) fn read<'a>(inputs: &'a [Input<Layer>], journal: &Journal) -> Result<
     Ok(layers)
 }
 
-/// Returns the polygons of boundaries in the coordinate system of the result.
+/// Returns the polygons of several layers of boundaries in the coordinate system of the result.
 ///
 /// # Errors
-/// If a layer has no polygon, or a polygon cannot be reprojected.
-pub(super) fn polygons(boundary: &Layers, by_file: &[Option<usize>], transforms: &Transforms) -> Result<Vec<Rings>> {
-    let mut polygons = Vec::new();
+/// Those of [`polygons`].
+pub(super) fn boundaries(boundary: &Layers, by_file: &[Option<usize>], transforms: &Transforms) -> Result<Vec<Rings>> {
+    let mut all = Vec::new();
     for ((path, layer), transform) in boundary.iter().zip(by_file) {
-        for mut rings in lines::polygons(layer, path)? {
-            for ring in &mut rings {
-                let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
-                transforms.apply(*transform, &mut points).map_err(|e| e.in_file(path))?;
-                *ring = points.into_iter().map(|p| [p[0], p[1]]).collect();
-            }
-            polygons.push(rings);
-        }
+        all.extend(polygons(layer, path, "--boundary", *transform, transforms)?);
+    }
+    Ok(all)
+}
+
+/// Returns the polygons of a layer in the coordinate system of the result.
+///
+/// # Errors
+/// If the layer has no polygon, or a polygon cannot be reprojected.
+pub(super) fn polygons(
+    layer: &Layer,
+    path: &Path,
+    option: &str,
+    transform: Option<usize>,
+    transforms: &Transforms,
+) -> Result<Vec<Rings>> {
+    let mut polygons = lines::polygons(layer, path, option)?;
+    for ring in polygons.iter_mut().flatten() {
+        let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
+        transforms.apply(transform, &mut points).map_err(|e| e.in_file(path))?;
+        *ring = points.into_iter().map(|p| [p[0], p[1]]).collect();
     }
     Ok(polygons)
 }

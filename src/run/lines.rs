@@ -1,4 +1,4 @@
-//! Breaklines and boundaries from vector layers.
+//! Lines and polygons from vector layers.
 
 use std::path::Path;
 
@@ -24,20 +24,37 @@ pub(super) struct Drawn {
 /// # Errors
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
 /// record and the vertex, counted from 1.
-pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
+pub(super) fn with_heights(layer: &Layer, path: &Path, option: &str) -> Result<Vec<Drawn>> {
+    read(layer, path, option, |parts| check_heights(parts, layer, option))
+}
+
+/// Returns the lines of a layer and the rings of its polygons, with or without heights.
+///
+/// # Errors
+/// If there are none, or a coordinate in plan is not finite.
+pub(super) fn in_plan(layer: &Layer, path: &Path, option: &str) -> Result<Vec<Drawn>> {
+    read(layer, path, option, |parts| parts.iter().try_for_each(|part| check_sites(part)))
+}
+
+fn read(
+    layer: &Layer,
+    path: &Path,
+    option: &str,
+    check: impl Fn(&[Vec<[f64; 3]>]) -> Result<()>,
+) -> Result<Vec<Drawn>> {
     let mut lines = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
         let parts = match shape {
             Shape::Lines(parts) | Shape::Polygon(parts) => parts,
             Shape::Null | Shape::Points(_) | Shape::Triangles(_) => continue,
         };
-        check_heights(parts, layer).map_err(|e| at_record(e, path, record))?;
+        check(parts).map_err(|e| at_record(e, path, record))?;
         lines.extend(drawn(parts, record - 1));
     }
     if lines.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
             .in_file(path)
-            .cure("pass a layer of lines or polygons; points are inputs without an option"));
+            .cure(format!("{option} takes lines or polygons; points are inputs without an option")));
     }
     Ok(lines)
 }
@@ -47,15 +64,13 @@ pub(super) fn breaklines(layer: &Layer, path: &Path) -> Result<Vec<Drawn>> {
 ///
 /// # Errors
 /// If there are none, a coordinate is not finite, or the lines leave a gap.
-pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
+pub(super) fn polygons(layer: &Layer, path: &Path, option: &str) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
         let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else { continue };
         for part in parts {
-            if let Some(vertex) = part.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
-                return Err(at_record(not_finite(part, vertex), path, record));
-            }
+            check_sites(part).map_err(|e| at_record(e, path, record))?;
         }
         match shape {
             Shape::Polygon(_) => {
@@ -72,7 +87,7 @@ pub(super) fn polygons(layer: &Layer, path: &Path) -> Result<Vec<Rings>> {
     if polygons.is_empty() {
         return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
             .in_file(path)
-            .cure("a boundary consists of polygons, or of lines that close"));
+            .cure(format!("{option} takes polygons, or lines that close")));
     }
     Ok(polygons)
 }
@@ -84,10 +99,18 @@ fn drawn(parts: &[Vec<[f64; 3]>], fid: usize) -> impl Iterator<Item = Drawn> {
     lines.map(move |(number, points)| Drawn { fid, part: is_one_of_many.then_some(number), points: points.clone() })
 }
 
-fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer) -> Result<()> {
+/// Returns an error if a coordinate in plan is not finite.
+fn check_sites(part: &[[f64; 3]]) -> Result<()> {
+    match part.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+        Some(vertex) => Err(not_finite(part, vertex)),
+        None => Ok(()),
+    }
+}
+
+fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, option: &str) -> Result<()> {
     let mut vertices = parts.iter().flatten().peekable();
     if vertices.peek().is_some() && vertices.all(|p| p[2].is_nan()) {
-        return Err(Error::format("the breakline has no heights").cure(cure(layer)));
+        return Err(Error::format("the line has no heights").cure(cure(layer, option)));
     }
     for part in parts {
         if let Some(vertex) = part.iter().position(|p| !p.iter().all(|value| value.is_finite())) {
@@ -97,8 +120,8 @@ fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer) -> Result<()> {
     Ok(())
 }
 
-fn cure(layer: &Layer) -> String {
-    let cure = "name the attribute with the heights: --breaklines FILE:FIELD";
+fn cure(layer: &Layer, option: &str) -> String {
+    let cure = format!("name the attribute with the heights, {option} FILE:FIELD, or use --draped-lines");
     match layer.fields.as_slice() {
         [] => format!("{cure} (this layer has no attributes)"),
         fields => format!("{cure} (the attributes are {})", fields.join(", ")),
@@ -117,7 +140,7 @@ fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
         .cure("repair or remove the record")
 }
 
-fn at_record(error: Error, path: &Path, record: usize) -> Error {
+pub(super) fn at_record(error: Error, path: &Path, record: usize) -> Error {
     error.in_file(path).at(format!("record {record}"))
 }
 
@@ -132,6 +155,8 @@ fn kind_of(layer: &Layer) -> &str {
 mod tests {
     use super::*;
 
+    const OPTION: &str = "--breaklines";
+
     fn layer(shapes: Vec<Shape>) -> Layer {
         Layer { shapes, fields: vec!["ELEV".to_owned()], ..Layer::default() }
     }
@@ -142,22 +167,23 @@ mod tests {
         let line = vec![[5.0, 5.0, 1.0], [6.0, 5.0, 2.0]];
         let shapes = vec![Shape::Polygon(vec![ring.clone()]), Shape::Null, Shape::Lines(vec![line.clone()])];
         let drawn = |fid, points| Drawn { fid, part: None, points };
-        assert_eq!(breaklines(&layer(shapes), Path::new("l")).unwrap(), [drawn(0, ring), drawn(2, line)]);
+        assert_eq!(with_heights(&layer(shapes), Path::new("l"), OPTION).unwrap(), [drawn(0, ring), drawn(2, line)]);
     }
 
     #[test]
     fn parts_are_numbered_where_there_are_several() {
         let part = |y: f64| vec![[0.0, y, 1.0], [1.0, y, 2.0]];
         let shapes = vec![Shape::Lines(vec![part(0.0), vec![], part(1.0)])];
-        let lines = breaklines(&layer(shapes), Path::new("l")).unwrap();
+        let lines = with_heights(&layer(shapes), Path::new("l"), OPTION).unwrap();
         assert_eq!(lines.iter().map(|line| (line.fid, line.part)).collect::<Vec<_>>(), [(0, Some(1)), (0, Some(3))]);
     }
 
     #[test]
     fn lines_without_heights_are_refused_with_the_cure() {
         let flat = vec![[0.0, 0.0, f64::NAN], [1.0, 0.0, f64::NAN]];
-        let error = breaklines(&layer(vec![Shape::Null, Shape::Lines(vec![flat])]), Path::new("l.shp")).unwrap_err();
-        assert_eq!(error.to_string(), "l.shp: record 2: the breakline has no heights");
+        let shapes = vec![Shape::Null, Shape::Lines(vec![flat])];
+        let error = with_heights(&layer(shapes), Path::new("l.shp"), OPTION).unwrap_err();
+        assert_eq!(error.to_string(), "l.shp: record 2: the line has no heights");
         let cure = error.cure_text().unwrap();
         assert!(cure.contains("FILE:FIELD") && cure.contains("ELEV"), "{cure}");
     }
@@ -165,14 +191,15 @@ mod tests {
     #[test]
     fn one_missing_height_is_refused_by_record_and_vertex() {
         let line = vec![[0.0, 0.0, 1.0], [1.0, 0.0, f64::NAN]];
-        let error = breaklines(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp")).unwrap_err();
+        let error = with_heights(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp"), OPTION).unwrap_err();
         assert_eq!(error.to_string(), "l.shp: record 1: vertex 2 at 1 0 has no height, though others have");
     }
 
     #[test]
     fn a_boundary_with_a_gap_names_the_record() {
         let line = |x: f64| Shape::Lines(vec![vec![[x, 0.0, f64::NAN], [x + 1.0, 0.0, f64::NAN]]]);
-        let error = polygons(&layer(vec![line(0.0), Shape::Null, line(2.0)]), Path::new("l.shp")).unwrap_err();
+        let shapes = vec![line(0.0), Shape::Null, line(2.0)];
+        let error = polygons(&layer(shapes), Path::new("l.shp"), OPTION).unwrap_err();
         let text = error.to_string();
         assert!(
             text.starts_with("l.shp: record 1: the boundary is not closed: a line ends at 0 0, the next"),
@@ -183,7 +210,8 @@ mod tests {
     #[test]
     fn a_layer_of_the_wrong_kind_is_refused() {
         let points = layer(vec![Shape::Points(vec![[0.0; 3]])]);
-        assert!(breaklines(&points, Path::new("p")).is_err());
-        assert!(polygons(&points, Path::new("p")).is_err());
+        assert!(with_heights(&points, Path::new("p"), OPTION).is_err());
+        assert!(in_plan(&points, Path::new("p"), OPTION).is_err());
+        assert!(polygons(&points, Path::new("p"), OPTION).is_err());
     }
 }

@@ -96,10 +96,44 @@ pub enum Notice {
         count: usize,
         /// The largest difference.
         largest: Quantity,
-        /// Where that difference is.
+        /// The point with the largest difference.
         at: [f64; 2],
         /// The first of these points, at most five.
         first: Vec<CrossingNote>,
+    },
+    /// The default longest edge at the rim is far from the mean distance between points.
+    EdgeLimitUnusual {
+        /// The longest edge.
+        limit: Quantity,
+        /// The mean distance.
+        spacing: Quantity,
+    },
+    /// Points inside of closed breaklines of one height have other heights: the lines may be
+    /// shores.
+    LevelRings {
+        /// The number of such lines.
+        rings: usize,
+        /// The number of such points.
+        points: usize,
+        /// The line with the largest difference.
+        name: String,
+        /// That difference.
+        largest: Quantity,
+    },
+    /// The banks of a river contradict water: they rise downstream, or are not level across.
+    RiverHeights {
+        /// The river.
+        name: String,
+        /// The number of level lines at which the banks rise.
+        rising: usize,
+        /// How far they rise, at most.
+        largest_rise: Quantity,
+        /// Where.
+        rise_at: [f64; 2],
+        /// The largest difference between the banks.
+        largest_difference: Quantity,
+        /// Where.
+        difference_at: [f64; 2],
     },
     /// The given extent of a raster does not touch the surface.
     ExtentApart,
@@ -203,6 +237,9 @@ impl Notice {
             | Notice::FarApart(..)
             | Notice::BreaklinesApart(_)
             | Notice::CrossingHeights { .. }
+            | Notice::EdgeLimitUnusual { .. }
+            | Notice::LevelRings { .. }
+            | Notice::RiverHeights { .. }
             | Notice::ExtentApart
             | Notice::RegionAreasUnused(_)
             | Notice::SeedUnused { .. } => Severity::Warning,

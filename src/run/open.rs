@@ -55,7 +55,7 @@ pub(super) fn points(
 /// that attribute.
 pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
     let of_layer =
-        || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path, context)?)?)) };
+        || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path, &[], context)?)?)) };
     match content(path) {
         Content::Layer => of_layer(),
         Content::Points | Content::Raster | Content::Mesh | Content::Picture | Content::Plane => {
@@ -68,25 +68,45 @@ pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -
     }
 }
 
-/// Returns a vector layer, from memory or from a file.
-pub(super) fn layer_of<'a>(input: &'a Input<Layer>, context: &Context) -> Result<Cow<'a, Layer>> {
+/// Returns a vector layer, from memory or from a file, with these columns: [`Layer::column`] finds
+/// each, and it has a number for each shape.
+pub(super) fn layer_of<'a>(input: &'a Input<Layer>, columns: &[&str], context: &Context) -> Result<Cow<'a, Layer>> {
     match input {
-        Input::File(path) => layer(path, context).map(Cow::Owned),
-        Input::Memory(layer) => Ok(Cow::Borrowed(layer)),
+        Input::File(path) => layer(path, columns, context).map(Cow::Owned),
+        Input::Memory(layer) => {
+            columns.iter().try_for_each(|name| check_column(layer, name))?;
+            Ok(Cow::Borrowed(layer))
+        }
+    }
+}
+
+/// Returns an error unless a layer in memory has a number for each shape in this column.
+fn check_column(layer: &Layer, name: &str) -> Result<()> {
+    let shapes = layer.shapes.len();
+    match layer.column(name).map(|column| column.values.len()) {
+        Some(count) if count == shapes => Ok(()),
+        Some(count) => Err(Error::usage(format!("column {name} has {count} values for {shapes} records"))),
+        None => {
+            let names: Vec<&str> = layer.columns.iter().map(|column| column.name.as_str()).collect();
+            Err(Error::usage(format!("there is no column {name}")).cure(match names[..] {
+                [] => "add it to the columns of the layer, which has none".to_owned(),
+                _ => format!("add it to the columns of the layer, which has {}", names.join(", ")),
+            }))
+        }
     }
 }
 
 /// Reads a vector layer. If the name ends in `:FIELD`, heights come from that attribute; for
-/// formats that GDAL reads, it names a layer.
-pub(super) fn layer(path: &Path, context: &Context) -> Result<Layer> {
+/// formats that GDAL reads, it names a layer. The layer has these columns, in this order.
+pub(super) fn layer(path: &Path, columns: &[&str], context: &Context) -> Result<Layer> {
     let Some(spec) = path.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
     };
     let (file, name) = layer::split(spec);
     let work = context.start(Stage::ReadingLayer, size(&file))?;
     let watch = |bytes| work.add(bytes);
-    layer::read_with(spec, &watch).or_else(|error| match gdal_may_help(&error) {
-        true => gdal::read_layer_with(&file, name, &watch),
+    layer::read_with(spec, columns, &watch).or_else(|error| match gdal_may_help(&error) {
+        true => gdal::read_layer_with(&file, name, columns, &watch),
         false => Err(error),
     })
 }
@@ -205,4 +225,26 @@ pub(super) fn mesh_vertices(path: &Path, context: &Context) -> Result<Vec<[f64; 
 /// Reads the triangles of a mesh, in the order of the file.
 pub(super) fn mesh_triangles(path: &Path, context: &Context) -> Result<Triangles> {
     reading(Stage::ReadingTriangles, path, context, |watch| mesh::read_triangles_with(path, watch))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Column, Shape};
+
+    #[test]
+    fn columns_of_a_layer_in_memory_are_checked() {
+        let columns = vec![
+            Column { name: "Width".to_owned(), values: vec![1.0, f64::NAN] },
+            Column { name: "LEFT".to_owned(), values: vec![2.0] },
+        ];
+        let shapes = vec![Shape::Null, Shape::Null];
+        let input = Input::Memory(Arc::new(Layer { shapes, columns, ..Layer::default() }));
+        let open = |columns: &[&str]| layer_of(&input, columns, &Context::default());
+        assert_eq!(open(&["WIDTH"]).unwrap().column("WIDTH").unwrap().values[0], 1.0);
+        let error = open(&["Width", "right"]).unwrap_err();
+        assert_eq!(error.to_string(), "there is no column right");
+        assert!(error.cure_text().unwrap().ends_with("which has Width, LEFT"));
+        assert_eq!(open(&["left"]).unwrap_err().to_string(), "column left has 1 values for 2 records");
+    }
 }

@@ -140,7 +140,7 @@ impl PointFiles {
     }
 
     /// Reads all files and adds their points, in the coordinate system of the result, to the
-    /// selection. Returns the extents of the files if there are several.
+    /// selection. Returns the extents of the files.
     pub(super) fn read(
         &mut self,
         by_file: &[Option<usize>],
@@ -177,9 +177,7 @@ impl PointFiles {
                 }
                 count += batch.len() as u64;
                 progress.add(batch.len() as u64)?;
-                if are_several {
-                    (0..batch.len()).for_each(|i| extent.add([batch.x[i], batch.y[i], batch.z[i]]));
-                }
+                (0..batch.len()).for_each(|i| extent.add([batch.x[i], batch.y[i], batch.z[i]]));
             }
             extents.push(extent);
             journal.add(Notice::PointsRead(path.to_path_buf(), count));

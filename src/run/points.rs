@@ -98,10 +98,10 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
         sources.push(Some(source).filter(|_| keep));
     }
     let boundary: Vec<Input<Layer>> = request.boundary.iter().cloned().map(Input::File).collect();
-    let boundary = layers::read(&boundary, &journal)?;
+    let boundary = layers::read(&boundary, &[], &journal)?;
     let plan = Plan::new(request, &infos, &boundary, &journal)?;
     let (of_points, of_boundary) = plan.transforms.by_file.split_at(infos.len());
-    let polygons = layers::polygons(&boundary, of_boundary, &plan.transforms)?;
+    let polygons = layers::boundaries(&boundary, of_boundary, &plan.transforms)?;
     let inside = (!polygons.is_empty()).then(|| Inside::new(&polygons));
     let restated = |((info, &number), path): ((PointInfo, &Option<usize>), &PathBuf)| {
         restated(info, &plan, number).map_err(|e| e.in_file(path))

@@ -1,6 +1,7 @@
 //! From the points and lines of a request to a TIN: what is read, in which coordinate system, with
 //! which defaults.
 
+use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
@@ -8,13 +9,12 @@ use super::context::{Journal, Size, Stage};
 use super::crossings::{self, LineNames};
 use super::extents;
 use super::input::{Input, MemoryPoints};
-use super::layers;
-use super::lines;
+use super::line_inputs::{self, Added, LineInput, LineLayers, LineRequest, LineRole};
 use super::memory;
 use super::notice::Notice;
 use super::open::{self, Content, content};
 use super::point_files::PointFiles;
-use super::systems::{self, Role, Stated, SystemOptions, Systems};
+use super::systems::{self, SystemOptions, Systems};
 use super::transforms::Transforms;
 use super::units::Units;
 use crate::data::{Bounds, Columns, Layer};
@@ -51,11 +51,18 @@ pub struct TinRequest {
     /// Polygons that the finished surface is cut to; what is inside any of them is kept. The lines
     /// of a layer count as one polygon if they close to rings.
     pub boundary: Vec<Input<Layer>>,
+    /// Lines and areas of other kinds.
+    pub lines: LineRequest,
     /// A box that the finished surface is cut to; its heights are ignored. Points around it are
     /// used, too, so far out that the surface inside is the same as with all points.
     pub bounds: Option<Bounds>,
     /// Triangles at the rim with longer edges are left out.
     pub max_edge: EdgeLimit,
+    /// Triangles with an unconstrained edge longer than this are left out wherever they are, except
+    /// in water.
+    pub max_edge_inside: Option<f64>,
+    /// What becomes of the points that water and walls replace.
+    pub replaced: ReplacedPoints,
     /// Which height is used where points have the same position.
     pub duplicates: DuplicateRule,
     /// What to do where breaklines cross between their vertices.
@@ -67,6 +74,16 @@ pub struct TinRequest {
     pub crossing_tolerance: Option<f64>,
 }
 
+/// What becomes of the points that water and walls replace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ReplacedPoints {
+    /// They are only counted.
+    #[default]
+    Drop,
+    /// They are part of the report.
+    Keep,
+}
+
 impl TinRequest {
     /// Returns an error if a file that is given as a layer is known to be of a kind without lines
     /// or polygons, such as a raster.
@@ -74,8 +91,13 @@ impl TinRequest {
     /// # Errors
     /// Names the file and its kind.
     pub fn check_layers(&self) -> Result<()> {
-        refuse_other_kinds("--breaklines takes lines or polygons", &self.breaklines)?;
-        refuse_other_kinds("--boundary takes polygons or closed lines", &self.boundary)
+        let takes = |role: LineRole, what: &str| format!("{} takes {what}", role.option());
+        refuse_other_kinds(&takes(LineRole::Breaklines, "lines or polygons"), &self.breaklines)?;
+        for (role, inputs) in self.lines.inputs() {
+            let what = if role == LineRole::Holes { "polygons or closed lines" } else { "lines or polygons" };
+            refuse_other_kinds(&takes(role, what), inputs)?;
+        }
+        refuse_other_kinds(&takes(LineRole::Boundary, "polygons or closed lines"), &self.boundary)
     }
 }
 
@@ -104,6 +126,9 @@ pub enum EdgeLimit {
     Standard,
     /// No limit: the whole convex hull is kept.
     Unlimited,
+    /// 100 times the mean distance between points, from the number of all points and the extents of
+    /// all inputs.
+    Auto,
     /// This length, in the units of the coordinate system.
     Length(f64),
 }
@@ -118,14 +143,28 @@ pub struct BuildReport {
     pub points: SelectionReport,
     /// The columns used of text files, each with the number of files.
     pub columns: Vec<(Columns, u64)>,
-    /// The number of breaklines read; each part and each ring counts.
-    pub breaklines: usize,
+    /// The inputs of lines and areas, with what became of them.
+    pub lines: Vec<LineInput>,
+    /// The points that water and walls replaced, if they were to be kept.
+    pub replaced: Vec<[f64; 3]>,
     /// Counts of the TIN and of what was left out of it.
     pub tin: TinReport,
     /// The rule for points with the same position.
     pub duplicates: DuplicateRule,
     /// Names of the breaklines, by their positions in [`TinReport::crossing_heights`].
     pub line_names: LineNames,
+}
+
+impl BuildReport {
+    /// Writes a comma separated table of the points that water and walls replaced. Numbers are
+    /// written such that reading them gives the same doubles.
+    ///
+    /// # Errors
+    /// If `out` cannot be written to.
+    pub fn write_replaced(&self, out: &mut impl Write) -> std::io::Result<()> {
+        writeln!(out, "x,y,z")?;
+        self.replaced.iter().try_for_each(|[x, y, z]| writeln!(out, "{x},{y},{z}"))
+    }
 }
 
 /// Reads the points and lines of a request and builds the TIN.
@@ -137,76 +176,61 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     }
     request.check_layers()?;
     let mut files = PointFiles::open(&request.points, request.read, journal)?;
-    let breaklines = layers::read(&request.breaklines, journal)?;
-    let boundary = layers::read(&request.boundary, journal)?;
+    let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;
 
     let mut stated = files.stated(&request.classes, journal)?;
-    stated.extend(
-        breaklines
-            .iter()
-            .chain(&boundary)
-            .map(|(path, layer)| Some(Stated { path: path.to_path_buf(), crs: layer.crs.clone(), role: Role::Lines })),
-    );
+    stated.extend(layers.stated());
     let Systems { from, crs } = systems::reconcile_some(&stated, options, journal)?;
     let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
     let (of_points, of_layers) = transforms.by_file.split_at(files.len());
-    let (of_lines, of_boundary) = of_layers.split_at(breaklines.len());
 
     let units = Units::of(crs.as_ref());
     let mut builder = TinBuilder::default();
-    let rim = Rim::new(request, &units, journal);
+    let mut rim = Rim::new(request, &units, journal);
     let default_tolerance = units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES);
     builder.duplicates = request.duplicates;
     builder.on_crossing = request.on_crossing;
     builder.crossing_heights = request.crossing_heights;
     builder.crossing_tolerance = request.crossing_tolerance.unwrap_or(default_tolerance);
-    builder.max_edge = rim.max_edge;
+    builder.max_edge_inside = request.max_edge_inside;
     builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
     builder.crs = crs;
 
     // Lines first: they are few, and their errors are known before the points are read.
-    let mut line_count = 0;
-    let mut line_extent = Bounds::default();
-    let mut names = LineNames::new(breaklines.iter().map(|(path, _)| path.to_path_buf()).collect());
-    for (file, ((path, layer), transform)) in breaklines.iter().zip(of_lines).enumerate() {
-        for mut line in lines::breaklines(layer, path)? {
-            transforms.apply(*transform, &mut line.points).map_err(|e| e.in_file(path))?;
-            line_count += 1;
-            line.points.iter().for_each(|&vertex| line_extent.add(vertex));
-            builder.add_breakline(&line.points);
-            names.add(file, &line);
-        }
-    }
-    for rings in layers::polygons(&boundary, of_boundary, &transforms)? {
-        builder.add_boundary(&rings);
-    }
+    let Added { names, mut inputs, extent: line_extent, mut level_rings } =
+        layers.add_to(&mut builder, of_layers, &transforms, &units, journal)?;
 
     let paths: Vec<&Path> = request.points.iter().map(Input::path).collect();
     let mut reach = Reach::new(request, &rim);
-    let (tin, points) = loop {
+    let (tin, points, replaced) = loop {
         let mut selection = Selection::new(request.classes.clone(), reach.window());
         let extents = files.read(of_points, &transforms, &mut selection, journal)?;
         extents::compare_files(&paths, &extents, &units, journal);
         let (points, report) = selection.finish();
         transforms.warn(journal);
         note_classes(&report, &request.classes, journal);
-        if points.is_empty() && line_count == 0 && !reach.may_grow_into(&report) {
+        if points.is_empty() && !layers.has_lines_with_heights() && !reach.may_grow_into(&report) {
             return Err(nothing_left(&report, &paths));
         }
-        if request.bounds.is_none() && boundary.is_empty() {
+        if request.bounds.is_none() && !layers.has_boundary() {
             extents::compare_lines(&points, line_extent, rim.buffer, &units, journal);
         }
         memory::require_for_points(points.len())?;
+        rim.find_limit(&report, &extents);
+        let rings = std::mem::take(&mut level_rings);
+        line_inputs::note_level_rings(&rings, &points, &names, default_tolerance, &units, journal);
         let mut builder = builder.clone();
+        builder.max_edge = rim.max_edge;
         builder.window = reach.window().map(|read| Window { read, all: report.extent });
         builder.add_owned_points(points);
+        let replaced = builder.take_replaced_points();
         let work = journal.start(Stage::Triangulating, Size::Uncounted)?;
         let start = Instant::now();
         let tin = builder.build_named(&|line| names.name(line), journal.context.cancel);
         work.end()?;
         journal.add(Notice::Triangulated(start.elapsed()));
         match tin {
-            Ok(tin) if tin.report().uncertain == 0 => break (tin, report),
+            Ok(tin) if tin.report().uncertain == 0 => break (tin, report, replaced),
             Ok(tin) => journal.add(Notice::Uncertain(tin.report().uncertain, units.length(reach.buffer))),
             // Too few points are an error only if there are no more to add.
             Err(_) if reach.may_grow_into(&report) => (),
@@ -219,6 +243,8 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         }
         reach.grow();
     };
+    line_inputs::count_edges(&mut inputs, &tin);
+    rim.note(&units, journal);
     reach.note(&points, &units, journal);
     crossings::note(tin.report(), &names, &units, journal);
     if tin.report().triangles == 0 {
@@ -228,7 +254,11 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         sources: request.points.len(),
         points,
         columns: files.columns(),
-        breaklines: line_count,
+        lines: inputs,
+        replaced: match request.replaced {
+            ReplacedPoints::Keep => replaced,
+            ReplacedPoints::Drop => Vec::new(),
+        },
         tin: tin.report().clone(),
         duplicates: request.duplicates,
         line_names: names,
@@ -241,10 +271,22 @@ fn grown(Bounds { min, max }: Bounds, by: f64) -> Bounds {
     Bounds { min: [min[0] - by, min[1] - by, f64::NEG_INFINITY], max: [max[0] + by, max[1] + by, f64::INFINITY] }
 }
 
+/// How many mean distances between points the longest edge at the rim has with
+/// [`EdgeLimit::Auto`]. In real ground points, the largest empty disks inside of an area have radii
+/// of 60 to 80 mean distances: under buildings and over water.
+const AUTO_EDGE_SPACINGS: f64 = 100.0;
+
+/// The default longest edge looks wrong if it is less than so many, or more than so many, mean
+/// distances between points.
+const USUAL_SPACINGS: std::ops::Range<f64> = 10.0..1000.0;
+
 /// The limits of the surface where nothing was measured.
 struct Rim {
+    limit: EdgeLimit,
     max_edge: Option<f64>,
     buffer: f64,
+    /// The mean distance between points, if there are any.
+    spacing: Option<f64>,
 }
 
 impl Rim {
@@ -254,9 +296,40 @@ impl Rim {
             EdgeLimit::Unlimited => None,
             EdgeLimit::Length(length) => Some(length),
             EdgeLimit::Standard => Some(default),
+            EdgeLimit::Auto => None, // not yet known
         };
-        journal.add(max_edge.map_or(Notice::NoEdgeLimit, |length| Notice::EdgeLimit(units.length(length))));
-        Rim { max_edge, buffer: max_edge.unwrap_or(default) }
+        let rim = Rim { limit: request.max_edge, max_edge, buffer: max_edge.unwrap_or(default), spacing: None };
+        if rim.limit != EdgeLimit::Auto {
+            rim.note_limit(units, journal);
+        }
+        rim
+    }
+
+    fn note_limit(&self, units: &Units, journal: &Journal) {
+        journal.add(self.max_edge.map_or(Notice::NoEdgeLimit, |length| Notice::EdgeLimit(units.length(length))));
+    }
+
+    /// Finds the mean distance between points, and the limit that follows from it.
+    fn find_limit(&mut self, report: &SelectionReport, extents: &[Bounds]) {
+        let area = |b: &Bounds| if b.is_empty() { 0.0 } else { (b.max[0] - b.min[0]) * (b.max[1] - b.min[1]) };
+        let area: f64 = extents.iter().map(area).sum();
+        self.spacing = Some((area / report.read as f64).sqrt()).filter(|spacing| spacing.is_normal());
+        if self.limit == EdgeLimit::Auto {
+            self.max_edge = self.spacing.map(|spacing| AUTO_EDGE_SPACINGS * spacing);
+        }
+    }
+
+    /// Adds a notice about a limit that was found, and about a default that looks wrong.
+    fn note(&self, units: &Units, journal: &Journal) {
+        if self.limit == EdgeLimit::Auto {
+            self.note_limit(units, journal);
+        }
+        if let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self.limit, self.max_edge, self.spacing)
+            && !USUAL_SPACINGS.contains(&(limit / spacing))
+        {
+            let (limit, spacing) = (units.length(limit), units.length(spacing));
+            journal.add(Notice::EdgeLimitUnusual { limit, spacing });
+        }
     }
 }
 

@@ -1,7 +1,8 @@
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::crs::Crs;
-use crate::data::{Bounds, LineEdges};
+use crate::data::{Bounds, EdgeKind};
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::num::unsigned_zero;
@@ -11,9 +12,11 @@ use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, 
 use super::admitted::refused;
 use super::clip::Clip;
 use super::crossings::{Pass, choose_heights, refuse};
+use super::lines::areas::{self, Level, Leveled, Replaced, Water};
+use super::lines::kinds::LineKinds;
 use super::tin::Count;
 use super::window::uncertain;
-use super::{CrossingRule, DuplicateRule, Tin, TinReport, Window};
+use super::{CrossingRule, DuplicateRule, Flat, River, Tin, TinReport, Wall, Window};
 
 /// Builds a [`Tin`] from points and breaklines.
 ///
@@ -51,6 +54,9 @@ pub struct TinBuilder {
     /// Faces that can be reached from outside over longer unconstrained edges are left out. `None`
     /// keeps the whole convex hull.
     pub max_edge: Option<f64>,
+    /// The longest edge (in plan, in the units of the data) anywhere: faces with a longer
+    /// unconstrained edge are left out, except in water. `None` keeps them.
+    pub max_edge_inside: Option<f64>,
     /// Clips the surface to this box in plan.
     pub bounds: Option<Bounds>,
     /// What was read, if not all points are added but those needed for [`bounds`](Self::bounds).
@@ -64,6 +70,16 @@ pub struct TinBuilder {
     line_points: Vec<[f64; 3]>,
     /// For each breakline, where its vertices end.
     line_ends: Vec<usize>,
+    /// For each line, the kind of its edges.
+    line_kinds: Vec<EdgeKind>,
+    /// Areas with heights of their own, and the points that they replace.
+    waters: Vec<Water>,
+    replaced: Replaced,
+    replaced_count: usize,
+    /// Lines in plan that the finished surface is cut along.
+    draped: Vec<Vec<[f64; 2]>>,
+    /// The areas to leave out, as rings in plan.
+    holes: Vec<Vec<Vec<[f64; 2]>>>,
     /// The polygons to clip to, as rings in plan.
     boundaries: Vec<Vec<Vec<[f64; 2]>>>,
 }
@@ -102,9 +118,82 @@ impl TinBuilder {
     /// Adds a breakline: the surface contains its vertices and the segments between them.
     ///
     /// At a site that a point and a breakline share, the breakline's height is used.
+    ///
+    /// Lines of all kinds are numbered in the order in which they are added, from 0; draped lines
+    /// are not.
     pub fn add_breakline(&mut self, line: &[[f64; 3]]) {
+        self.add_line(line, EdgeKind::Breakline);
+    }
+
+    /// Adds a soft line: like a breakline, but smooth methods of interpolation pass over it.
+    pub fn add_soft_line(&mut self, line: &[[f64; 3]]) {
+        self.add_line(line, EdgeKind::Soft);
+    }
+
+    /// Adds the upper and the lower edge of a wall, and leaves out the points between them. Returns
+    /// the numbers of these lines.
+    pub fn add_wall(&mut self, wall: &Wall) -> Range<usize> {
+        self.replaced.add_wall(wall);
+        let first = self.line_count();
+        [&wall.upper, &wall.lower].into_iter().for_each(|edge| self.add_line(edge, EdgeKind::Wall));
+        first..self.line_count()
+    }
+
+    /// Adds a lake: its shore and all vertices inside have its height, and no point inside is used.
+    /// Returns the numbers of its rings among the lines.
+    pub fn add_flat(&mut self, flat: Flat) -> Range<usize> {
+        self.replaced.add_flat(&flat);
+        let first = self.line_count();
+        flat.rings.iter().for_each(|ring| self.add_line(ring, EdgeKind::Shore));
+        let lines = first..self.line_count();
+        self.waters.push(Water { rim: lines.clone().collect(), level: Level::Flat(flat) });
+        lines
+    }
+
+    /// Adds a river: its banks, and level lines between them, which are soft. No point inside is
+    /// used. Returns the numbers of these lines.
+    pub fn add_river(&mut self, river: River) -> Range<usize> {
+        self.replaced.add_river(&river);
+        let first = self.line_count();
+        river.banks().iter().for_each(|bank| self.add_line(bank, EdgeKind::Bank));
+        river.level_lines().iter().for_each(|line| self.add_line(line, EdgeKind::Soft));
+        let lines = first..self.line_count();
+        // The banks, and the level lines at both ends.
+        let rim = vec![first, first + 1, first + 2, lines.end - 1];
+        self.waters.push(Water { rim, level: Level::River(river) });
+        lines
+    }
+
+    /// Drapes a line over the finished surface: it gets the heights of the surface, and a vertex
+    /// wherever it crosses an edge. The surface stays as it is.
+    pub fn add_draped_line(&mut self, line: &[[f64; 2]]) {
+        self.draped.push(line.to_vec());
+    }
+
+    /// Leaves out an area of the finished surface, given as its rings in plan.
+    ///
+    /// The even-odd rule applies: a ring within a ring is an island.
+    pub fn add_hole(&mut self, rings: &[Vec<[f64; 2]>]) {
+        self.holes.push(rings.to_vec());
+    }
+
+    /// Removes the points in water and between the edges of walls, which are not part of the
+    /// surface, and returns them in order.
+    pub fn take_replaced_points(&mut self) -> Vec<[f64; 3]> {
+        let points = if self.replaced.is_empty() { Vec::new() } else { self.replaced.split_off(&mut self.points) };
+        self.replaced_count += points.len();
+        points
+    }
+
+    fn add_line(&mut self, line: &[[f64; 3]], kind: EdgeKind) {
         self.line_points.extend(line.iter().copied().map(positive_zero));
         self.line_ends.push(self.line_points.len());
+        self.line_kinds.push(kind);
+    }
+
+    /// The number of lines so far.
+    fn line_count(&self) -> usize {
+        self.line_ends.len()
     }
 
     /// Clips the surface to a polygon, given as its rings.
@@ -151,6 +240,8 @@ impl TinBuilder {
             return Err(refused(self.line_points[at]).at(name(line)));
         }
 
+        self.take_replaced_points();
+        report.points_replaced = self.replaced_count;
         // One vertex per site, in spatial order.
         let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
         go_on()?;
@@ -172,25 +263,41 @@ impl TinBuilder {
 
         report.crossings = triangulation.crossings().len();
         report.rounding = triangulation.rounding();
-        report.crossing_heights =
-            choose_heights(&mut triangulation, disputed, self.crossing_heights, self.crossing_tolerance);
+        report.crossing_heights = choose_heights(
+            &mut triangulation,
+            &self.line_kinds,
+            disputed,
+            self.crossing_heights,
+            self.crossing_tolerance,
+        );
         if let Some(bounds) = &self.bounds {
             report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
         if self.crossing_heights == CrossingRule::Refuse {
             refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
         }
+        let Leveled { is_water } = areas::level(&mut triangulation, &self.waters, name)?;
         go_on()?;
-        let mut tin = Tin::new(triangulation, self.crs.take());
+        let kinds = LineKinds::new(std::mem::take(&mut self.line_kinds));
+        let mut tin = Tin::new(triangulation, kinds, self.crs.take());
         let all = tin.triangulation.vertex_count();
         if let Some(limit) = self.max_edge {
             report.faces_beyond_max_edge = tin.peel(limit);
         }
-        let clip = Clip { polygons: std::mem::take(&mut self.boundaries), bounds: self.bounds };
+        if let Some(limit) = self.max_edge_inside {
+            report.faces_with_long_edges = tin.leave_out_long(limit, &is_water);
+        }
+        let is_whole = report.faces_beyond_max_edge + report.faces_with_long_edges == 0;
+        let clip = Clip {
+            polygons: std::mem::take(&mut self.boundaries),
+            bounds: self.bounds,
+            holes: std::mem::take(&mut self.holes),
+            draped: std::mem::take(&mut self.draped),
+        };
         // Counted only if it does not follow from the final counts.
         let mut left = None;
         if !clip.is_everything() {
-            left = Some(if report.faces_beyond_max_edge > 0 { tin.count().old_vertices } else { all });
+            left = Some(if is_whole { all } else { tin.count().old_vertices });
             (report.faces_clipped, report.faces_cut) = clip.apply(&mut tin)?;
         }
         go_on()?;
@@ -203,14 +310,11 @@ impl TinBuilder {
         report.vertices_clipped = left - old_vertices;
         report.vertices_cut = vertices - old_vertices;
         let (has_lines, is_clipped) = (report.breaklines > 0, !clip.is_everything());
-        (report.constrained_edges, report.clip_edges) = if is_clipped || has_lines && report.faces_beyond_max_edge > 0 {
-            let LineEdges { breaklines, clips } = tin.count_lines();
-            (breaklines, clips)
+        if is_clipped || has_lines && !(is_whole && tin.kinds.are_breaklines()) {
+            report.edges = tin.count_lines();
         } else if has_lines {
-            (tin.triangulation.constrained_edges().count(), 0)
-        } else {
-            (0, 0) // without a loop over all edges
-        };
+            report.edges.add_edges(EdgeKind::Breakline, tin.triangulation.constrained_edges().count());
+        }
         (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
         tin.report = report;
         Ok(tin)
@@ -230,7 +334,7 @@ impl TinBuilder {
         }
         let mut line_vertices = vec![u32::MAX; all.len() - lines_from];
         let mut disputed = Vec::new();
-        let mut heights = Vec::new();
+        let (mut heights, mut first_lines) = (Vec::new(), Vec::new());
         for group in order.chunk_by(|&i, &j| site(i) == site(j)) {
             if let &[only] = group
                 && (only as usize) < lines_from
@@ -241,13 +345,19 @@ impl TinBuilder {
             // Within a site, indices are in the order of the input: points first, then lines.
             let first_of_lines = group.partition_point(|&i| (i as usize) < lines_from);
             let (points, lines) = group.split_at(first_of_lines);
+            let line_of = |i: u32| self.line_ends.partition_point(|&end| end <= i as usize - lines_from);
+            let rank = |i: u32| self.line_kinds[line_of(i)].rank();
             let standing = if lines.is_empty() {
                 report.duplicates += points.len() - 1;
                 points
             } else {
                 report.points_on_breaklines += points.len();
                 report.breakline_vertices += 1;
-                lines
+                // Lines of the kind that comes first.
+                first_lines.clear();
+                let first = lines.iter().map(|&i| rank(i)).min();
+                first_lines.extend(lines.iter().copied().filter(|&i| lines.len() == 1 || Some(rank(i)) == first));
+                &first_lines
             };
             heights.clear();
             heights.extend(standing.iter().map(|&i| all[i as usize][2]));
@@ -256,9 +366,11 @@ impl TinBuilder {
                 line_vertices[i as usize - lines_from] = vertices.len() as u32;
             }
             if !lines.is_empty() && heights.iter().any(|&z| z != heights[0]) {
-                disputed.extend(lines.iter().map(|&i| {
-                    let line = self.line_ends.partition_point(|&end| end <= i as usize - lines_from);
-                    Pass { vertex: VertexId::new(vertices.len()), line: LineId::new(line), height: all[i as usize][2] }
+                disputed.extend(standing.iter().map(|&i| Pass {
+                    vertex: VertexId::new(vertices.len()),
+                    line: LineId::new(line_of(i)),
+                    height: all[i as usize][2],
+                    is_own: true,
                 }));
             }
             vertices.push([x, y, self.duplicates.choose(&mut heights)]);
@@ -373,6 +485,6 @@ mod tests {
                 sides += usize::from(face.edges[i].is_constrained());
             }
         }
-        assert!(sides > 60 && sides == 2 * tin.report().constrained_edges);
+        assert!(sides > 60 && sides == 2 * tin.report().edges.total());
     }
 }

@@ -7,28 +7,33 @@ use crate::triangulation::kernel::RANGE;
 
 use super::Tin;
 use super::admitted::refused;
-use super::cut::{Cut, Domain, Segment, cut};
+use super::cut::{Cut, DRAPED, cut};
+use super::regions::{Domain, Segment};
 
-/// The number of the domain of the bounds, and that of the first polygon.
+/// The number of the domain of the bounds, and that of the first polygon; holes follow the
+/// polygons.
 const BOUNDS: Domain = 0;
 const POLYGONS: Domain = 1;
 
-/// Polygons and a box: the surface is kept where it is inside the box and any of the polygons.
-/// Without polygons, the box alone counts.
+/// What a surface is cut along. It is kept where it is inside the box, inside any of the polygons
+/// (without polygons, everywhere) and in no hole. Draped lines cut it, too, and leave all of it.
 pub(super) struct Clip {
     /// The rings of each polygon. The even-odd rule applies, so holes need not be marked.
     pub(super) polygons: Vec<Vec<Vec<[f64; 2]>>>,
     pub(super) bounds: Option<Bounds>,
+    /// The rings of each hole, by the same rule.
+    pub(super) holes: Vec<Vec<Vec<[f64; 2]>>>,
+    pub(super) draped: Vec<Vec<[f64; 2]>>,
 }
 
 impl Clip {
     pub(super) fn is_everything(&self) -> bool {
-        self.polygons.is_empty() && self.bounds.is_none()
+        self.polygons.is_empty() && self.bounds.is_none() && self.holes.is_empty() && self.draped.is_empty()
     }
 
-    /// The closed lines to cut along, each with the number of the domain that it bounds.
-    fn rings(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
-        let polygons = self.polygons.iter().enumerate();
+    /// The lines to cut along, each with the number of the domain that it bounds.
+    fn curves(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
+        let polygons = self.polygons.iter().chain(&self.holes).enumerate();
         let mut rings: Vec<(usize, Vec<[f64; 2]>)> =
             polygons.flat_map(|(i, rings)| rings.iter().map(move |ring| (POLYGONS + i, ring.clone()))).collect();
         if let Some(Bounds { min, max }) = self.bounds {
@@ -37,12 +42,14 @@ impl Clip {
             let corners = [[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]];
             rings.push((BOUNDS, corners.map(within).to_vec()));
         }
+        let draped = self.draped.iter().map(|line| (DRAPED, line.clone()));
+        rings.iter_mut().for_each(|(_, ring)| ring.extend(ring.first().copied()));
+        rings.extend(draped);
         for (_, ring) in &mut rings {
             // Zero has one sign only, and coordinates below the range of the arithmetic count as
             // zero.
             let positive_zero = |c: f64| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c };
             ring.iter_mut().flatten().for_each(|c| *c = positive_zero(*c));
-            ring.extend(ring.first().copied());
         }
         rings
     }
@@ -51,12 +58,19 @@ impl Clip {
     /// cut to fragments.
     ///
     /// # Errors
-    /// If a vertex of a polygon or a bound is outside of the range of the arithmetic.
+    /// If a vertex of a line or a bound is outside of the range of the arithmetic.
     pub(super) fn apply(&self, tin: &mut Tin) -> Result<(usize, usize)> {
-        let rings = self.rings();
-        for &[x, y] in rings.iter().flat_map(|(_, ring)| ring) {
-            if !tin.triangulation.geometry().admits(&[x, y, 0.0]) {
-                return Err(refused([x, y, 0.0]).at("boundary"));
+        let rings = self.curves();
+        let holes = POLYGONS + self.polygons.len();
+        for (domain, ring) in &rings {
+            let is_bad = |&&[x, y]: &&[f64; 2]| !tin.triangulation.geometry().admits(&[x, y, 0.0]);
+            if let Some(&[x, y]) = ring.iter().find(is_bad) {
+                let what = match *domain {
+                    DRAPED => "draped line",
+                    domain if domain >= holes => "hole",
+                    _ => "boundary",
+                };
+                return Err(refused([x, y, 0.0]).at(what));
             }
         }
         let segments = |(domain, ring): &(Domain, Vec<[f64; 2]>)| {
@@ -64,11 +78,15 @@ impl Clip {
             ring.windows(2).map(move |pair| (domain, [pair[0], pair[1]])).collect::<Vec<_>>()
         };
         let curves: Vec<(Domain, Segment)> = rings.iter().flat_map(segments).collect();
-        let in_polygon = |within: &[Domain]| self.polygons.is_empty() || within.last().is_some_and(|&d| d >= POLYGONS);
+        let in_polygon = |within: &[Domain]| {
+            self.polygons.is_empty() || within.iter().any(|domain| (POLYGONS..holes).contains(domain))
+        };
+        let in_hole = |within: &[Domain]| within.last().is_some_and(|&domain| domain >= holes);
         let in_bounds = |within: &[Domain]| self.bounds.is_none() || within.first() == Some(&BOUNDS);
         let whole = |tin: &Tin| tin.inside.iter().filter(|&&inside| inside).count();
         let before = whole(tin);
-        tin.cut = cut(&tin.triangulation, &mut tin.inside, &curves, |within| in_polygon(within) && in_bounds(within))?;
+        let is_kept = |within: &[Domain]| in_polygon(within) && in_bounds(within) && !in_hole(within);
+        tin.cut = cut(&tin.triangulation, &tin.kinds, &mut tin.inside, &curves, is_kept)?;
         let in_fragments = tin.cut.as_ref().map_or(0, Cut::cut_count);
         Ok((before - whole(tin) - in_fragments, in_fragments))
     }

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::HashSet;
 
+use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Terrain, height_along};
 use crate::triangulation::tds::VertexId;
@@ -68,14 +69,20 @@ pub(super) struct Pass {
     pub(super) vertex: VertexId,
     pub(super) line: LineId,
     pub(super) height: f64,
+    /// True if the line was given with the vertex; false if it passes between its vertices.
+    pub(super) is_own: bool,
 }
 
 /// Sets the heights of the vertices that were added at crossings, by the rule. Returns the sites at
 /// which heights differ by more than the tolerance, in lexicographic order.
 ///
+/// Where lines of several kinds meet, only those of the kind that comes first count; this holds for
+/// vertices that other lines were given with, too.
+///
 /// `disputed` contains the lines at vertices that were given with different heights.
 pub(super) fn choose_heights(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
+    kinds: &[EdgeKind],
     disputed: Vec<Pass>,
     rule: CrossingRule,
     tolerance: f64,
@@ -89,11 +96,15 @@ pub(super) fn choose_heights(
         let vertex = at_vertex[0].vertex;
         let [x, y, mut chosen] = *triangulation.point(vertex);
         let is_added = triangulation.is_added(vertex);
-        if is_added {
-            chosen = choice.choose(&mut at_vertex.iter().map(|pass| pass.height).collect::<Vec<f64>>());
+        let rank = |pass: &Pass| kinds[pass.line.index()].rank();
+        let first = at_vertex.iter().map(rank).min();
+        let own = at_vertex.iter().filter(|pass| pass.is_own).map(rank).min();
+        let standing: Vec<&Pass> = at_vertex.iter().filter(|pass| Some(rank(pass)) == first).collect();
+        if is_added || own.is_some() && first < own {
+            chosen = choice.choose(&mut standing.iter().map(|pass| pass.height).collect::<Vec<f64>>());
             triangulation.replace_point(vertex, [x, y, chosen]);
         }
-        let heights = at_vertex.iter().map(|pass| (pass.line.index(), pass.height)).collect();
+        let heights = standing.iter().map(|pass| (pass.line.index(), pass.height)).collect();
         let crossing = CrossingHeights { site: [x, y], heights, chosen, is_added };
         if crossing.difference() > tolerance {
             reported.push(crossing);
@@ -112,7 +123,7 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> 
             let [p, q] = [pair[0], pair[1]].map(|v| *triangulation.point(v));
             passes.extend(triangulation.segment_chain(pair[0], pair[1]).into_iter().map(|vertex| {
                 let [x, y, _] = *triangulation.point(vertex);
-                Pass { vertex, line, height: height_along(p, q, [x, y]) }
+                Pass { vertex, line, height: height_along(p, q, [x, y]), is_own: false }
             }));
         }
     }
@@ -126,7 +137,12 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> 
     if !passed.is_empty() {
         for line in triangulation.lines() {
             let own = triangulation.line_vertices(line).iter().filter(|vertex| passed.contains(vertex));
-            passes.extend(own.map(|&vertex| Pass { vertex, line, height: triangulation.point(vertex)[2] }));
+            passes.extend(own.map(|&vertex| Pass {
+                vertex,
+                line,
+                height: triangulation.point(vertex)[2],
+                is_own: true,
+            }));
         }
     }
     passes.extend(disputed);

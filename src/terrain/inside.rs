@@ -52,18 +52,43 @@ impl Inside {
         if self.height > 0.0 { ((y - self.low) / self.height).clamp(0.0, 2.0 * MOST) as usize } else { 0 }
     }
 
-    /// Returns true if a point lies in a polygon or on one of its rings.
-    pub fn contains(&self, p: [f64; 2]) -> bool {
-        if p[1] < self.low || !p.iter().all(|c| c.is_finite()) {
+    /// Returns true if a ring passes a point at no more than a distance.
+    ///
+    /// # Complexity
+    /// Linear in the edges at about the height of the point.
+    pub fn is_near(&self, [x, y]: [f64; 2], distance: f64) -> bool {
+        if self.bands.is_empty() || ![x, y, distance].iter().all(|c| c.is_finite()) || y + distance < self.low {
             return false;
         }
-        let Some(band) = self.bands.get(self.band(p[1])) else { return false };
+        let last = self.bands.len() - 1;
+        let bands = self.band(y - distance).min(last)..=self.band(y + distance).min(last);
+        self.bands[bands].iter().flatten().any(|(_, [a, b])| {
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let length = along[0] * along[0] + along[1] * along[1];
+            let part = ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / length;
+            let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+            (a[0] + part * along[0] - x).hypot(a[1] + part * along[1] - y) <= distance
+        })
+    }
+
+    /// Returns true if a point lies in a polygon or on one of its rings.
+    pub fn contains(&self, p: [f64; 2]) -> bool {
+        self.first_around(p).is_some()
+    }
+
+    /// Returns the position of the first polygon that contains a point, within or on one of its
+    /// rings.
+    pub fn first_around(&self, p: [f64; 2]) -> Option<usize> {
+        if p[1] < self.low || !p.iter().all(|c| c.is_finite()) {
+            return None;
+        }
+        let band = self.bands.get(self.band(p[1]))?;
         let mut number = usize::MAX;
         let mut is_odd = false;
         for &(polygon, [a, b]) in band {
             if polygon != number {
                 if is_odd {
-                    return true;
+                    return Some(number);
                 }
                 number = polygon;
             }
@@ -81,13 +106,13 @@ impl Inside {
                 continue;
             }
             match orientation([low, high, p].map(|[x, y]| [x, y, 0.0])) {
-                Sign::Zero => return true,
+                Sign::Zero => return Some(polygon),
                 // The point is to the left of an ascending edge.
                 Sign::Positive => is_odd ^= p[1] < high[1],
                 Sign::Negative => {}
             }
         }
-        is_odd
+        is_odd.then_some(number)
     }
 }
 

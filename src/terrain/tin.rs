@@ -11,6 +11,7 @@ use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
 use super::cut::Cut;
 use super::linear::linear;
+use super::lines::kinds::LineKinds;
 use super::{TinReport, compact};
 
 /// A surface of triangles over points and breaklines.
@@ -24,14 +25,16 @@ pub struct Tin {
     pub(super) inside: Vec<bool>,
     /// The fragments of triangles that are part of the surface, if it was cut.
     pub(super) cut: Option<Cut>,
+    pub(super) kinds: LineKinds,
     pub(super) report: TinReport,
     crs: Option<Crs>,
 }
 
 impl Tin {
     /// A surface of all finite faces of a triangulation.
-    pub(super) fn new(triangulation: ConstrainedDelaunay<Terrain>, crs: Option<Crs>) -> Self {
-        let mut tin = Tin { triangulation, inside: Vec::new(), cut: None, report: TinReport::default(), crs };
+    pub(super) fn new(triangulation: ConstrainedDelaunay<Terrain>, kinds: LineKinds, crs: Option<Crs>) -> Self {
+        let report = TinReport::default();
+        let mut tin = Tin { triangulation, inside: Vec::new(), cut: None, kinds, report, crs };
         tin.include_all();
         tin
     }
@@ -53,6 +56,12 @@ impl Tin {
     /// It covers the whole convex hull, and is not cut by the boundary or the bounds.
     pub fn triangulation(&self) -> &ConstrainedDelaunay<Terrain> {
         &self.triangulation
+    }
+
+    /// Returns the kind of the edges that a line became; `None` if there is no such line. Lines are
+    /// numbered in the order in which they were added to the builder.
+    pub fn line_kind(&self, line: usize) -> Option<EdgeKind> {
+        self.kinds.of_line(line)
     }
 
     /// Returns the flaws of the triangulation up to a level, found with exact predicates.
@@ -115,6 +124,25 @@ impl Tin {
         peeled
     }
 
+    /// Leaves out the faces with an unconstrained edge longer than `limit`, except those in water.
+    /// Returns their number.
+    pub(super) fn leave_out_long(&mut self, limit: f64, is_water: &[bool]) -> usize {
+        let mut left_out = 0;
+        for index in 0..self.inside.len() {
+            if !self.inside[index] || is_water.get(index).is_some_and(|is_water| *is_water) {
+                continue;
+            }
+            let cell = CellId::new(index);
+            let corners = self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
+            let length = |i: usize| (0..2).map(|k| corners[ccw(i)][k] - corners[cw(i)][k]).fold(0.0, f64::hypot);
+            if (0..3).any(|i| length(i) > limit && !self.triangulation.is_constrained(cell, i)) {
+                self.inside[index] = false;
+                left_out += 1;
+            }
+        }
+        left_out
+    }
+
     /// The triangles that the patch of a cut replaces.
     pub(super) fn replaced(&self) -> &[CellId] {
         self.cut.as_ref().map(Cut::replaced).unwrap_or_default()
@@ -148,8 +176,8 @@ impl Tin {
         }
         let cell = CellId::new(face as usize);
         [0, 1, 2].map(|i| {
-            if self.triangulation.is_constrained(cell, i) {
-                EdgeKind::Breakline
+            if let Some(kind) = self.kinds.of_edge(&self.triangulation, cell, i) {
+                kind
             } else if self.inside[self.triangulation.tds().neighbor(cell, i).index()] {
                 EdgeKind::Plain
             } else {
@@ -224,11 +252,15 @@ impl Surface for Tin {
         if let Some(kind) = self.cut.as_ref().and_then(|cut| cut.edge_kind(face, i)) {
             return kind;
         }
-        if self.triangulation.is_constrained(CellId::new(face as usize), i) {
-            return EdgeKind::Breakline;
+        // The fragment beyond knows of all lines along the edge.
+        let on_line = self.cut.as_ref().and_then(|cut| cut.kind_beside(face, i));
+        if let Some(kind) = on_line.or_else(|| self.kinds.of_edge(&self.triangulation, CellId::new(face as usize), i)) {
+            return kind;
+        }
+        if self.cut.as_ref().is_some_and(|cut| cut.is_draped(face, i)) {
+            return EdgeKind::Draped;
         }
         match self.neighbor(face, i) {
-            Some(_) if self.cut.as_ref().is_some_and(|cut| cut.is_breakline(face, i)) => EdgeKind::Breakline,
             Some(_) => EdgeKind::Plain,
             None if self.cut.as_ref().is_some_and(|cut| cut.is_clipped(face, i)) => EdgeKind::Clip,
             None => EdgeKind::Rim,
@@ -268,10 +300,9 @@ impl Surface for Tin {
         let is_face = |cell: CellId| tds.is_used(cell) && !tds.is_infinite(cell);
         faces.extend(numbers.map(|number| CellId::new(number as usize)).filter(|&cell| is_face(cell)).map(|cell| {
             let beside = |i| Some(tds.neighbor(cell, i)).filter(|&beside| is_face(beside));
-            let kind = |i| match self.triangulation.is_constrained(cell, i) {
-                true => EdgeKind::Breakline,
-                false if beside(i).is_none() => EdgeKind::Rim,
-                false => EdgeKind::Plain,
+            let kind = |i| {
+                let without_line = if beside(i).is_none() { EdgeKind::Rim } else { EdgeKind::Plain };
+                self.kinds.of_edge(&self.triangulation, cell, i).unwrap_or(without_line)
             };
             BaseFace {
                 number: cell.index() as u32,

@@ -1,5 +1,5 @@
 use super::CrossingHeights;
-use crate::data::Bounds;
+use crate::data::{Bounds, LineEdges};
 use crate::triangulation::Rounding;
 
 /// Counts of what a [`TinBuilder`](super::TinBuilder) was given and what it built.
@@ -9,16 +9,17 @@ pub struct TinReport {
     pub points: usize,
     /// Points merged into another point at the same site.
     pub duplicates: usize,
+    /// Points left out because they lie in water or between the edges of a wall.
+    pub points_replaced: usize,
     /// Points replaced by a breakline's vertex at the same site.
     pub points_on_breaklines: usize,
-    /// Breaklines added; each part and each ring counts as one.
+    /// Lines added, of all kinds but draped ones; each part and each ring counts as one, a wall as
+    /// two, a river as its banks and level lines.
     pub breaklines: usize,
     /// Distinct sites of the vertices of the breaklines.
     pub breakline_vertices: usize,
-    /// Edges of the surface that are breaklines.
-    pub constrained_edges: usize,
-    /// Edges of the surface along the boundary or the bounds, except those that are breaklines.
-    pub clip_edges: usize,
+    /// Edges of the surface on lines, by their kinds.
+    pub edges: LineEdges,
     /// Vertices added where breaklines cross between their vertices.
     pub crossings: usize,
     /// How the crossings were rounded; `None` if no breaklines cross.
@@ -34,18 +35,22 @@ pub struct TinReport {
     pub extent: Bounds,
     /// Triangles left out by `max_edge`.
     pub faces_beyond_max_edge: usize,
+    /// Triangles left out by `max_edge_inside`, wherever they are.
+    pub faces_with_long_edges: usize,
     /// Triangles within the bounds that points outside of the
     /// [window](super::TinBuilder::window) may change. If there are none, the surface is that of
     /// all points, in every triangle and height.
     pub uncertain: usize,
-    /// Vertices left out of the surface because `max_edge` left out all of their triangles.
+    /// Vertices left out of the surface because `max_edge` or `max_edge_inside` left out all of
+    /// their triangles.
     pub vertices_beyond_max_edge: usize,
-    /// Triangles left out by the boundary or the bounds.
+    /// Triangles left out by the boundary, the bounds or holes.
     pub faces_clipped: usize,
     /// Vertices left out of the surface because clipping left out all of their remaining triangles.
     pub vertices_clipped: usize,
-    /// Vertices added where the boundary or the bounds cut triangles.
+    /// Vertices added where the boundary, the bounds, holes or draped lines cut triangles.
     pub vertices_cut: usize,
-    /// Triangles cut by the boundary or the bounds; the surface contains fragments of them.
+    /// Triangles cut by the boundary, the bounds, holes or draped lines; the surface contains
+    /// fragments of them.
     pub faces_cut: usize,
 }

@@ -8,6 +8,7 @@ mod crossings;
 mod habits;
 mod inputs;
 mod lidar;
+mod lines;
 mod methods;
 #[cfg(unix)]
 mod outputs;

@@ -265,7 +265,7 @@ fn breaklines_without_heights_are_refused_never_taken_as_0() {
         ("points.geojson", &geojson(25832, "Point", "[0,0,7]")),
     ]);
     let tin = |lines: &str| run_in(&folder, &["tin", "a.xyz", "--breaklines", lines, "-o", "t.ply"]);
-    tin("flat.geojson").fails(1, &["flat.geojson: record 1: the breakline has no heights", "FILE:FIELD", "Z"]);
+    tin("flat.geojson").fails(1, &["flat.geojson: record 1: the line has no heights", "FILE:FIELD", "Z"]);
     tin("part.geojson").fails(1, &["part.geojson: record 1: vertex 2 at 1 1 has no height"]);
     tin("points.geojson").fails(1, &["points.geojson", "no lines"]);
     let run = run_in(&folder, &["tin", "a.xyz", "--boundary", "flat.geojson", "-o", "t.ply"]);

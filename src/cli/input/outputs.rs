@@ -67,15 +67,24 @@ impl<F> Outputs<F> {
         files.filter_map(|path| Some((free_in(folder_of(path))?, path))).min_by_key(|(free, _)| *free)
     }
 
-    /// Adds the table of crossings, if one was requested.
+    /// Adds the tables of crossings and of replaced points, if they were requested.
     ///
     /// # Errors
     /// If it cannot be written.
     pub(in crate::cli) fn add_report(&self, plan: &SurfacePlan, product: &SurfaceProduct) -> Result<()> {
-        let (Some(path), Some(built)) = (&plan.crossing_report, &product.built) else { return Ok(()) };
+        let Some(built) = &product.built else { return Ok(()) };
+        if let Some(path) = &plan.crossing_report {
+            self.add_table(path, |out| built.line_names.write_table(&built.tin.crossing_heights, out))?;
+        }
+        if let Some(path) = &plan.replaced_report {
+            self.add_table(path, |out| built.write_replaced(out))?;
+        }
+        Ok(())
+    }
+
+    fn add_table(&self, path: &Path, write: impl FnOnce(&mut Output) -> std::io::Result<()>) -> Result<()> {
         let mut output = Output::create(path)?;
-        let written = built.line_names.write_table(&built.tin.crossing_heights, &mut output);
-        written.map_err(|e| Error::from(e).in_file(path))?;
+        write(&mut output).map_err(|e| Error::from(e).in_file(path))?;
         self.set.add(output);
         Ok(())
     }
@@ -175,7 +184,7 @@ pub(in crate::cli) fn resolve_with_report<F: Copy>(
     let outputs = resolve(args, formats, &plan.inputs)?;
     resolve_report(Existing::of(args.overwrite), plan)?;
     let is_target = |report: &&Path| outputs.targets.iter().any(|target| is_same(&target.path, report));
-    match plan.crossing_report.as_deref().filter(is_target) {
+    match plan.reports().find(is_target) {
         Some(report) => Err(Error::usage("the output is named twice").in_file(report)),
         None => Ok(outputs),
     }
@@ -186,7 +195,7 @@ pub(in crate::cli) fn resolve_with_report<F: Copy>(
 /// # Errors
 /// Those of [`resolve`].
 pub(in crate::cli) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> Result<Outputs<()>> {
-    if let Some(report) = &plan.crossing_report {
+    for report in plan.reports() {
         require_free(report, find(report, REPORTS)?, existing, &plan.inputs)?;
     }
     Ok(Outputs { targets: Vec::new(), set: OutputSet::default() })

@@ -1,14 +1,17 @@
 //! From the options of a surface to a request.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::args::{CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, OnCrossingArg, SurfaceArgs, SystemArgs};
+use super::args::{
+    CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg, SurfaceArgs, SystemArgs,
+};
 use super::inputs;
 use crate::cli::report::console::Console;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::run::{
-    Degrees, EdgeLimit, FrameOptions, Input, MemoryPoints, Source, SurfaceRequest, SystemOptions, TinRequest,
+    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints,
+    ReplacedPoints, Source, SurfaceRequest, SystemOptions, TinRequest, WallOptions,
 };
 use crate::terrain::Classes;
 
@@ -20,6 +23,8 @@ pub(in crate::cli) struct SurfacePlan {
     pub(in crate::cli) inputs: Vec<PathBuf>,
     /// The table of crossings that is written with the results.
     pub(in crate::cli) crossing_report: Option<PathBuf>,
+    /// The table of points that water and walls replaced.
+    pub(in crate::cli) replaced_report: Option<PathBuf>,
 }
 
 impl SurfacePlan {
@@ -31,9 +36,11 @@ impl SurfacePlan {
         let files = inputs::expand(&args.inputs, console)?;
         let degrees = if args.force_degrees { Degrees::Allow } else { Degrees::Refuse };
         let systems = SystemOptions { degrees, ..systems(&args.systems)? };
-        inputs::require(args.breaklines.iter().chain(&args.boundary))?;
+        let line_files: Vec<PathBuf> = args.lines.files().iter().flat_map(|(_, paths)| paths.iter().cloned()).collect();
+        inputs::require(args.breaklines.iter().chain(&line_files).chain(&args.boundary))?;
         let (breaklines, boundary) = (layers(&args.breaklines), layers(&args.boundary));
-        let building = TinRequest { breaklines, boundary, ..TinRequest::default() };
+        let lines = line_request(&args.lines);
+        let building = TinRequest { breaklines, boundary, lines, ..TinRequest::default() };
         building.check_layers()?;
         let source = match Source::of_files(&files)? {
             Source::Points(points) => Source::Points(Box::new(tin_request(points.points, building, args))),
@@ -41,9 +48,19 @@ impl SurfacePlan {
             Source::Raster(path) => Source::Raster(as_it_is(path, args)?),
         };
         let mut inputs = files;
-        inputs.extend(args.breaklines.iter().chain(&args.boundary).cloned());
+        inputs.extend(args.breaklines.iter().chain(&line_files).chain(&args.boundary).cloned());
         let request = SurfaceRequest { source, systems };
-        Ok(SurfacePlan { request, inputs, crossing_report: args.crossing_report.clone() })
+        Ok(SurfacePlan {
+            request,
+            inputs,
+            crossing_report: args.crossing_report.clone(),
+            replaced_report: args.lines.flat_points.clone(),
+        })
+    }
+
+    /// Returns the tables that are written with the results.
+    pub(in crate::cli) fn reports(&self) -> impl Iterator<Item = &Path> {
+        [&self.crossing_report, &self.replaced_report].into_iter().flatten().map(PathBuf::as_path)
     }
 
     /// Returns the frame of a raster, and adds the raster to align to, if any, to the inputs.
@@ -82,6 +99,31 @@ fn system(option: &str, typed: Option<&str>) -> Result<Option<Crs>> {
     })
 }
 
+/// Returns the lines and areas that the options name.
+fn line_request(args: &LineArgs) -> LineRequest {
+    let lower = match (&args.wall_bottom, &args.wall_drop) {
+        (Some(height), _) => Some(LowerEdge::Height(height.0.clone())),
+        (None, Some(drop)) => Some(LowerEdge::Drop(drop.0.clone())),
+        (None, None) => None,
+    };
+    LineRequest {
+        soft: layers(&args.soft_lines),
+        draped: layers(&args.draped_lines),
+        walls: layers(&args.walls),
+        wall: WallOptions { lower, width: args.wall_width, high: args.wall_high.into() },
+        holes: layers(&args.holes),
+        flats: layers(&args.flat),
+        flat: FlatOptions {
+            height: args.flat_height.as_ref().map_or(FlatRule::OfShore, |height| height.0.clone()),
+            tolerance: args.flat_tolerance,
+            buffer: args.flat_buffer,
+        },
+        rivers: layers(&args.rivers),
+        river_width: args.river_width.as_ref().map(|width| width.0.clone()),
+        densify: args.densify,
+    }
+}
+
 fn layers<T>(paths: &[PathBuf]) -> Vec<Input<T>> {
     paths.iter().cloned().map(Input::File).collect()
 }
@@ -97,8 +139,14 @@ fn tin_request(points: Vec<Input<MemoryPoints>>, building: TinRequest, args: &Su
         bounds: args.bounds.map(|corners| corners.bounds()),
         max_edge: match args.max_edge {
             Some(EdgeLength::None) => EdgeLimit::Unlimited,
+            Some(EdgeLength::Auto) => EdgeLimit::Auto,
             Some(EdgeLength::Length(length)) => EdgeLimit::Length(length),
             None => EdgeLimit::Standard,
+        },
+        max_edge_inside: args.max_edge_inside,
+        replaced: match args.lines.flat_points {
+            Some(_) => ReplacedPoints::Keep,
+            None => ReplacedPoints::Drop,
         },
         duplicates: args.duplicates.into(),
         on_crossing: args.on_crossing.into(),
@@ -113,11 +161,15 @@ fn tin_request(points: Vec<Input<MemoryPoints>>, building: TinRequest, args: &Su
 /// # Errors
 /// If an option was typed that is only for building a TIN.
 fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
+    let lines = &args.lines;
     let given = [
         (!args.breaklines.is_empty(), "--breaklines"),
         (!args.boundary.is_empty(), "--boundary"),
         (args.bounds.is_some(), "--bounds"),
         (args.max_edge.is_some(), "--max-edge"),
+        (args.max_edge_inside.is_some(), "--max-edge-inside"),
+        (lines.flat_points.is_some(), "--flat-points"),
+        (lines.densify.is_some(), "--densify"),
         (!args.class.is_empty(), "--class"),
         (args.duplicates != DuplicatesArg::default(), "--duplicates"),
         (args.on_crossing != OnCrossingArg::default(), "--on-crossing"),
@@ -129,7 +181,8 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
         (args.read.parse.is_some(), "--parse"),
         (args.read.partial, "--partial"),
     ];
-    match given.iter().find(|(is_given, _)| *is_given) {
+    let files = lines.files().map(|(option, paths)| (!paths.is_empty(), option));
+    match given.iter().chain(&files).find(|(is_given, _)| *is_given) {
         Some((_, option)) => {
             Err(Error::usage(format!("{option} is for building a TIN, but the input is a surface already"))
                 .in_file(path)

@@ -86,6 +86,30 @@ fn text(notice: &Notice) -> String {
             format!("{count} triangles within the bounds may depend on points further out than {buffer}")
         }
         Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid),
+        Notice::EdgeLimitUnusual { limit, spacing } => format!(
+            "the longest edge at the rim is {limit}, but points are {spacing} apart on average: choose it with --max-edge \
+             LENGTH or --max-edge auto"
+        ),
+        Notice::LevelRings { rings, points, name, largest } => {
+            let lines = if *rings == 1 {
+                "a closed line of one height has"
+            } else {
+                &format!("{rings} closed lines of one height have")
+            };
+            let inside = if *points == 1 { "1 point" } else { &format!("{points} points") };
+            format!("{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use --flat")
+        }
+        Notice::RiverHeights { name, rising, largest_rise, rise_at, largest_difference, difference_at } => {
+            let [[x, y], [u, v]] = [rise_at, difference_at].map(|at| at.map(neat));
+            let mut text = format!("the banks of the river {name} are not level");
+            if *rising > 0 {
+                text += &format!(": they rise downstream at {rising} vertices, by up to {largest_rise} (at {x} {y})");
+            }
+            if largest_difference.value > 0.0 {
+                text += &format!("; they differ by up to {largest_difference} across (at {u} {v})");
+            }
+            text
+        }
         Notice::CrossingHeights { count, largest, at, .. } => {
             let points = if *count == 1 { "1 point" } else { &format!("{count} points") };
             let [x, y] = at.map(neat);

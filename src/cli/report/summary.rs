@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use super::console::Console;
 use crate::crs::Crs;
-use crate::data::{Bounds, Columns, Frame};
+use crate::data::{Bounds, Columns, EdgeKind, Frame};
 use crate::run::units::{Units, neat, number};
-use crate::run::{BuildReport, Model, SurfaceProduct};
+use crate::run::{BuildReport, LineInput, LineRole, Model, SurfaceProduct};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// Prints what a surface was built of, what was left out, and its size and extent.
@@ -26,10 +26,8 @@ pub(in crate::cli) fn print_surface(product: &SurfaceProduct, console: &Console)
         }
         (None, Model::Mesh(_) | Model::Tin(_) | Model::Compact(_)) => {
             let Ok(facts) = product.facts() else { return };
-            for (name, edges) in [("breaklines", facts.breaklines), ("clip lines", facts.clips)] {
-                if edges > 0 {
-                    console.line(format_args!("{name}  {edges} edges"));
-                }
+            for (kind, edges) in facts.edges.kinds() {
+                console.line(format_args!("{:<11} {edges} edges", kind.noun()));
             }
             console.line(format_args!("vertices    {}", facts.vertices));
             (facts.triangles.to_string(), facts.extent)
@@ -55,28 +53,70 @@ fn print_tin(built: &BuildReport, console: &Console) {
         let count = tin.points_on_breaklines;
         console.line(format_args!("            {count} at a breakline's vertex (whose height is used)"));
     }
-    if built.breaklines > 0 {
+    if tin.points_replaced > 0 {
+        console.line(format_args!("            {} in water or walls (left out)", tin.points_replaced));
+    }
+    print_lines(built, console);
+    let parts = [
+        (
+            tin.vertices_beyond_max_edge,
+            if tin.faces_with_long_edges > 0 {
+                "left out with long edges"
+            } else {
+                "left out with triangles at the rim"
+            },
+        ),
+        (tin.vertices_clipped, "clipped"),
+        (tin.vertices_cut, if tin.edges.of(EdgeKind::Draped) > 0 { "added by cuts" } else { "added by the clip" }),
+    ];
+    console.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
+    let clips = tin.edges.of(EdgeKind::Clip);
+    if clips > 0 {
+        console.line(format_args!("clip lines  {clips} edges"));
+    }
+}
+
+/// Prints how many lines became how many edges, for each input.
+fn print_lines(built: &BuildReport, console: &Console) {
+    let tin = &built.tin;
+    let of_breaklines: Vec<&LineInput> =
+        built.lines.iter().filter(|input| input.role == LineRole::Breaklines).collect();
+    let breaklines: usize = of_breaklines.iter().map(|input| input.lines).sum();
+    if breaklines > 0 {
         let crossings = match tin.crossings {
             0 => String::new(),
             n => format!(", {n} crossings between vertices"),
         };
-        let (lines, edges, vertices) = (built.breaklines, tin.constrained_edges, tin.breakline_vertices);
-        console.line(format_args!("breaklines  {lines} in, {edges} edges out, {vertices} vertices{crossings}"));
+        let (edges, vertices) = (tin.edges.of(EdgeKind::Breakline), tin.breakline_vertices);
+        console.line(format_args!("breaklines  {breaklines} in, {edges} edges out, {vertices} vertices{crossings}"));
+        if of_breaklines.len() > 1 {
+            for LineInput { path, lines, edges, .. } in of_breaklines {
+                console.line(format_args!("            {lines} in, {edges} edges of {}", path.display()));
+            }
+        }
     }
-    let parts = [
-        (tin.vertices_beyond_max_edge, "left out with triangles at the rim"),
-        (tin.vertices_clipped, "clipped"),
-        (tin.vertices_cut, "added by the clip"),
-    ];
-    console.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
-    if tin.clip_edges > 0 {
-        console.line(format_args!("clip lines  {} edges", tin.clip_edges));
+    for LineInput { role, path, lines, edges, .. } in &built.lines {
+        let path = path.display();
+        let (name, edges) = match role {
+            LineRole::Breaklines | LineRole::Boundary => continue,
+            LineRole::Soft => ("soft lines", *edges),
+            LineRole::Walls => ("walls", *edges),
+            LineRole::Flats => ("lakes", *edges),
+            LineRole::Rivers => ("rivers", *edges),
+            LineRole::Draped => ("draped", tin.edges.of(EdgeKind::Draped)),
+            LineRole::Holes => {
+                console.line(format_args!("holes       {lines} of {path}"));
+                continue;
+            }
+        };
+        console.line(format_args!("{name:<11} {lines} in, {edges} edges out, of {path}"));
     }
 }
 
 fn left_out(tin: &TinReport) -> String {
     listed(&[
         (tin.faces_beyond_max_edge, "with long edges at the rim left out"),
+        (tin.faces_with_long_edges, "with long edges left out"),
         (tin.faces_clipped, "clipped"),
         (tin.faces_cut, "cut"),
     ])

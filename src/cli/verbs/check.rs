@@ -30,8 +30,8 @@ pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     }
     print_surface(&product, console);
     outputs.commit(console)?;
-    let SurfaceFacts { vertices, triangles, breaklines, clips, .. } = product.facts()?;
-    let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", breaklines + clips);
+    let SurfaceFacts { vertices, triangles, edges, .. } = product.facts()?;
+    let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", edges.total());
     match flaws.len() {
         0 => {
             print(&format!("{what}: no flaw found\n"))?;

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::io::contour_summary::ContourSummary;
 use crate::io::geotiff::{GeoTiffReader, RasterSummary};
 use crate::io::las::{Detail, Rounding};
+use crate::io::layer_options;
 use crate::io::listing::Listing;
 use crate::io::mapped::Mapped;
 use crate::io::output::Destination;
@@ -123,7 +124,7 @@ pub(in crate::io) enum Reader {
         /// Reads input that can be read only once; messages show the path as its name.
         stream: fn(Box<dyn Read + Send>, &Path, Options) -> Points,
     },
-    Layer(fn(&Path, Option<&str>, Watch) -> Result<Layer>),
+    Layer(fn(&Path, &layer_options::Options, Watch) -> Result<Layer>),
     Raster(fn(&Path) -> Result<GeoTiffReader>),
     Mesh(fn(&Path, Watch) -> Result<Triangles>),
     /// A TIN, which is not read, but used where its bytes are.

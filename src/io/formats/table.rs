@@ -119,7 +119,7 @@ const fn plane(
     }
 }
 
-/// What writes those of Triangle's files that TetGen has, too.
+/// The writers of the formats that Triangle and TetGen share.
 const PLANE_OR_SPACE: Writers = Writers { plane: Some(triangle::write), space: Some(tetgen::write), ..NOT_WRITTEN };
 
 /// Returns the row for a file of a triangulation in space.

@@ -26,7 +26,7 @@ pub fn read_layer(path: &Path, _name: Option<&str>) -> Result<Layer> {
 ///
 /// # Errors
 /// Always; the message says how to get GDAL.
-pub fn read_layer_with(path: &Path, name: Option<&str>, _watch: Watch) -> Result<Layer> {
+pub fn read_layer_with(path: &Path, name: Option<&str>, _columns: &[&str], _watch: Watch) -> Result<Layer> {
     read_layer(path, name)
 }
 

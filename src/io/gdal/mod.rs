@@ -31,8 +31,8 @@ pub use vector::{read_layer, read_layer_with};
 /// True if this build has GDAL.
 pub const IS_AVAILABLE: bool = cfg!(feature = "gdal");
 
-/// Splits `FILE:NAME`; returns the path as it is if a file has the whole name, or none the first
-/// part.
+/// Splits `FILE:NAME`. Returns the path unchanged if it is the path of a file as a whole, or if
+/// `FILE` does not exist.
 fn split(path: &Path) -> (PathBuf, Option<String>) {
     let whole = (path.to_path_buf(), None);
     let (Some(text), false) = (path.to_str(), path.exists()) else {

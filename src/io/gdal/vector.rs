@@ -9,8 +9,10 @@ use gdal_sys::OGRwkbGeometryType as Type;
 
 use super::messages;
 use crate::crs::Crs;
-use crate::data::{Layer, Shape};
+use crate::data::{Column, Layer, Shape};
 use crate::error::{Error, Result};
+use crate::io::field::{no_such_field, not_a_number};
+use crate::io::shapefile::parse_number;
 use crate::io::watch::{Watch, unwatched};
 
 /// Limit for the nesting of geometry collections; deeper ones lead to an error.
@@ -27,14 +29,15 @@ const MAX_DEPTH: usize = 16;
 /// If GDAL cannot open the file, the file has no such layer or field, or reading fails; if the file
 /// has several layers and none is named.
 pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
-    read_layer_with(path, name, &unwatched)
+    read_layer_with(path, name, &[], &unwatched)
 }
 
-/// Like [`read_layer`], but watched. Nothing is counted.
+/// Like [`read_layer`], but with the numbers of the attributes that `columns` names, and watched.
+/// Nothing is counted.
 ///
-/// # Errors
-/// Those of [`read_layer`], and that of the watch.
-pub fn read_layer_with(path: &Path, name: Option<&str>, watch: Watch) -> Result<Layer> {
+/// # Errors Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a
+/// value is not a number.
+pub fn read_layer_with(path: &Path, name: Option<&str>, columns: &[&str], watch: Watch) -> Result<Layer> {
     messages::listen();
     let (path, behind) = super::split(path);
     let name = match (behind, name) {
@@ -51,7 +54,11 @@ pub fn read_layer_with(path: &Path, name: Option<&str>, watch: Watch) -> Result<
         Some(wanted) => Some(position(&fields, &wanted).ok_or_else(|| no_such(&wanted, &fields).in_file(path))?),
         None => None,
     };
+    let no_such_column = |name: &str| no_such_field(name, fields.iter().map(String::as_str)).in_file(path);
+    let positions = columns.iter().map(|name| position(&fields, name).ok_or_else(|| no_such_column(name)));
+    let positions: Vec<usize> = positions.collect::<Result<_>>()?;
     let mut layer = Layer {
+        columns: columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() }).collect(),
         format: format!(
             "GDAL {} {}",
             dataset.driver().short_name(),
@@ -64,7 +71,7 @@ pub fn read_layer_with(path: &Path, name: Option<&str>, watch: Watch) -> Result<
     let is_swapped = reference.as_ref().is_some_and(is_north_first);
     layer.crs = reference.and_then(|reference| crs(&reference, &mut layer.warnings));
     let mut without_height = 0;
-    for feature in source.features() {
+    for (record, feature) in (1..).zip(source.features()) {
         watch(0)?;
         let first = layer.shapes.len();
         match feature.geometry() {
@@ -74,10 +81,18 @@ pub fn read_layer_with(path: &Path, name: Option<&str>, watch: Watch) -> Result<
             _ => layer.shapes.push(Shape::Null),
         }
         if let Some(field) = field {
-            let height = feature.field(field).map_err(|error| messages::error(path, error))?.and_then(number);
-            without_height += usize::from(height.is_none());
-            let height = height.unwrap_or(f64::NAN);
+            let value = feature.field(field).map_err(|error| messages::error(path, error))?;
+            let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
+            without_height += usize::from(height.is_nan());
             layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
+        }
+        let shapes = layer.shapes.len();
+        for (column, &field) in layer.columns.iter_mut().zip(&positions) {
+            let value = feature.field(field).map_err(|error| messages::error(path, error))?;
+            let value = value
+                .map_or(Ok(f64::NAN), number)
+                .map_err(|text| not_a_number(&column.name, &text).at(format!("record {record}")).in_file(path))?;
+            column.values.resize(shapes, value);
         }
         if is_swapped {
             layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
@@ -156,16 +171,18 @@ fn is_north_first(reference: &SpatialRef) -> bool {
         && reference.axis_orientation(target, 0).is_ok_and(|axis| axis == gdal_sys::OGRAxisOrientation::OAO_North)
 }
 
-fn number(value: FieldValue) -> Option<f64> {
+/// Returns the number in a field or in its text, NaN if it is empty or not finite. If the field
+/// contains something else, the error is its text.
+fn number(value: FieldValue) -> std::result::Result<f64, String> {
     let number = match value {
         // GDAL's own conversion turns any other text into 0.
-        FieldValue::StringValue(text) => text.trim().replace(',', ".").parse().ok(),
-        FieldValue::IntegerValue(value) => Some(f64::from(value)),
-        FieldValue::Integer64Value(value) => Some(value as f64),
-        FieldValue::RealValue(value) => Some(value),
-        _ => None,
+        FieldValue::StringValue(text) => parse_number(text.trim())?,
+        FieldValue::IntegerValue(value) => f64::from(value),
+        FieldValue::Integer64Value(value) => value as f64,
+        FieldValue::RealValue(value) => value,
+        other => return Err(format!("{other:?}")),
     };
-    number.filter(|number: &f64| number.is_finite())
+    Ok(if number.is_finite() { number } else { f64::NAN })
 }
 
 fn each_vertex(shape: &mut Shape, mut change: impl FnMut(&mut [f64; 3])) {

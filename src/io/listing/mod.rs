@@ -16,7 +16,7 @@ pub(super) struct Listing<'a> {
     number: Vec<u32>,
     pub(super) vertex_count: usize,
     pub(super) face_count: usize,
-    /// Number of edges on breaklines and clip lines.
+    /// Number of edges on lines.
     pub(super) constrained_edges: usize,
 }
 
@@ -46,13 +46,7 @@ impl<'a> Listing<'a> {
             *number = vertex_count;
             vertex_count += 1;
         }
-        Listing {
-            surface,
-            number,
-            vertex_count: vertex_count as usize,
-            face_count,
-            constrained_edges: lines.breaklines + lines.clips,
-        }
+        Listing { surface, number, vertex_count: vertex_count as usize, face_count, constrained_edges: lines.total() }
     }
 
     pub(super) fn vertices(&self) -> impl Iterator<Item = [f64; 3]> + '_ {

@@ -79,20 +79,20 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let mut body = Body::new(&bytes[header.length..], header.encoding, watch);
     let mut vertices = Vec::new();
     let mut polygons = Polygons::default();
-    let mut constrained_edges = Vec::new();
+    let mut listed = Vec::new();
     for element in &header.elements {
         body.check_room(element)?;
         match element.name.as_str() {
             "vertex" => vertices = read_vertices(&mut body, element)?,
             "face" => polygons = read_faces(&mut body, element)?,
-            "constrained_edge" => constrained_edges = read_edges(&mut body, element)?,
+            "constrained_edge" => listed = read_edges(&mut body, element)?,
             _ => body.rows(element, |_, _| Ok(()))?,
         }
     }
     let crs = crs_text::parse(&header.crs)?;
-    constrained_edges.append(&mut polygons.breaklines);
-    let clip_edges = polygons.clips;
-    let mut triangles = Triangles { vertices, constrained_edges, clip_edges, crs, ..Triangles::default() };
+    let mut lines = std::mem::take(&mut polygons.lines);
+    lines.extend(listed.into_iter().map(|edge| (edge, EdgeKind::Breakline)));
+    let mut triangles = Triangles { vertices, lines, crs, ..Triangles::default() };
     triangles.faces.reserve_exact(polygons.ends.len());
     let mut start = 0;
     let mut fragments = polygons.fragments.into_iter().peekable();
@@ -129,9 +129,8 @@ struct Polygons {
     corners: Vec<u32>,
     /// For each face, the end of its corners.
     ends: Vec<usize>,
-    /// Edges on breaklines; `clips` contains those on clip lines.
-    breaklines: Vec<[u32; 2]>,
-    clips: Vec<[u32; 2]>,
+    /// Edges on lines, with their kinds.
+    lines: Vec<([u32; 2], EdgeKind)>,
     /// Indices of the faces that are fragments of cut triangles.
     fragments: Vec<usize>,
 }
@@ -153,13 +152,12 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         let corners = &polygons.corners[first..];
         let Some((kinds, fragment)) = lines else { return Ok(()) };
         for (i, property) in kinds.into_iter().enumerate() {
-            let edges = match edge_kind(EDGES[i], row[property][0])? {
-                EdgeKind::Breakline => &mut polygons.breaklines,
-                EdgeKind::Clip => &mut polygons.clips,
-                EdgeKind::Plain | EdgeKind::Rim => continue,
-            };
+            let kind = edge_kind(EDGES[i], row[property][0])?;
+            if !kind.is_constrained() {
+                continue;
+            }
             if let (Some(&a), Some(&b)) = (corners.get(i), corners.iter().cycle().nth(i + 1)) {
-                edges.push([a.min(b), a.max(b)]);
+                polygons.lines.push(([a.min(b), a.max(b)], kind));
             }
         }
         if row[fragment][0] != 0.0 {
@@ -168,10 +166,8 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         Ok(())
     })?;
     // Interior edges are seen from both sides.
-    for edges in [&mut polygons.breaklines, &mut polygons.clips] {
-        edges.sort_unstable();
-        edges.dedup();
-    }
+    polygons.lines.sort_unstable();
+    polygons.lines.dedup();
     Ok(polygons)
 }
 
@@ -189,9 +185,7 @@ fn line_properties(element: &Element) -> Option<([usize; 3], usize)> {
 
 fn edge_kind(name: &str, number: f64) -> Result<EdgeKind> {
     let kind = EdgeKind::ALL.into_iter().find(|kind| f64::from(kind.number()) == number);
-    kind.ok_or_else(|| {
-        Error::format(format!("{name} is {number}, expected 0 (plain), 1 (breakline), 2 (clip line) or 3 (rim)"))
-    })
+    kind.ok_or_else(|| Error::format(format!("{name} is {number}, expected the number of a kind of edges, 0 to 8")))
 }
 
 fn read_edges(body: &mut Body, element: &Element) -> Result<Vec<[u32; 2]>> {

@@ -7,7 +7,7 @@
 //! |---|---|---|---|
 //! | `.shp` | shapes | error | complete records are read, a warning names each damaged one; an error if none is complete |
 //! | `.shx` | a record's attribute row; where to continue after damage | order of the `.shp` | not used, a warning |
-//! | `.dbf` | names, heights if requested, deleted rows | no fields | a warning; an error if heights are requested |
+//! | `.dbf` | names, heights and numbers if requested, deleted rows | no fields | a warning; an error if heights or numbers are requested |
 //! | `.prj` | coordinate system | unknown | unknown, a warning |
 //! | `.cpg` | encoding of the names | guessed | guessed |
 //!
@@ -45,13 +45,15 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
-use crate::data::{Layer, Shape};
+use crate::data::{Column as Attribute, Layer, Shape};
 use crate::error::{Error, Result};
+use crate::io::field;
+use crate::io::layer_options::Options;
 use crate::io::watch::{Watch, unwatched};
 use index::Index;
 use record::type_name;
 pub(in crate::io) use table::parse_number;
-use table::{Rows, Table};
+use table::{Field, Numbers, Table};
 use walk::{Record, Walk};
 pub use write::{Column, check_size, write_contours, write_layer};
 
@@ -80,18 +82,20 @@ const MAX_PRJ: u64 = 1 << 20;
 /// # Complexity
 /// Linear. Memory is needed for the shapes and one record.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
-    read_layer_with(path, z_field, &unwatched)
+    read_layer_with(path, &Options { height_field: z_field, ..Options::default() }, &unwatched)
 }
 
-/// Like [`read_layer`], but watched: the bytes of the `.shp` that were parsed are counted.
+/// Like [`read_layer`], but with the numbers of attributes, and watched: the bytes of the `.shp`
+/// that were parsed are counted.
 ///
 /// # Errors
-/// Those of [`read_layer`], and that of the watch.
-pub fn read_layer_with(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
-    read(path, z_field, watch).map_err(|e| e.in_file(path))
+/// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value of a
+/// requested column is not a number.
+pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
+    read(path, options, watch).map_err(|e| e.in_file(path))
 }
 
-fn read(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
+fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let file = File::open(path)?;
     let size = file.metadata()?.len();
     let mut file = BufReader::with_capacity(1 << 16, file);
@@ -117,7 +121,7 @@ fn read(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
         warnings.push(format!("and {} more parts that could not be read", damage.more));
     }
     warn_of_types(&mut warnings, header_type.code, &types);
-    if z_field.is_some() {
+    if options.height_field.is_some() {
         // Heights of the geometry are then irrelevant.
         odd.no_height = 0;
     }
@@ -133,8 +137,12 @@ fn read(path: &Path, z_field: Option<&str>, watch: Watch) -> Result<Layer> {
         ..Layer::default()
     };
     watch(0)?;
-    let attributes = read_table(path, z_field, records.len(), &mut layer.fields, &mut warnings)?;
-    layer.shapes = join(records, rows, &attributes, &mut warnings);
+    let attributes = read_table(path, options, records.len(), &mut layer.fields, &mut warnings)?;
+    let mut origins = Vec::new();
+    layer.shapes = join(records, rows, &attributes, &mut origins, &mut warnings);
+    for (&name, numbers) in options.columns.iter().zip(&attributes.columns) {
+        layer.columns.push(column(name, numbers, &origins)?);
+    }
     layer.warnings = warnings;
     Ok(layer)
 }
@@ -198,32 +206,43 @@ fn read_prj(path: &Path, warnings: &mut Vec<String>) -> Result<Option<Crs>> {
     Ok(crs.and_then(Crs::unless_undefined))
 }
 
+/// What was read of the `.dbf`, by its rows.
+#[derive(Default)]
+struct Attributes {
+    /// For each row, true if it is marked as deleted.
+    deleted: Vec<bool>,
+    height: Option<Numbers>,
+    columns: Vec<Numbers>,
+}
+
 fn read_table(
     path: &Path,
-    z_field: Option<&str>,
+    options: &Options,
     records: usize,
     fields: &mut Vec<String>,
     warnings: &mut Vec<String>,
-) -> Result<Rows> {
+) -> Result<Attributes> {
+    let first_wanted = options.height_field.or(options.columns.first().copied());
     let Some(dbf) = sibling(path, "dbf") else {
-        return match z_field {
-            None => Ok(Rows::default()),
+        return match first_wanted {
+            None => Ok(Attributes::default()),
             Some(name) => Err(Error::usage(format!("there is no .dbf next to it with the field {name}"))),
         };
     };
     let code_page = sibling(path, "cpg").and_then(|path| std::fs::read_to_string(path).ok());
     let mut table = match Table::open(&dbf, code_page.as_deref()) {
         Ok(table) => table,
-        Err(e) if z_field.is_none() => {
+        Err(e) if first_wanted.is_none() => {
             warnings.push(format!(".dbf not used: {e}"));
-            return Ok(Rows::default());
+            return Ok(Attributes::default());
         }
         Err(e) => return Err(e.in_file(dbf)),
     };
     *fields = table.fields.iter().map(|field| field.name.clone()).collect();
-    let field = z_field.map(|name| table.find(name)).transpose().map_err(|e| e.in_file(&dbf))?;
+    let wanted = options.height_field.iter().chain(options.columns).map(|name| table.find(name));
+    let wanted: Vec<Field> = wanted.collect::<Result<_>>().map_err(|e| e.in_file(&dbf))?;
     let room = table.room()?;
-    let rows = table.rows(field.as_ref(), records.saturating_add(1)).map_err(|e| e.in_file(&dbf))?;
+    let rows = table.rows(&wanted, records.saturating_add(1)).map_err(|e| e.in_file(&dbf))?;
     if table.stated > room {
         warnings.push(format!(".dbf: its header states {} rows, it has {room}", table.stated));
     }
@@ -235,25 +254,50 @@ fn read_table(
         }
         _ => {}
     }
-    if let (Some(field), Some(text)) = (&field, &rows.first_text) {
-        if rows.values.iter().all(|value| value.is_nan()) {
+    let mut columns = rows.numbers;
+    let height = options.height_field.map(|_| columns.remove(0));
+    if let (Some(numbers), Some(field)) = (&height, wanted.first())
+        && let Some((_, text)) = numbers.texts.first()
+    {
+        if numbers.values.iter().all(|value| value.is_nan()) {
             return Err(
                 Error::usage(format!("field {} holds no numbers; the first text is '{text}'", field.name)).in_file(dbf)
             );
         }
         warnings.push(format!(
             "field {}: {} rows hold no number (the first: '{text}'); their shapes have no height",
-            field.name, rows.not_numbers
+            field.name,
+            numbers.texts.len()
         ));
     }
-    Ok(rows)
+    Ok(Attributes { deleted: rows.deleted, height, columns })
 }
 
-/// Assigns a row to each record: drops damaged, stale and deleted ones, and sets heights.
+/// The position of a shape's record in the `.shp`, and its row in the `.dbf`.
+type RecordAndRow = (usize, Option<usize>);
+
+/// Returns the numbers of an attribute, one per shape.
+///
+/// # Errors
+/// If a value is not a number; the error names the record, counted from 1.
+fn column(name: &str, numbers: &Numbers, origins: &[RecordAndRow]) -> Result<Attribute> {
+    let value = |&(record, row): &RecordAndRow| match row {
+        Some(row) => match numbers.text(row) {
+            Some(text) => Err(field::not_a_number(name, text).at(format!("record {}", record + 1))),
+            None => Ok(numbers.values.get(row).copied().unwrap_or(f64::NAN)),
+        },
+        None => Ok(f64::NAN),
+    };
+    Ok(Attribute { name: name.to_owned(), values: origins.iter().map(value).collect::<Result<_>>()? })
+}
+
+/// Assigns a row to each record: drops damaged, stale and deleted ones, and sets heights. If
+/// columns were read, `origins` gets the origin of each shape.
 fn join(
     records: Vec<Record>,
     rows: Option<Vec<Option<usize>>>,
-    attributes: &Rows,
+    attributes: &Attributes,
+    origins: &mut Vec<RecordAndRow>,
     warnings: &mut Vec<String>,
 ) -> Vec<Shape> {
     // If the index leaves out a record but lists another with the same number, an editor appended
@@ -278,9 +322,12 @@ fn join(
             continue;
         }
         let Some(mut shape) = record.shape else { continue };
-        if !attributes.values.is_empty() {
-            let z = row.and_then(|row| attributes.values.get(row)).copied().unwrap_or(f64::NAN);
+        if let Some(height) = attributes.height.as_ref().filter(|height| !height.values.is_empty()) {
+            let z = row.and_then(|row| height.values.get(row)).copied().unwrap_or(f64::NAN);
             shape.set_height(z);
+        }
+        if !attributes.columns.is_empty() {
+            origins.push((position, row));
         }
         shapes.push(shape);
     }

@@ -1,4 +1,4 @@
-//! The `.dbf` file: the names of the attributes, and the numbers in one of them.
+//! The `.dbf` file: the names of the attributes, and the numbers in those that are requested.
 //!
 //! Real tables are sloppy: the field list has no terminator, row counts are wrong, the file ends
 //! early. Whatever is unambiguous is read; anything else is an error here, and a warning for
@@ -42,12 +42,25 @@ pub(super) struct Table {
 pub(super) struct Rows {
     /// For each row, true if it is marked as deleted.
     pub(super) deleted: Vec<bool>,
-    /// The number in each row, NaN if there is none; empty if no field was requested.
+    /// The numbers of each field that was requested, in the order of the request.
+    pub(super) numbers: Vec<Numbers>,
+}
+
+/// The numbers of one field.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Numbers {
+    /// The number in each row, NaN if there is none.
     pub(super) values: Vec<f64>,
-    /// How many texts are not numbers.
-    pub(super) not_numbers: usize,
-    /// The first text that is not a number.
-    pub(super) first_text: Option<String>,
+    /// The texts that are not numbers, each with its row; in the order of the rows.
+    pub(super) texts: Vec<(usize, String)>,
+}
+
+impl Numbers {
+    /// Returns the text in a row, if it is not a number.
+    pub(super) fn text(&self, row: usize) -> Option<&str> {
+        let at = self.texts.binary_search_by_key(&row, |&(row, _)| row).ok()?;
+        Some(&self.texts.get(at)?.1)
+    }
 }
 
 impl Table {
@@ -95,30 +108,31 @@ impl Table {
         }
     }
 
-    /// Reads the existing rows, whatever their stated count, but at most `limit`.
+    /// Reads the existing rows, whatever their stated count, but at most `limit`, and the numbers
+    /// in these fields.
     ///
     /// # Errors
     /// If reading fails.
-    pub(super) fn rows(&mut self, field: Option<&Field>, limit: usize) -> Result<Rows> {
+    pub(super) fn rows(&mut self, fields: &[Field], limit: usize) -> Result<Rows> {
         let mut rows = Rows::default();
+        rows.numbers.resize_with(fields.len(), Numbers::default);
+        let needed = fields.iter().map(|field| field.at + field.width).min().unwrap_or(1);
         let mut row = vec![0; self.row];
         while rows.deleted.len() < limit {
             let got = fill(&mut self.file, &mut row)?;
-            // An incomplete last row still counts if it contains the field.
-            let needed = field.map_or(1, |field| field.at + field.width);
+            // An incomplete last row still counts if it contains a field.
             let cut = got < row.len() && !matches!(row[0], b' ' | DELETED);
             if got < needed || cut || row[0] == END_OF_FILE {
                 break;
             }
             rows.deleted.push(row[0] == DELETED);
-            if let Some(field) = field {
-                let cell = &row[field.at..field.at + field.width];
+            for (field, numbers) in fields.iter().zip(&mut rows.numbers) {
+                let cell = row[..got].get(field.at..field.at + field.width).unwrap_or_default();
                 let value = number(field.kind, cell).unwrap_or_else(|text| {
-                    rows.not_numbers += 1;
-                    rows.first_text.get_or_insert(text);
+                    numbers.texts.push((numbers.values.len(), text));
                     f64::NAN
                 });
-                rows.values.push(value);
+                numbers.values.push(value);
             }
         }
         Ok(rows)
@@ -255,22 +269,27 @@ mod tests {
         file
     }
 
-    fn values(file: &tempfile::NamedTempFile, name: &str) -> Rows {
+    fn rows(file: &tempfile::NamedTempFile, names: &[&str]) -> Rows {
         let mut table = Table::open(file.path(), None).unwrap();
-        let field = table.find(name).unwrap();
-        table.rows(Some(&field), 100).unwrap()
+        let fields: Vec<Field> = names.iter().map(|name| table.find(name).unwrap()).collect();
+        table.rows(&fields, 100).unwrap()
+    }
+
+    fn values(file: &tempfile::NamedTempFile, name: &str) -> Vec<f64> {
+        rows(file, &[name]).numbers.remove(0).values
     }
 
     #[test]
     fn numbers_in_all_dresses() {
-        let rows = ["   12.5   ab", " -3,25  1e2 ", " ******     ", "*1      no  ", "        7\0\0\0"];
-        let file = table(&[("ELEV", b'N', 7), ("TEXT", b'C', 4)], b"\r", &rows, 5);
-        let found = values(&file, "elev");
-        assert_eq!(found.values[..2], [12.5, -3.25]);
-        assert!(found.values[2].is_nan() && found.values[4].is_nan());
+        let lines = ["   12.5   ab", " -3,25  1e2 ", " ******     ", "*1      no  ", "        7\0\0\0"];
+        let file = table(&[("ELEV", b'N', 7), ("TEXT", b'C', 4)], b"\r", &lines, 5);
+        let found = rows(&file, &["elev", "Text"]);
         assert_eq!(found.deleted, [false, false, false, true, false]);
-        let texts = values(&file, "Text");
-        assert_eq!((texts.not_numbers, texts.first_text.as_deref()), (2, Some("ab")));
+        let [heights, texts] = &found.numbers[..] else { panic!("{found:?}") };
+        assert_eq!(heights.values[..2], [12.5, -3.25]);
+        assert!(heights.values[2].is_nan() && heights.values[4].is_nan());
+        assert_eq!(texts.texts, [(0, "ab".to_owned()), (3, "no".to_owned())]);
+        assert_eq!((texts.text(3), texts.text(1)), (Some("no"), None));
         assert_eq!((texts.values[1], texts.values[4]), (100.0, 7.0));
     }
 
@@ -279,12 +298,15 @@ mod tests {
         for terminator in [&b"\r"[..], b"\n", b"", b"\r\0"] {
             for stated in [0, 2, 99] {
                 let file = table(&[("Z", b'N', 3)], terminator, &["   1", "   2", "\u{1a}"], stated);
-                assert_eq!(values(&file, "z").values, [1.0, 2.0], "{terminator:?} {stated}");
+                assert_eq!(values(&file, "z"), [1.0, 2.0], "{terminator:?} {stated}");
             }
         }
         // The last row is cut, after the field and within it.
         let file = table(&[("Z", b'N', 2), ("T", b'C', 3)], b"\r", &[" 10abc", " 20a"], 2);
-        assert_eq!((values(&file, "Z").values.len(), values(&file, "T").values.len()), (2, 1));
+        assert_eq!((values(&file, "Z").len(), values(&file, "T").len()), (2, 1));
+        let both = rows(&file, &["T", "Z"]);
+        assert_eq!(both.numbers[1].values, [10.0, 20.0]);
+        assert!(both.numbers[0].values[1].is_nan() && both.numbers[0].text(1).is_none());
         assert_eq!(Table::open(file.path(), None).unwrap().room().unwrap(), 1);
     }
 

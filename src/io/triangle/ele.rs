@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::{Numbering, Triangulated, counted, edge, listed, neigh, node, poly, read_rows};
-use crate::data::Triangles;
+use crate::data::{EdgeKind, Triangles};
 use crate::error::Result;
 use crate::io::Watch;
 use crate::io::decimal::Decimal;
@@ -29,19 +29,20 @@ pub(super) fn read_file(path: &Path, watch: Watch) -> Result<Triangles> {
         Some(path) => poly::read_segments_alone(&path, numbering, watch)?,
         None => None,
     };
-    let constrained_edges = match (segments, beside("edge")) {
+    let edges = match (segments, beside("edge")) {
         // Segments between collinear points have no adjacent triangles.
         _ if faces.is_empty() => Vec::new(),
         (Some(segments), _) => segments.into_iter().map(|segment| segment.ends).collect(),
         (None, Some(path)) => edge::read_marked(&path, numbering, watch)?,
         (None, None) => Vec::new(),
     };
+    let lines = edges.into_iter().map(|edge| (edge, EdgeKind::Breakline)).collect();
     let neighbors = match beside("neigh") {
         Some(path) => Some(neigh::read_file(&path, numbering.first, faces.len(), watch)?),
         None => None,
     };
     let vertices = nodes.points.into_iter().map(|[x, y]| [x, y, 0.0]).collect();
-    Ok(Triangles { vertices, faces, constrained_edges, neighbors, ..Triangles::default() })
+    Ok(Triangles { vertices, faces, lines, neighbors, ..Triangles::default() })
 }
 
 fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 3]>> {

@@ -39,7 +39,7 @@ pub struct SpaceOptions {
 /// Which alpha shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alpha {
-    /// That of this squared radius.
+    /// The alpha shape of this squared radius.
     Given(f64),
     /// The smallest that is one solid and contains all points that are in a tetrahedron.
     OneSolid,
@@ -223,7 +223,7 @@ struct Cloud {
     nodes: Nodes<3>,
     has_classes: bool,
     is_in_degrees: bool,
-    /// Of a text: its columns, with that after the coordinates, which may hold weights, as z.
+    /// The columns of a text file; as z, the one after the coordinates, which may hold weights.
     weight_column: Option<Columns>,
 }
 

@@ -12,7 +12,7 @@ use super::check;
 use super::context::{Context, Journal, Size, Stage};
 use super::notice::{Notice, Seed, SeedFlaw};
 use super::open;
-use crate::data::{Mesh, Triangles};
+use crate::data::{EdgeKind, Mesh, Triangles};
 use crate::error::{Error, Result};
 use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, contain};
@@ -269,10 +269,11 @@ fn refuse_flaws(built: &Built, context: &Context) -> Result<()> {
     let triangles = Triangles {
         vertices: built.vertices.iter().map(|&[x, y]| [x, y, 0.0]).collect(),
         faces: built.faces.iter().map(|face| face.corners).collect(),
-        constrained_edges: built
+        lines: built
             .chains
             .iter()
             .flat_map(|chain| chain.windows(2).map(|pair| [pair[0], pair[1]]))
+            .map(|edge| (edge, EdgeKind::Breakline))
             .collect(),
         ..Triangles::default()
     };

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::crs::{Crs, CrsKind, Unit};
-use crate::data::{Bounds, SurfaceFacts};
+use crate::data::{Bounds, EdgeKind, LineEdges, SurfaceFacts};
 use crate::error::{Error, Result};
 
 /// The names of the kinds of coordinates.
@@ -24,14 +24,15 @@ pub(super) struct Attributes {
 impl Attributes {
     /// Returns the attributes as JSON, which reads back as the same values, bit for bit.
     pub(super) fn to_json(&self) -> String {
-        let SurfaceFacts { vertices, triangles, breaklines, clips, extent } = &self.facts;
+        let SurfaceFacts { vertices, triangles, edges, extent } = &self.facts;
+        let lines: Map<String, Value> =
+            edges.kinds().map(|(kind, count)| (kind.noun().to_owned(), count.into())).collect();
         // JSON has no infinity, which an empty box consists of.
         let extent = (!extent.is_empty()).then(|| json!([extent.min, extent.max]));
         json!({
             "vertices": vertices,
             "triangles": triangles,
-            "breaklines": breaklines,
-            "clips": clips,
+            "lines": lines,
             "extent": extent,
             "crs": self.crs.as_ref().map(crs_to_json),
         })
@@ -59,12 +60,21 @@ impl Attributes {
         let facts = SurfaceFacts {
             vertices: count("vertices")?,
             triangles: count("triangles")?,
-            breaklines: count("breaklines")?,
-            clips: count("clips")?,
+            edges: edges(object.get("lines")).ok_or_else(|| wrong("lines"))?,
             extent,
         };
         Ok(Attributes { crs, facts })
     }
+}
+
+/// Reads the numbers of edges on lines.
+fn edges(value: Option<&Value>) -> Option<LineEdges> {
+    let mut edges = LineEdges::default();
+    for (name, count) in value?.as_object()? {
+        let kind = EdgeKind::ALL.into_iter().find(|kind| kind.is_constrained() && kind.noun() == name)?;
+        edges.add_edges(kind, usize::try_from(count.as_u64()?).ok()?);
+    }
+    Some(edges)
 }
 
 fn bounds(value: &Value) -> Option<Bounds> {
@@ -129,7 +139,10 @@ mod tests {
     use super::*;
 
     fn facts(extent: Bounds) -> SurfaceFacts {
-        SurfaceFacts { vertices: 5, triangles: 3, breaklines: 2, clips: 1, extent }
+        let mut edges = LineEdges::default();
+        edges.add_edges(EdgeKind::Breakline, 2);
+        edges.add_edges(EdgeKind::Clip, 1);
+        SurfaceFacts { vertices: 5, triangles: 3, edges, extent }
     }
 
     #[test]
@@ -162,7 +175,7 @@ mod tests {
         let crs = Crs::from_user("EPSG:25832+7837").ok();
         let whole = Attributes { crs, facts: facts(Bounds { min: [0.0; 3], max: [1.0; 3] }) }.to_json();
         let value: Value = serde_json::from_str(&whole).unwrap();
-        for name in ["vertices", "triangles", "breaklines", "clips", "extent", "crs"] {
+        for name in ["vertices", "triangles", "lines", "extent", "crs"] {
             let mut less = value.clone();
             less.as_object_mut().unwrap().remove(name);
             let error = Attributes::from_json(less.to_string().as_bytes()).unwrap_err();

@@ -12,7 +12,8 @@ pub(super) const INSIDE: [u8; 8] = *b"inside  ";
 pub(super) const VERTICES: [u8; 8] = *b"vertices";
 /// The fragments of cut triangles.
 pub(super) const FRAGMENTS: [u8; 8] = *b"fragment";
-/// Edges of whole triangles that are next to a fragment or on a clip line, in order.
+/// Edges of whole triangles that are next to a fragment, or on a line other than a breakline, in
+/// order.
 pub(super) const SIDES: [u8; 8] = *b"sides   ";
 
 /// Stands for the neighbor of an edge at the rim.
@@ -107,7 +108,7 @@ mod tests {
 
     #[test]
     fn rows_read_as_they_were_written() {
-        let [plain, line, clip, rim] = EdgeKind::ALL;
+        let [plain, line, clip, rim, ..] = EdgeKind::ALL;
         for (corners, neighbors, edges) in
             [([0, 1, 2], [None; 3], [rim; 3]), ([7, 1 << 30, 9], [Some(5), None, Some(1 << 31)], [line, clip, plain])]
         {
@@ -118,7 +119,7 @@ mod tests {
             assert_eq!(Side::key(&side.to_bytes()), (corners[1], 2));
         }
         let mut bytes = Fragment { corners: [0, 1, 2], neighbors: [None; 3], edges: [rim; 3] }.to_bytes();
-        bytes[26] = 4;
+        bytes[26] = EdgeKind::ALL.len() as u8;
         assert_eq!(Fragment::read(&bytes), None);
     }
 

@@ -289,6 +289,11 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         if let Some(number) = self.fragment_number(face) {
             return Ok(self.fragment(face, number)?.edges[i]);
         }
+        if self.attributes.facts.edges.has_various()
+            && let Some(side) = self.side(face, i)?
+        {
+            return Ok(side.kind);
+        }
         let cell = CellId::new(face as usize);
         if self.triangulation.is_constrained(cell, i)? {
             Ok(EdgeKind::Breakline)
@@ -314,12 +319,15 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
             neighbors: [None; 3],
             edges: [EdgeKind::Plain; 3],
         };
+        let has_various = self.attributes.facts.edges.has_various();
         for i in 0..3 {
             let beside = self.triangulation.neighbor(cell, i)?;
             if !is_infinite(self.triangulation.corners(beside)?) {
                 face.neighbors[i] = Some(beside.index() as u32);
             }
             face.edges[i] = match (self.triangulation.is_constrained(cell, i)?, face.neighbors[i]) {
+                // Kinds of lines beyond the surface are not in the file.
+                (true, _) if has_various => self.side(number, i)?.map_or(EdgeKind::Breakline, |side| side.kind),
                 (true, _) => EdgeKind::Breakline,
                 (false, Some(_)) => EdgeKind::Plain,
                 (false, None) => EdgeKind::Rim,
@@ -372,7 +380,7 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
     }
 
     fn has_lines(&self) -> bool {
-        self.attributes.facts.breaklines > 0 || self.attributes.facts.clips > 0 || !self.fragments.is_empty()
+        self.attributes.facts.edges.total() > 0 || !self.fragments.is_empty()
     }
 
     fn is_fragment(&self, face: u32) -> bool {

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter, Write};
 
 use super::attributes::Attributes;
 use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, SIDES, Side, VERTICES};
-use crate::data::{EdgeKind, Face, Surface, SurfaceFacts};
+use crate::data::{EdgeKind, Face, LineEdges, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
@@ -25,10 +25,11 @@ pub(in crate::terrain) fn write(
 ) -> Result<()> {
     // The rows are of a few bytes.
     let mut out = BufWriter::with_capacity(1 << 16, out);
-    let layers = Layers::of(surface, triangulation)?;
+    let facts = SurfaceFacts::of(surface);
+    let layers = Layers::of(surface, triangulation, &facts.edges)?;
     triangulation.write_compact(&mut out)?;
     layers.write(&mut out)?;
-    let attributes = Attributes { crs: surface.crs().cloned(), facts: SurfaceFacts::of(surface) };
+    let attributes = Attributes { crs: surface.crs().cloned(), facts };
     write_attributes(&attributes, &mut out)?;
     Ok(out.flush()?)
 }
@@ -47,7 +48,7 @@ struct Layers {
 }
 
 impl Layers {
-    fn of(surface: &dyn Surface, triangulation: &ConstrainedDelaunay<Terrain>) -> Result<Self> {
+    fn of(surface: &dyn Surface, triangulation: &ConstrainedDelaunay<Terrain>, edges: &LineEdges) -> Result<Self> {
         let tds = triangulation.tds();
         let mut fragments: Vec<Face> = Vec::new();
         surface.faces_in(tds.cell_slots() as u32..surface.face_count() as u32, &mut fragments);
@@ -74,9 +75,20 @@ impl Layers {
                 continue;
             }
             inside[at / 8] |= 1 << (at % 8);
-            for i in (0..3).filter(|&i| surface.face(tds.neighbor(cell, i).index() as u32).is_none()) {
-                let (neighbor, kind) = (surface.neighbor(face, i), surface.edge_kind(face, i));
-                if neighbor.is_some() || kind == EdgeKind::Clip {
+            for i in 0..3 {
+                let beside = surface.face(tds.neighbor(cell, i).index() as u32);
+                if beside.is_some() && !edges.has_various() {
+                    continue; // the triangulation says it all
+                }
+                let (kind, is_breakline) = (surface.edge_kind(face, i), triangulation.is_constrained(cell, i));
+                // What a reader takes the edge for if it has no row.
+                let derived = match beside {
+                    _ if is_breakline => EdgeKind::Breakline,
+                    Some(_) => EdgeKind::Plain,
+                    None => EdgeKind::Rim,
+                };
+                let neighbor = surface.neighbor(face, i);
+                if kind != derived || beside.is_none() && neighbor.is_some() {
                     let neighbor = neighbor.map(|face| faces.of(face));
                     sides.extend(Side { face: at as u32, corner: i as u8, kind, neighbor }.to_bytes());
                 }

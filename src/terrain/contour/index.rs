@@ -1,8 +1,8 @@
 /// Sorted levels with a search by height, in constant time if they are evenly spaced.
 pub(super) struct LevelIndex {
     levels: Vec<f64>,
-    /// For each of as many equal steps as there are levels: the first level at or above the step,
-    /// or one near it.
+    /// The range of the levels is divided into as many equal steps as there are levels. For each
+    /// step, the level at which the search for a height in it starts, upward.
     starts: Vec<u32>,
     low: f64,
     steps_per_unit: f64,

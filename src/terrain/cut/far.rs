@@ -5,7 +5,7 @@ use crate::triangulation::geometry::{Crossing, Geometry, Terrain};
 use crate::triangulation::num::{Dyadic, unsigned_zero};
 use crate::triangulation::tds::VertexId;
 
-use super::{Domain, Segment};
+use super::super::regions::{Domain, Segment};
 
 /// How far a segment may reach from zero on each axis, relative to the triangulation.
 const REACH: f64 = 2.0;

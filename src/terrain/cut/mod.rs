@@ -24,10 +24,10 @@
 //!    constraints.
 //! 4. *Heights*: a new vertex has the height of the edge that it lies on, breaklines first, or else
 //!    that of the triangle.
-//! 5. *Regions*: lines are closed curves, which bound domains. One walk over all faces finds the
-//!    domains of each.
-//! 6. Triangles all of whose fragments are kept become whole again, unless a neighbor needs a
-//!    vertex on one of their sides.
+//! 5. *Regions*: clip lines are closed curves, which bound domains. One walk over all faces finds
+//!    the domains of each. Draped lines bound nothing.
+//! 6. Triangles all of whose fragments are kept become whole again, unless a draped line crosses
+//!    them, or a neighbor needs a vertex on one of their sides.
 //!
 //! Fragments need not be Delaunay with their neighbors. The triangulation underneath does not
 //! change.
@@ -36,7 +36,6 @@ mod far;
 mod met;
 mod patch;
 mod patched;
-mod regions;
 mod snap;
 mod steps;
 
@@ -47,16 +46,15 @@ use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, Location};
 
 use super::linear::linear;
+use super::lines::kinds::LineKinds;
+use super::regions::{self, Domain, Segment};
 use far::divided;
 use patch::Patch;
 use patched::{Patched, Remains};
 use snap::snapped;
 
-/// The number of an area that some closed curves bound together, by the even-odd rule.
-pub(super) type Domain = usize;
-
-/// The ends of a straight part of a line, in plan.
-pub(super) type Segment = [[f64; 2]; 2];
+/// Stands for the domain of lines that are draped over the surface: they bound nothing.
+pub(super) const DRAPED: Domain = Domain::MAX;
 
 /// A side of a face: the number of the face, and the index of the opposite corner.
 type Side = (u32, usize);
@@ -73,7 +71,7 @@ pub(super) struct Cut {
 }
 
 /// Cuts a triangulation along closed curves, given as segments, each with the domain that it
-/// bounds.
+/// bounds, and along [draped](DRAPED) lines, which need not close.
 ///
 /// A face is kept if `is_kept` returns true for the sorted domains that contain it. On return,
 /// `inside` contains the triangles that stay whole; the fragments of the others are returned.
@@ -85,6 +83,7 @@ pub(super) struct Cut {
 /// Linear in the number of triangles, plus O(m log m) for m segments and triangles that they meet.
 pub(super) fn cut(
     base: &ConstrainedDelaunay<Terrain>,
+    kinds: &LineKinds,
     inside: &mut [bool],
     curves: &[(Domain, Segment)],
     is_kept: impl Fn(&[Domain]) -> bool,
@@ -94,22 +93,33 @@ pub(super) fn cut(
     let Some(patch) = Patch::new(base, &segments)? else {
         let start = base.finite_cells().next();
         let corners = start.map(|cell| base.tds().corners(cell).map(|vertex| *base.point(vertex)));
-        let within = corners.map(|corners| regions::domains_at(base.geometry(), corners, curves));
+        let within = corners.map(|corners| closed_around(base, corners, curves));
         if !within.is_some_and(|within| is_kept(&within)) {
             inside.fill(false);
         }
         return Ok(None);
     };
-    let patched = Patched::new(base, &patch, curves);
+    let patched = Patched::new(base, kinds, &patch, curves);
     let Some(start) = patched.first() else {
         inside.fill(false);
         return Ok(None);
     };
-    let within = regions::domains_at(base.geometry(), patched.corners(start), &patched.drawn(curves));
-    let kept = regions::keep(&patched, patched.count(), start, within, is_kept);
+    let within = closed_around(base, patched.corners(start), &patched.drawn(curves));
+    let kept = regions::label(&patched, patched.count(), start, within, is_kept);
     let remains = patched.remains(inside, &kept);
     let (first_fragment, first_vertex) = (base.tds().cell_slots(), base.tds().vertex_slots());
     Ok(Some(Cut { patch, remains, first_fragment, first_vertex }))
+}
+
+/// The sorted domains that contain a triangle.
+fn closed_around(
+    base: &ConstrainedDelaunay<Terrain>,
+    corners: [[f64; 3]; 3],
+    curves: &[(Domain, Segment)],
+) -> Vec<Domain> {
+    let mut within = regions::domains_at(base.geometry(), corners, curves);
+    within.retain(|domain| *domain != DRAPED);
+    within
 }
 
 impl Cut {
@@ -129,7 +139,7 @@ impl Cut {
         self.first_fragment + self.remains.is_fragment.len()
     }
 
-    /// One more than the largest number of a vertex.
+    /// One more than the largest vertex number.
     pub(super) fn vertex_count(&self) -> usize {
         self.first_vertex + self.patch.vertices.len()
     }
@@ -176,12 +186,18 @@ impl Cut {
         self.fragment(face).map(|fragment| self.remains.kinds[fragment.index()][i])
     }
 
-    /// Returns true if the fragment across a side of a whole triangle has a breakline there.
-    pub(super) fn is_breakline(&self, face: u32, i: usize) -> bool {
-        self.remains.breaklines.contains(&(face, i))
+    /// The kind of the side that a fragment across a side of a whole triangle has, if it lies on a
+    /// line.
+    pub(super) fn kind_beside(&self, face: u32, i: usize) -> Option<EdgeKind> {
+        self.remains.lines.get(&(face, i)).copied()
     }
 
-    /// Returns true if a line runs along the side of a whole triangle.
+    /// Returns true if a draped line runs along the side of a whole triangle.
+    pub(super) fn is_draped(&self, face: u32, i: usize) -> bool {
+        self.remains.draped.contains(&(face, i))
+    }
+
+    /// Returns true if a clip line runs along the side of a whole triangle.
     pub(super) fn is_clipped(&self, face: u32, i: usize) -> bool {
         self.remains.clipped.contains(&(face, i))
     }

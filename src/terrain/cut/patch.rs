@@ -11,7 +11,7 @@ use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing};
 
 use super::super::linear::linear;
-use super::Segment;
+use super::super::regions::Segment;
 use super::met::met;
 use super::steps::{Arranged, is_breakline};
 

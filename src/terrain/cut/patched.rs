@@ -7,16 +7,17 @@ use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 
+use super::super::lines::kinds::LineKinds;
+use super::super::regions::{Domain, Faces, Segment};
 use super::patch::Patch;
-use super::regions::Faces;
-use super::steps::is_breakline;
-use super::{Domain, Segment, Side};
+use super::{DRAPED, Side};
 
 /// The finite faces of a triangulation, of which some are replaced by those of a patch.
 ///
 /// Faces are numbered: first those of the triangulation, then those of the patch.
 pub(super) struct Patched<'a> {
     base: &'a ConstrainedDelaunay<Terrain>,
+    kinds: &'a LineKinds,
     patch: &'a Patch,
     /// For each triangle: true if the patch replaces it.
     is_replaced: Vec<bool>,
@@ -35,17 +36,24 @@ pub(super) struct Remains {
     pub(super) kinds: Vec<[EdgeKind; 3]>,
     /// The face across each side between a fragment and a whole triangle, from both of them.
     pub(super) beside: FxHashMap<Side, u32>,
-    /// The sides of whole triangles along which a neighboring fragment has a breakline. It may be
-    /// an edge other than their own that rounding has moved here.
-    pub(super) breaklines: FxHashSet<Side>,
-    /// The sides of triangles along which a line runs.
+    /// The sides of whole triangles along which a neighboring fragment has a line, with its kind.
+    /// It may be an edge other than their own that rounding has moved here.
+    pub(super) lines: FxHashMap<Side, EdgeKind>,
+    /// The sides of triangles along which a clip line runs.
     pub(super) clipped: FxHashSet<Side>,
+    /// The sides of triangles along which a draped line runs.
+    pub(super) draped: FxHashSet<Side>,
     /// The number of triangles of which there are fragments.
     pub(super) cut: usize,
 }
 
 impl<'a> Patched<'a> {
-    pub(super) fn new(base: &'a ConstrainedDelaunay<Terrain>, patch: &'a Patch, curves: &[(Domain, Segment)]) -> Self {
+    pub(super) fn new(
+        base: &'a ConstrainedDelaunay<Terrain>,
+        kinds: &'a LineKinds,
+        patch: &'a Patch,
+        curves: &[(Domain, Segment)],
+    ) -> Self {
         let mut is_replaced = vec![false; base.tds().cell_slots()];
         patch.replaced.iter().for_each(|cell| is_replaced[cell.index()] = true);
         let mut domains = vec![Vec::new(); patch.first_edge()];
@@ -54,7 +62,7 @@ impl<'a> Patched<'a> {
                 domains[line.index()].push(*domain);
             }
         }
-        let mut patched = Patched { base, patch, is_replaced, domains, border: FxHashMap::default() };
+        let mut patched = Patched { base, kinds, patch, is_replaced, domains, border: FxHashMap::default() };
         for edge in 0..patch.edges.len() {
             let [u, v] = patch.edges[edge];
             let (Some(left), Some(right)) = (base.tds().edge(u, v), base.tds().edge(v, u)) else { continue };
@@ -146,8 +154,9 @@ impl<'a> Patched<'a> {
         let mut remains = Remains {
             kinds: vec![[EdgeKind::Plain; 3]; is_fragment.len()],
             beside: FxHashMap::default(),
-            breaklines: FxHashSet::default(),
-            clipped: self.clipped(),
+            lines: FxHashMap::default(),
+            clipped: self.sides_along(|domain| domain != DRAPED),
+            draped: self.sides_along(|domain| domain == DRAPED),
             cut: 0,
             is_fragment,
         };
@@ -162,7 +171,7 @@ impl<'a> Patched<'a> {
                 }
                 let is_rim = whole.is_none() && !remains.is_fragment[beyond.index()];
                 let kind = self.kind(face, i, is_rim);
-                remains.breaklines.extend(whole.filter(|_| kind == EdgeKind::Breakline));
+                remains.lines.extend(whole.filter(|_| kind.is_constrained()).map(|side| (side, kind)));
                 remains.kinds[face.index()][i] = kind;
             }
         }
@@ -173,7 +182,8 @@ impl<'a> Patched<'a> {
     }
 
     /// The replaced triangles that stay whole: those of which all fragments are kept, unless a
-    /// neighbor needs a vertex that one of their sides has in the patch.
+    /// draped line crosses them, or a neighbor needs a vertex that one of their sides has in the
+    /// patch.
     fn whole(&self, inside: &[bool], kept: &[bool]) -> FxHashSet<CellId> {
         let mut faces: FxHashMap<CellId, [usize; 2]> = FxHashMap::default();
         for (face, cell) in self.patch.cells.iter().enumerate() {
@@ -183,7 +193,10 @@ impl<'a> Patched<'a> {
                 *left += usize::from(kept[self.first_fragment() + face]);
             }
         }
-        let is_whole = |cell: &CellId| inside[cell.index()] && faces.get(cell).is_some_and(|[all, left]| all == left);
+        let crossed = self.crossed();
+        let is_whole = |cell: &CellId| {
+            inside[cell.index()] && !crossed.contains(cell) && faces.get(cell).is_some_and(|[all, left]| all == left)
+        };
         let mut whole: FxHashSet<CellId> = self.patch.replaced.iter().copied().filter(is_whole).collect();
         // If a triangle has collapsed, the neighbor beyond it is not known here.
         let is_gone = |cell: CellId| {
@@ -210,17 +223,41 @@ impl<'a> Patched<'a> {
         whole
     }
 
-    /// The sides of triangles along which a line runs.
-    fn clipped(&self) -> FxHashSet<Side> {
-        let mut clipped = FxHashSet::default();
-        for (edge, &[u, v]) in self.patch.edges.iter().enumerate() {
-            let chain = self.patch.chain_of_edge(edge);
-            if chain.windows(2).any(|pair| self.patch.is_cut_along([pair[0], pair[1]])) {
-                let sides = [self.base.tds().edge(u, v), self.base.tds().edge(v, u)];
-                clipped.extend(sides.into_iter().flatten().map(|(cell, i)| (cell.index() as u32, i)));
+    /// The replaced triangles whose interior a draped line crosses.
+    fn crossed(&self) -> FxHashSet<CellId> {
+        let tds = self.patch.triangulation.tds();
+        let mut crossed = FxHashSet::default();
+        if !self.domains.iter().flatten().any(|domain| *domain == DRAPED) {
+            return crossed;
+        }
+        for (face, cell) in self.patch.cells.iter().enumerate() {
+            let (Some(cell), face) = (cell, CellId::new(face)) else { continue };
+            let is_within = |i: &usize| self.patch.cells[tds.neighbor(face, *i).index()] == Some(*cell);
+            let sides = 0..3;
+            if sides.into_iter().filter(is_within).any(|i| self.runs_along(tds.edge_ends(face, i), |d| d == DRAPED)) {
+                crossed.insert(*cell);
             }
         }
-        clipped
+        crossed
+    }
+
+    /// Returns true if a cut line of some domain runs along an edge of the patch.
+    fn runs_along(&self, [p, q]: [VertexId; 2], is_wanted: impl Fn(Domain) -> bool) -> bool {
+        let lines = self.patch.triangulation.lines_through(p, q);
+        lines.filter_map(|line| self.domains.get(line.index())).flatten().any(|&domain| is_wanted(domain))
+    }
+
+    /// The sides of triangles along which a cut line of some domain runs.
+    fn sides_along(&self, is_wanted: impl Fn(Domain) -> bool) -> FxHashSet<Side> {
+        let mut found = FxHashSet::default();
+        for (edge, &[u, v]) in self.patch.edges.iter().enumerate() {
+            let chain = self.patch.chain_of_edge(edge);
+            if chain.windows(2).any(|pair| self.runs_along([pair[0], pair[1]], &is_wanted)) {
+                let sides = [self.base.tds().edge(u, v), self.base.tds().edge(v, u)];
+                found.extend(sides.into_iter().flatten().map(|(cell, i)| (cell.index() as u32, i)));
+            }
+        }
+        found
     }
 
     /// The triangle across a side of a face of the patch, and its side, if the two sides share both
@@ -241,8 +278,13 @@ impl<'a> Patched<'a> {
     fn kind(&self, face: CellId, i: usize, is_rim: bool) -> EdgeKind {
         if self.patch.triangulation.is_constrained(face, i) {
             let ends = self.patch.triangulation.tds().edge_ends(face, i);
-            if self.patch.edges_along(ends).any(|edge| is_breakline(self.base, self.patch.edges[edge])) {
-                return EdgeKind::Breakline;
+            let on_lines = self.patch.edges_along(ends);
+            let kinds = on_lines.filter_map(|edge| self.kinds.between(self.base, self.patch.edges[edge]));
+            if let Some(kind) = kinds.min_by_key(|kind| kind.rank()) {
+                return kind;
+            }
+            if self.runs_along(ends, |domain| domain == DRAPED) {
+                return EdgeKind::Draped;
             }
             if is_rim && self.patch.is_cut_along(ends) {
                 return EdgeKind::Clip;
@@ -274,7 +316,8 @@ impl Faces for Patched<'_> {
         if self.patch.triangulation.is_constrained(fragment, i) {
             let [p, q] = tds.edge_ends(fragment, i);
             let lines = self.patch.triangulation.lines_through(p, q);
-            lines.filter_map(|line| self.domains.get(line.index())).for_each(|of_line| domains.extend(of_line));
+            let of_lines = lines.filter_map(|line| self.domains.get(line.index())).flatten();
+            domains.extend(of_lines.filter(|domain| **domain != DRAPED));
         }
         Some(beyond)
     }

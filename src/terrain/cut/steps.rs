@@ -286,7 +286,8 @@ impl Arranged<'_> {
     }
 }
 
-/// Follows steps whose vertex is itself a site of the edge to the vertex that the edge gets there.
+/// Resolves steps whose vertex is itself a site on the same edge: each gets the final vertex, and
+/// the vertices passed on the way.
 fn followed(mut steps: Steps) -> Steps {
     let on = |steps: &Steps, site: u32, edge: usize| {
         steps.get(&site)?.iter().find(|step| step.edge == edge).map(|step| step.vertex)

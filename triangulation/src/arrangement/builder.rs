@@ -118,8 +118,8 @@ impl<'a> Builder<'a> {
     /// `PERF:` takes half the time of the sweep, on one thread, for segments that are short or
     /// cross most of what they come near.
     fn crossing_pairs_by_boxes<K: Kernel>(&self, number: impl Fn([u32; 2]) -> u64 + Sync) -> Option<Vec<u64>> {
-        /// So many overlaps in vain, for each segment and each pair found, take about as long as
-        /// the sweep.
+        /// The number of overlaps without a crossing, for each segment and each pair found, that
+        /// take about as long as the sweep.
         const PATIENCE: usize = 64;
         const CHUNK: usize = 64;
         let tree = self.tree(0..self.segments.len() as u32);
@@ -371,7 +371,7 @@ impl<'a> Builder<'a> {
 
     /// Phase 4: returns the arrangement, with the sites of each segment in order.
     fn collect(self, crossings: Vec<Crossing>, has_chain: &[bool], passes: Vec<Pass>) -> Arrangement {
-        let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize], self.site(site));
+        let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize])(self.site(site));
         // Grouped by segment, by counting; then each group is sorted along its segment.
         let mut ends = vec![0; self.segments.len()];
         passes.iter().for_each(|pass| ends[pass.segment as usize] += 1);

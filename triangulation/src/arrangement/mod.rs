@@ -113,8 +113,8 @@ impl Arrangement {
     }
 
     /// Like [`new`](Self::new), but the first `snapped` segments are routed through all sites whose
-    /// pixels they meet, even if they cross nothing; and other segments are routed through the ends
-    /// of these whose pixels they meet.
+    /// pixels they meet, even if they cross nothing. The other segments are routed through an end
+    /// of a snapped segment if they meet its pixel.
     ///
     /// # Complexity
     /// That of [`new`](Self::new).

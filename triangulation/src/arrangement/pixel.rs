@@ -128,17 +128,18 @@ impl Grid {
         }
     }
 
-    /// Returns a key that sorts the sites whose pixels a segment meets, from its lexicographically
+    /// Returns keys that sort the sites whose pixels a segment meets, from its lexicographically
     /// smaller end.
     ///
     /// Pixels are ordered by their centers on the axis along which the segment is longer, in units,
     /// and within a column from one side to the other.
     #[inline]
-    pub(super) fn along(&self, [a, b]: Segment, site: Site) -> Site {
+    pub(super) fn along(&self, [a, b]: Segment) -> impl Fn(Site) -> Site + use<> {
         let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
         let [dx, dy] = [0, 1].map(|k| b[k] / self.unit[k] - a[k] / self.unit[k]);
-        let (first, second) = if dx.abs() >= dy.abs() { (0, 1) } else { (1, 0) };
-        [first, second].map(|k| if a[k] <= b[k] { site[k] } else { -site[k] })
+        let axes = if dx.abs() >= dy.abs() { [0, 1] } else { [1, 0] };
+        let is_upward = axes.map(|k| a[k] <= b[k]);
+        move |site| [0, 1].map(|n| if is_upward[n] { site[axes[n]] } else { -site[axes[n]] })
     }
 
     /// Returns where two segments cross in their interiors, rounded to the grid: the center of the

@@ -52,10 +52,10 @@ impl Rounder {
         self.grid.hits::<Adaptive>(segment, site)
     }
 
-    /// Returns a key that sorts the sites whose pixels a segment meets, from its lexicographically
+    /// Returns keys that sort the sites whose pixels a segment meets, from its lexicographically
     /// smaller end.
-    pub(crate) fn along(&self, segment: Segment, site: Site) -> Site {
-        self.grid.along(segment, site)
+    pub(crate) fn along(&self, segment: Segment) -> impl Fn(Site) -> Site + use<> {
+        self.grid.along(segment)
     }
 }
 

@@ -16,7 +16,7 @@ trait Simplex<const D: usize> {
     /// Returns the offset from the first point to the center, correct to within `2^-40` of its
     /// length.
     fn offset(&self) -> [f64; D] {
-        /// Of the numerator and of the denominator.
+        /// The largest relative error of the numerator and of the denominator.
         const TOLERANCE: f64 = 1.0 / (1u64 << 42) as f64;
         let divided = |(offset, scale): ([f64; D], f64)| offset.map(|x| x / scale / 2.0);
         if !self.numbers().iter().all(|&x| RANGE.admits(x)) {

@@ -28,7 +28,7 @@ fn quotient<T: Number>(corners: [[f64; 4]; 4], difference: impl Fn(f64, f64) -> 
 /// Returns two numbers between which the squared radius lies; infinite ones if floating point
 /// cannot tell.
 pub(crate) fn squared_radius_bounds(corners: [[f64; 4]; 4]) -> (f64, f64) {
-    /// Larger errors cover all that is lost by underflow.
+    /// Error bounds above this one cover all that is lost by underflow.
     const LEAST: f64 = 1e-280;
     let (Quotient { above, below }, _) = quotient(corners, Bounded::difference);
     let ([above, below], [above_error, below_error]) = ([above.value(), below.value()], [above.error(), below.error()]);

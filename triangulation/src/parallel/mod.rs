@@ -21,7 +21,7 @@ const STACK: usize = 8 << 20;
 
 /// Runs work that is part of a deep recursion on a thread with a stack of its own; on this one if
 /// the system refuses another.
-pub(crate) fn on_new_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn on_new_stack<T: Send>(work: &mut (dyn FnMut() -> T + Send)) -> T {
     let work = Mutex::new(Some(work));
     let run = || work.lock().unwrap_or_else(PoisonError::into_inner).take().map(|work| work());
     let done = thread::scope(|scope| {

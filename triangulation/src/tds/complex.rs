@@ -43,7 +43,7 @@ pub trait Complex<const N: usize> {
     /// The dimension of the complex: -1 without a vertex, `N - 1` when full.
     fn dimension(&self) -> i32;
 
-    /// One more than the largest number of a vertex; there may be gaps.
+    /// One more than the largest vertex number; there may be gaps.
     fn vertex_slots(&self) -> usize;
 
     /// One more than the largest number of a cell; there may be gaps.

@@ -48,8 +48,8 @@ impl<T> Id<T> {
         }
     }
 
-    /// Returns an id with these bits; used while a complex is built, to store other data where ids
-    /// are.
+    /// Returns an id with these bits. While a complex is built, other data is stored in place of
+    /// ids.
     #[inline(always)]
     pub(crate) fn from_stored(stored: NonZeroU32) -> Self {
         Id(stored, PhantomData)

@@ -217,7 +217,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.vertex_cell.len() - self.unused_vertices.len() - self.detached
     }
 
-    /// One more than the largest number of a vertex so far: an upper bound for indices. There are
+    /// One more than the largest vertex number so far: an upper bound for indices. There are
     /// gaps once vertices have been removed.
     #[inline]
     pub fn vertex_slots(&self) -> usize {

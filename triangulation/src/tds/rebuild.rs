@@ -12,20 +12,20 @@ pub(crate) struct Parts<V, C> {
     pub(crate) cells: Vec<VertexId>,
     /// The payload of each cell.
     pub(crate) cell_data: Vec<C>,
-    /// A payload for each number of a vertex, unused ones included.
+    /// A payload for each vertex number, including unused ones.
     pub(crate) vertex_data: Vec<V>,
-    /// The unused numbers of vertices; the last is used next.
+    /// The unused vertex numbers; the last is used next.
     pub(crate) free: Vec<VertexId>,
 }
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
-    /// The payloads of all numbers of vertices, unused ones included.
+    /// The payloads of all vertex numbers, including unused ones.
     #[cfg(feature = "serde")]
     pub(crate) fn payloads(&self) -> &[V] {
         &self.vertex_data
     }
 
-    /// The unused numbers of vertices; the last is used next.
+    /// The unused vertex numbers; the last is used next.
     #[cfg(feature = "serde")]
     pub(crate) fn free_vertices(&self) -> &[VertexId] {
         &self.unused_vertices

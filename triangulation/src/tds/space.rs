@@ -200,7 +200,7 @@ pub(super) fn neighbors_of<T: Complex<4>>(
 struct Star<'t, T> {
     complex: &'t T,
     vertex: VertexId,
-    /// With the index of the vertex in each.
+    /// The cells found so far, each with the index of the vertex in it.
     cells: Vec<(CellId, usize)>,
     /// All the cells, once there are many.
     seen: FxHashSet<CellId>,

@@ -102,9 +102,9 @@ impl PointError {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct GapError {
-    /// A line at whose end no other goes on.
+    /// A line with an end that no other line continues.
     pub line: LineId,
-    /// That end, and the nearest one of the same sort.
+    /// That end, and the nearest other end that no line continues.
     pub ends: [[f64; 2]; 2],
 }
 

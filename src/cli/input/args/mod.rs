@@ -1,6 +1,7 @@
 //! The command line as it is typed. What it means is worked out elsewhere (`super::plan`,
 //! `super::outputs`, ...).
 
+mod lines;
 mod parse;
 mod reading;
 mod surface;
@@ -15,6 +16,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::cli::report::console::Level;
 use crate::io::formats;
 
+pub(in crate::cli) use lines::LineArgs;
 pub(in crate::cli) use parse::{EdgeLength, finite};
 pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(in crate::cli) use switches::expand_switches;

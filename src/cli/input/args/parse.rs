@@ -39,10 +39,11 @@ impl Corners {
     }
 }
 
-/// A length, or `none`.
+/// A length, `auto` or `none`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::cli) enum EdgeLength {
     Length(f64),
+    Auto,
     None,
 }
 
@@ -53,7 +54,10 @@ impl FromStr for EdgeLength {
         if text.eq_ignore_ascii_case("none") {
             return Ok(EdgeLength::None);
         }
-        positive(text).map(EdgeLength::Length).map_err(|e| format!("{e}; expected a length or `none`"))
+        if text.eq_ignore_ascii_case("auto") {
+            return Ok(EdgeLength::Auto);
+        }
+        positive(text).map(EdgeLength::Length).map_err(|e| format!("{e}; expected a length, `auto` or `none`"))
     }
 }
 
@@ -114,6 +118,7 @@ mod tests {
     fn an_edge_length_is_positive_or_none() {
         assert_eq!("12.5".parse(), Ok(EdgeLength::Length(12.5)));
         assert_eq!("None".parse(), Ok(EdgeLength::None));
+        assert_eq!("auto".parse(), Ok(EdgeLength::Auto));
         for wrong in ["0", "-1", "inf", "nan", "all", ""] {
             assert!(wrong.parse::<EdgeLength>().is_err(), "{wrong}");
         }

@@ -2,7 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::parse::{Corners, EdgeLength, not_negative};
+use super::lines::LineArgs;
+use super::parse::{Corners, EdgeLength, not_negative, positive};
 use super::reading::ReadArgs;
 use super::systems::SystemArgs;
 use crate::cli::input::classes;
@@ -29,7 +30,8 @@ pub(in crate::cli) struct SurfaceArgs {
     ///
     /// Lines with heights; of polygons, the rings are used. `FILE:FIELD` takes the height of each
     /// record from an attribute. Where a vertex of a breakline and a point have the same position,
-    /// the height of the breakline is used. Lines without heights are refused.
+    /// the height of the breakline is used. Lines without heights are refused (--draped-lines takes
+    /// them).
     #[arg(long, value_name = "FILE[:FIELD]", help_heading = "Surface")]
     pub(in crate::cli) breaklines: Vec<PathBuf>,
 
@@ -51,13 +53,25 @@ pub(in crate::cli) struct SurfaceArgs {
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Surface")]
     pub(in crate::cli) bounds: Option<Corners>,
 
-    /// Longest edge at the rim, or `none` [default: 100 metres]
+    /// Longest edge at the rim, `auto`, or `none` [default: 100 metres]
     ///
     /// Triangles that can be reached from outside across longer edges are left out: the convex hull
     /// of real data has long slivers where nothing was measured. No breakline is crossed. In the
-    /// units of the coordinate system (100 metres are 328.08 feet); without one, 100 units.
-    #[arg(long, value_name = "LENGTH|none", allow_negative_numbers = true, help_heading = "Surface")]
+    /// units of the coordinate system (100 metres are 328.08 feet); without one, 100 units. `auto`
+    /// is 100 times the mean distance between points, from the number of all points and the extents
+    /// of all files; the summary shows it.
+    #[arg(long, value_name = "LENGTH|auto|none", allow_negative_numbers = true, help_heading = "Surface")]
     pub(in crate::cli) max_edge: Option<EdgeLength>,
+
+    /// Longest edge anywhere: triangles with longer ones leave a hole
+    ///
+    /// For gaps in the data. Breaklines do not count, and neither do triangles in water (--flat,
+    /// --rivers).
+    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true, help_heading = "Surface")]
+    pub(in crate::cli) max_edge_inside: Option<f64>,
+
+    #[command(flatten)]
+    pub(in crate::cli) lines: LineArgs,
 
     /// Classes to use, such as `2,8` or `ground` [default: 2 if any point has it, else all]
     ///

@@ -3,6 +3,7 @@ use std::path::Path;
 use serde_json::json;
 
 use super::Sheet;
+use crate::data::EdgeKind;
 use crate::io::mesh::Solid;
 use crate::run::MeshFacts;
 use crate::run::units::neat;
@@ -16,9 +17,10 @@ pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     sheet.plain("format", if extension == "TIN" { extension } else { format!("TIN, {extension}") });
     sheet.plain("vertices", surface.vertices);
     sheet.plain("triangles", surface.triangles);
-    sheet.row("breaklines", format!("{} edges", surface.breaklines), surface.breaklines);
-    if surface.clips > 0 {
-        sheet.row("clip_lines", format!("{} edges", surface.clips), surface.clips);
+    let breaklines = surface.edges.of(EdgeKind::Breakline);
+    sheet.row("breaklines", format!("{breaklines} edges"), breaklines);
+    for (kind, count) in surface.edges.kinds().filter(|(kind, _)| *kind != EdgeKind::Breakline) {
+        sheet.row(kind.noun().replace(' ', "_"), format!("{count} edges"), count);
     }
     sheet.bounds(surface.extent);
     sheet.crs(crs.as_ref());

@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
@@ -16,7 +17,7 @@ pub(super) struct Sheet {
 
 #[derive(Debug)]
 struct Row {
-    key: &'static str,
+    key: Cow<'static, str>,
     /// `None` if the fact appears only in JSON.
     text: Option<String>,
     value: Value,
@@ -29,8 +30,8 @@ impl Sheet {
     }
 
     /// Adds a fact with a text and a value.
-    pub(super) fn row(&mut self, key: &'static str, text: impl Into<String>, value: impl Into<Value>) {
-        self.rows.push(Row { key, text: Some(text.into()), value: value.into() });
+    pub(super) fn row(&mut self, key: impl Into<Cow<'static, str>>, text: impl Into<String>, value: impl Into<Value>) {
+        self.rows.push(Row { key: key.into(), text: Some(text.into()), value: value.into() });
     }
 
     /// Adds a fact whose text is its value.
@@ -41,12 +42,12 @@ impl Sheet {
             Value::Number(number) => number.as_f64().filter(|_| number.is_f64()).map_or(number.to_string(), neat),
             other => other.to_string(),
         };
-        self.rows.push(Row { key, text: Some(text), value });
+        self.rows.push(Row { key: key.into(), text: Some(text), value });
     }
 
     /// Adds a fact that appears only in JSON.
     pub(super) fn silent(&mut self, key: &'static str, value: impl Into<Value>) {
-        self.rows.push(Row { key, text: None, value: value.into() });
+        self.rows.push(Row { key: key.into(), text: None, value: value.into() });
     }
 
     /// Adds the extent, or that there is none.
@@ -101,7 +102,7 @@ impl Sheet {
         let mut object = Map::new();
         object.insert("file".to_owned(), json!(name));
         for row in &self.rows {
-            object.insert(row.key.to_owned(), row.value.clone());
+            object.insert(row.key.to_string(), row.value.clone());
         }
         object.insert("warnings".to_owned(), json!(self.warnings));
         Value::Object(object)

@@ -34,8 +34,8 @@ const POINTS_PER_THREAD: u64 = 1 << 18;
 /// 000.
 const MAX_CHUNK_POINTS: u64 = 1 << 23;
 
-/// Limit for the points per byte. Real points take a byte or more each, those of a flat and regular
-/// grid some tenths of a byte.
+/// Limit for the points per byte. Real points take a byte or more each, points on a flat, regular
+/// grid a few tenths of a byte.
 const MAX_POINTS_PER_BYTE: u64 = 16;
 
 /// This many points are accepted however few bytes they take, for example if all are at one

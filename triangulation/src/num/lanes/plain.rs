@@ -1,45 +1,40 @@
-//! Four numbers in an array, with the names of the crate `wide`.
+//! Numbers in an array, with the names of the crate `wide`.
 
 #![allow(non_camel_case_types, reason = "the names of wide")]
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Shl, Shr, Sub};
 
-/// Four numbers.
+/// So many numbers.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Lanes<T>([T; 4]);
+pub(crate) struct Lanes<T, const N: usize>([T; N]);
 
-pub(crate) type f32x4 = Lanes<f32>;
-pub(crate) type f64x4 = Lanes<f64>;
-pub(crate) type i32x4 = Lanes<i32>;
+pub(crate) type f32x4 = Lanes<f32, 4>;
+pub(crate) type f64x2 = Lanes<f64, 2>;
+pub(crate) type i32x4 = Lanes<i32, 4>;
 
-impl<T: Copy> Lanes<T> {
+impl<T: Copy, const N: usize> Lanes<T, N> {
     #[inline(always)]
-    pub(crate) fn new(numbers: [T; 4]) -> Self {
+    pub(crate) fn new(numbers: [T; N]) -> Self {
         Lanes(numbers)
     }
 
     #[inline(always)]
     pub(crate) fn splat(number: T) -> Self {
-        Lanes([number; 4])
+        Lanes([number; N])
     }
 
     #[inline(always)]
-    pub(crate) fn to_array(self) -> [T; 4] {
+    pub(crate) fn to_array(self) -> [T; N] {
         self.0
     }
 
     #[inline(always)]
-    pub(crate) fn transpose(rows: [Self; 4]) -> [Self; 4] {
-        [0, 1, 2, 3].map(|column| Lanes(rows.map(|row| row.0[column])))
-    }
-
-    #[inline(always)]
     fn with(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
-        Lanes([0, 1, 2, 3].map(|lane| f(self.0[lane], other.0[lane])))
+        Lanes(std::array::from_fn(|lane| f(self.0[lane], other.0[lane])))
     }
 }
 
-impl<T: Copy + PartialOrd> Lanes<T> {
+impl<T: Copy + PartialOrd, const N: usize> Lanes<T, N> {
     /// The larger number of each lane; the other one's if one is not a number.
     #[inline(always)]
     pub(crate) fn fast_max(self, other: Self) -> Self {
@@ -50,7 +45,7 @@ impl<T: Copy + PartialOrd> Lanes<T> {
 /// Implements an operator lane by lane.
 macro_rules! lane_by_lane {
     ($($operator:ident $name:ident),*) => {$(
-        impl<T: Copy + $operator<Output = T>> $operator for Lanes<T> {
+        impl<T: Copy + $operator<Output = T>, const N: usize> $operator for Lanes<T, N> {
             type Output = Self;
 
             #[inline(always)]
@@ -90,7 +85,7 @@ impl BitAnd for i32x4 {
     }
 }
 
-/// Of masks.
+/// Intersects masks.
 impl BitAnd for f32x4 {
     type Output = Self;
 
@@ -106,6 +101,11 @@ fn mask(holds: bool) -> f32 {
 }
 
 impl f32x4 {
+    #[inline(always)]
+    pub(crate) fn transpose(rows: [Self; 4]) -> [Self; 4] {
+        [0, 1, 2, 3].map(|column| Lanes(rows.map(|row| row.0[column])))
+    }
+
     /// A mask: all bits of a lane are set where the comparison holds.
     #[inline(always)]
     pub(crate) fn simd_lt(self, other: Self) -> Self {

@@ -1,6 +1,8 @@
 //! The position of points on a space-filling curve.
 
-use crate::parallel::*;
+use std::ops::Range;
+
+use super::chunks;
 
 /// A Morton curve (Morton 1966) through the box around some points of one to three coordinates.
 #[derive(Debug, Clone)]
@@ -25,6 +27,12 @@ pub(super) struct Span {
 impl Span {
     pub(super) const EMPTY: Self = Span { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3], axes: 0 };
 
+    /// Returns the span of points.
+    #[inline(always)]
+    pub(super) fn of<A: AsRef<[f64]>>(points: impl Iterator<Item = A>) -> Self {
+        points.fold(Span::EMPTY, |span, point| span.with(point.as_ref()))
+    }
+
     #[inline(always)]
     pub(super) fn with(mut self, point: &[f64]) -> Self {
         self.axes = point.len().min(3);
@@ -46,18 +54,10 @@ impl Span {
 }
 
 impl Curve {
-    /// Returns the curve through `count` points; one thread reads `chunk` of them at a time.
-    pub(super) fn through<A: AsRef<[f64]>>(
-        count: usize,
-        coordinates: impl Fn(usize) -> A + Sync,
-        chunk: usize,
-    ) -> Self {
-        let span_of = |from: usize, to: usize| (from..to).fold(Span::EMPTY, |s, i| s.with(coordinates(i).as_ref()));
-        if count <= chunk {
-            return Self::along(span_of(0, count));
-        }
-        let chunks = (0..count.div_ceil(chunk)).into_par_iter();
-        Self::along(chunks.map(|c| span_of(c * chunk, count.min((c + 1) * chunk))).reduce(|| Span::EMPTY, Span::and))
+    /// Returns the curve through `count` points, given the spans of ranges of them; one thread
+    /// reads `chunk` points at a time.
+    pub(super) fn through(count: usize, span: &(dyn Fn(Range<usize>) -> Span + Sync), chunk: usize) -> Self {
+        Self::along(chunks::reduced(count, chunk, span, Span::EMPTY, Span::and))
     }
 
     /// Returns the curve through all of a box.
@@ -199,7 +199,7 @@ mod tests {
         let coordinates = |i: usize| [i * 37 % 101, i * 71 % 97, i * 11 % 89].map(|x| x as f64);
         for axes in 0..=3 {
             let point = |i: usize| coordinates(i)[..axes].to_vec();
-            let curve = Curve::through(500, point, 64);
+            let curve = Curve::through(500, &|range| Span::of(range.map(point)), 64);
             for bits in 0..12 {
                 let squares = Squares::new(&curve, axes, bits);
                 for point in (0..500).map(point) {
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn the_highest_bit_halves_the_first_axis() {
         let points = [[0.0, 0.0], [1.0, 1.0]];
-        let curve = Curve::through(2, |i| points[i], 8);
+        let curve = Curve::through(2, &|range| Span::of(points[range].iter()), 8);
         assert_eq!(curve.key(&[0.0, 0.0]), 0);
         assert_eq!(curve.key(&[0.9, 0.0]) >> 62, 0b10);
         assert_eq!(curve.key(&[0.0, 0.9]) >> 62, 0b01);

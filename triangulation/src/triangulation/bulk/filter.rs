@@ -34,13 +34,14 @@
 //! Where the result is not certain, the geometry decides, out of line; points on a grid are an
 //! exception, see [`in_circle_slowly`](Seen::in_circle_slowly).
 
+use std::ops::Range;
+
 use crate::geometry::{Coordinates, in_sphere, in_tied_circle};
 use crate::num::{Sign, lattice};
-use crate::parallel::*;
 use crate::tds::VertexId;
 
-use super::Grain;
 use super::curve::Curve;
+use super::{Grain, chunks};
 
 pub(super) type Site = [f64; 2];
 
@@ -261,9 +262,9 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> Seen<'a, G, N,
 fn unit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], grain: Grain) -> f64 {
     let part = 2f64.powi(-14) / points.len() as f64;
     let is_too_small = |lowest: i32, largest: f64| 2f64.powi(lowest) < part * largest;
-    let of_chunk = |chunk: &[G::Point]| {
+    let of_chunk = |range: Range<usize>| {
         let (mut lowest, mut largest) = (i32::MAX, 0.0);
-        for x in chunk.iter().filter_map(|p| geometry.exact_plan(p)).flatten() {
+        for x in points[range].iter().filter_map(|p| geometry.exact_plan(p)).flatten() {
             largest = if x.abs() > largest { x.abs() } else { largest };
             let bit = lattice::lowest_bit(x).unwrap_or(lowest);
             if bit < lowest {
@@ -275,8 +276,8 @@ fn unit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], gr
         }
         Some((lowest, largest))
     };
-    let least = |(i, x): (i32, f64), (j, y): (i32, f64)| Some((i.min(j), x.max(y)));
-    let of_all = points.par_chunks(grain.points).map(of_chunk).try_reduce(|| (i32::MAX, 0.0), least);
+    let least = |(i, x): (i32, f64), (j, y): (i32, f64)| (i.min(j), x.max(y));
+    let of_all = chunks::try_reduced(points.len(), grain.points, &of_chunk, (i32::MAX, 0.0), least);
     let unit = of_all.filter(|&(lowest, largest)| !is_too_small(lowest, largest));
     unit.map_or(0.0, |(lowest, _)| 2f64.powi(lowest))
 }

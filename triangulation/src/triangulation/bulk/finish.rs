@@ -3,8 +3,8 @@
 use crate::parallel::*;
 use crate::tds::{CellId, Links, VertexId};
 
-use super::Grain;
 use super::faces::Edge;
+use super::{Grain, chunks};
 
 /// A cell of each vertex.
 pub(super) struct Cells {
@@ -26,8 +26,7 @@ struct Found {
 /// threads can fill ranges of the cells of vertices. The ranges do not depend on the number of
 /// threads, and therefore neither do the cells.
 pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Option<Cells> {
-    let mut of_vertices: Vec<CellId> =
-        (0..count).into_par_iter().with_min_len(grain.points).map(|_| CellId::NONE).collect();
+    let mut of_vertices = chunks::filled(count, grain.points, || CellId::NONE);
     let ranges = of_vertices.par_chunks_mut(grain.points).zip(faces.par_chunks_mut(2 * grain.points)).enumerate();
     let found: Vec<Found> = ranges.map(|(i, (cells, faces))| finish_range(faces, cells, i * grain.points)).collect();
     if !found.iter().any(|found| found.has_finite) {

@@ -50,6 +50,7 @@
 //! of the virtual machine spent.
 
 mod arc;
+mod chunks;
 mod curve;
 mod faces;
 mod filter;
@@ -68,7 +69,7 @@ use crate::geometry::Coordinates;
 use crate::parallel::*;
 use crate::tds::{CellId, Links, Tds, VertexId};
 
-use curve::Curve;
+use curve::{Curve, Span};
 use faces::Range;
 use filter::Seen;
 use merge::NONE;
@@ -107,7 +108,7 @@ impl<'a> Grain<'a> {
         Grain { stop: Some(stop), ..Grain::default() }
     }
 
-    /// Returns true if the work is to end; from then on, [`is_stopped`](Self::is_stopped).
+    /// Returns true if the work should stop. Then [`is_stopped`](Self::is_stopped) is true, too.
     pub(crate) fn stops(&self) -> bool {
         self.stop.is_some_and(Stop::is_asked_for)
     }
@@ -190,8 +191,7 @@ where
     }
     // PERF: initializing the faces of each part just before it is built, when its memory is then in
     // the cache, made no difference (262 against 253 ns a point), and needs unsafe code.
-    let mut faces: Vec<Links<3>> =
-        (0..2 * count - 2).into_par_iter().with_min_len(grain.points).map(|_| Links::UNUSED).collect();
+    let mut faces = unused(2 * count - 2, grain);
     if have_plans {
         fill::<G, N, true>(geometry, &points, &keys, &curve, &mut faces, grain);
     } else {
@@ -204,6 +204,16 @@ where
     let finished = finish::finish(&mut faces, count, grain);
     let tds = finished.and_then(|cells| assemble(faces, cells.of_vertices, cells.of_infinite));
     (points, tds)
+}
+
+/// Returns so many faces that are in use by nothing.
+fn unused(count: usize, grain: Grain) -> Vec<Links<3>> {
+    chunks::filled(count, grain.points, || Links::UNUSED)
+}
+
+/// Builds two parts, on two threads if another one is free.
+fn both(left: &mut (dyn FnMut() -> Part + Send), right: &mut (dyn FnMut() -> Part + Send)) -> (Part, Part) {
+    join(left, right)
 }
 
 /// Returns the complex of cells with `M` vertices, if that is `N`, which the compiler does not
@@ -263,7 +273,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
             let mut left = Range { seen, keys, first, faces: left, offset, grain, nesting };
             let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain, nesting };
-            join(|| left.build(lo, mid, arcs), || right.build(mid, hi, arcs))
+            both(&mut || left.build(lo, mid, arcs), &mut || right.build(mid, hi, arcs))
         } else {
             (self.build(lo, mid, arcs), self.build(mid, hi, arcs))
         };
@@ -321,11 +331,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let coordinates = |i: usize| self.seen.coordinates(VertexId::new(lo + i));
         let mut keys = Keys::default();
         if !self.keys.are_whole() {
-            keys = Keys::of(count, coordinates, self.seen.curve, self.grain);
+            keys = Keys::of(count, &|i| self.seen.curve.key(coordinates(i).as_ref()), self.grain);
         }
         if keys.is_empty() || keys.difference(0, count - 1) == 0 {
-            let curve = Curve::through(count, coordinates, self.grain.points);
-            keys = Keys::of(count, coordinates, &curve, self.grain);
+            let curve = Curve::through(count, &|range| Span::of(range.map(coordinates)), self.grain.points);
+            keys = Keys::of(count, &|i| curve.key(coordinates(i).as_ref()), self.grain);
         }
         let Range { seen, offset, grain, nesting, .. } = *self;
         let mut range =
@@ -336,7 +346,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             // The new thread is not one of the pool, but the one that waits for it may be. So the
             // new thread must not wait for the pool.
             range.grain = Grain { points: usize::MAX, range: usize::MAX, ..grain };
-            on_new_stack(|| range.build(lo, hi, arcs))
+            on_new_stack(&mut || range.build(lo, hi, arcs))
         } else {
             range.build(lo, hi, arcs)
         }

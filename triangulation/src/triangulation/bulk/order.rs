@@ -19,6 +19,7 @@
 //! Threads share nothing but the arrays they write to, and each entry is written once. Hence
 //! atomics that never wait; `PERF:` they compile to ordinary stores.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
 use crate::geometry::Coordinates;
@@ -26,8 +27,8 @@ use crate::parallel::*;
 use crate::tds::VertexId;
 
 use super::super::{InputError, MAX_VERTICES};
-use super::Grain;
 use super::curve::{Curve, Span, Squares};
+use super::{Grain, chunks};
 
 /// The largest number of bits for buckets: as many buckets as a core's cache has lines to write to.
 const BUCKET_BITS: u32 = 11;
@@ -45,13 +46,8 @@ pub(crate) struct Keys {
 
 impl Keys {
     /// Returns the keys of points that are in spatial order already.
-    pub(super) fn of<A: AsRef<[f64]>>(
-        count: usize,
-        coordinates: impl Fn(usize) -> A + Sync,
-        curve: &Curve,
-        grain: Grain,
-    ) -> Self {
-        let key = |i: usize| AtomicU64::new(curve.key(coordinates(i).as_ref()));
+    pub(super) fn of(count: usize, key: &(dyn Fn(usize) -> u64 + Sync), grain: Grain) -> Self {
+        let key = |i: usize| AtomicU64::new(key(i));
         Keys { records: (0..count).into_par_iter().with_min_len(grain.points).map(key).collect(), low: 0 }
     }
 
@@ -83,6 +79,11 @@ impl Keys {
     }
 }
 
+/// Returns so many zeros.
+fn zeros(count: usize, grain: Grain) -> Vec<AtomicU32> {
+    chunks::filled(count, grain.points, || AtomicU32::new(0))
+}
+
 /// Points, one for each site, in spatial order.
 #[derive(Debug)]
 pub(crate) struct Sites<P> {
@@ -92,6 +93,91 @@ pub(crate) struct Sites<P> {
     pub(super) curve: Curve,
     /// True if all points have an exact plan; in space, an exact site.
     pub(super) have_plans: bool,
+}
+
+/// Points that are to be sorted.
+///
+/// `PERF:` called seldom, so that sorting need not be compiled for each geometry.
+trait Unsorted: Sync {
+    fn count(&self) -> usize;
+
+    /// Returns the number of coordinates.
+    fn axes(&self) -> usize;
+
+    /// Returns the key of a point.
+    fn key(&self, i: usize, curve: &Curve) -> u64;
+
+    /// Returns true if two points of equal keys share a site.
+    fn is_same(&self, i: u32, j: u32) -> bool;
+
+    /// Counts points by the squares that they are in.
+    ///
+    /// `PERF:` two counts for each square, in turn, so that points in one square need not wait for
+    /// each other.
+    fn count_by_square(&self, points: Range<usize>, squares: &Squares, counts: &mut [[u32; 2]]);
+
+    /// Writes the records of points, each where the next one of its bucket belongs.
+    fn write(&self, points: Range<usize>, curve: &Curve, buckets: Buckets, nexts: &mut [u32]);
+
+    /// Returns the span of some points, in the second part of each pair.
+    fn span_of(&self, points: &[(u64, u32)]) -> Span;
+}
+
+/// Where and how records are written.
+#[derive(Clone, Copy)]
+struct Buckets<'a> {
+    records: &'a [AtomicU64],
+    /// A mask of the bits that are not part of the key.
+    low: u64,
+    /// The number of the highest bits of a key that distinguish buckets.
+    bits: u32,
+}
+
+/// Points given by a function, and what it means that two share a site.
+struct Located<C, S> {
+    count: usize,
+    coordinates: C,
+    is_same: S,
+}
+
+impl<A, C, S> Unsorted for Located<C, S>
+where
+    A: AsRef<[f64]>,
+    C: Fn(usize) -> A + Sync,
+    S: Fn(u32, u32) -> bool + Sync,
+{
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn axes(&self) -> usize {
+        if self.count == 0 { 0 } else { (self.coordinates)(0).as_ref().len() }
+    }
+
+    fn key(&self, i: usize, curve: &Curve) -> u64 {
+        curve.key((self.coordinates)(i).as_ref())
+    }
+
+    fn is_same(&self, i: u32, j: u32) -> bool {
+        (self.is_same)(i, j)
+    }
+
+    fn count_by_square(&self, points: Range<usize>, squares: &Squares, counts: &mut [[u32; 2]]) {
+        points.for_each(|i| counts[squares.of((self.coordinates)(i).as_ref())][i % 2] += 1);
+    }
+
+    fn write(&self, points: Range<usize>, curve: &Curve, buckets: Buckets, nexts: &mut [u32]) {
+        for i in points {
+            let key = curve.key((self.coordinates)(i).as_ref());
+            let next = &mut nexts[(key >> 1 >> (63 - buckets.bits)) as usize];
+            buckets.records[*next as usize].store(key & !buckets.low | i as u64, Relaxed);
+            *next += 1;
+        }
+    }
+
+    fn span_of(&self, points: &[(u64, u32)]) -> Span {
+        Span::of(points.iter().map(|&(_, i)| (self.coordinates)(i as usize)))
+    }
 }
 
 /// The result of sorting.
@@ -106,6 +192,30 @@ impl Sorted {
     #[inline(always)]
     fn position(&self, rank: usize) -> usize {
         (self.keys.records[rank].load(Relaxed) & self.keys.low) as usize
+    }
+
+    /// Returns the positions of the first points of all sites, in order.
+    fn positions(&self) -> Vec<u32> {
+        let ranks = (0..self.keys.records.len()).into_par_iter().with_min_len(1 << 12);
+        ranks.map(|rank| self.position(rank) as u32).collect()
+    }
+
+    /// Returns the first point of each site, in order, and the site of each point.
+    fn sites<P: Copy + Send + Sync>(&self, points: &[P], grain: Grain) -> (Vec<P>, Vec<VertexId>) {
+        let ranks = zeros(points.len(), grain);
+        let site = |rank: usize| {
+            let position = self.position(rank);
+            ranks[position].store(rank as u32, Relaxed);
+            points[position]
+        };
+        let count = self.keys.records.len();
+        let sites = (0..count).into_par_iter().with_min_len(grain.points).map(site).collect();
+        for &(position, rank) in &self.others {
+            ranks[position as usize].store(rank, Relaxed);
+        }
+        // In place.
+        let vertices = ranks.into_iter().map(|rank| VertexId::new(rank.into_inner() as usize)).collect();
+        (sites, vertices)
     }
 }
 
@@ -130,9 +240,9 @@ pub fn spatial_order<A: AsRef<[f64]>>(
         return Err(InputError::TooMany);
     }
     let grain = Grain::default();
-    let curve = Curve::through(count, &coordinates, grain.points);
-    let sorted = sort(count, &coordinates, &curve, |_, _| false, grain);
-    Ok((0..count).into_par_iter().with_min_len(1 << 12).map(|rank| sorted.position(rank) as u32).collect())
+    let curve = Curve::through(count, &|range| Span::of(range.map(&coordinates)), grain.points);
+    let sorted = sort(&Located { count, coordinates, is_same: |_, _| false }, &curve, grain);
+    Ok(sorted.positions())
 }
 
 impl<P: Copy + Send + Sync> Sites<P> {
@@ -148,22 +258,8 @@ impl<P: Copy + Send + Sync> Sites<P> {
         let (curve, have_plans) = survey(geometry, points, grain)?;
         let coordinates = |i: usize| geometry.coordinates(&points[i]);
         let is_same = |i: u32, j: u32| geometry.compare(&points[i as usize], &points[j as usize]).is_eq();
-        let sorted = sort(points.len(), &coordinates, &curve, is_same, grain);
-
-        let ranks: Vec<AtomicU32> =
-            (0..points.len()).into_par_iter().with_min_len(grain.points).map(|_| AtomicU32::new(0)).collect();
-        let site = |rank: usize| {
-            let position = sorted.position(rank);
-            ranks[position].store(rank as u32, Relaxed);
-            points[position]
-        };
-        let count = sorted.keys.records.len();
-        let sites = (0..count).into_par_iter().with_min_len(grain.points).map(site).collect();
-        for &(position, rank) in &sorted.others {
-            ranks[position as usize].store(rank, Relaxed);
-        }
-        // In place.
-        let vertices = ranks.into_iter().map(|rank| VertexId::new(rank.into_inner() as usize)).collect();
+        let sorted = sort(&Located { count: points.len(), coordinates, is_same }, &curve, grain);
+        let (sites, vertices) = sorted.sites(points, grain);
         Ok((Sites { points: sites, keys: sorted.keys, curve, have_plans }, vertices))
     }
 
@@ -177,20 +273,20 @@ impl<P: Copy + Send + Sync> Sites<P> {
     ) -> Result<Self, InputError> {
         let grain = Grain::default();
         let (curve, have_plans) = survey(geometry, &points, grain)?;
-        let keys = Keys::of(points.len(), |i| geometry.coordinates(&points[i]), &curve, grain);
-        let is_wrong = |&i: &usize| {
+        let keys = Keys::of(points.len(), &|i| curve.key(geometry.coordinates(&points[i]).as_ref()), grain);
+        let is_wrong = |i: usize| {
             keys.is_before(i, i - 1)
                 || keys.difference(i, i - 1) == 0 && geometry.compare(&points[i - 1], &points[i]).is_eq()
         };
-        if let Some(position) = (1..points.len()).into_par_iter().with_min_len(grain.points).find_first(is_wrong) {
+        if let Some(position) = chunks::first_of(1..points.len(), grain.points, &is_wrong) {
             return Err(InputError::Unsorted(position));
         }
         Ok(Sites { points, keys, curve, have_plans })
     }
 }
 
-/// Checks that the geometry admits all points. Returns the curve through them, and true if all have
-/// an exact plan, in space an exact site.
+/// Checks that the geometry admits all points. Returns the curve through them, and true if all of
+/// them have an exact plan (in the plane) or an exact site (in space).
 ///
 /// `PERF:` in one pass instead of three.
 fn survey<G: Coordinates<N>, const N: usize>(
@@ -203,9 +299,10 @@ fn survey<G: Coordinates<N>, const N: usize>(
             planned & if N == 3 { geometry.exact_plan(p).is_some() } else { geometry.exact_site(p).is_some() };
         (admitted & geometry.admits(p), planned, span.with(geometry.coordinates(p).as_ref()))
     };
-    let nothing = || (true, true, Span::EMPTY);
-    let chunks = points.par_chunks(grain.points).map(|chunk| chunk.iter().fold(nothing(), look));
-    let (admitted, have_plans, span) = chunks.reduce(nothing, |p, q| (p.0 & q.0, p.1 & q.1, p.2.and(q.2)));
+    let nothing = (true, true, Span::EMPTY);
+    let look_at = |range: Range<usize>| points[range].iter().fold(nothing, look);
+    let (admitted, have_plans, span) =
+        chunks::reduced(points.len(), grain.points, &look_at, nothing, |p, q| (p.0 & q.0, p.1 & q.1, p.2.and(q.2)));
     if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
         return Err(InputError::Coordinate(bad));
     }
@@ -215,24 +312,19 @@ fn survey<G: Coordinates<N>, const N: usize>(
     Ok((Curve::along(span), have_plans))
 }
 
-/// Sorts points. `is_same` returns true if two points of equal keys share a site.
+/// Sorts points.
 ///
 /// `PERF:` with 7 bits less in the records, groups take two passes instead of three: 2 % of the
 /// time of 1 million uniform points. But clusters take 10 % more, because many records are equal
 /// then.
-fn sort<A: AsRef<[f64]>>(
-    count: usize,
-    coordinates: &(impl Fn(usize) -> A + Sync),
-    curve: &Curve,
-    is_same: impl Fn(u32, u32) -> bool + Sync,
-    grain: Grain,
-) -> Sorted {
+fn sort(points: &dyn Unsorted, curve: &Curve, grain: Grain) -> Sorted {
+    let count = points.count();
     let index_bits = usize::BITS - count.saturating_sub(1).leading_zeros();
     let key_bits = (index_bits + 17).min(64 - index_bits);
     let low = u64::MAX >> key_bits;
 
-    let (records, starts) = distribute(count, coordinates, curve, low, grain);
-    let sorter = Sorter { curve, coordinates, is_same: &is_same, low, grain };
+    let (records, starts) = distribute(points, curve, low, grain);
+    let sorter = Sorter { curve, points, low, grain };
     let groups = groups(&starts, grain);
     let sorted: Vec<(usize, Vec<(u32, u32)>)> = groups
         .par_windows(2)
@@ -256,28 +348,18 @@ fn sort<A: AsRef<[f64]>>(
 
 /// Returns the records in the order of their buckets, and the start of each bucket, followed by the
 /// end.
-fn distribute<A: AsRef<[f64]>>(
-    count: usize,
-    coordinates: &(impl Fn(usize) -> A + Sync),
-    curve: &Curve,
-    low: u64,
-    grain: Grain,
-) -> (Vec<AtomicU64>, Vec<usize>) {
+fn distribute(points: &dyn Unsorted, curve: &Curve, low: u64, grain: Grain) -> (Vec<AtomicU64>, Vec<usize>) {
+    let count = points.count();
     let index_bits = usize::BITS - count.leading_zeros();
     let bits = index_bits.saturating_sub(9).min(BUCKET_BITS);
-    let bucket = |key: u64| (key >> 1 >> (63 - bits)) as usize;
-    let axes = if count == 0 { 0 } else { coordinates(0).as_ref().len() };
-    let squares = Squares::new(curve, axes, bits);
-    let records: Vec<AtomicU64> =
-        (0..count).into_par_iter().with_min_len(grain.points).map(|_| AtomicU64::new(0)).collect();
+    let squares = Squares::new(curve, points.axes(), bits);
+    let records = chunks::filled(count, grain.points, || AtomicU64::new(0));
 
     let chunk = count.div_ceil(current_num_threads()).max(grain.points);
     let range = |c: usize| c * chunk..count.min((c + 1) * chunk);
     let counted = |c: usize| {
-        // `PERF:` two counts for each square, in turn, so that points in one square need not wait
-        // for each other.
         let mut counts = vec![[0u32; 2]; 1 << bits];
-        range(c).for_each(|i| counts[squares.of(coordinates(i).as_ref())][i % 2] += 1);
+        points.count_by_square(range(c), &squares, &mut counts);
         let mut by_bucket = vec![0u32; 1 << bits];
         counts.iter().enumerate().for_each(|(square, [even, odd])| by_bucket[squares.key_bits(square)] += even + odd);
         by_bucket
@@ -294,14 +376,8 @@ fn distribute<A: AsRef<[f64]>>(
         }
     }
     starts.push(count);
-    counts.par_iter_mut().enumerate().for_each(|(c, nexts)| {
-        for i in range(c) {
-            let key = curve.key(coordinates(i).as_ref());
-            let next = &mut nexts[bucket(key)];
-            records[*next as usize].store(key & !low | i as u64, Relaxed);
-            *next += 1;
-        }
-    });
+    let buckets = Buckets { records: &records, low, bits };
+    counts.par_iter_mut().enumerate().for_each(|(c, nexts)| points.write(range(c), curve, buckets, nexts));
     (records, starts)
 }
 
@@ -325,15 +401,14 @@ struct Scratch {
     spare: Vec<u64>,
 }
 
-struct Sorter<'a, C, S> {
+struct Sorter<'a> {
     curve: &'a Curve,
-    coordinates: &'a C,
-    is_same: &'a S,
+    points: &'a dyn Unsorted,
     low: u64,
     grain: Grain<'a>,
 }
 
-impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<'_, C, S> {
+impl Sorter<'_> {
     /// Sorts a group, moves the sites to its front and counts them. Points that are not the first
     /// of their site are returned separately.
     fn sort(&self, group: &[AtomicU64], scratch: &mut Scratch) -> (usize, Vec<(u32, u32)>) {
@@ -359,7 +434,7 @@ impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<
             let position = |record: u64| (record & self.low) as u32;
             let mut last = None;
             for &record in run.iter() {
-                if last.is_some_and(|last| (self.is_same)(last, position(record))) {
+                if last.is_some_and(|last| self.points.is_same(last, position(record))) {
                     others.push((position(record), sites as u32 - 1));
                 } else {
                     last = Some(position(record));
@@ -384,16 +459,17 @@ impl<A: AsRef<[f64]>, C: Fn(usize) -> A + Sync, S: Fn(u32, u32) -> bool> Sorter<
 
     /// Sorts by whole keys; where these are equal, along a curve through the points that share one.
     fn sort_along(&self, curve: &Curve, points: &mut [(u64, u32)]) {
-        let coordinates = |position: u32| (self.coordinates)(position as usize);
+        let key = |position: u32| self.points.key(position as usize, curve);
         if points.len() > self.grain.points {
-            points.par_iter_mut().for_each(|(key, position)| *key = curve.key(coordinates(*position).as_ref()));
+            points.par_iter_mut().for_each(|(of_point, position)| *of_point = key(*position));
             points.par_sort_unstable();
         } else {
-            points.iter_mut().for_each(|(key, position)| *key = curve.key(coordinates(*position).as_ref()));
+            points.iter_mut().for_each(|(of_point, position)| *of_point = key(*position));
             points.sort_unstable();
         }
         for equal in points.chunk_by_mut(|(p, _), (q, _)| p == q).filter(|equal| equal.len() > 1) {
-            let inner = Curve::through(equal.len(), |i| coordinates(equal[i].1), self.grain.points);
+            let span = |range: Range<usize>| self.points.span_of(&equal[range]);
+            let inner = Curve::through(equal.len(), &span, self.grain.points);
             if !inner.is_point() {
                 self.sort_along(&inner, equal);
             }

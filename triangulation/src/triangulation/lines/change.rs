@@ -29,7 +29,8 @@ pub(super) struct Change {
 }
 
 impl Change {
-    /// Returns the change from one chain to another; no sites for a segment that does not exist.
+    /// Returns the change from one chain to another. The chain of a segment that does not exist is
+    /// empty.
     pub(super) fn new(segment: Ends, old: Vec<VertexId>, new: Vec<VertexId>, is_bent: bool) -> Self {
         let head = count_shared(old.iter(), new.iter()).saturating_sub(1);
         let tail = count_shared(old.iter().rev(), new.iter().rev()).saturating_sub(1);

@@ -7,7 +7,7 @@ use crate::tds::{CellId, VertexId};
 use super::super::engine::flip::WithConstraints;
 use super::super::engine::insert::Inserted;
 use super::super::engine::trace::Met;
-use super::super::{ConstrainedEdges, Location, Triangulation};
+use super::super::{ConstrainedEdges, Facets, Location, Triangulation};
 use super::Lines;
 use super::paths::undirected;
 
@@ -18,6 +18,21 @@ pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 #[inline]
 pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
     t.geometry.plan(t.point(vertex)).map(unsigned_zero)
+}
+
+/// Inserts a point that was admitted at its location, unless its site is taken. A constraint that
+/// the location names is replaced by the edges from the point to its ends.
+fn insert_through<G: Crossing, V, C: Copy + Default>(
+    t: &mut Mesh<G, V, C>,
+    p: G::Point,
+    data: V,
+    location: Location,
+) -> Inserted<V> {
+    let split = t.constraint_at(location);
+    let takes = |t: &Mesh<G, V, C>, from, i, beyond| !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p);
+    let inserted = t.insert_at(p, location, data, takes, |constrained, i| constrained.only(i));
+    t.constrain_halves(split, inserted.vertex);
+    inserted
 }
 
 impl Lines {
@@ -43,13 +58,36 @@ impl Lines {
         location: Location,
     ) -> Inserted<V> {
         let split = t.constraint_at(location);
-        let takes = |t: &Mesh<G, V, C>, from, i, beyond| !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p);
-        let inserted = t.insert_at(p, location, data, takes, |constrained, i| constrained.only(i));
-        t.constrain_halves(split, inserted.vertex);
+        let inserted = insert_through(t, p, data, location);
         if let Some([a, b]) = split {
             self.split_edge(a, b, inserted.vertex);
         }
         inserted
+    }
+
+    /// Inserts a point that was admitted, and bends the constraint opposite corner `i` of a
+    /// triangle to it. The point must be in the triangle, and in the circle of the one beyond the
+    /// constraint. The tables are not updated: that is the caller's task.
+    ///
+    /// From each triangle that is replaced, the point lies beyond the edge by which it was reached,
+    /// and in the circle: so it sees the other two edges.
+    ///
+    /// ```text
+    ///        c                 c
+    ///      /   \             / | \
+    ///     /  p  \           /  |  \
+    ///    a-------b   ==>   a--p--b       p is a little above the line from a to b
+    ///     \     /           \  |  /
+    ///      \   /             \ | /
+    ///        d                 d
+    /// ```
+    pub(super) fn bend_edge<G: Crossing, V: Default, C: Copy + Default>(
+        t: &mut Mesh<G, V, C>,
+        p: G::Point,
+        cell: CellId,
+        i: usize,
+    ) -> VertexId {
+        insert_through(t, p, V::default(), Location::Cell { cell, facets: Facets::only(i) }).vertex
     }
 
     /// Inserts the sub-constraint between two vertices. All constraints enter the triangulation by

@@ -231,6 +231,11 @@ impl Index {
         });
     }
 
+    /// Records that a segment has a node, which is not in the tables yet.
+    pub(super) fn add_node(&mut self, segment: Ends, node: Ends) {
+        self.segments_on.insert(node, segment);
+    }
+
     /// Removes a segment from the nodes of a part of its chain, and appends these to `nodes`. The
     /// node that is the segment itself stays.
     pub(super) fn remove_part(&mut self, paths: &Paths, segment: Ends, part: Ends, nodes: &mut Vec<Ends>) {

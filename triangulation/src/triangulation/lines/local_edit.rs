@@ -23,18 +23,25 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::arrangement::{Rounder, crosses, is_aligned};
 use crate::geometry::Crossing;
-use crate::tds::VertexId;
+use crate::tds::{CellId, VertexId};
 
-use super::super::Rounding;
+use super::super::{Location, Rounding};
 use super::Lines;
 use super::change::Change;
 use super::constrain::{Mesh, position};
 use super::index::NotLocal;
-use super::near_segment::{Band, near};
+use super::near_segment::{Band, Nearby, near};
 use super::paths::{Ends, undirected};
 
 /// How many units around a segment or a site are searched. One would suffice, except for rounding.
 const REACH: f64 = 2.0;
+
+/// How many units around an inserted segment are searched: also for segments that meet the pixels
+/// of its crossings, which are up to half a unit away from it.
+const WIDE_REACH: f64 = 3.0;
+
+/// A list of at most this many sites is searched one by one, which is faster than by halves.
+const SHORT: usize = 64;
 
 /// A pending step.
 enum Step {
@@ -55,6 +62,8 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     added: Option<Ends>,
     /// The vertices near the segment to be inserted.
     near_added: Vec<VertexId>,
+    /// The other segments near it, with their ends.
+    beside_added: Vec<(Ends, [[f64; 2]; 2])>,
     /// The segment to be removed.
     removed: Option<Ends>,
     /// The given vertex to be removed.
@@ -63,8 +72,10 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     chains: FxHashMap<Ends, Option<Vec<VertexId>>>,
     hot: FxHashMap<VertexId, bool>,
     active: FxHashSet<VertexId>,
-    /// The segments near a site.
+    /// The segments that meet the pixel of a site and do not end there.
     around: FxHashMap<VertexId, Vec<Ends>>,
+    /// Edges that replaced a part of a segment when a site was inserted beside it.
+    replacing: Vec<(Ends, Ends)>,
     /// Added vertices at which other segments cross than before.
     stale: Vec<VertexId>,
     steps: Vec<Step>,
@@ -79,12 +90,14 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             rounder,
             added: None,
             near_added: Vec::new(),
+            beside_added: Vec::new(),
             removed: None,
             gone: None,
             chains: FxHashMap::default(),
             hot: FxHashMap::default(),
             active: FxHashSet::default(),
             around: FxHashMap::default(),
+            replacing: Vec::new(),
             stale: Vec::new(),
             steps: Vec::new(),
         })
@@ -99,19 +112,23 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             }
         }
         let ends = self.ends(segment);
-        let mut crossed = Vec::new();
-        let (others, vertices) = self.near_segment(segment);
+        let Nearby { edges, vertices } = self.near_segment(segment, WIDE_REACH);
         self.near_added = vertices;
-        for other in others {
-            let Some(center) = self.rounder.crossing(ends, self.ends(other)) else { continue };
-            self.add_site(center, [segment, other])?;
-            crossed.push(other);
+        let mut crossed = Vec::new();
+        for (other, cell) in self.segments_on_each(edges) {
+            let ends_of_other = self.ends(other);
+            self.beside_added.push((other, ends_of_other));
+            crossed.extend(self.rounder.crossing(ends, ends_of_other).map(|center| (other, center, cell)));
         }
         if crossed.is_empty() {
             self.bend_if_attracted(segment);
         } else {
-            crossed.push(segment);
-            self.steps.extend(crossed.into_iter().map(Step::Bend));
+            self.expect(crossed.len() + 1);
+            for &(other, center, cell) in &crossed {
+                self.add_site(center, [segment, other], cell)?;
+            }
+            self.steps.extend(crossed.iter().map(|&(other, ..)| Step::Bend(other)));
+            self.steps.push(Step::Bend(segment));
         }
         self.apply_rules()?;
         self.carry_out()
@@ -157,37 +174,72 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         segment.map(|v| position(self.t, v))
     }
 
-    /// Returns the segments near another one, and the vertices near it; without the segment that is
-    /// inserted or removed.
-    fn near_segment(&self, segment: Ends) -> (Vec<Ends>, Vec<VertexId>) {
-        let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| REACH * unit));
-        let (edges, vertices) = near(self.t, &band, segment[0]);
-        (self.segments_on(edges), vertices)
+    /// Reserves memory for a number of segments and sites.
+    fn expect(&mut self, count: usize) {
+        self.chains.reserve(count);
+        self.hot.reserve(count);
+        self.active.reserve(count);
+        self.around.reserve(count);
+    }
+
+    /// Returns what lies within a number of units around a segment.
+    fn near_segment(&mut self, segment: Ends, reach: f64) -> Nearby {
+        let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| reach * unit));
+        near(self.t, &band, segment[0])
     }
 
     /// Returns all vertices whose pixels a segment meets, in no particular order.
-    fn attractors(&self, segment: Ends) -> Vec<VertexId> {
-        let mut vertices =
-            if Some(segment) == self.added { self.near_added.clone() } else { self.near_segment(segment).1 };
+    fn attractors(&mut self, segment: Ends) -> Vec<VertexId> {
+        let mut vertices = if Some(segment) == self.added {
+            self.near_added.clone()
+        } else {
+            self.near_segment(segment, REACH).vertices
+        };
         vertices.retain(|&v| self.meets_pixel(segment, v));
         vertices
     }
 
-    /// Returns the segments that may meet the pixel of a vertex, with the one that is inserted and
-    /// without the one that is removed.
+    /// Returns the segments that meet the pixel of a vertex and do not end there, with the one that
+    /// is inserted and without the one that is removed.
     fn around(&mut self, vertex: VertexId) -> Vec<Ends> {
-        if !self.around.contains_key(&vertex) {
-            let band = Band::around([position(self.t, vertex); 2], self.rounder.unit().map(|unit| REACH * unit));
-            let segments = self.segments_on(near(self.t, &band, vertex).0);
-            self.around.insert(vertex, segments);
+        if let Some(segments) = self.around.get(&vertex) {
+            return segments.clone();
         }
-        self.around[&vertex].iter().copied().chain(self.added).collect()
+        let edges = self.near_segment([vertex; 2], REACH).edges;
+        let mut segments = self.segments_on(edges.into_iter().map(|(edge, _)| edge));
+        segments.extend(self.added);
+        segments.retain(|&segment| self.meets_pixel(segment, vertex));
+        self.around.insert(vertex, segments.clone());
+        segments
+    }
+
+    /// Determines the segments around a site at which the inserted segment crosses another one.
+    fn look_around_crossing(&mut self, site: VertexId) {
+        if !self.around.contains_key(&site) {
+            let at = position(self.t, site);
+            let beside = self.beside_added.iter().copied();
+            let all = beside.chain(self.added.map(|segment| (segment, self.ends(segment))));
+            let met = all.filter(|&(segment, ends)| !segment.contains(&site) && self.rounder.hits(ends, at));
+            let segments = met.map(|(segment, _)| segment).collect();
+            self.around.insert(site, segments);
+        }
     }
 
     /// Returns the segments that end at a vertex or run through it, without the one that is
     /// inserted or removed.
     fn lines_at(&self, vertex: VertexId) -> Vec<Ends> {
         self.segments_on(self.t.constrained_around(vertex).map(|other| undirected(vertex, other)))
+    }
+
+    /// Returns the segments on edges, each once, in order, with what was given of one of its edges.
+    fn segments_on_each(&self, edges: Vec<(Ends, CellId)>) -> Vec<(Ends, CellId)> {
+        let index = self.lines.index();
+        let on_edge = |(edge, cell)| index.segments_on(&self.lines.paths, edge).map(move |segment| (segment, cell));
+        let mut segments: Vec<(Ends, CellId)> = edges.into_iter().flat_map(on_edge).collect();
+        segments.retain(|&(segment, _)| Some(segment) != self.added && Some(segment) != self.removed);
+        segments.sort_unstable();
+        segments.dedup_by_key(|(segment, _)| *segment);
+        segments
     }
 
     fn segments_on(&self, edges: impl IntoIterator<Item = Ends>) -> Vec<Ends> {
@@ -210,25 +262,30 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             return chain.as_ref().is_some_and(|sites| sites.contains(&vertex));
         }
         let Some(sites) = self.lines.paths.bent.get(&segment) else { return false };
-        sites.get(self.position_along(segment, sites, vertex)) == Some(&vertex)
+        if sites.len() <= SHORT {
+            return sites.contains(&vertex);
+        }
+        sites.get(self.position_along(segment, sites, position(self.t, vertex))) == Some(&vertex)
     }
 
-    /// Returns how many of a segment's sites come before a vertex that is near the segment.
-    fn position_along(&self, segment: Ends, sites: &[VertexId], vertex: VertexId) -> usize {
+    /// Returns how many of a segment's sites come before a site that is near the segment.
+    fn position_along(&self, segment: Ends, sites: &[VertexId], at: [f64; 2]) -> usize {
         let key = self.order_along(segment);
-        let limit = key(vertex);
-        sites.partition_point(|&site| key(site) < limit)
+        let limit = key(at);
+        sites.partition_point(|&site| key(position(self.t, site)) < limit)
     }
 
     /// Returns keys that sort the sites of a segment from its first end to its second.
-    fn order_along(&self, segment: Ends) -> impl Fn(VertexId) -> [f64; 2] + use<'_, 'a, G, V, C> {
+    fn order_along(&self, segment: Ends) -> impl Fn([f64; 2]) -> [f64; 2] + use<G, V, C> {
         let ends = self.ends(segment);
         let sign = if ends[0] <= ends[1] { 1.0 } else { -1.0 };
-        move |vertex| self.rounder.along(ends, position(self.t, vertex)).map(|x| sign * x)
+        let key = self.rounder.along(ends);
+        move |at| key(at).map(|x| sign * x)
     }
 
     fn sort_along(&self, segment: Ends, sites: &mut [VertexId]) {
-        let key = self.order_along(segment);
+        let in_order = self.order_along(segment);
+        let key = |site: VertexId| in_order(position(self.t, site));
         sites.sort_unstable_by(|&u, &v| key(u).partial_cmp(&key(v)).unwrap_or(std::cmp::Ordering::Equal));
     }
 
@@ -241,7 +298,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Bends a segment to one more site.
     fn insert_site(&mut self, segment: Ends, site: VertexId) {
         let mut sites = std::mem::take(self.sites_mut(segment));
-        let at = self.position_along(segment, &sites, site);
+        let at = self.position_along(segment, &sites, position(self.t, site));
         sites.insert(at, site);
         self.chains.insert(segment, Some(sites));
     }
@@ -249,7 +306,12 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Returns the sites of a bent segment, mutable.
     fn sites_mut(&mut self, segment: Ends) -> &mut Vec<VertexId> {
         let table = &self.lines.paths.bent;
-        let in_table = || table.get(&segment).map(|sites| sites.to_vec());
+        let in_table = || {
+            let sites = table.get(&segment)?;
+            let mut copy = Vec::with_capacity(sites.len() + 2); // more will be inserted
+            copy.extend_from_slice(sites);
+            Some(copy)
+        };
         self.chains.entry(segment).or_insert_with(in_table).get_or_insert_default()
     }
 
@@ -285,13 +347,17 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     }
 
     /// Makes the rounded crossing of two segments a hot site.
-    fn add_site(&mut self, center: [f64; 2], segments: [Ends; 2]) -> Result<(), NotLocal> {
+    /// The walk to it starts at a cell nearby.
+    fn add_site(&mut self, center: [f64; 2], segments: [Ends; 2], near: CellId) -> Result<(), NotLocal> {
         let ends = segments.map(|ends| ends.map(|v| *self.t.point(v)));
         let p = self.t.geometry.meet(center, &ends.each_ref().map(|ends| ends.each_ref()));
         self.t.admit(&p).map_err(|_| NotLocal)?;
         let count = self.t.vertex_count();
-        let near = self.t.tds.cell_of(segments[0][0]);
-        let site = self.lines.insert_point(self.t, p, near);
+        let location = self.t.locate(&p, Some(near));
+        let site = match self.constraint_beside(segments[1], center, &p, location) {
+            Some((cell, i)) => self.bend_edge(segments[1], p, cell, i),
+            None => self.lines.insert_at(self.t, p, V::default(), location).vertex,
+        };
         if self.t.vertex_count() > count {
             self.lines.added.insert(site);
             self.near_added.push(site);
@@ -299,7 +365,46 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         } else if !self.is_hot(site) {
             self.make_hot(site);
         }
+        self.look_around_crossing(site);
         Ok(())
+    }
+
+    /// Returns the constraint beside a new site of a segment, which the segment, and no other,
+    /// follows now, but not once it bends to the site; as a triangle with the site and an index.
+    /// `None` if it is not an edge of that triangle.
+    fn constraint_beside(
+        &self,
+        segment: Ends,
+        at: [f64; 2],
+        p: &G::Point,
+        location: Location,
+    ) -> Option<(CellId, usize)> {
+        let Location::Cell { cell, facets } = location else { return None };
+        let sites = self.lines.paths.bent.get(&segment).map_or(&[][..], |sites| sites);
+        let next = self.position_along(segment, sites, at);
+        let from = if next == 0 { segment[0] } else { sites[next - 1] };
+        let part = undirected(from, *sites.get(next).unwrap_or(&segment[1]));
+        let is_part = |&i: &usize| {
+            let [a, b] = self.t.tds.edge_ends(cell, i);
+            self.t.is_constrained(cell, i) && undirected(a, b) == part
+        };
+        let i = (0..3).find(is_part).filter(|_| facets.is_empty())?;
+        let mut others = self.lines.index().segments_on(&self.lines.paths, part);
+        let is_only = others.all(|other| other == segment);
+        (is_only && self.t.in_conflict(self.t.tds.neighbor(cell, i), p)).then_some((cell, i))
+    }
+
+    /// Inserts a site of a segment beside a constraint that is bent to it.
+    fn bend_edge(&mut self, segment: Ends, p: G::Point, cell: CellId, i: usize) -> VertexId {
+        let ends = self.t.tds.edge_ends(cell, i);
+        let site = Lines::bend_edge(self.t, p, cell, i);
+        for part in ends.map(|end| undirected(end, site)) {
+            if let Some(index) = self.lines.index.get_mut() {
+                index.add_node(segment, part);
+            }
+            self.replacing.push((segment, part));
+        }
+        site
     }
 
     /// Schedules a segment to be bent if it meets the pixel of an active site.
@@ -318,7 +423,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                         return Err(NotLocal); // the grid becomes another one
                     }
                     for segment in self.around(site) {
-                        if self.is_bent(segment) && !self.has_site(segment, site) && self.meets_pixel(segment, site) {
+                        if self.is_bent(segment) && !self.has_site(segment, site) {
                             self.insert_site(segment, site);
                             if !self.is_exact(segment, site) {
                                 self.steps.push(Step::Activate(site));
@@ -329,7 +434,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                 Step::Activate(site) => {
                     if self.active.insert(site) {
                         for segment in self.around(site) {
-                            if !self.is_bent(segment) && self.meets_pixel(segment, site) {
+                            if !self.is_bent(segment) {
                                 self.steps.push(Step::Bend(segment));
                             }
                         }
@@ -437,6 +542,9 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         for change in &changes {
             change.old_parts().for_each(|part| index.remove_part(paths, change.segment, part, &mut edges));
         }
+        for (segment, part) in std::mem::take(&mut self.replacing) {
+            index.remove_part(paths, segment, part, &mut edges);
+        }
         edges.sort_unstable();
         edges.dedup();
         let straight = |edge: &Ends| changes.binary_search_by(|change| change.segment.cmp(edge));
@@ -542,7 +650,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                     changes.insert(at, Change::new(segment, sites.clone(), sites, is_bent));
                     at
                 });
-                let part = self.position_along(segment, changes[at].old_sites(), vertex);
+                let part = self.position_along(segment, changes[at].old_sites(), position(self.t, vertex));
                 changes[at].include(part, vertex);
             }
         }
@@ -552,8 +660,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Updates the point at a crossing, which the geometry computes from the segments that pass
     /// there.
     fn renew_point(&mut self, site: VertexId) {
-        let segments = self.lines_at(site).into_iter().filter(|&segment| self.has_site(segment, site));
-        let ends: Vec<[G::Point; 2]> = segments.map(|ends| ends.map(|v| *self.t.point(v))).collect();
+        let mut segments = self.around.remove(&site).unwrap_or_else(|| self.lines_at(site));
+        segments.sort_unstable();
+        segments.retain(|&segment| self.has_site(segment, site));
+        let ends: Vec<[G::Point; 2]> = segments.into_iter().map(|ends| ends.map(|v| *self.t.point(v))).collect();
         let ends: Vec<[&G::Point; 2]> = ends.iter().map(|ends| ends.each_ref()).collect();
         if !ends.is_empty() {
             let p = self.t.geometry.meet(position(self.t, site), &ends);

@@ -82,6 +82,8 @@ pub(super) struct Lines {
     /// True if sub-constraints crossed after they had been arranged, which is possible off the grid
     /// only, and were arranged again.
     recrossed: bool,
+    /// True if constrained edges may belong to no line: those of the hull of a refined mesh.
+    has_stray_edges: bool,
     scratch: Scratch,
 }
 
@@ -94,9 +96,18 @@ impl Lines {
         self.paths.split(a, b, at);
     }
 
+    /// Records that constrained edges may belong to no line.
+    pub(super) fn expect_stray_edges(&mut self) {
+        self.has_stray_edges = true;
+    }
+
     /// Forgets splits of constrained edges that belong to no line.
+    ///
+    /// `PERF:` all splits are copied, so that this is done only if there can be such edges.
     pub(super) fn drop_stray_splits(&mut self) {
-        self.paths.drop_stray_splits();
+        if self.has_stray_edges {
+            self.paths.drop_stray_splits();
+        }
     }
 
     /// Returns the vertices added where segments cross, in order.

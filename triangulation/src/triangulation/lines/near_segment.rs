@@ -1,7 +1,5 @@
 //! Finds by walking what lies near a segment or a vertex.
 
-use rustc_hash::FxHashSet;
-
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
@@ -61,44 +59,52 @@ fn is_beside(from: [f64; 2], along: [f64; 2], reach: [f64; 2], points: [[f64; 2]
     sides.iter().all(|(side, limit)| side > limit) || sides.iter().all(|(side, limit)| *side < -limit)
 }
 
-/// Returns the constrained edges that a band may meet, and the finite vertices in it, each once, in
-/// order. The walk starts at a vertex in the band.
+/// What lies near a segment or a vertex.
+#[derive(Debug)]
+pub(super) struct Nearby {
+    /// The constrained edges that the band may meet, each once, in order, with a triangle beside
+    /// it.
+    pub(super) edges: Vec<(Ends, CellId)>,
+    /// The finite vertices in the band, each once, in order.
+    pub(super) vertices: Vec<VertexId>,
+}
+
+/// Returns what lies in a band. The walk starts at a vertex in it.
 ///
 /// The intersection of the band and the hull is convex. So the triangles whose interiors meet the
 /// band are connected by edges that meet it.
 ///
 /// # Complexity
 /// Linear in the number of triangles that the band meets, and in the degree of the vertex.
-pub(super) fn near<G: Crossing, V, C: Copy + Default>(
-    t: &Mesh<G, V, C>,
-    band: &Band,
-    start: VertexId,
-) -> (Vec<Ends>, Vec<VertexId>) {
-    let mut open: Vec<CellId> = t.tds.around(start).filter(|&cell| !t.tds.is_infinite(cell)).collect();
-    let mut seen: FxHashSet<CellId> = open.iter().copied().collect();
-    let (mut edges, mut vertices) = (Vec::new(), Vec::new());
-    while let Some(cell) = open.pop() {
-        let corners = *t.tds.corners(cell);
-        let positions = corners.map(|v| position(t, v));
-        let is_inside = positions.map(|p| band.has(p));
-        vertices.extend((0..3).filter(|&i| is_inside[i]).map(|i| corners[i]));
-        for i in 0..3 {
-            let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-            if !is_inside[j] && !is_inside[k] && !band.meets([positions[j], positions[k]]) {
-                continue;
-            }
-            if t.is_constrained(cell, i) {
-                edges.push(undirected(corners[j], corners[k]));
-            }
-            let beyond = t.tds.neighbor(cell, i);
-            if !t.tds.is_infinite(beyond) && seen.insert(beyond) {
-                open.push(beyond);
-            }
+pub(super) fn near<G: Crossing, V, C: Copy + Default>(t: &mut Mesh<G, V, C>, band: &Band, start: VertexId) -> Nearby {
+    let mut nearby = Nearby { edges: Vec::new(), vertices: Vec::new() };
+    let Some(first) = t.tds.around(start).find(|&cell| !t.tds.is_infinite(cell)) else { return nearby };
+    let mut zone = std::mem::take(&mut t.zone);
+    let meets = |cell: CellId, i: usize| band.meets(t.tds.edge_ends(cell, i).map(|v| position(t, v)));
+    let mut meet = |vertex: VertexId| {
+        if band.has(position(t, vertex)) {
+            nearby.vertices.push(vertex);
+        }
+    };
+    t.tds.corners(first).iter().for_each(|&corner| meet(corner));
+    zone.grow(&t.tds, first, |cell, i, beyond| {
+        let is_near = !t.tds.is_infinite(beyond) && meets(cell, i);
+        if is_near {
+            meet(t.tds.vertex(beyond, t.tds.index_of_neighbor(beyond, cell)));
+        }
+        is_near
+    });
+    for &cell in zone.cells() {
+        for i in (0..3).filter(|&i| t.is_constrained(cell, i) && meets(cell, i)) {
+            let [a, b] = t.tds.edge_ends(cell, i);
+            nearby.edges.push((undirected(a, b), cell));
         }
     }
-    edges.sort_unstable();
-    edges.dedup();
-    vertices.sort_unstable();
-    vertices.dedup();
-    (edges, vertices)
+    zone.finish();
+    t.zone = zone;
+    nearby.edges.sort_unstable();
+    nearby.edges.dedup_by_key(|(edge, _)| *edge);
+    nearby.vertices.sort_unstable();
+    nearby.vertices.dedup();
+    nearby
 }

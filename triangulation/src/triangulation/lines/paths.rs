@@ -143,8 +143,8 @@ impl Paths {
 
     /// Returns the sites that a segment passes through, ends included.
     pub(in super::super) fn sites(&self, [a, b]: [VertexId; 2]) -> Vec<VertexId> {
-        let between = self.bent.get(&[a, b]).into_iter().flatten().copied();
-        [a].into_iter().chain(between).chain([b]).collect()
+        let between = self.bent.get(&[a, b]).map_or(&[][..], |sites| sites);
+        [&[a], between, &[b]].concat()
     }
 
     /// Records that an edge was split.

@@ -73,6 +73,7 @@ impl Lines {
             owned: tables.owned.into_iter().collect(),
             rounding: tables.rounding,
             recrossed: tables.recrossed,
+            has_stray_edges: true, // it may be a refined mesh
             ..Lines::default()
         })
     }

@@ -333,7 +333,7 @@ impl<'t, T: Embedded<4>> Line<'t, T> {
 }
 
 /// Returns the face through which a line leaves a tetrahedron, if that is the facet opposite vertex
-/// `i` or on its border; given are the sides on which it passes the edges.
+/// `i` or on its border. `side` returns on which side the line passes an edge.
 pub(in super::super) fn pierced<E>(
     i: usize,
     side: impl Fn(usize, usize) -> Result<Sign, E>,
@@ -351,8 +351,8 @@ pub(in super::super) fn pierced<E>(
 }
 
 /// Returns which ends of an edge span the point where a line leaves a triangle across the edge, if
-/// it does; given are the sides of the line that they lie on, for a triangle to the left of the
-/// edge.
+/// it does. The arguments are the sides of the line on which the ends lie; the triangle is to the
+/// left of the edge.
 fn crossed([from, to]: [Sign; 2]) -> Option<[bool; 2]> {
     let is_crossed = from != Sign::Positive && to != Sign::Negative && from != to;
     is_crossed.then_some([to == Sign::Positive, from == Sign::Negative])

@@ -102,6 +102,12 @@ impl Facets {
         })
     }
 
+    /// Returns only the facet opposite vertex `i`, at most 7.
+    #[inline(always)]
+    pub(in super::super) fn only(i: usize) -> Self {
+        Facets(1 << i)
+    }
+
     /// Adds the facet opposite vertex `i`, at most 7.
     #[inline(always)]
     fn insert(&mut self, i: usize) {

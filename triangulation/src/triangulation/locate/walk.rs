@@ -223,7 +223,7 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
     Ok(Reached { cell, steps: at_most, seems: Seems::Elsewhere })
 }
 
-/// Returns the facet of the hull that a cell has and that `q` seems to lie beyond.
+/// Returns the facet of a cell that is on the hull and that `q` seems to lie beyond.
 ///
 /// `PERF:` computes the sides anew, so that they need not be stored in the many steps that do not
 /// ask for this.

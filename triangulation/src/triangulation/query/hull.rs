@@ -12,7 +12,8 @@ pub enum ConvexHull {
     Empty,
     /// The only vertex.
     Point(VertexId),
-    /// The ends of a line, in the [order](Geometry::compare) of the geometry.
+    /// All points are collinear: the two outermost ones, in the [order](Geometry::compare) of the
+    /// geometry.
     Segment([VertexId; 2]),
     /// The vertices around a part of a plane, counter-clockwise as seen from the side from which
     /// the cells are.

@@ -38,7 +38,7 @@ struct NewCell<'t, G: Coordinates<4>, V, C> {
     at: [f64; 3],
     /// The centers over the border, which are the corners of the cell.
     corners: FxHashMap<(CellId, usize), [f64; 3]>,
-    /// By the ends of the edge.
+    /// The ridges, by the ends of their edges.
     ridges: FxHashMap<[VertexId; 2], Ridge>,
 }
 

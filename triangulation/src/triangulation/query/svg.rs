@@ -37,7 +37,7 @@ const STYLE: &str = "\
 /// Maps coordinates to the picture: y runs upward, and both axes have the same unit.
 struct Frame {
     low: [f64; 2],
-    /// Half of the longer side; all of it might overflow.
+    /// Half of the longer side. (The whole might overflow.)
     half: f64,
 }
 
@@ -61,7 +61,7 @@ impl Frame {
     }
 }
 
-/// Returns those of the points that can be drawn.
+/// Returns the points that can be drawn: those with finite coordinates.
 fn finite<'a>(sites: impl IntoIterator<Item = &'a [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
     sites.into_iter().copied().filter(|p| p.iter().all(|x| x.is_finite()))
 }

@@ -19,6 +19,7 @@ pub(super) fn regions_of<G: Crossing, V: Default>(
             for edge in hull {
                 t.inner.set_constrained(edge, true);
             }
+            t.lines.expect_stray_edges();
             enclosed(t, holes)
         }
         Domain::Enclosed { holes } => enclosed(t, holes),

@@ -27,7 +27,7 @@ use super::{
 #[derive(Serialize, Deserialize)]
 struct Saved<Points, VertexData, CellData> {
     dimension: i32,
-    /// By number, those of removed vertices included.
+    /// The points by vertex number, including those of removed vertices.
     points: Points,
     vertex_data: VertexData,
     /// Numbers of removed vertices; the next to be reused is the last.
@@ -62,8 +62,8 @@ fn first(flaws: Vec<Flaw>) -> Result<(), Damage> {
 type Owned<P, V, C> = Saved<Vec<P>, Vec<V>, Vec<C>>;
 
 impl<P, V, C: Copy + Default> Owned<P, V, C> {
-    /// Returns the triangulation if it is one. Not yet checked: the law, and that every point that
-    /// is in no cell is hidden.
+    /// Returns the triangulation, or what is wrong with the data. Does not check the law, nor that
+    /// every point that is in no cell is hidden.
     fn restore<const N: usize, G: Geometry<N, Point = P> + Default>(self) -> Result<Triangulation<G, N, V, C>, Damage> {
         let Saved { dimension, points, vertex_data, removed, cells, cell_data } = self;
         let geometry = G::default();

@@ -17,7 +17,7 @@ const MANY: usize = 1 << 19;
 /// There are at most two blocks to this power.
 const MOST_LEVELS: u32 = 4;
 
-/// With a greater share of points at open cells, the whole takes less time.
+/// The largest share of points at open cells for which blocks save time.
 const MOST_OPEN: f64 = 0.1;
 
 /// Returns the number of times that so many points are halved.

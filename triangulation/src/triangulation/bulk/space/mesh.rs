@@ -1,7 +1,7 @@
 //! The cells while points are inserted: walk, conflict zone, star.
 
 use crate::num::Sign;
-use crate::num::lanes::prefetch;
+use crate::num::lanes::{self, prefetch};
 
 use super::Source;
 use super::blocks::Block;
@@ -75,7 +75,6 @@ pub(super) struct Mesh<'a> {
 }
 
 /// What one insertion uses; kept for the next one.
-#[derive(Default)]
 struct Scratch {
     /// The cells of the conflict zone, then those of the star.
     cells: Vec<u32>,
@@ -88,10 +87,38 @@ struct Scratch {
     /// Seen from the new point.
     arrows: Vec<Arrow>,
     /// The face of the star with a directed edge in it, for each pair of numbers.
-    faces: Vec<u32>,
+    faces: Box<[u32; FEW * FEW]>,
     /// An open hash table for stars with many vertices: edges, and a face of each.
     edges: Vec<u64>,
     faces_of_edges: Vec<u32>,
+}
+
+impl Scratch {
+    fn new() -> Self {
+        Scratch {
+            cells: vec![DUMMY; 64],
+            facets: vec![[0; 4]; 64],
+            numbers: Vec::new(),
+            vertices: Vec::new(),
+            arrows: Vec::new(),
+            faces: Box::new([0; FEW * FEW]),
+            edges: Vec::new(),
+            faces_of_edges: Vec::new(),
+        }
+    }
+
+    /// Makes room for a greater zone.
+    #[cold]
+    fn make_room(&mut self) {
+        self.cells.resize(2 * self.cells.len(), DUMMY);
+        self.facets.resize(2 * self.facets.len(), [0; 4]);
+    }
+}
+
+/// Returns four slots of a list from an index on; `None` if there are fewer.
+#[inline(always)]
+fn four<T>(list: &mut [T], from: usize) -> Option<&mut [T; 4]> {
+    list.get_mut(from..)?.first_chunk_mut()
 }
 
 impl<'a> Mesh<'a> {
@@ -122,7 +149,7 @@ impl<'a> Mesh<'a> {
             last: 1,
             random: 1,
             base: 1,
-            scratch: Scratch { faces: vec![0; FEW * FEW], ..Scratch::default() },
+            scratch: Scratch::new(),
         };
         mesh.link_first();
         mesh
@@ -258,64 +285,61 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     fn grow(&mut self, first: u32, vertex: u32, q: Query) -> (usize, usize) {
         let Mesh { predicates, corners, cells, spheres, scratch, .. } = self;
-        let cells = &cells[..];
+        let (corners, cells) = (&corners[..], &cells[..]);
         let spheres = &mut spheres[..cells.len()];
         let (mut zone, mut facets, mut done) = (1, 0, 0);
         spheres[first as usize] = MARKED;
-        if scratch.cells.len() < 8 {
-            scratch.cells.resize(64, 0);
-        }
         scratch.cells[0] = first;
-        while done < zone {
-            if scratch.cells.len() < zone + 8 {
-                scratch.cells.resize(2 * zone + 8, 0);
-            }
-            if scratch.facets.len() < facets + 8 {
-                scratch.facets.resize(2 * facets + 8, [0; 4]);
-            }
-            let Cell { neighbors: n, vertices: v } = cells[scratch.cells[done] as usize];
-            done += 1;
-            let beyond = n.map(|neighbor| neighbor >> 2);
-            beyond.iter().for_each(|&cell| prefetch(&cells[cell as usize]));
-            let sides = sphere::sides(beyond.map(|cell| spheres[cell as usize]), q);
-            let new = !sides.marked & 15;
-            let mut taken = sides.inside & sides.sure & new;
-            let mut open = !sides.sure & new;
-            while open != 0 {
-                let lane = open.trailing_zeros() as usize & 3;
-                open &= open - 1;
-                let cell = cells[beyond[lane] as usize];
-                taken |= u32::from(predicates.conflict(corners, cell, vertex)) << lane;
-            }
-            let boundary = !taken & new;
+        loop {
+            let (list, boundary) = (&mut scratch.cells[..], &mut scratch.facets[..]);
+            while done < zone {
+                let cell = list[done];
+                let (Some(slots), Some(rows)) = (four(list, zone), four(boundary, facets)) else { break };
+                done += 1;
+                let Cell { neighbors: n, vertices: v } = cells[cell as usize];
+                let beyond = n.map(|neighbor| neighbor >> 2);
+                beyond.iter().for_each(|&cell| prefetch(&cells[cell as usize]));
+                let [a, b, c, d] = beyond;
+                let around = [spheres[a as usize], spheres[b as usize], spheres[c as usize], spheres[d as usize]];
+                let sides = sphere::sides(around, q);
+                let new = !sides.marked & 15;
+                let mut taken = sides.inside & sides.sure & new;
+                let mut open = !sides.sure & new;
+                while open != 0 {
+                    let lane = open.trailing_zeros() as usize & 3;
+                    open &= open - 1;
+                    let cell = cells[beyond[lane] as usize];
+                    taken |= u32::from(predicates.conflict(corners, cell, vertex)) << lane;
+                }
 
-            let bit = |mask: u32, lane: usize| (mask >> lane & 1) as usize;
-            for lane in 0..4 {
-                let chosen = 0u32.wrapping_sub(bit(taken, lane) as u32);
-                spheres[(beyond[lane] & chosen) as usize] = MARKED;
-            }
-            let ends = |mask| {
-                let (a, b, c) = (bit(mask, 0), bit(mask, 1), bit(mask, 2));
-                [a, a + b, a + b + c, a + b + c + bit(mask, 3)]
-            };
-            let end = ends(taken);
-            if let Some((slots, _)) = scratch.cells[zone..].split_first_chunk_mut::<4>() {
+                let boundary = !taken & new;
+                let bit = |mask: u32, lane: usize| (mask >> lane & 1) as usize;
+                for lane in 0..4 {
+                    spheres[beyond[lane] as usize] = sphere::marked_if(around[lane], taken >> lane);
+                }
+                let ends = |mask| {
+                    let (a, b, c) = (bit(mask, 0), bit(mask, 1), bit(mask, 2));
+                    [a, a + b, a + b + c, a + b + c + bit(mask, 3)]
+                };
+                let end = ends(taken);
                 slots[0] = beyond[0];
                 slots[end[0]] = beyond[1];
                 slots[end[1]] = beyond[2];
                 slots[end[2] & 3] = beyond[3];
+                zone += end[3];
+                let end = ends(boundary);
+                let faces = lanes::facets(v, n);
+                rows[0] = faces[0];
+                rows[end[0]] = faces[1];
+                rows[end[1]] = faces[2];
+                rows[end[2] & 3] = faces[3];
+                facets += end[3];
             }
-            zone += end[3];
-            let end = ends(boundary);
-            if let Some((slots, _)) = scratch.facets[facets..].split_first_chunk_mut::<4>() {
-                slots[0] = [v[2], v[1], v[3], n[0]];
-                slots[end[0]] = [v[0], v[2], v[3], n[1]];
-                slots[end[1]] = [v[1], v[0], v[3], n[2]];
-                slots[end[2] & 3] = [v[0], v[1], v[2], n[3]];
+            if done == zone {
+                return (zone, facets);
             }
-            facets += end[3];
+            scratch.make_room();
         }
-        (zone, facets)
     }
 
     /// Assigns a cell to each facet: those of the zone, then unused ones, then new ones.
@@ -325,8 +349,8 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     fn assign_cells(&mut self, mut zone: usize, facets: usize) -> Result<(), Failure> {
         let Mesh { cells, spheres, unused, scratch, .. } = self;
-        if scratch.cells.len() < facets {
-            scratch.cells.resize(2 * facets, 0);
+        if scratch.cells.len() < facets + 4 {
+            scratch.cells.resize(2 * facets + 4, 0);
         }
         if cells.len() + facets > MAX_CELLS {
             return Err(Failure::TooManyCells);
@@ -351,8 +375,8 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     fn number(&mut self, vertex: u32, facets: usize, is_small: bool) -> usize {
         let Mesh { corners, cells, scratch, base, .. } = self;
-        if scratch.numbers.len() < facets {
-            scratch.numbers.resize(2 * facets, [0; 3]);
+        if scratch.numbers.len() < facets + 4 {
+            scratch.numbers.resize(2 * facets + 4, [0; 3]);
             scratch.vertices.resize(6 * facets + 1, 0);
         }
         if *base > u32::MAX - 3 * facets as u32 - 3 {
@@ -361,34 +385,33 @@ impl<'a> Mesh<'a> {
         }
         let Scratch { cells: star, facets: boundary, numbers, vertices, faces, .. } = scratch;
         let (star, boundary, numbers) = (&star[..facets], &boundary[..facets], &mut numbers[..facets]);
-        let corners = &mut corners[..];
-        let cells = &mut cells[..];
-        let mut count = 0;
-        for i in 0..facets {
-            let [a, b, c, beyond] = boundary[i];
-            let number = [a, b, c].map(|v| {
+        let (corners, cells, vertices) = (&mut corners[..], &mut cells[..], &mut vertices[..]);
+        let (first, mut count) = (*base, 0);
+        for ((&cell, &facet), numbers) in star.iter().zip(boundary).zip(numbers) {
+            let [a, b, c, beyond] = facet;
+            let mut number = |v: u32| {
                 // PERF: without a branch on whether the vertex has a number already.
                 let tag = &mut corners[v as usize].tag;
-                let is_new = *tag < *base;
-                *tag = if is_new { *base + count as u32 } else { *tag };
-                vertices[count] = v;
-                count += usize::from(is_new);
-                *tag - *base
-            });
-            numbers[i] = number;
-            let cell = star[i];
-            cells[cell as usize].vertices = [a, b, c, vertex];
+                vertices[count as usize] = v;
+                let (number, is_new) = tag.overflowing_sub(first);
+                let number = if is_new { count } else { number };
+                *tag = first + number;
+                count += u32::from(is_new);
+                number
+            };
+            *numbers = [number(a), number(b), number(c)];
+            cells[cell as usize].vertices = lanes::with_last(facet, vertex);
             cells[cell as usize].neighbors[3] = beyond;
             cells[(beyond >> 2) as usize].neighbors[(beyond & 3) as usize] = 4 * cell + 3;
             if is_small {
-                let [a, b, c] = number.map(|k| k as usize);
+                let [a, b, c] = numbers.map(|number| number as usize);
                 faces[(b * FEW + c) & LAST] = 4 * cell;
                 faces[(c * FEW + a) & LAST] = 4 * cell + 1;
                 faces[(a * FEW + b) & LAST] = 4 * cell + 2;
             }
         }
-        *base += count as u32;
-        count
+        *base += count;
+        count as usize
     }
 
     /// Computes the vectors from the new vertex to the others of the star.
@@ -414,15 +437,20 @@ impl<'a> Mesh<'a> {
     fn wrap(&mut self, facets: usize, origin: [f64; 3], lack: f64) {
         let Mesh { scratch, spheres, frame, weights, .. } = self;
         let origin = Origin { at: origin, lack, range: weights.range() };
-        let (cells, numbers, arrows) = (&scratch.cells[..facets], &scratch.numbers[..facets], &scratch.arrows[..]);
-        let spheres = &mut spheres[..];
-        for first in (0..facets).step_by(4) {
-            // At the end, the last one again.
-            let lanes = [0, 1, 2, 3].map(|lane| (first + lane).min(facets - 1));
-            let corners = lanes.map(|i| numbers[i].map(|number| arrows[number as usize]));
+        // The last four may be fewer: the rest repeats the last one, for the dummy.
+        let padded = facets.next_multiple_of(4);
+        let last = scratch.numbers[facets - 1];
+        scratch.numbers[facets..][..3].copy_from_slice(&[last; 3]);
+        scratch.cells[facets..][..3].copy_from_slice(&[DUMMY; 3]);
+        let Scratch { cells, numbers, arrows, .. } = &*scratch;
+        let (cells, numbers) = (cells[..padded].as_chunks::<4>().0, numbers[..padded].as_chunks::<4>().0);
+        let (arrows, spheres) = (&arrows[..], &mut spheres[..]);
+        for (&cells, numbers) in cells.iter().zip(numbers) {
+            let ends = |[a, b, c]: [u32; 3]| [&arrows[a as usize], &arrows[b as usize], &arrows[c as usize]];
+            let corners = [ends(numbers[0]), ends(numbers[1]), ends(numbers[2]), ends(numbers[3])];
             let rows = sphere::through(corners, origin, frame.scale);
-            for lane in 0..4 {
-                spheres[cells[lanes[lane]] as usize] = rows[lane];
+            for (cell, row) in cells.into_iter().zip(rows) {
+                spheres[cell as usize] = row;
             }
         }
     }
@@ -437,8 +465,7 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     fn link(&mut self, facets: usize) -> bool {
         let Mesh { scratch, cells, .. } = self;
-        let (star, numbers, faces) = (&scratch.cells[..facets], &scratch.numbers[..facets], &scratch.faces[..]);
-        let Some((faces, _)) = faces.split_first_chunk::<{ FEW * FEW }>() else { return false };
+        let (star, numbers, faces) = (&scratch.cells[..facets], &scratch.numbers[..facets], &*scratch.faces);
         let cells = &mut cells[..];
         let (mut written, mut read) = (0u32, 0u32);
         for (&cell, &number) in star.iter().zip(numbers) {

@@ -50,7 +50,7 @@ use part::Part;
 /// checked.
 const MAX_POINTS: usize = 1 << 27;
 
-/// So many points are inserted before it is asked whether to stop.
+/// The number of points that are inserted between two looks at the flag that stops the work.
 const POLL: u32 = 1 << 12;
 
 /// Cells that fill their numbers, a cell of each vertex, and a cell of the infinite one.

@@ -11,7 +11,7 @@ const RATIO: u32 = 4;
 /// The first round has no more points than about this number.
 const FEW: usize = 1000;
 
-/// So many points are a sample.
+/// The number of points in a sample.
 const SAMPLE: usize = 2000;
 
 /// Brings ascending ranks into the order of insertion.

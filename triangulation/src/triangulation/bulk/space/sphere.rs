@@ -72,7 +72,7 @@
 //! [range](crate::kernel::RANGE) of floating point nothing underflows that counts; where the bound
 //! overflows, the sphere is not known.
 
-use crate::num::lanes::{bits, f32x4, f64x4, i32x4, of_bits, rounded};
+use crate::num::lanes::{bits, f32x4, f64x2, i32x4, of_bits, rounded};
 
 /// The center and the squared radius; see the [module](self).
 pub(super) type Sphere = [f32; 4];
@@ -115,6 +115,12 @@ impl Frame {
 #[cfg(test)]
 pub(super) fn is_marked(sphere: Sphere) -> bool {
     sphere[3] < 0.0
+}
+
+/// Returns a sphere, marked if the lowest bit is set.
+#[inline(always)]
+pub(super) fn marked_if(sphere: Sphere, bit: u32) -> Sphere {
+    of_bits(bits(f32x4::new(sphere)) | i32x4::new([0, 0, 0, (bit << 31) as i32])).to_array()
 }
 
 /// A point in the frame, and what it lacks of the greatest weight, in the same unit.
@@ -184,9 +190,9 @@ pub(super) fn arrow(from: [f64; 3], to: [f64; 3]) -> Arrow {
 /// The point that arrows start at.
 #[derive(Clone, Copy)]
 pub(super) struct Origin {
-    /// In the frame.
+    /// Its position in the frame.
     pub(super) at: [f64; 3],
-    /// What it lacks of the greatest weight, in the frame.
+    /// The greatest weight minus its own, in the frame.
     pub(super) lack: f64,
     /// No two weights differ by more; outside of the frame.
     pub(super) range: f64,
@@ -194,21 +200,12 @@ pub(super) struct Origin {
 
 /// Returns the spheres through a point and the ends of three arrows from it, four at a time.
 #[inline(always)]
-pub(super) fn through(arrows: [[Arrow; 3]; 4], origin: Origin, scale: f64) -> [Sphere; 4] {
-    let [a, b, c] = [0, 1, 2].map(|corner| f64x4::transpose(arrows.map(|arrows| f64x4::new(arrows[corner]))));
-    let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
-    let volume = a[0] * u[0] + a[1] * u[1] + a[2] * u[2];
-    let inverse = f64x4::splat(1.0) / volume;
-    let half = inverse * f64x4::splat(0.5 * scale);
-    let [x, y, z] = [0, 1, 2].map(|axis| (a[3] * u[axis] + b[3] * v[axis] + c[3] * w[axis]) * half);
-    let squared_radius = rounded(x * x + y * y + z * z + f64x4::splat(origin.lack));
-    let center = [(x, origin.at[0]), (y, origin.at[1]), (z, origin.at[2])];
-    let [x, y, z] = center.map(|(offset, origin)| rounded(offset + f64x4::splat(origin)));
+pub(super) fn through(arrows: [[&Arrow; 3]; 4], origin: Origin, scale: f64) -> [Sphere; 4] {
+    let [a, b, c, d] = arrows;
+    let (first, second) = (centers([a, b], origin, scale), centers([c, d], origin, scale));
+    let pair = |i: usize| rounded(first[i], second[i]);
+    let (x, y, z, squared_radius, error) = (pair(0), pair(1), pair(2), pair(3), pair(4));
 
-    let range = f64x4::splat(origin.range);
-    let longest = a[3].fast_max(b[3]).fast_max(c[3]) + range;
-    let ratio = (longest + range) * inverse;
-    let error = rounded(ratio * ratio * longest * f64x4::splat(CENTER));
     let size = x.abs().fast_max(y.abs()).fast_max(z.abs()) + f32x4::splat(1.0);
     let bound = size * size * f32x4::splat(POSITION) / squared_radius + error + f32x4::splat(FIXED);
     // With the exponent of the bound, which is less than 2^(exponent - 126): its root is less than
@@ -224,7 +221,33 @@ pub(super) fn through(arrows: [[Arrow; 3]; 4], origin: Origin, scale: f64) -> [S
     f32x4::transpose([x, y, z, squared_radius]).map(f32x4::to_array)
 }
 
+/// Returns the centers and squared radii of two spheres, and the squares of the errors of the
+/// centers.
+///
+/// `PERF:` no more than two, so that registers suffice.
 #[inline(always)]
-fn cross(p: [f64x4; 4], q: [f64x4; 4]) -> [f64x4; 3] {
+fn centers(arrows: [[&Arrow; 3]; 2], origin: Origin, scale: f64) -> [f64x2; 5] {
+    let [first, second] = arrows;
+    let column = |i: usize, axis: usize| f64x2::new([first[i][axis], second[i][axis]]);
+    let columns = |i: usize| [column(i, 0), column(i, 1), column(i, 2), column(i, 3)];
+    let (a, b, c) = (columns(0), columns(1), columns(2));
+    let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
+    let volume = a[0] * u[0] + a[1] * u[1] + a[2] * u[2];
+    let inverse = f64x2::splat(1.0) / volume;
+    let half = inverse * f64x2::splat(0.5 * scale);
+    let offset = |axis: usize| (a[3] * u[axis] + b[3] * v[axis] + c[3] * w[axis]) * half;
+    let (x, y, z) = (offset(0), offset(1), offset(2));
+    let squared_radius = x * x + y * y + z * z + f64x2::splat(origin.lack);
+    let at = |axis: usize| f64x2::splat(origin.at[axis]);
+    let (x, y, z) = (x + at(0), y + at(1), z + at(2));
+
+    let range = f64x2::splat(origin.range);
+    let longest = a[3].fast_max(b[3]).fast_max(c[3]) + range;
+    let ratio = (longest + range) * inverse;
+    [x, y, z, squared_radius, ratio * ratio * longest * f64x2::splat(CENTER)]
+}
+
+#[inline(always)]
+fn cross(p: [f64x2; 4], q: [f64x2; 4]) -> [f64x2; 3] {
     [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
 }

@@ -16,7 +16,7 @@ use super::blocks::Blocks;
 use super::mesh::Extent;
 use super::order::into_rounds;
 use super::sphere::{self, Frame, Origin};
-use super::{Built, build, by_blocks, whole, with_source};
+use super::{Built, build, by_blocks, predicates, whole, with_source};
 
 const FRAME: Frame = Frame { middle: [0.0; 3], scale: 1.0 };
 
@@ -50,7 +50,7 @@ fn powers_of(points: [[f64; 4]; 4], q: [f64; 4], greatest: f64, range: f64) -> (
     });
     let lack = |p: [f64; 4]| (greatest - p[3]) * FRAME.scale * FRAME.scale;
     let origin = Origin { at: FRAME.of(site(d)), lack: lack(d), range };
-    let row = sphere::through([arrows; 4], origin, FRAME.scale)[0];
+    let row = sphere::through([arrows.each_ref(); 4], origin, FRAME.scale)[0];
     let query = sphere::query(FRAME.of(site(q)), lack(q));
     let sides = sphere::sides([row; 4], query);
     assert_eq!(sides.marked, 0);
@@ -128,11 +128,31 @@ fn what_is_sure_of_weights_is_right() {
 }
 
 #[test]
+fn one_evaluation_is_never_wrong() {
+    let mut random = Random(3);
+    let mut sure = 0;
+    for round in 0..20_000 {
+        // Nearly on one sphere, from 1 down to a few roundings off it.
+        let off = 0.5f64.powi(round % 56);
+        let sites = [0; 5].map(|_| {
+            let [x, y, z] = [0; 3].map(|_| random.around(1000) as f64 / 1000.0 + 1e-4);
+            let length = (x * x + y * y + z * z).sqrt() * (1.0 + off * random.around(1000) as f64 / 1000.0);
+            [x / length, y / length, z / length]
+        });
+        if let Some(is_inside) = predicates::is_surely_inside(sites) {
+            sure += 1;
+            assert_eq!(is_inside, Adaptive::sign(&InSphere(sites)) == Sign::Positive, "{sites:?}");
+        }
+    }
+    assert!((10_000..20_000).contains(&sure), "{sure}");
+}
+
+#[test]
 fn nothing_is_sure_of_a_flat_cell_or_an_infinite_one() {
     let (a, b, c, d) = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.25, 0.0]);
     assert_eq!(sides_of([a, b, c, d], [0.1, 0.2, 0.3]).1, None);
     let arrows = [a, b, [f64::NAN; 3]].map(|p| sphere::arrow(d, p));
-    let row = sphere::through([arrows; 4], Origin { at: d, lack: 0.0, range: 0.0 }, 1.0)[0];
+    let row = sphere::through([arrows.each_ref(); 4], Origin { at: d, lack: 0.0, range: 0.0 }, 1.0)[0];
     assert!(row[3].is_nan() && !sphere::is_marked(row));
 }
 

@@ -44,11 +44,11 @@ use super::super::{Delaunay, Regular, Triangulation};
 #[derive(Debug)]
 pub struct AlphaShapes<'t, V = (), C = ()> {
     tds: &'t Tds<4, V, C>,
-    /// By the index of the vertex.
+    /// The sites of the vertices, by index.
     sites: Vec<[f64; 3]>,
     /// The squared radii of finite cells, ascending, each once; rounded.
     alphas: Vec<f64>,
-    /// By the index of the cell: that of its squared radius.
+    /// For each cell, by index, the position of its squared radius in `alphas`.
     levels: Vec<u32>,
     /// The finite cells by ascending squared radius.
     cells: Vec<CellId>,
@@ -73,7 +73,7 @@ pub struct Boundary {
     pub triangles: Vec<[VertexId; 3]>,
     /// The edges, each with its ends in order, that more than two triangles share.
     pub singular_edges: Vec<[VertexId; 2]>,
-    /// The vertices at which several parts of the surface touch that share no edge there.
+    /// The vertices at which parts of the surface touch without sharing an edge.
     pub singular_vertices: Vec<VertexId>,
 }
 

@@ -1,11 +1,15 @@
-//! The search for the faces inside closed curves.
+//! The domains of closed curves that contain each face of a plane.
 
 use rustc_hash::FxHashMap;
 
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::num::Sign;
 
-use super::{Domain, Segment};
+/// The number of an area that some closed curves bound together, by the even-odd rule.
+pub(super) type Domain = usize;
+
+/// The ends of a straight part of a line, in plan.
+pub(super) type Segment = [[f64; 2]; 2];
 
 /// The faces of a plane divided by curves: a face is a number, with sides from 0 to 2.
 pub(super) trait Faces {
@@ -14,19 +18,19 @@ pub(super) trait Faces {
     fn beyond(&self, face: u32, side: usize, domains: &mut Vec<Domain>) -> Option<u32>;
 }
 
-/// For each of `count` faces: true if it is connected to `start` and `is_kept` returns true for the
-/// sorted domains that contain it. `within` are the domains of `start`.
+/// For each of `count` faces: what `value` returns for the sorted domains that contain it, or the
+/// default if it is not connected to `start`. `within` are the domains of `start`.
 ///
 /// # Complexity
 /// Linear, plus, for each region that curves bound, the number of domains that contain it.
-pub(super) fn keep(
+pub(super) fn label<T: Copy + Default>(
     faces: &impl Faces,
     count: usize,
     start: u32,
     within: Vec<Domain>,
-    is_kept: impl Fn(&[Domain]) -> bool,
-) -> Vec<bool> {
-    let mut kept = vec![false; count];
+    mut value: impl FnMut(&[Domain]) -> T,
+) -> Vec<T> {
+    let mut labels = vec![T::default(); count];
     let mut is_seen = vec![false; count];
     // Faces to continue from, each with the domains that contain it.
     let mut regions = vec![(start, within)];
@@ -36,10 +40,10 @@ pub(super) fn keep(
         if std::mem::replace(&mut is_seen[start as usize], true) {
             continue;
         }
-        let is_kept = is_kept(&within);
+        let label = value(&within);
         here.push(start);
         while let Some(face) = here.pop() {
-            kept[face as usize] = is_kept;
+            labels[face as usize] = label;
             for side in 0..3 {
                 domains.clear();
                 let Some(beyond) = faces.beyond(face, side, &mut domains) else { continue };
@@ -56,7 +60,7 @@ pub(super) fn keep(
             }
         }
     }
-    kept
+    labels
 }
 
 /// The sorted symmetric difference of domains and those that are listed an odd number of times.

@@ -1,0 +1,206 @@
+//! Areas of water and walls: which points they replace, and the heights of all vertices in water.
+
+use rustc_hash::FxHashMap;
+
+use super::{Flat, River, Wall};
+use crate::error::{Error, Result};
+use crate::terrain::Inside;
+use crate::terrain::regions::{self, Domain, Faces};
+use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::LineId;
+use crate::triangulation::geometry::Terrain;
+use crate::triangulation::tds::{CellId, VertexId};
+
+/// An area of water, and the numbers of the lines around it.
+#[derive(Debug, Clone)]
+pub(in crate::terrain) struct Water {
+    /// The lines that bound the area together.
+    pub(in crate::terrain) rim: Vec<usize>,
+    pub(in crate::terrain) level: Level,
+}
+
+/// The heights of water.
+#[derive(Debug, Clone)]
+pub(in crate::terrain) enum Level {
+    Flat(Flat),
+    River(River),
+}
+
+/// The points that areas of water and walls replace.
+#[derive(Debug, Clone, Default)]
+pub(in crate::terrain) struct Replaced {
+    polygons: Vec<Vec<Vec<[f64; 2]>>>,
+    /// Shores, by the distance up to which points outside are replaced, too.
+    buffers: Vec<(f64, Vec<Vec<Vec<[f64; 2]>>>)>,
+}
+
+impl Replaced {
+    pub(in crate::terrain) fn add_flat(&mut self, flat: &Flat) {
+        let rings: Vec<Vec<[f64; 2]>> =
+            flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect();
+        if flat.buffer > 0.0 {
+            match self.buffers.iter_mut().find(|(buffer, _)| *buffer == flat.buffer) {
+                Some((_, shores)) => shores.push(rings.clone()),
+                None => self.buffers.push((flat.buffer, vec![rings.clone()])),
+            }
+        }
+        self.polygons.push(rings);
+    }
+
+    pub(in crate::terrain) fn add_river(&mut self, river: &River) {
+        self.polygons.push(vec![river.ring()]);
+    }
+
+    pub(in crate::terrain) fn add_wall(&mut self, wall: &Wall) {
+        self.polygons.push(wall.rings());
+    }
+
+    pub(in crate::terrain) fn is_empty(&self) -> bool {
+        self.polygons.is_empty()
+    }
+
+    /// Removes the points that are replaced, and returns them in order.
+    ///
+    /// # Complexity
+    /// For each point, linear in the sides of the areas at about its y.
+    pub(in crate::terrain) fn split_off(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+        let inside = Inside::new(&self.polygons);
+        let near: Vec<(f64, Inside)> =
+            self.buffers.iter().map(|(buffer, shores)| (*buffer, Inside::new(shores))).collect();
+        let mut replaced = Vec::new();
+        points.retain(|&p| {
+            let site = [p[0], p[1]];
+            let is_replaced =
+                inside.contains(site) || near.iter().any(|(buffer, shores)| shores.is_near(site, *buffer));
+            if is_replaced {
+                replaced.push(p);
+            }
+            !is_replaced
+        });
+        replaced
+    }
+}
+
+/// The cells of a triangulation, divided by the lines around water.
+struct Divided<'a> {
+    triangulation: &'a ConstrainedDelaunay<Terrain>,
+    /// For each edge on such lines, from the smaller vertex to the larger, the areas that it
+    /// bounds, each as often as lines around it run along the edge.
+    domains: FxHashMap<[VertexId; 2], Vec<Domain>>,
+}
+
+impl Faces for Divided<'_> {
+    fn beyond(&self, face: u32, side: usize, domains: &mut Vec<Domain>) -> Option<u32> {
+        let (tds, cell) = (self.triangulation.tds(), CellId::new(face as usize));
+        if self.triangulation.is_constrained(cell, side) {
+            let [p, q] = tds.edge_ends(cell, side);
+            domains.extend(self.domains.get(&[p.min(q), p.max(q)]).into_iter().flatten());
+        }
+        Some(tds.neighbor(cell, side).index() as u32)
+    }
+}
+
+/// The cells in water, once all vertices there have its height.
+#[derive(Debug, Default)]
+pub(in crate::terrain) struct Leveled {
+    /// For each cell number, true if the cell lies in water; empty if there is none.
+    pub(in crate::terrain) is_water: Vec<bool>,
+}
+
+/// Gives all vertices in water its height, shores and banks included.
+///
+/// In a lake that is the height of the lake, to the last bit. In a river it is the height between
+/// the level lines; where rivers overlap, the lowest. A lake counts before a river.
+///
+/// # Errors
+/// If lakes of different heights overlap or touch.
+///
+/// # Complexity
+/// Linear in the cells; for vertices in rivers, also in the number of their level lines.
+pub(in crate::terrain) fn level(
+    triangulation: &mut ConstrainedDelaunay<Terrain>,
+    waters: &[Water],
+    name: &dyn Fn(usize) -> String,
+) -> Result<Leveled> {
+    if waters.is_empty() {
+        return Ok(Leveled::default());
+    }
+    let mut domains: FxHashMap<[VertexId; 2], Vec<Domain>> = FxHashMap::default();
+    for (domain, water) in waters.iter().enumerate() {
+        for &line in &water.rim {
+            for pair in triangulation.chain(LineId::new(line)).windows(2) {
+                domains.entry([pair[0].min(pair[1]), pair[0].max(pair[1])]).or_default().push(domain);
+            }
+        }
+    }
+    let tds = triangulation.tds();
+    let Some(start) = tds.cell_of(VertexId::INFINITE) else { return Ok(Leveled::default()) };
+    let mut regions: Vec<Vec<Domain>> = vec![Vec::new()];
+    let divided = Divided { triangulation, domains };
+    let region = regions::label(&divided, tds.cell_slots(), start.index() as u32, Vec::new(), |within| {
+        if within.is_empty() {
+            return 0;
+        }
+        regions.push(within.to_vec());
+        regions.len() as u32 - 1
+    });
+
+    // The areas around each vertex, in order.
+    let mut around: FxHashMap<VertexId, Vec<Domain>> = FxHashMap::default();
+    for cell in tds.cells().filter(|cell| region[cell.index()] != 0) {
+        let within = &regions[region[cell.index()] as usize];
+        for &vertex in tds.corners(cell).iter().filter(|vertex| **vertex != VertexId::INFINITE) {
+            around.entry(vertex).or_default().extend(within);
+        }
+    }
+    let mut vertices: Vec<(VertexId, Vec<Domain>)> = around.into_iter().collect();
+    vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
+    let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(vertices.len());
+    for (vertex, mut areas) in vertices {
+        areas.sort_unstable();
+        areas.dedup();
+        let [x, y, z] = *triangulation.point(vertex);
+        let lakes = areas.iter().filter_map(|&area| match &waters[area].level {
+            Level::Flat(flat) => Some((area, flat.height)),
+            Level::River(_) => None,
+        });
+        let lakes: Vec<(Domain, f64)> = lakes.collect();
+        if let Some((first, height)) = lakes.first() {
+            if let Some((other, different)) = lakes.iter().find(|(_, other)| other != height) {
+                return Err(two_lakes([(*first, *height), (*other, *different)], [x, y], waters, name));
+            }
+            new_heights.push((vertex, *height));
+            continue;
+        }
+        let rivers = areas.iter().filter_map(|&area| match &waters[area].level {
+            Level::River(river) if is_own(triangulation, &waters[area], vertex) => Some((river, z)),
+            Level::River(river) => Some((river, river.height_at([x, y]))),
+            Level::Flat(_) => None,
+        });
+        let lowest = rivers.map(|(_, height)| height).fold(f64::INFINITY, f64::min);
+        if lowest.is_finite() {
+            new_heights.push((vertex, lowest));
+        }
+    }
+    let is_water = region.iter().map(|region| *region != 0).collect();
+    for (vertex, height) in new_heights {
+        let [x, y, _] = *triangulation.point(vertex);
+        triangulation.replace_point(vertex, [x, y, height]);
+    }
+    Ok(Leveled { is_water })
+}
+
+/// Returns true if a line around some water was given with a vertex.
+fn is_own(triangulation: &ConstrainedDelaunay<Terrain>, water: &Water, vertex: VertexId) -> bool {
+    water.rim.iter().any(|&line| triangulation.line_vertices(LineId::new(line)).contains(&vertex))
+}
+
+#[cold]
+fn two_lakes(lakes: [(Domain, f64); 2], [x, y]: [f64; 2], waters: &[Water], name: &dyn Fn(usize) -> String) -> Error {
+    let [(first, height), (other, different)] =
+        lakes.map(|(area, height)| (name(waters[area].rim.first().copied().unwrap_or_default()), height));
+    Error::format(format!(
+        "two lakes meet at {x} {y} with different heights: {height} of {first}, {different} of {other}"
+    ))
+    .cure("correct the shores, or give both lakes one height with --flat-height")
+}

@@ -1,0 +1,144 @@
+//! Lakes: rings at one height.
+
+use crate::error::{Error, Result};
+
+/// Which height level water has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FlatHeight {
+    /// That of its shore, which must be the same everywhere, within a tolerance. Their lowest is
+    /// used.
+    OfShore {
+        /// The largest difference between the heights of the shore.
+        tolerance: f64,
+    },
+    /// The lowest height of the shore.
+    Lowest,
+    /// The mean of the heights of the vertices of the shore; they are summed in ascending order.
+    Mean,
+    /// This height; the shore needs none.
+    Given(f64),
+}
+
+/// A lake: an area in which the surface has one height, shore included.
+///
+/// Points inside are left out, and so are those within a buffer outside. Lines inside get the
+/// height of the water. A ring within a ring is the shore of an island.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flat {
+    pub(in crate::terrain) rings: Vec<Vec<[f64; 3]>>,
+    pub(in crate::terrain) height: f64,
+    pub(in crate::terrain) buffer: f64,
+}
+
+impl Flat {
+    /// Returns a lake from its rings, by the even-odd rule; each must end where it begins.
+    ///
+    /// # Errors
+    /// If a ring is open or encloses no area, or if the height is not known: a vertex has none, the
+    /// shore is not level, or the given height is not finite.
+    pub fn new(rings: &[Vec<[f64; 3]>], height: FlatHeight) -> Result<Self> {
+        for ring in rings {
+            check_ring(ring)?;
+        }
+        let mut heights: Vec<f64> = rings.iter().flat_map(|ring| ring.iter().skip(1)).map(|p| p[2]).collect();
+        heights.sort_unstable_by(f64::total_cmp);
+        let (Some(&lowest), Some(&highest)) = (heights.first(), heights.last()) else {
+            return Err(Error::format("the lake has no ring"));
+        };
+        let is_known = heights.iter().all(|z| z.is_finite());
+        let level = match height {
+            FlatHeight::Given(height) if height.is_finite() => height,
+            FlatHeight::Given(height) => return Err(Error::format(format!("the height of the lake is {height}"))),
+            _ if !is_known => {
+                return Err(Error::format("the shore has a vertex without a height")
+                    .cure("name the attribute with the height (--flat FILE:FIELD), or give one with --flat-height"));
+            }
+            FlatHeight::Lowest => lowest,
+            FlatHeight::Mean => heights.iter().sum::<f64>() / heights.len() as f64,
+            FlatHeight::OfShore { tolerance } if highest - lowest <= tolerance => lowest,
+            FlatHeight::OfShore { tolerance } => {
+                return Err(Error::format(format!(
+                    "the shore is not level: its heights are {lowest} to {highest}, expected within {tolerance}"
+                ))
+                .cure("choose a height with --flat-height lowest, mean or a number"));
+            }
+        };
+        let rings = rings.iter().map(|ring| ring.iter().map(|&[x, y, _]| [x, y, level]).collect()).collect();
+        Ok(Flat { rings, height: level, buffer: 0.0 })
+    }
+
+    /// Leaves out points up to a distance outside of the shore, too.
+    #[must_use]
+    pub fn with_buffer(self, buffer: f64) -> Self {
+        Flat { buffer: buffer.max(0.0), ..self }
+    }
+
+    /// Returns the height of the water.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+}
+
+fn check_ring(ring: &[[f64; 3]]) -> Result<()> {
+    let (Some(first), Some(last)) = (ring.first(), ring.last()) else {
+        return Err(Error::format("the shore has no vertex"));
+    };
+    if first[..2] != last[..2] {
+        return Err(Error::format(format!(
+            "the shore is open: it begins at {} {} and ends at {} {}",
+            first[0], first[1], last[0], last[1]
+        ))
+        .cure("a lake needs a closed ring: join its ends, or pass polygons"));
+    }
+    let area: f64 = ring.windows(2).map(|pair| cross(*first, pair[0], pair[1])).sum();
+    let extent = ring.iter().fold(0.0_f64, |most, p| most.max((p[0] - first[0]).abs()).max((p[1] - first[1]).abs()));
+    if ring.len() < 4 || area.abs() <= extent * extent * f64::EPSILON {
+        return Err(Error::format(format!("the shore at {} {} encloses nothing", first[0], first[1]))
+            .cure("remove the record, or give the ring its vertices"));
+    }
+    Ok(())
+}
+
+fn cross(o: [f64; 3], p: [f64; 3], q: [f64; 3]) -> f64 {
+    (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(heights: [f64; 4]) -> Vec<[f64; 3]> {
+        let sites = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 0.0]];
+        sites.iter().zip(heights).map(|(p, z)| [p[0], p[1], z]).collect()
+    }
+
+    #[test]
+    fn each_rule_has_its_height() {
+        let rings = [ring([2.0, 2.5, 3.0, 2.0])];
+        for (rule, expected) in [
+            (FlatHeight::Lowest, 2.0),
+            (FlatHeight::Mean, 2.5),
+            (FlatHeight::Given(7.0), 7.0),
+            (FlatHeight::OfShore { tolerance: 1.0 }, 2.0),
+        ] {
+            let flat = Flat::new(&rings, rule).unwrap();
+            assert_eq!(flat.height(), expected);
+            assert!(flat.rings[0].iter().all(|p| p[2] == expected));
+        }
+        let error = Flat::new(&rings, FlatHeight::OfShore { tolerance: 0.5 }).unwrap_err();
+        assert_eq!(error.to_string(), "the shore is not level: its heights are 2 to 3, expected within 0.5");
+    }
+
+    #[test]
+    fn what_is_no_lake_is_refused() {
+        let message = |ring: Vec<[f64; 3]>, rule| Flat::new(&[ring], rule).unwrap_err().to_string();
+        let open = ring([1.0; 4])[..3].to_vec();
+        assert_eq!(message(open, FlatHeight::Lowest), "the shore is open: it begins at 0 0 and ends at 4 4");
+        let thin = vec![[0.0, 0.0, 1.0], [4.0, 4.0, 1.0], [2.0, 2.0, 1.0], [0.0, 0.0, 1.0]];
+        assert_eq!(message(thin, FlatHeight::Lowest), "the shore at 0 0 encloses nothing");
+        assert!(message(ring([1.0, f64::NAN, 1.0, 1.0]), FlatHeight::Lowest).contains("without a height"));
+        assert!(message(ring([1.0; 4]), FlatHeight::Given(f64::NAN)).contains("NaN"));
+        assert!(Flat::new(&[ring([f64::NAN; 4])], FlatHeight::Given(1.0)).is_ok());
+        assert!(Flat::new(&[], FlatHeight::Lowest).is_err());
+    }
+}

@@ -1,0 +1,63 @@
+//! The kinds of the lines of a triangulation, and of the edges on them.
+
+use crate::data::EdgeKind;
+use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::Terrain;
+use crate::triangulation::tds::{CellId, VertexId};
+
+/// The kind of each line of a triangulation, by its number.
+#[derive(Debug, Default)]
+pub(in crate::terrain) struct LineKinds {
+    of_lines: Vec<EdgeKind>,
+    /// True if all lines are hard breaklines, so that none needs to be looked up.
+    are_breaklines: bool,
+}
+
+impl LineKinds {
+    pub(in crate::terrain) fn new(of_lines: Vec<EdgeKind>) -> Self {
+        let are_breaklines = of_lines.iter().all(|kind| *kind == EdgeKind::Breakline);
+        LineKinds { of_lines, are_breaklines }
+    }
+
+    pub(in crate::terrain) fn of_line(&self, line: usize) -> Option<EdgeKind> {
+        self.of_lines.get(line).copied()
+    }
+
+    /// Returns true if all lines are hard breaklines.
+    pub(in crate::terrain) fn are_breaklines(&self) -> bool {
+        self.are_breaklines
+    }
+
+    /// The kind of the edge opposite corner `i` of a cell; `None` if no line runs along it.
+    #[inline]
+    pub(in crate::terrain) fn of_edge(
+        &self,
+        base: &ConstrainedDelaunay<Terrain>,
+        cell: CellId,
+        i: usize,
+    ) -> Option<EdgeKind> {
+        if !base.is_constrained(cell, i) {
+            None
+        } else if self.are_breaklines {
+            Some(EdgeKind::Breakline)
+        } else {
+            Some(self.first_of(base, base.tds().edge_ends(cell, i)))
+        }
+    }
+
+    /// The kind of the edge between two vertices; `None` if there is none, or no line runs along
+    /// it.
+    pub(in crate::terrain) fn between(
+        &self,
+        base: &ConstrainedDelaunay<Terrain>,
+        [u, v]: [VertexId; 2],
+    ) -> Option<EdgeKind> {
+        base.tds().edge(u, v).and_then(|(cell, i)| self.of_edge(base, cell, i))
+    }
+
+    /// The kind that comes first among those of the lines along an edge.
+    fn first_of(&self, base: &ConstrainedDelaunay<Terrain>, [u, v]: [VertexId; 2]) -> EdgeKind {
+        let kinds = base.lines_through(u, v).map(|line| self.of_lines[line.index()]);
+        kinds.min_by_key(|kind| kind.rank()).unwrap_or(EdgeKind::Breakline)
+    }
+}

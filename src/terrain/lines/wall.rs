@@ -1,0 +1,123 @@
+//! Walls: an upper and a lower edge next to each other.
+
+use super::offset::offset;
+use crate::error::{Error, Result};
+
+/// On which side of a wall, seen in the direction of its line, the ground is higher.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum HighSide {
+    /// On the left.
+    #[default]
+    Left,
+    /// On the right.
+    Right,
+}
+
+/// A wall, a kerb or a quay: a face so steep that it is taken for vertical.
+///
+/// A surface has one height at each position, so the two edges lie next to each other in plan:
+///
+/// ```text
+///    high ground                 high ___________ upper edge: the line as given
+///   ---->-------->---- upper                     |
+///   - - -> - - - ->- - lower                     |  width, 1 cm
+///    low ground                                   \__________ low
+/// ```
+///
+/// The upper edge is the line as it was given. Points between the edges are left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wall {
+    pub(in crate::terrain) upper: Vec<[f64; 3]>,
+    pub(in crate::terrain) lower: Vec<[f64; 3]>,
+}
+
+/// The narrowest wall, in units in the last place of the largest coordinate: crossings are rounded
+/// to such units, and must not exchange the edges.
+const NARROWEST: f64 = 1000.0;
+
+impl Wall {
+    /// Returns a wall from its upper edge and the height of the lower edge at each of its vertices.
+    ///
+    /// # Errors
+    /// If the line has fewer than two distinct vertices or not as many lower heights, the wall has
+    /// no height anywhere or its lower edge is above the upper one, or if it is narrower than
+    /// rounding allows.
+    pub fn new(upper: &[[f64; 3]], lower: &[f64], width: f64, high: HighSide) -> Result<Self> {
+        if lower.len() != upper.len() {
+            return Err(Error::format(format!("{} vertices, but {} lower heights", upper.len(), lower.len())));
+        }
+        let mut vertices: Vec<([f64; 3], f64)> = upper.iter().copied().zip(lower.iter().copied()).collect();
+        vertices.dedup_by(|(p, _), (q, _)| p[..2] == q[..2]);
+        if vertices.len() < 2 {
+            return Err(Error::format("the wall has fewer than two distinct vertices")
+                .cure("remove the record, or give the line its vertices"));
+        }
+        if let Some(([x, y, z], low)) = vertices.iter().find(|(p, low)| *low > p[2]) {
+            return Err(Error::format(format!(
+                "at {x} {y} the lower edge of the wall is at {low}, above the upper at {z}"
+            ))
+            .cure("the line has the heights of the upper edge; --wall-bottom or --wall-drop give the lower one"));
+        }
+        if vertices.iter().all(|(p, low)| *low == p[2]) {
+            return Err(Error::format("the wall has no height: upper and lower edge are the same")
+                .cure("give the lower edge with --wall-bottom or --wall-drop, or use --breaklines"));
+        }
+        let largest = vertices.iter().flat_map(|(p, _)| [p[0].abs(), p[1].abs()]).fold(0.0, f64::max);
+        let narrowest = NARROWEST * (largest.next_up() - largest);
+        if !(width >= narrowest && width.is_finite()) {
+            return Err(Error::usage(format!("a wall of width {width}, expected at least {narrowest:e}")));
+        }
+        let site = |(p, _): &([f64; 3], f64)| [p[0], p[1]];
+        let sites: Vec<[f64; 2]> = vertices.iter().map(site).collect();
+        let distance = match high {
+            HighSide::Left => -width,
+            HighSide::Right => width,
+        };
+        let beside = offset(&sites, distance);
+        let lower = beside.iter().zip(&vertices).map(|(&[x, y], &(_, low))| [x, y, low]).collect();
+        Ok(Wall { upper: vertices.into_iter().map(|(p, _)| p).collect(), lower })
+    }
+
+    /// The rings around the area between the edges.
+    pub(in crate::terrain) fn rings(&self) -> Vec<Vec<[f64; 2]>> {
+        let [upper, mut lower] =
+            [&self.upper, &self.lower].map(|edge| edge.iter().map(|p| [p[0], p[1]]).collect::<Vec<_>>());
+        if upper.len() > 2 && upper.first() == upper.last() {
+            return vec![upper, lower];
+        }
+        lower.reverse();
+        vec![[upper, lower].concat()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE: [[f64; 3]; 3] = [[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [8.0, 0.0, 4.0]];
+
+    #[test]
+    fn the_lower_edge_is_beside_the_upper_one() {
+        let wall = Wall::new(&LINE, &[3.0, 3.0, 4.0], 0.5, HighSide::Left).unwrap();
+        assert_eq!(wall.upper, LINE);
+        assert_eq!(wall.lower, [[0.0, -0.5, 3.0], [4.0, -0.5, 3.0], [8.0, -0.5, 4.0]]);
+        assert_eq!(wall.rings(), [[[0.0, 0.0], [4.0, 0.0], [8.0, 0.0], [8.0, -0.5], [4.0, -0.5], [0.0, -0.5]]]);
+        let wall = Wall::new(&LINE, &[3.0, 3.0, 4.0], 0.5, HighSide::Right).unwrap();
+        assert_eq!(wall.lower[0], [0.0, 0.5, 3.0]);
+    }
+
+    #[test]
+    fn what_is_no_wall_is_refused() {
+        let message = |line: &[[f64; 3]], low: &[f64], width| {
+            Wall::new(line, low, width, HighSide::Left).unwrap_err().to_string()
+        };
+        assert!(message(&LINE, &[5.0, 5.0, 4.0], 0.1).contains("no height"));
+        assert!(message(&LINE, &[5.0, 6.0, 4.0], 0.1).starts_with("at 4 0 the lower edge of the wall is at 6"));
+        assert!(message(&LINE[..1], &[5.0], 0.1).contains("two distinct vertices"));
+        assert!(message(&[LINE[0], LINE[0]], &[1.0, 2.0], 0.1).contains("two distinct vertices"));
+        assert!(message(&LINE, &[1.0], 0.1).contains("3 vertices, but 1 lower heights"));
+        for width in [1e-15, 0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(message(&LINE, &[1.0; 3], width).contains("a wall of width"), "{width}");
+        }
+    }
+}

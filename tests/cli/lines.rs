@@ -1,0 +1,130 @@
+//! Lines and areas of all kinds, as typed.
+
+use super::{SLOPE, folder_with, run_in};
+use tempfile::TempDir;
+
+/// A GeoJSON layer of features: kind of geometry, coordinates, properties.
+fn features(list: &[(&str, &str, &str)]) -> String {
+    let feature = |(kind, coordinates, properties): &(&str, &str, &str)| {
+        format!(
+            r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}"#
+        )
+    };
+    let list: Vec<String> = list.iter().map(feature).collect();
+    format!(
+        r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::25832"}}}},"features":[{}]}}"#,
+        list.join(",")
+    )
+}
+
+/// A folder with points on a slope and one layer.
+fn folder(layer: &[(&str, &str, &str)]) -> TempDir {
+    folder_with(&[("p.xyz", SLOPE), ("l.geojson", &features(layer))])
+}
+
+const LAKE: &str = "[[[0.5,0.5,9],[1.5,0.5,9],[1.5,1.5,9],[0.5,1.5,9],[0.5,0.5,9]]]";
+
+#[test]
+fn a_lake_is_level_in_every_product() {
+    let folder = folder(&[("Polygon", LAKE, r#"{"W":8.5}"#)]);
+    let tin = run_in(
+        &folder,
+        &["tin", "p.xyz", "--flat", "l.geojson", "--flat-points", "out.csv", "-o", "t.ply", "-o", "t.tin"],
+    );
+    tin.works(&["1 in water or walls", "lakes       1 in, 4 edges out, of l.geojson"]);
+    assert_eq!(std::fs::read_to_string(folder.path().join("out.csv")).unwrap(), "x,y,z\n1,1,11\n");
+    for file in ["t.ply", "t.tin"] {
+        let info = run_in(&folder, &["info", "--json", file]);
+        assert!(info.stdout.contains("\"shores\": 4"), "{}", info.stdout);
+        run_in(&folder, &["check", file]).works(&[]);
+    }
+    // The attribute, a number and the rules.
+    for (height, z) in [("W", "8.5"), ("-3", "-3"), ("lowest", "9"), ("mean", "9")] {
+        let args = ["tin", "p.xyz", "--flat", "l.geojson", "--flat-height", height, "-o", "h.obj", "--overwrite"];
+        run_in(&folder, &args).works(&[]);
+        let obj = std::fs::read_to_string(folder.path().join("h.obj")).unwrap();
+        let level = obj.lines().filter(|line| line.starts_with('v') && line.ends_with(&format!(" {z}"))).count();
+        assert_eq!(level, 4, "{height}: {obj}");
+    }
+}
+
+#[test]
+fn summaries_say_what_lines_became() {
+    let line = "[[0.2,2.5,20],[2.8,2.5,20]]";
+    let folder = folder(&[("LineString", line, r#"{"D":4}"#)]);
+    for (option, more, said) in [
+        ("--soft-lines", vec![], "soft lines  1 in, 1 edges out, of l.geojson"),
+        ("--walls", vec!["--wall-drop", "D"], "walls       1 in, 2 edges out, of l.geojson"),
+        ("--walls", vec!["--wall-bottom", "1"], "walls       1 in, 2 edges out, of l.geojson"),
+        ("--rivers", vec!["--river-width", "0.3"], "rivers      1 in, 2 edges out, of l.geojson"),
+        ("--draped-lines", vec![], "draped      1 in, "),
+        ("--breaklines", vec!["--densify", "0.5"], "breaklines  1 in, 6 edges out"),
+    ] {
+        let run = run_in(
+            &folder,
+            &[&["tin", "p.xyz", option, "l.geojson", "-o", "t.tin", "--overwrite"], &more[..]].concat(),
+        );
+        run.works(&[said]);
+        run_in(&folder, &["check", "t.tin"]).works(&[]);
+    }
+}
+
+#[test]
+fn the_longest_edge_can_follow_from_the_points() {
+    let folder = folder_with(&[("p.xyz", SLOPE)]);
+    run_in(&folder, &["tin", "p.xyz", "--max-edge", "auto", "-o", "t.ply"]).works(&["75 units"]);
+    let run = run_in(&folder, &["tin", "p.xyz", "--max-edge-inside", "0.5", "-o", "u.ply"]);
+    run.fails(1, &["no triangle is left"]);
+}
+
+/// Each mistake is an error that names what is wrong, or a warning; an error writes nothing.
+#[test]
+fn mistakes_are_named() {
+    let open = "[[0.5,0.5,9],[1.5,0.5,9],[1.5,1.5,9]]";
+    let flat = "[[0.5,0.5],[2.5,0.5]]";
+    let nothing = "[[[0.5,0.5,9],[1.5,1.5,9],[0.5,0.5,9],[0.5,0.5,9]]]";
+    let uneven = "[[[0.5,0.5,9],[1.5,0.5,9.5],[1.5,1.5,9],[0.5,0.5,9]]]";
+    let other = "[[[1,1,7],[2.5,1,7],[2.5,2.5,7],[1,1,7]]]";
+    let all = "[[[-9,-9],[9,-9],[9,9],[-9,9],[-9,-9]]]";
+    let line = "[[0.5,0.5,9],[2.5,0.5,9]]";
+    type Case<'a> = (&'a [(&'a str, &'a str, &'a str)], &'a [&'a str], &'a [&'a str]);
+    let cases: [Case; 10] = [
+        (&[("LineString", open, "{}")], &["--flat", "l.geojson"], &["record 1: the shore is open", "close"]),
+        (&[("Polygon", nothing, "{}")], &["--flat", "l.geojson"], &["record 1: the shore at 0.5 0.5 encloses nothing"]),
+        (&[("Polygon", uneven, "{}")], &["--flat", "l.geojson"], &["the shore is not level: its heights are 9 to 9.5"]),
+        (
+            &[("Polygon", LAKE, "{}"), ("Polygon", other, "{}")],
+            &["--flat", "l.geojson"],
+            &["two lakes meet at", "l.geojson fid 0", "l.geojson fid 1"],
+        ),
+        (&[("LineString", flat, "{}")], &["--soft-lines", "l.geojson"], &["the line has no heights", "--draped-lines"]),
+        (&[("LineString", flat, "{}")], &["--rivers", "l.geojson"], &["the line has no heights"]),
+        (&[("LineString", line, "{}")], &["--rivers", "l.geojson"], &["the bank has no opposite bank"]),
+        (&[("LineString", line, "{}")], &["--walls", "l.geojson"], &["the lower edge of the wall is not known"]),
+        (
+            &[("LineString", line, "{}")],
+            &["--walls", "l.geojson", "--wall-drop", "0"],
+            &["record 1: the wall has no height"],
+        ),
+        (&[("Polygon", all, "{}")], &["--holes", "l.geojson"], &["no triangle is left"]),
+    ];
+    for (layer, args, said) in cases {
+        let folder = folder(layer);
+        run_in(&folder, &[&["tin", "p.xyz", "-o", "t.ply"], args].concat()).fails(1, said);
+        assert!(!folder.path().join("t.ply").exists(), "{args:?}");
+    }
+    let folder = folder(&[("LineString", line, "{}")]);
+    let run = run_in(&folder, &["tin", "p.xyz", "--walls", "l.geojson", "--wall-drop", "DEPTH", "-o", "t.ply"]);
+    run.fails(2, &["l.geojson: there is no field DEPTH"]);
+}
+
+#[test]
+fn what_looks_wrong_is_a_warning() {
+    let banks = "[[[0.2,0.4,5],[1.2,0.4,7],[2.8,0.4,3]],[[0.2,1.4,5],[2.8,1.4,3]]]";
+    let river = folder(&[("MultiLineString", banks, "{}")]);
+    let run = run_in(&river, &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"]);
+    run.works(&["warning: the banks of the river l.geojson fid 0", "differ by up to"]);
+    let shore = folder(&[("Polygon", LAKE, "{}")]);
+    let run = run_in(&shore, &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"]);
+    run.works(&["warning: a closed line of one height has 1 point of other heights inside, by up to 2", "--flat"]);
+}
