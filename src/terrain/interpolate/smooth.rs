@@ -178,32 +178,29 @@ fn gradient(base: &Base, face: u32, i: usize) -> [f64; 2] {
         let p = base.point(neighbor);
         fit.add(minus(p, at), p[2] - at[2]);
     };
-    let [first, last] = [next, before].map(|turn| base.face(face).corners[turn(i)]);
-    add(first);
-    // Counter-clockwise, then clockwise if that does not lead all around.
+    // Clockwise to a closed edge, or once around.
     let (mut at_face, mut at_corner, mut steps) = (face, i, 0);
-    loop {
+    while let Some((beyond, j)) = base.across(at_face, before(at_corner)).filter(|_| steps < base.count()) {
+        // The edge passed ends at the vertex, and its other end is next to it.
+        (at_face, at_corner) = (beyond, before(j));
+        steps += 1;
+        if at_face == face {
+            break;
+        }
+    }
+    // Back, over all neighbors. The other end of a line that ends here counts once.
+    let first = base.face(at_face).corners[next(at_corner)];
+    add(first);
+    for _ in 0..=base.count() {
         let neighbor = base.face(at_face).corners[before(at_corner)];
         if neighbor == first {
-            return fit.gradient();
-        }
-        add(neighbor);
-        match base.across(at_face, next(at_corner)) {
-            // The edge passed ends at the vertex, and its other end is next to it.
-            Some((beyond, j)) if steps < base.count() => (at_face, at_corner) = (beyond, next(j)),
-            _ => break,
-        }
-        steps += 1;
-    }
-    (at_face, at_corner, steps) = (face, i, 0);
-    while let Some((beyond, j)) = base.across(at_face, before(at_corner)).filter(|_| steps < base.count()) {
-        (at_face, at_corner) = (beyond, before(j));
-        let neighbor = base.face(at_face).corners[next(at_corner)];
-        if neighbor == last {
             break;
         }
         add(neighbor);
-        steps += 1;
+        match base.across(at_face, next(at_corner)) {
+            Some((beyond, j)) => (at_face, at_corner) = (beyond, next(j)),
+            None => break,
+        }
     }
     fit.gradient()
 }
