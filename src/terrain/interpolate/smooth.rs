@@ -23,9 +23,9 @@
 //!
 //! Along a hard edge both sides would have cubic curves of their own. There the height must be
 //! linear, as on the breakline. So `E = l_j l_k (A l_j + B l_k) w` is added, with barycentric
-//! coordinates `l`. The cubic factor is the difference on the edge, and the weight `w = e_i / (e_0 +
-//! e_1 + e_2)` with `e_i = (l_j l_k)^2` is 1 on the edge and vanishes on the two others together
-//! with its gradient. So it leaves them free of kinks.
+//! coordinates `l`. The cubic factor is the difference on the edge. The weight `w = e_i / (e_0 + e_1
+//! + e_2)`, where `e_i = (l_j l_k)^2`, is 1 on the edge and vanishes on the two others, together with
+//! its gradient (after Nielson 1979). So it leaves them free of kinks.
 
 use super::base::{Base, before, cross, minus, next, square};
 
@@ -94,7 +94,8 @@ impl Patch {
         self.face
     }
 
-    /// Returns the height at a position in the triangle; `None` if a number overflows or underflows.
+    /// Returns the height at a position in the triangle; `None` if a number overflows or
+    /// underflows.
     pub(super) fn height(&self, q: [f64; 2]) -> Option<f64> {
         let to = self.corners.map(|p| minus(p, [q[0], q[1], 0.0]));
         let parts = [0, 1, 2].map(|i| cross(to[next(i)], to[before(i)]) / self.area);
