@@ -23,9 +23,9 @@
 //!
 //! Along a hard edge both sides would have cubic curves of their own. There the height must be
 //! linear, as on the breakline. So `E = l_j l_k (A l_j + B l_k) w` is added, with barycentric
-//! coordinates `l`. The cubic factor is the difference on the edge. The weight `w = e_i / (e_0 + e_1
-//! + e_2)`, where `e_i = (l_j l_k)^2`, is 1 on the edge and vanishes on the two others, together with
-//! its gradient (after Nielson 1979). So it leaves them free of kinks.
+//! coordinates `l`. The cubic factor is the difference on the edge. The weight is `w = e_i / e`,
+//! where `e_i = (l_j l_k)^2` and `e` is the sum of all three. It is 1 on the edge and vanishes on
+//! the two others, together with its gradient (after Nielson 1979), so it leaves them free of kinks.
 
 use super::base::{Base, before, cross, minus, next, square};
 
