@@ -203,8 +203,7 @@ impl Base {
                 match self.across(face, i) {
                     None if self.face(face).is_hard(i) => return Some(Site::Height(height)),
                     None => return Some(Site::Rim { height, face, first: smallest(corners) }),
-                    // Of two triangles at an edge, that to the left of the edge from its smaller
-                    // end.
+                    // Of two triangles at an edge, the one to its left, seen from its smaller end.
                     Some((beyond, _)) if is_smaller(r, p) => face = beyond,
                     Some(_) => {}
                 }

@@ -15,14 +15,13 @@
 //! # Why a hard edge may bound the zone
 //!
 //! Let `A(t, v)` be the area that one triangle `t` of the zone adds to what its corner `v` loses.
-//! With `q` as origin, `2 T` the area of `t`, `s_v` the double areas of `q` and the edge opposite
-//! `v`, and `P` the determinant of the in-circle test, it is `P^2 / (8 T s_u s_w)`: in proportion
-//! to `s_v`, so to the barycentric coordinates of `q` in `t`. So the result is a weighted mean,
-//! over the triangles of *any* zone, of the planes through them:
+//! With `q` as origin, `T` twice the area of `t`, `s_v` twice the area of `q` and the edge opposite
+//! `v`, and `P` the determinant of the in-circle test, it is `P^2 / (8 T s_u s_w)`. That is in
+//! proportion to `s_v`, so to the barycentric coordinates of `q` in `t`. So the result is a
+//! weighted mean, over the triangles of *any* zone, of the planes through them:
 //!
 //! - Linear functions are reproduced whatever bounds the zone.
-//! - A triangle enters and leaves the zone with `P = 0`, so without a jump, and even without a
-//!   kink.
+//! - A triangle enters and leaves the zone with `P = 0`: without a jump, and without a kink.
 //! - On a hard edge the two circumcenters next to it move away to infinity, and its ends get all
 //!   the weight: the limit is linear between the ends, from both sides. The same holds at the rim.
 //! - The edges that the zone crosses are Delaunay. So `q` sees all of it, no vertex is within it,

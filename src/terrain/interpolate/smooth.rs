@@ -23,9 +23,9 @@
 //!
 //! Along a hard edge both sides would have cubic curves of their own. There the height must be
 //! linear, as on the breakline. So `E = l_j l_k (A l_j + B l_k) w` is added, with barycentric
-//! coordinates `l`. The cubic factor is the difference on the edge, and the weight `w = e_i / (e_0
-//! + e_1 + e_2)` with `e_i = (l_j l_k)^2` is 1 on the edge and vanishes on the two others together
-//! with its gradient. So it leaves them free of kinks.
+//! coordinates `l`. The cubic factor is the difference on the edge. The weight is `w = e_i / e`,
+//! where `e_i = (l_j l_k)^2` and `e` is the sum of all three. It is 1 on the edge and vanishes on
+//! the two others, together with its gradient (after Nielson 1979). So no kink arises there.
 
 use super::base::{Base, before, cross, minus, next, square};
 
@@ -170,13 +170,36 @@ impl Fit {
 
 /// Returns the gradient at corner `i` of a triangle, from the neighbors on the same side of hard
 /// edges.
+///
+/// It is reduced where it would miss a neighbor by more than twice the largest difference of
+/// heights around the vertex: at the foot of a slope, next to triangles that are much longer than
+/// those on the slope.
 fn gradient(base: &Base, face: u32, i: usize) -> [f64; 2] {
+    let (mut fit, mut relief) = (Fit::default(), 0.0_f64);
+    each_neighbor(base, face, i, |to, rise| {
+        fit.add(to, rise);
+        relief = relief.max(rise.abs());
+    });
+    let [x, y] = fit.gradient();
+    let mut part = 1.0_f64;
+    each_neighbor(base, face, i, |to, rise| {
+        let reached = x * to[0] + y * to[1];
+        let allowed = 2.0 * relief + if reached < 0.0 { -rise } else { rise };
+        if part * reached.abs() > allowed {
+            part = allowed / reached.abs();
+        }
+    });
+    [part * x, part * y]
+}
+
+/// Calls `each` with the vector to each neighbor of corner `i` of a triangle, and the difference of
+/// heights: those that are reached without crossing a hard edge.
+fn each_neighbor(base: &Base, face: u32, i: usize, mut each: impl FnMut([f64; 2], f64)) {
     let vertex = base.face(face).corners[i];
     let at = base.point(vertex);
-    let mut fit = Fit::default();
     let mut add = |neighbor: u32| {
         let p = base.point(neighbor);
-        fit.add(minus(p, at), p[2] - at[2]);
+        each(minus(p, at), p[2] - at[2]);
     };
     // Clockwise to a closed edge, or once around.
     let (mut at_face, mut at_corner, mut steps) = (face, i, 0);
@@ -202,5 +225,4 @@ fn gradient(base: &Base, face: u32, i: usize) -> [f64; 2] {
             None => break,
         }
     }
-    fit.gradient()
 }
