@@ -217,7 +217,7 @@ fn heights_are_continuous_and_those_of_a_breakline_on_it() {
                 for part in [0.1, 0.5, 0.83] {
                     let on = between(a, b, part);
                     let [z_left, z_right] = [left, right].map(|p| {
-                        let [x, y] = towards(on, p, 1e-9);
+                        let [x, y] = towards(on, p, 1e-11); // slivers at the rim are steep
                         interpolant.height(x, y).unwrap()
                     });
                     assert!((z_left - z_right).abs() < 1e-5, "{method:?}, round {round}: {z_left} {z_right} at {on:?}");
@@ -298,7 +298,7 @@ fn gradient_beside(interpolant: &Interpolant<Tin>, on: Point, inward: Point) -> 
 #[test]
 fn a_smooth_surface_has_kinks_at_breaklines_only() {
     let (mut free, mut hard, mut kinks) = (0, 0, 0);
-    for round in 0..8 {
+    for round in 0..12 {
         let mut random = Random(round);
         let points = on_grid(&mut random, 70, 24);
         let tin = tin(&points, &lines(24.0, |x, y| 50.0 + (x - y).sin()));
