@@ -26,18 +26,20 @@ pub(in crate::terrain) enum Level {
     River(River),
 }
 
+/// The rings of a polygon, in plan.
+type Rings = Vec<Vec<[f64; 2]>>;
+
 /// The points that areas of water and walls replace.
 #[derive(Debug, Clone, Default)]
 pub(in crate::terrain) struct Replaced {
-    polygons: Vec<Vec<Vec<[f64; 2]>>>,
+    polygons: Vec<Rings>,
     /// Shores, by the distance up to which points outside are replaced, too.
-    buffers: Vec<(f64, Vec<Vec<Vec<[f64; 2]>>>)>,
+    buffers: Vec<(f64, Vec<Rings>)>,
 }
 
 impl Replaced {
     pub(in crate::terrain) fn add_flat(&mut self, flat: &Flat) {
-        let rings: Vec<Vec<[f64; 2]>> =
-            flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect();
+        let rings: Rings = flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect();
         if flat.buffer > 0.0 {
             match self.buffers.iter_mut().find(|(buffer, _)| *buffer == flat.buffer) {
                 Some((_, shores)) => shores.push(rings.clone()),
