@@ -217,7 +217,9 @@ fn heights_are_continuous_and_those_of_a_breakline_on_it() {
                 for part in [0.1, 0.5, 0.83] {
                     let on = between(a, b, part);
                     let [z_left, z_right] = [left, right].map(|p| {
-                        let [x, y] = towards(on, p, 1e-11); // slivers at the rim are steep
+                        // Nearer than the height of a sliver at the rim, in whose circle heights may
+                        // change at once.
+                        let [x, y] = towards(on, p, 1e-12);
                         interpolant.height(x, y).unwrap()
                     });
                     assert!((z_left - z_right).abs() < 1e-5, "{method:?}, round {round}: {z_left} {z_right} at {on:?}");
@@ -298,7 +300,7 @@ fn gradient_beside(interpolant: &Interpolant<Tin>, on: Point, inward: Point) -> 
 #[test]
 fn a_smooth_surface_has_kinks_at_breaklines_only() {
     let (mut free, mut hard, mut kinks) = (0, 0, 0);
-    for round in 0..12 {
+    for round in 0..8 {
         let mut random = Random(round);
         let points = on_grid(&mut random, 70, 24);
         let tin = tin(&points, &lines(24.0, |x, y| 50.0 + (x - y).sin()));
@@ -325,7 +327,7 @@ fn a_smooth_surface_has_kinks_at_breaklines_only() {
             }
         });
     }
-    assert!(free > 1000 && hard > 100 && kinks > hard * 9 / 10, "{free} {hard} {kinks}");
+    assert!(free > 1000 && hard > 50 && kinks > hard * 9 / 10, "{free} {hard} {kinks}");
 }
 
 #[test]

@@ -45,21 +45,25 @@ struct Seen {
     square: f64,
 }
 
+/// An edge of a triangle of the zone.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    face: u32,
+    /// The index of the corner opposite the edge.
+    i: usize,
+    from: Seen,
+    to: Seen,
+    /// Twice the area of the position and the edge.
+    area: f64,
+    /// The circumcenter of the triangle.
+    center: [f64; 2],
+}
+
 /// What is still to be done of a tour around a zone.
 #[derive(Debug, Clone, Copy)]
 enum Step {
     /// Pass an edge of a triangle of the zone, or find that it is on the border.
-    Edge {
-        face: u32,
-        /// The index of the corner opposite the edge.
-        i: usize,
-        from: Seen,
-        to: Seen,
-        /// Twice the area of the position and the edge.
-        area: f64,
-        /// The circumcenter of the triangle.
-        center: [f64; 2],
-    },
+    Edge(Side),
     /// Go from a triangle back to the one before it, given their circumcenters.
     Back { from: [f64; 2], to: [f64; 2] },
 }
@@ -111,36 +115,40 @@ fn travel(
     let corners = base.face(face).corners.map(see);
     let center = circumcenter(corners);
     steps.clear();
-    // The last one is taken first: the edge from `first`.
-    for k in [next(first), first, before(first)] {
+    let side = |k: usize| {
         let (from, to) = (corners[next(k)], corners[before(k)]);
-        steps.push(Step::Edge { face, i: k, from, to, area: cross(from.to, to.to), center });
-    }
+        Side { face, i: k, from, to, area: cross(from.to, to.to), center }
+    };
+    // The last one is taken first: the edge from `first`.
+    steps.extend([next(first), first, before(first)].map(|k| Step::Edge(side(k))));
     // No more triangles can be passed than there are, except by rounding errors.
     let mut left = base.count();
     while let Some(step) = steps.pop() {
-        let (face, i, from, to, area, center) = match step {
+        let mut side = match step {
             Step::Back { from, to } => {
                 weigh.pass(from, to);
                 continue;
             }
-            Step::Edge { face, i, from, to, area, center } => (face, i, from, to, area, center),
+            Step::Edge(side) => side,
         };
-        if let Some((beyond, j)) = base.across(face, i) {
+        // Into the zone, along the edges that begin where this one does.
+        while let Some((beyond, j)) = base.across(side.face, side.i) {
+            let Side { from, to, area, center, .. } = side;
             let apex = see(base.face(beyond).corners[j]);
             let (left_area, right_area) = (cross(from.to, apex.to), cross(apex.to, to.to));
             let inside = to.square * left_area + from.square * right_area - apex.square * area;
-            if inside > 0.0 {
-                left = left.checked_sub(1)?;
-                let new = circumcenter([to, from, apex]);
-                weigh.pass(center, new);
-                steps.push(Step::Back { from: new, to: center });
-                let (face, center) = (beyond, new);
-                steps.push(Step::Edge { face, i: before(j), from: apex, to, area: right_area, center });
-                steps.push(Step::Edge { face, i: next(j), from, to: apex, area: left_area, center });
-                continue;
+            if inside <= 0.0 || inside.is_nan() {
+                break;
             }
+            left = left.checked_sub(1)?;
+            let new = circumcenter([to, from, apex]);
+            weigh.pass(center, new);
+            steps.push(Step::Back { from: new, to: center });
+            let right = Side { face: beyond, i: before(j), from: apex, to, area: right_area, center: new };
+            steps.push(Step::Edge(right));
+            side = Side { face: beyond, i: next(j), from, to: apex, area: left_area, center: new };
         }
+        let Side { from, to, area, center, .. } = side;
         if area <= 0.0 {
             // The position is on the border by a rounding error.
             return None;
