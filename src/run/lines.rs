@@ -98,7 +98,8 @@ fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer) -> Result<()> {
 }
 
 fn cure(layer: &Layer) -> String {
-    let cure = "name the attribute with the heights: --breaklines FILE:FIELD";
+    let cure =
+        "name the attribute with the heights: --breaklines FILE:FIELD, or FILE:LAYER:FIELD for one of several layers";
     match layer.fields.as_slice() {
         [] => format!("{cure} (this layer has no attributes)"),
         fields => format!("{cure} (the attributes are {})", fields.join(", ")),
