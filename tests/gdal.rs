@@ -20,6 +20,8 @@ mod with_gdal {
     use super::*;
     use breakline::crs::CrsKind;
     use breakline::data::{BlockSource, Shape, Window};
+    use breakline::io::gdal::read_layer_with;
+    use breakline::io::layer;
     use gdal::DriverManager;
     use gdal::raster::{Buffer, RasterCreationOptions};
     use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
@@ -96,11 +98,13 @@ mod with_gdal {
         assert_eq!(layer.shapes[1], Shape::Lines(second));
         assert!(layer.shapes[2].vertices().all(|vertex| vertex[2].is_nan()));
 
-        // The same through the path, and heights from an attribute, of either type.
-        let spec = format!("{}:roads", path.display());
-        assert_eq!(read_layer(spec.as_ref(), None).unwrap().shapes.len(), 3);
+        // Heights from an attribute, of either type.
+        let read = |layer: Option<&str>, field: Option<&str>, columns: &[&str]| {
+            let options = layer::Options { layer, height_field: field, columns };
+            read_layer_with(&path, &options, &|_| Ok(()))
+        };
         let heights = |field: &str| -> Vec<f64> {
-            let layer = read_layer(spec.as_ref(), Some(field)).unwrap();
+            let layer = read(Some("roads"), Some(field), &[]).unwrap();
             assert!(
                 field != "T" || layer.warnings.iter().any(|text| text.starts_with("2 records")),
                 "{:?}",
@@ -118,8 +122,54 @@ mod with_gdal {
         assert!(several.cure_text().unwrap().contains("roads"));
         let wrong = read_layer(&path, Some("rivers")).unwrap_err();
         assert!(wrong.to_string().contains("rivers") && wrong.path() == Some(&path), "{wrong}");
-        let wrong = read_layer(&path, Some("roads:Z")).unwrap_err();
-        assert!(wrong.to_string().contains("field \"Z\"") && wrong.cure_text().unwrap().contains("H, T"), "{wrong}");
+        let wrong = read(Some("roads"), Some("Z"), &[]).unwrap_err();
+        assert!(wrong.to_string().contains("field Z") && wrong.cure_text().unwrap().contains("H, T"), "{wrong}");
+
+        // The numbers of attributes.
+        let layer = read(Some("Roads"), None, &["h"]).unwrap();
+        let values = &layer.column("H").unwrap().values;
+        assert!(values[0] == 7.25 && values[1].is_nan() && values[2] == -1.0, "{values:?}");
+        let wrong = read(Some("roads"), None, &["H", "T"]).unwrap_err();
+        let text = "a.gpkg: record 3: field T: expected a number, found 'none'";
+        assert!(wrong.to_string().ends_with(text), "{wrong}");
+        let wrong = read(Some("roads"), None, &["Z"]).unwrap_err();
+        assert!(wrong.to_string().contains("field Z") && wrong.cure_text().unwrap().contains("H, T"), "{wrong}");
+    }
+
+    #[test]
+    #[cfg(feature = "cli")]
+    fn the_program_reads_a_layer_and_a_field() {
+        let folder = folder();
+        let lines: &[Record<'_>] = &[("LINESTRING (1 1,2 2)", Some(7.5), "")];
+        let points: &[Record<'_>] = &[("MULTIPOINT (0 0,5 0,0 5,5 5)", Some(3.0), "4")];
+        let site: &[Record<'_>] = &[("POLYGON ((0 0,3 0,3 3,0 3,0 0))", None, "")];
+        let layers = [("lines", lines), ("a:b", lines), ("points", points), ("site", site)];
+        write(&folder.path().join("a.gpkg"), "GPKG", Some(25832), &layers);
+        write(&folder.path().join("one.gpkg"), "GPKG", Some(25832), &[("lines", lines)]);
+        let tin = |args: &[&str]| {
+            let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_breakline"));
+            program.current_dir(&folder).args(["tin", "-o", "t.ply", "--overwrite"]).args(args);
+            let output = program.output().unwrap();
+            (output.status.code(), String::from_utf8(output.stderr).unwrap())
+        };
+        let lines = |spec: &str| tin(&["a.gpkg:points:H", "--breaklines", spec]);
+        let works = |(code, text): (Option<i32>, String), what: &str| {
+            assert!(code == Some(0) && text.contains(what), "{text}");
+        };
+        let fails = |(code, text): (Option<i32>, String), what: &[&str]| {
+            assert!(matches!(code, Some(1 | 2)) && what.iter().all(|what| text.contains(what)), "{text}");
+        };
+        for spec in ["a.gpkg:lines:H", "a.gpkg:a:b:H", "one.gpkg:lines:H", "one.gpkg::H"] {
+            works(lines(spec), "breaklines  1 in");
+        }
+        works(tin(&["a.gpkg:points:H", "a.gpkg:points:T"]), "is named twice");
+        works(tin(&["a.gpkg:points:H", "--boundary", "a.gpkg:site"]), "added by the clip");
+        fails(tin(&["a.gpkg:points:H", "a.gpkg:lines"]), &["has no points"]);
+        fails(lines("a.gpkg:lines"), &["the breakline has no heights", "FILE:LAYER:FIELD"]);
+        fails(lines("a.gpkg::H"), &["there are 4 layers", "lines, a:b, points, site"]);
+        fails(lines("a.gpkg:rivers:H"), &["there is no layer \"rivers\"", "lines, a:b, points, site"]);
+        fails(lines("one.gpkg:H"), &["there is no layer \"H\"", "FILE::H"]);
+        fails(lines("one.gpkg::Z"), &["there is no field Z", "H, T"]);
     }
 
     #[test]

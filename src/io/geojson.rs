@@ -49,14 +49,16 @@ pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
 /// Like [`read_layer`], but with the numbers of properties, and watched. Nothing is counted.
 ///
 /// # Errors
-/// Those of [`read_layer`], and that of the watch; if no feature has a requested property, or a
-/// value of one is not a number.
+/// Those of [`read_layer`], and that of the watch; if the layer has a different name, no feature
+/// has a requested property, or a value of one is not a number.
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes_of(path, watch)?;
-    parse(&bytes, options, watch).map_err(|e| e.in_file(path))
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    parse(&bytes, &stem, options, watch).map_err(|e| e.in_file(path))
 }
 
-fn parse(bytes: &[u8], options: &Options, watch: Watch) -> Result<Layer> {
+/// Parses the bytes of a file; `stem` is its name without the extension.
+fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let value = watched_value::of(bytes, watch)?.map_err(|e| {
         Error::format(format!("not JSON: {e}")).cure("GeoJSON that is cut short cannot be read in part")
@@ -64,6 +66,10 @@ fn parse(bytes: &[u8], options: &Options, watch: Watch) -> Result<Layer> {
     let Value::Object(root) = value else {
         return Err(Error::format("not GeoJSON: no object with a type"));
     };
+    match root.get("name").and_then(Value::as_str) {
+        Some(name) if name != stem => options.check_layer(&[name, stem])?,
+        _ => options.check_layer(&[stem])?,
+    }
     let columns = options.columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() });
     let layer = Layer { format: "GeoJSON".to_owned(), columns: columns.collect(), ..Layer::default() };
     let has_column = vec![false; options.columns.len()];
@@ -384,15 +390,26 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Layer> {
-        parse(text.as_bytes(), &Options::default(), &unwatched)
+        parse(text.as_bytes(), "a", &Options::default(), &unwatched)
     }
 
     fn read_heights(text: &str, field: &str) -> Result<Layer> {
-        parse(text.as_bytes(), &Options { height_field: Some(field), ..Options::default() }, &unwatched)
+        parse(text.as_bytes(), "a", &Options { height_field: Some(field), ..Options::default() }, &unwatched)
+    }
+
+    #[test]
+    fn the_layer_has_the_name_of_the_file_or_that_within() {
+        let text = r#"{"type":"FeatureCollection","name":"roads","features":[]}"#;
+        let read =
+            |layer| parse(text.as_bytes(), "a", &Options { layer: Some(layer), ..Options::default() }, &unwatched);
+        assert!(read("a").is_ok() && read("Roads").is_ok());
+        let error = read("rivers").unwrap_err();
+        assert_eq!(error.to_string(), "there is no layer \"rivers\"");
+        assert_eq!(error.cure_text(), Some("its only layer is \"roads\" or \"a\": name that, or write FILE::FIELD"));
     }
 
     fn read_columns(text: &str, columns: &[&str]) -> Result<Layer> {
-        parse(text.as_bytes(), &Options { columns, ..Options::default() }, &unwatched)
+        parse(text.as_bytes(), "a", &Options { columns, ..Options::default() }, &unwatched)
     }
 
     fn features(list: &[&str]) -> String {

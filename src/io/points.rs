@@ -135,7 +135,7 @@ pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
                 if let Some([x, y, _]) = found.iter().find(|point| point[2].is_nan()) {
                     return Err(Error::format(format!("the point at {x} {y} has no height"))
                         .at(format!("record {}", i + 1))
-                        .cure("if an attribute holds the heights, name it: FILE:FIELD"));
+                        .cure("if an attribute holds the heights, name it: FILE:FIELD, or FILE:LAYER:FIELD for one of several layers"));
                 }
                 points.extend(found);
             }

@@ -16,8 +16,9 @@ const BATCH: usize = 1 << 16;
 /// Input from a file, or from memory. Cheap to clone.
 #[derive(Debug, Clone)]
 pub enum Input<T> {
-    /// A file of any readable format. `-` reads points from the standard input; `FILE:FIELD` takes
-    /// the heights of a vector layer from an attribute.
+    /// A file of any readable format. `-` reads points from the standard input. The layer of a
+    /// vector file, and the attribute with its heights, may be named after the file, see
+    /// [`Spec::parse`](crate::io::layer::Spec::parse).
     File(PathBuf),
     /// Data in memory.
     Memory(Arc<T>),

@@ -121,7 +121,8 @@ fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, option: &str) -> Result
 }
 
 fn cure(layer: &Layer, option: &str) -> String {
-    let cure = format!("name the attribute with the heights, {option} FILE:FIELD, or use --draped-lines");
+    let cure =
+        format!("name the attribute with the heights, {option} FILE:FIELD or FILE:LAYER:FIELD, or use --draped-lines");
     match layer.fields.as_slice() {
         [] => format!("{cure} (this layer has no attributes)"),
         fields => format!("{cure} (the attributes are {})", fields.join(", ")),

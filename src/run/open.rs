@@ -34,9 +34,10 @@ pub(super) fn content(path: &Path) -> Content {
 }
 
 fn format(path: &Path) -> Option<&'static Format> {
-    let file = layer::split(&path.to_string_lossy()).0;
+    let text = path.to_string_lossy();
+    let file = layer::file_of(&text);
     // A file that does not exist yet is known by its name.
-    formats::detect_file(&file).unwrap_or_else(|_| formats::of_name(&file))
+    formats::detect_file(file).unwrap_or_else(|_| formats::of_name(file))
 }
 
 /// Opens points, in memory or in a file of any format.
@@ -51,8 +52,8 @@ pub(super) fn points(
     }
 }
 
-/// Opens points of any format. If the name of a vector layer ends in `:FIELD`, heights come from
-/// that attribute.
+/// Opens points of any format; of a vector file, the layer and the attribute with the heights may
+/// be named, see [`layer::Spec`].
 pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
     let of_layer =
         || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path, &[], context)?)?)) };
@@ -96,17 +97,16 @@ fn check_column(layer: &Layer, name: &str) -> Result<()> {
     }
 }
 
-/// Reads a vector layer. If the name ends in `:FIELD`, heights come from that attribute; for
-/// formats that GDAL reads, it names a layer. The layer has these columns, in this order.
+/// Reads a vector layer, named as in [`layer::Spec`]. It has these columns, in this order.
 pub(super) fn layer(path: &Path, columns: &[&str], context: &Context) -> Result<Layer> {
-    let Some(spec) = path.to_str() else {
+    let Some(text) = path.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
     };
-    let (file, name) = layer::split(spec);
-    let work = context.start(Stage::ReadingLayer, size(&file))?;
+    let spec = layer::Spec::parse(text)?;
+    let work = context.start(Stage::ReadingLayer, size(&spec.path))?;
     let watch = |bytes| work.add(bytes);
-    layer::read_with(spec, columns, &watch).or_else(|error| match gdal_may_help(&error) {
-        true => gdal::read_layer_with(&file, name, columns, &watch),
+    layer::read_with(&spec, columns, &watch).or_else(|error| match gdal_may_help(&error) {
+        true => gdal::read_layer_with(&spec.path, &spec.options(columns), &watch),
         false => Err(error),
     })
 }

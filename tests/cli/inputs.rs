@@ -225,3 +225,38 @@ fn a_huge_block_is_held_once() {
     let peak: u32 = peak.trim_end().trim_end_matches(" MB").parse().unwrap();
     assert!((134..230).contains(&peak), "{}", run.stderr);
 }
+
+#[test]
+fn the_layer_and_the_field_of_heights_follow_the_file() {
+    let flat = geojson(25832, "LineString", "[[1,1],[2,3]]");
+    let named = flat.replacen("{", r#"{"name":"edges","#, 1);
+    let ring = geojson(25832, "Polygon", "[[[0,0],[3,0],[3,3],[0,3],[0,0]]]");
+    let points = geojson(25832, "MultiPoint", "[[0,0],[4,0],[0,4]]");
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("l.geojson", &named),
+        ("10:30/l:Z.geojson", &flat),
+        ("ring.geojson", &ring),
+        ("p.geojson", &points),
+        ("a.gpkg", "SQLite format 3"),
+    ]);
+    let tin = |args: &[&str]| run_in(&folder, &[&["tin", "-o", "t.ply", "--overwrite"], args].concat());
+    let lines = |spec: &str| tin(&["a.xyz", "--breaklines", spec]);
+    for spec in ["l.geojson:Z", "l.geojson:l:Z", "l.geojson:edges:z", "l.geojson::Z", "10:30/l:Z.geojson:Z"] {
+        lines(spec).works(&["breaklines  1 in"]);
+    }
+    lines("l.geojson").fails(1, &["l.geojson: record 1: the breakline has no heights", "FILE:LAYER:FIELD"]);
+    lines("l.geojson:roads:Z").fails(2, &["there is no layer \"roads\"", "\"edges\" or \"l\"", "FILE::Z"]);
+    lines("l.geojson:H").fails(2, &["there is no field H", "name one of Z"]);
+    lines("l.geojson:").fails(2, &["no name after the colon", "FILE::FIELD"]);
+    lines("none.geojson:Z").fails(1, &["no such file"]);
+    for spec in ["p.geojson:Z", "p.geojson:p:Z", "p.geojson::Z"] {
+        tin(&[spec]).works(&["3 used"]);
+    }
+    tin(&["p.geojson:q:Z"]).fails(2, &["there is no layer \"q\""]);
+    tin(&["a.xyz", "--boundary", "ring.geojson:ring:Z"]).works(&[]);
+    tin(&["a.xyz", "--boundary", "ring.geojson:site:Z"]).fails(2, &["there is no layer \"site\""]);
+    if !breakline::io::gdal::IS_AVAILABLE {
+        lines("a.gpkg:roads:Z").fails(1, &["a.gpkg: not a vector format of this build", "--features gdal"]);
+    }
+}

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
+use crate::io::layer::{self, Spec};
 use crate::run::STDIN;
 
 /// Returns the files that globs, lists and names stand for, in order. A file that is named twice is
@@ -22,7 +23,9 @@ pub(in crate::cli) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec
     }
     let mut seen = HashSet::new();
     found.retain(|path| {
-        let is_new = seen.insert(identity(path));
+        // The layers of a file are inputs of their own.
+        let layer = path.to_str().and_then(|text| Some(Spec::parse(text).ok()?.layer_of_several()?.to_owned()));
+        let is_new = seen.insert((identity(path), layer));
         if !is_new {
             console.note(format_args!("{} is named twice and used once", path.display()));
         }
@@ -40,14 +43,12 @@ pub(in crate::cli) fn identity(path: &Path) -> PathBuf {
     file.canonicalize().unwrap_or_else(|_| file.to_path_buf())
 }
 
-/// Returns the path of an existing file, without the field or layer that may follow its name
-/// (`FILE:FIELD`).
+/// Returns the path of an existing file, without the layer and the field that may follow its name.
 fn file_of(path: &Path) -> Option<&Path> {
     if path.exists() {
         return Some(path);
     }
-    let (file, _) = path.to_str()?.rsplit_once(':')?;
-    Some(Path::new(file)).filter(|file| file.exists())
+    Some(layer::file_of(path.to_str()?)).filter(|file| file.exists())
 }
 
 /// Makes sure, before the work starts, that the files that options name exist.

@@ -407,6 +407,7 @@ pub static FORMATS: &[Format] = &[
     vector("FlatGeobuf", "a FlatGeobuf file", &["fgb"], &[Magic::At(0, b"fgb\x03fgb")]),
     vector("XML (GML, KML)", "an XML file (GML, KML, LandXML)", &["kml", "gml"], &[Magic::At(0, b"<?xml")]),
     vector("DXF", "a DXF drawing", &["dxf"], &[]),
+    vector("file geodatabase", "a file geodatabase", &["gdb"], &[]),
     vector("DWG", "a DWG drawing", &[], &[Magic::At(0, b"AC10")]),
     Format {
         name: "E57",

@@ -7,6 +7,7 @@ use crate::crs::Crs;
 use crate::data::{Frame, Grid, Layer, Window};
 use crate::error::{Error, Result};
 use crate::io::Watch;
+use crate::io::layer_options::Options;
 
 /// A raster that GDAL has open. A build without the feature `gdal` has none.
 #[derive(Debug)]
@@ -18,16 +19,16 @@ pub struct Raster {
 ///
 /// # Errors
 /// Always; the message says how to get GDAL.
-pub fn read_layer(path: &Path, _name: Option<&str>) -> Result<Layer> {
-    Err(missing("vector", &super::split(path).0))
+pub fn read_layer(path: &Path, _layer: Option<&str>) -> Result<Layer> {
+    Err(missing("vector", path))
 }
 
 /// Returns an error: this build has no GDAL.
 ///
 /// # Errors
 /// Always; the message says how to get GDAL.
-pub fn read_layer_with(path: &Path, name: Option<&str>, _columns: &[&str], _watch: Watch) -> Result<Layer> {
-    read_layer(path, name)
+pub fn read_layer_with(path: &Path, options: &Options, _watch: Watch) -> Result<Layer> {
+    read_layer(path, options.layer)
 }
 
 /// Returns an error: this build has no GDAL.

@@ -12,51 +12,46 @@ use crate::crs::Crs;
 use crate::data::{Column, Layer, Shape};
 use crate::error::{Error, Result};
 use crate::io::field::{no_such_field, not_a_number};
+use crate::io::layer_options::Options;
 use crate::io::shapefile::parse_number;
 use crate::io::watch::{Watch, unwatched};
 
 /// Limit for the nesting of geometry collections; deeper ones lead to an error.
 const MAX_DEPTH: usize = 16;
 
-/// Reads a layer of any vector file that GDAL supports.
+/// Reads a layer of any vector file that GDAL supports; `layer` may be omitted if the file has only
+/// one.
 ///
-/// `name` is `LAYER`, `FIELD` or `LAYER:FIELD`. It may also follow a colon in `path`, and may be
-/// omitted if the file has only one layer. `FIELD` is the attribute that contains the heights;
-/// otherwise they come from the geometry, and are NaN if that is flat. Arcs become polylines (with
-/// GDAL's default of a vertex every 4 degrees). The parts of a collection become separate shapes.
+/// Heights come from the geometry, and are NaN if that is flat. Arcs become polylines (with GDAL's
+/// default of a vertex every 4 degrees). The parts of a collection become separate shapes.
 ///
 /// # Errors
-/// If GDAL cannot open the file, the file has no such layer or field, or reading fails; if the file
-/// has several layers and none is named.
-pub fn read_layer(path: &Path, name: Option<&str>) -> Result<Layer> {
-    read_layer_with(path, name, &[], &unwatched)
+/// If GDAL cannot open the file, the file has no such layer, or reading fails; if the file has
+/// several layers and none is named.
+pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
+    read_layer_with(path, &Options { layer, ..Options::default() }, &unwatched)
 }
 
-/// Like [`read_layer`], but with the numbers of the attributes that `columns` names, and watched.
+/// Like [`read_layer`], but with heights from an attribute and the numbers of others, and watched.
 /// Nothing is counted.
 ///
 /// # Errors
-/// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value is
-/// not a number.
-pub fn read_layer_with(path: &Path, name: Option<&str>, columns: &[&str], watch: Watch) -> Result<Layer> {
+/// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value of a
+/// requested column is not a number.
+pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     messages::listen();
-    let (path, behind) = super::split(path);
-    let name = match (behind, name) {
-        (Some(first), Some(second)) => Some(format!("{first}:{second}")),
-        (first, second) => first.or(second.map(str::to_owned)),
-    };
-    let path = path.as_path();
-    let options = DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_VECTOR, ..DatasetOptions::default() };
-    let dataset = Dataset::open_ex(path, options).map_err(|error| messages::cannot_open(path, "vector", error))?;
-    let (layer_name, field) = choose(&dataset, name.as_deref()).map_err(|error| error.in_file(path))?;
+    let columns = options.columns;
+    let open = DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_VECTOR, ..DatasetOptions::default() };
+    let dataset = Dataset::open_ex(path, open).map_err(|error| messages::cannot_open(path, "vector", error))?;
+    let (layer_name, field) = choose(&dataset, options).map_err(|error| error.in_file(path))?;
     let mut source = dataset.layer_by_name(&layer_name).map_err(|error| messages::error(path, error))?;
     let fields: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
+    let no_such = |name: &str| no_such_field(name, fields.iter().map(String::as_str)).in_file(path);
     let field = match field {
-        Some(wanted) => Some(position(&fields, &wanted).ok_or_else(|| no_such(&wanted, &fields).in_file(path))?),
+        Some(wanted) => Some(position(&fields, &wanted).ok_or_else(|| no_such(&wanted))?),
         None => None,
     };
-    let no_such_column = |name: &str| no_such_field(name, fields.iter().map(String::as_str)).in_file(path);
-    let positions = columns.iter().map(|name| position(&fields, name).ok_or_else(|| no_such_column(name)));
+    let positions = columns.iter().map(|name| position(&fields, name).ok_or_else(|| no_such(name)));
     let positions: Vec<usize> = positions.collect::<Result<_>>()?;
     let mut layer = Layer {
         columns: columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() }).collect(),
@@ -111,47 +106,43 @@ pub fn read_layer_with(path: &Path, name: Option<&str>, columns: &[&str], watch:
 }
 
 /// Returns the name of the layer, and the field of the heights.
-fn choose(dataset: &Dataset, name: Option<&str>) -> Result<(String, Option<String>)> {
+fn choose(dataset: &Dataset, options: &Options) -> Result<(String, Option<String>)> {
     let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
-    let is_layer = |name: &str| layers.iter().any(|layer| layer == name);
-    let several = |message: String| {
-        Error::usage(message).cure(format!("name one after a colon, as FILE:LAYER: {}", layers.join(", ")))
-    };
-    let [only] = layers.as_slice() else {
-        let Some(name) = name else {
-            return Err(match layers.len() {
-                0 => Error::format("there is no layer in it"),
-                count => several(format!("there are {count} layers in it")),
-            });
-        };
-        if is_layer(name) {
-            return Ok((name.to_owned(), None));
-        }
-        // The name of a layer may contain colons.
-        let parts = name.match_indices(':').map(|(at, _)| (&name[..at], &name[at + 1..]));
-        return match parts.into_iter().find(|(layer, _)| is_layer(layer)) {
-            Some((layer, field)) => Ok((layer.to_owned(), Some(field.to_owned()))),
-            None => Err(several(format!("there is no layer \"{name}\""))),
+    let field = options.height_field.map(str::to_owned);
+    let list = || format!("name one after a colon, as FILE:LAYER: {}", layers.join(", "));
+    let Some(wanted) = options.layer else {
+        return match layers.as_slice() {
+            [] => Err(Error::format("there is no layer in it")),
+            [only] => Ok((only.clone(), field)),
+            _ => Err(Error::usage(format!("there are {} layers in it", layers.len())).cure(list())),
         };
     };
-    let field = match name {
-        Some(name) if name != only => Some(name.strip_prefix(&format!("{only}:")).unwrap_or(name).to_owned()),
-        _ => None,
-    };
-    Ok((only.clone(), field))
-}
-
-fn position(fields: &[String], wanted: &str) -> Option<usize> {
-    let exact = fields.iter().position(|field| field == wanted);
-    exact.or_else(|| fields.iter().position(|field| field.eq_ignore_ascii_case(wanted)))
-}
-
-fn no_such(wanted: &str, fields: &[String]) -> Error {
-    let error = Error::usage(format!("there is no layer or field \"{wanted}\""));
-    match fields {
-        [] => error.cure("the layer has no fields"),
-        _ => error.cure(format!("the layer's fields are {}", fields.join(", "))),
+    let find = |name: &str| position(&layers, name).map(|at| layers[at].clone());
+    if let Some(layer) = find(wanted) {
+        return Ok((layer, field));
     }
+    // The name of a layer may contain colons.
+    let whole = field.as_ref().map_or_else(|| wanted.to_owned(), |field| format!("{wanted}:{field}"));
+    if let Some(layer) = find(&whole) {
+        return Ok((layer, None));
+    }
+    let mut parts = whole.match_indices(':').map(|(at, _)| (&whole[..at], &whole[at + 1..]));
+    if let Some((layer, field)) = parts.find_map(|(layer, field)| Some((find(layer)?, field))) {
+        return Ok((layer, Some(field.to_owned())));
+    }
+    let is_field = layers.len() == 1
+        && dataset.layers().any(|layer| layer.defn().fields().any(|field| field.name().eq_ignore_ascii_case(wanted)));
+    let cure = match is_field {
+        true => format!("{}; for heights of the attribute, write FILE::{wanted}", list()),
+        false => list(),
+    };
+    Err(Error::usage(format!("there is no layer \"{wanted}\"")).cure(cure))
+}
+
+/// Returns the position of a name: as written, else in any case.
+fn position(names: &[String], wanted: &str) -> Option<usize> {
+    let exact = names.iter().position(|name| name == wanted);
+    exact.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
 }
 
 fn crs(reference: &SpatialRef, warnings: &mut Vec<String>) -> Option<Crs> {

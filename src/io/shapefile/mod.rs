@@ -89,13 +89,15 @@ pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
 /// that were parsed are counted.
 ///
 /// # Errors
-/// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value of a
-/// requested column is not a number.
+/// Those of [`read_layer`], and that of the watch; if the layer or an attribute does not exist, or
+/// a value of a requested column is not a number.
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     read(path, options, watch).map_err(|e| e.in_file(path))
 }
 
 fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    options.check_layer(&[&stem])?;
     let file = File::open(path)?;
     let size = file.metadata()?.len();
     let mut file = BufReader::with_capacity(1 << 16, file);

@@ -18,14 +18,14 @@ pub(in crate::cli) struct LineArgs {
     ///
     /// Like breaklines, their edges are in the surface, with the heights of the lines. Smooth
     /// methods of interpolation pass over them.
-    #[arg(long, value_name = "FILE[:FIELD]")]
+    #[arg(long, value_name = "FILE[:NAME]")]
     pub(in crate::cli) soft_lines: Vec<PathBuf>,
 
     /// Lines without heights, draped over the surface (repeatable)
     ///
     /// They get their heights from the finished surface, and a vertex wherever they cross an edge.
     /// The surface itself does not change.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE[:LAYER]")]
     pub(in crate::cli) draped_lines: Vec<PathBuf>,
 
     /// Walls, kerbs and quays: the upper edges of vertical faces (repeatable)
@@ -34,7 +34,7 @@ pub(in crate::cli) struct LineArgs {
     /// lower one is 1 cm beside it, to the right of the line's direction. The lower height comes
     /// from --wall-bottom or --wall-drop; without them, each record must have two parts with as
     /// many vertices, the upper and the lower edge. Points between the edges are left out.
-    #[arg(long, value_name = "FILE[:FIELD]")]
+    #[arg(long, value_name = "FILE[:NAME]")]
     pub(in crate::cli) walls: Vec<PathBuf>,
 
     /// Height of the lower edge of walls, or the attribute that has it
@@ -57,7 +57,7 @@ pub(in crate::cli) struct LineArgs {
     ///
     /// Polygons, or lines that close. They are cut out of the finished surface; a ring within a
     /// ring is an island.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE[:LAYER]")]
     pub(in crate::cli) holes: Vec<PathBuf>,
 
     /// Lakes: level water within a shore (repeatable)
@@ -65,7 +65,7 @@ pub(in crate::cli) struct LineArgs {
     /// Polygons or closed lines with heights. The shore and everything inside get one height, to
     /// the last bit; points inside are left out. A shore that is not level is an error unless
     /// --flat-height says which height to use. A ring within a ring is the shore of an island.
-    #[arg(long, value_name = "FILE[:FIELD]")]
+    #[arg(long, value_name = "FILE[:NAME]")]
     pub(in crate::cli) flat: Vec<PathBuf>,
 
     /// Height of lakes [default: that of their shore, which must be level]
@@ -96,7 +96,7 @@ pub(in crate::cli) struct LineArgs {
     /// hydro-flattening by the USGS Lidar Base Specification); the end with the lower water is
     /// downstream. Where the banks contradict that, a warning says how far. Points inside are left
     /// out.
-    #[arg(long, value_name = "FILE[:FIELD]")]
+    #[arg(long, value_name = "FILE[:NAME]")]
     pub(in crate::cli) rivers: Vec<PathBuf>,
 
     /// Width of rivers, or the attribute that has it: their lines run along the middle

@@ -16,10 +16,11 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
     /// Points from LAS, LAZ, COPC, text (x y z) and vector layers (`FILE:FIELD` takes heights from
-    /// an attribute). Or one TIN: a .tin or a .ply of this program, with its breaklines and
-    /// coordinate system, or an .obj. `@list.txt` contains one file name per line (`#` starts a
-    /// comment), relative to the list. The order of the files makes no difference, except for
-    /// `--duplicates first` and `last`.
+    /// an attribute; of a file with several layers, `FILE:LAYER` or `FILE:LAYER:FIELD`). Or one
+    /// TIN: a .tin or a .ply of this program, with its breaklines and coordinate system, or an
+    /// .obj. `@list.txt` contains one file name per line (`#` starts a comment), relative to the
+    /// list. The order of the files makes no difference, except for `--duplicates first` and
+    /// `last`.
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,
 
@@ -29,18 +30,20 @@ pub(in crate::cli) struct SurfaceArgs {
     /// Breaklines that the surface must follow (repeatable)
     ///
     /// Lines with heights; of polygons, the rings are used. `FILE:FIELD` takes the height of each
-    /// record from an attribute. Where a vertex of a breakline and a point have the same position,
-    /// the height of the breakline is used. Lines without heights are refused (--draped-lines takes
-    /// them).
-    #[arg(long, value_name = "FILE[:FIELD]", help_heading = "Surface")]
+    /// record from an attribute. In formats with several layers per file, such as GeoPackage,
+    /// `FILE:LAYER` names one, `FILE:LAYER:FIELD` both, and `FILE::FIELD` an attribute of the only
+    /// layer. Where a vertex of a breakline and a point have the same position, the height of the
+    /// breakline is used. Lines without heights are refused (--draped-lines takes them).
+    #[arg(long, value_name = "FILE[:NAME]", help_heading = "Surface")]
     pub(in crate::cli) breaklines: Vec<PathBuf>,
 
     /// Polygons that the surface is clipped to (repeatable)
     ///
     /// The finished surface is cut: what is inside any of the polygons is kept, at the same heights
     /// as without the boundary. Lines that close to rings, end to end, count as one polygon;
-    /// otherwise they are refused, and the error names the gap.
-    #[arg(long, value_name = "FILE", help_heading = "Surface")]
+    /// otherwise they are refused, and the error names the gap. `FILE:LAYER` names the layer of a
+    /// file with several.
+    #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Surface")]
     pub(in crate::cli) boundary: Vec<PathBuf>,
 
     /// Clip to a rectangle

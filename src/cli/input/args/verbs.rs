@@ -123,7 +123,8 @@ pub(in crate::cli) struct PointsArgs {
     /// Clip to polygons, including their borders (repeatable)
     ///
     /// Points inside any of the polygons are kept. Lines that close to rings count as one polygon.
-    #[arg(long, value_name = "FILE", help_heading = "Selection")]
+    /// `FILE:LAYER` names the layer of a file with several.
+    #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Selection")]
     pub(in crate::cli) boundary: Vec<PathBuf>,
 
     /// Round coordinates to the nearest step of the first file's scale
