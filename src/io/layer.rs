@@ -54,7 +54,7 @@ impl Spec {
     }
 
     /// Returns the layer of a file that may have several, if it is named.
-    pub(crate) fn layer_of_several(&self) -> Option<&str> {
+    pub fn layer_of_several(&self) -> Option<&str> {
         self.layer.as_deref().filter(|_| !has_one_layer(&self.path))
     }
 
