@@ -25,7 +25,7 @@ pub enum EdgeKind {
     Wall,
     /// Part of the shore of level water.
     Shore,
-    /// Part of a bank of a river.
+    /// Part of a bank of a river, or of a level line across it.
     Bank,
 }
 

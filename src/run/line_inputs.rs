@@ -12,9 +12,9 @@ use super::notice::Notice;
 use super::systems::{Role, Stated};
 use super::transforms::Transforms;
 use super::units::Units;
-use crate::data::{Bounds, EdgeKind, Layer};
+use crate::data::{Bounds, EdgeKind, Layer, Shape};
 use crate::error::{Error, Result};
-use crate::terrain::{Flat, FlatHeight, HighSide, Inside, River, Tin, TinBuilder, Wall, densified};
+use crate::terrain::{Flat, FlatHeight, HighSide, Inside, River, RiverHeights, Tin, TinBuilder, Wall, densified};
 use crate::triangulation::LineId;
 
 /// The default distance between the upper and the lower edge of a wall.
@@ -30,7 +30,7 @@ pub struct LineRequest {
     /// Lines that get their heights from the finished surface.
     pub draped: Vec<Input<Layer>>,
     /// The upper edges of walls, with heights. A record with two parts is one wall: its upper and
-    /// its lower edge, vertex by vertex.
+    /// its lower edge, where they are drawn.
     pub walls: Vec<Input<Layer>>,
     /// Options of walls.
     pub wall: WallOptions,
@@ -187,6 +187,8 @@ pub(super) struct Added {
     pub(super) extent: Bounds,
     /// The closed lines of one height.
     pub(super) level_rings: Vec<LevelRing>,
+    /// Rivers whose banks rise, or differ across.
+    pub(super) uneven: Vec<(String, RiverHeights)>,
 }
 
 /// A closed line of one height, that may be a shore.
@@ -290,7 +292,6 @@ impl<'a> LineLayers<'a> {
         by_file: &[Option<usize>],
         transforms: &Transforms,
         units: &Units,
-        journal: &Journal,
     ) -> Result<Added> {
         let paths = self.groups.iter().flat_map(|(_, layers)| layers).map(|(path, _)| path.to_path_buf()).collect();
         let mut adding = Adding {
@@ -298,12 +299,12 @@ impl<'a> LineLayers<'a> {
             builder,
             transforms,
             units,
-            journal,
             added: Added {
                 names: LineNames::new(paths),
                 inputs: Vec::new(),
                 extent: Bounds::default(),
                 level_rings: Vec::new(),
+                uneven: Vec::new(),
             },
             file: 0,
             next: 0,
@@ -330,7 +331,6 @@ struct Adding<'a> {
     builder: &'a mut TinBuilder,
     transforms: &'a Transforms,
     units: &'a Units,
-    journal: &'a Journal<'a>,
     added: Added,
     /// The position of the current layer among all.
     file: usize,
@@ -343,6 +343,7 @@ impl Adding<'_> {
     fn add_layer(&mut self, role: LineRole, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
         let in_layer = |line: &Drawn, error: Error| lines::at_record(error, path, line.fid + 1);
         match role {
+            LineRole::Holes if layer.shapes.is_empty() => Ok(0),
             LineRole::Boundary | LineRole::Holes => {
                 let polygons = layers::polygons(layer, path, role.option(), transform, self.transforms)?;
                 for rings in &polygons {
@@ -442,7 +443,8 @@ impl Adding<'_> {
                         LowerEdge::Height(number) | LowerEdge::Drop(number) => number.of(layer, part.fid),
                     };
                     if !number.is_finite() {
-                        return Err(Error::format("the record has no height of the lower edge of the wall"));
+                        return Err(Error::format("the record has no height of the lower edge of the wall")
+                            .cure("fill the attribute of --wall-bottom or --wall-drop, or remove the record"));
                     }
                     let low = part.points.iter().map(|p| match edge {
                         LowerEdge::Height(_) => number,
@@ -452,13 +454,10 @@ impl Adding<'_> {
                 })
                 .collect(),
             None => match parts {
-                [upper, lower] if upper.points.len() == lower.points.len() => {
-                    let low: Vec<f64> = lower.points.iter().map(|p| p[2]).collect();
-                    Ok(vec![Wall::new(&upper.points, &low, width, *high)?])
-                }
+                [upper, lower] => Ok(vec![Wall::between(&upper.points, &lower.points)?]),
                 _ => Err(Error::format("the lower edge of the wall is not known").cure(
-                    "give its height with --wall-bottom or --wall-drop, or make each record of two parts with as \
-                     many vertices: the upper and the lower edge",
+                    "give its height with --wall-bottom or --wall-drop, or make each record of two parts: the upper \
+                     and the lower edge",
                 )),
             },
         }
@@ -494,13 +493,22 @@ impl Adding<'_> {
     }
 
     fn add_rivers(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
-        let drawn = lines::with_heights(layer, path, LineRole::Rivers.option())?;
-        let by_record = records(drawn);
-        // A river each: its banks, or the line along its middle.
-        let rivers: Vec<Vec<Drawn>> = match &self.request.river_width {
+        for (record, shape) in (1..).zip(&layer.shapes) {
+            let error = match shape {
+                Shape::Polygon(_) => Error::format("a polygon is not a bank")
+                    .cure("divide its ring into the two banks of the river, or use --flat for level water"),
+                Shape::Lines(parts) if parts.iter().any(|part| part.len() < 2) => {
+                    Error::format("a part of the record has fewer than two vertices")
+                        .cure("remove it, so that banks are paired as they are meant to be")
+                }
+                _ => continue,
+            };
+            return Err(lines::at_record(error, path, record));
+        }
+        let by_record = records(lines::with_heights(layer, path, LineRole::Rivers.option())?);
+        let rivers = match &self.request.river_width {
             Some(_) => by_record.into_iter().flatten().map(|line| vec![line]).collect(),
-            None if by_record.iter().all(|parts| parts.len() == 2) => by_record,
-            None => by_record.into_iter().flatten().collect::<Vec<_>>().chunks(2).map(<[Drawn]>::to_vec).collect(),
+            None => banks(by_record, path)?,
         };
         for mut parts in rivers.iter().cloned() {
             for part in &mut parts {
@@ -508,28 +516,64 @@ impl Adding<'_> {
             }
             let river = match (&self.request.river_width, parts.as_slice()) {
                 (Some(width), [middle, ..]) => River::along(&middle.points, width.of(layer, middle.fid)),
-                (None, [left, right]) => River::between(&left.points, &right.points),
-                _ => Err(Error::format("the bank has no opposite bank")
-                    .cure("a river needs two banks: two parts of a record, or two records; or give --river-width")),
+                (_, [left, right, ..]) => River::between(&left.points, &right.points),
+                _ => continue, // banks come in pairs
             };
             let river = river.map_err(|e| lines::at_record(e, path, parts[0].fid + 1))?;
             let heights = river.heights();
             let numbers = self.builder.add_river(river);
             self.name(&parts[0], numbers.clone());
-            let tolerance = self.flat_tolerance();
-            if heights.largest_rise > tolerance || heights.largest_difference > tolerance {
-                self.journal.add(Notice::RiverHeights {
-                    name: self.added.names.name(numbers.start),
-                    rising: heights.rising,
-                    largest_rise: self.units.height(heights.largest_rise),
-                    rise_at: heights.rise_at,
-                    largest_difference: self.units.height(heights.largest_difference),
-                    difference_at: heights.difference_at,
-                });
+            if heights.largest_rise.max(heights.largest_difference) > self.flat_tolerance() {
+                self.added.uneven.push((self.added.names.name(numbers.start), heights));
             }
         }
         Ok(rivers.len())
     }
+}
+
+/// The banks of each river, as pairs: the two parts of a record, or two consecutive records of one
+/// part.
+fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
+    let cure = "a river needs two banks: two parts of a record, or two records of one part each; or give --river-width";
+    let mut pairs: Vec<Vec<Drawn>> = Vec::new();
+    for parts in by_record {
+        let record = parts[0].fid + 1;
+        let is_open = pairs.last().is_some_and(|pair| pair.len() == 1);
+        match (parts.len(), pairs.last_mut().filter(|_| is_open)) {
+            (1, Some(open)) => open.extend(parts),
+            (1 | 2, None) => pairs.push(parts),
+            (count, _) => {
+                let error = Error::format(format!("the record has {count} parts, expected 1 or 2 banks"));
+                let error = if is_open {
+                    Error::format("the record has two banks, but the record before has one without an opposite bank")
+                } else {
+                    error
+                };
+                return Err(lines::at_record(error.cure(cure), path, record));
+            }
+        }
+    }
+    match pairs.last() {
+        Some(pair) if pair.len() == 1 => {
+            Err(lines::at_record(Error::format("the bank has no opposite bank").cure(cure), path, pair[0].fid + 1))
+        }
+        _ => Ok(pairs),
+    }
+}
+
+/// Adds a notice about rivers whose banks contradict water, with the worst of them.
+pub(super) fn note_uneven(uneven: &[(String, RiverHeights)], units: &Units, journal: &Journal) {
+    let worst = |(_, heights): &&(String, RiverHeights)| heights.largest_rise.max(heights.largest_difference);
+    let Some((name, heights)) = uneven.iter().max_by(|p, q| worst(p).total_cmp(&worst(q))) else { return };
+    journal.add(Notice::RiverHeights {
+        rivers: uneven.len(),
+        name: name.clone(),
+        rising: heights.rising,
+        largest_rise: units.height(heights.largest_rise),
+        rise_at: heights.rise_at,
+        largest_difference: units.height(heights.largest_difference),
+        difference_at: heights.difference_at,
+    });
 }
 
 /// The default tolerance of level shores.

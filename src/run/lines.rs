@@ -51,7 +51,8 @@ fn read(
         check(parts).map_err(|e| at_record(e, path, record))?;
         lines.extend(drawn(parts, record - 1));
     }
-    if lines.is_empty() {
+    // A tile without lakes is no mistake; a layer of something else is.
+    if lines.is_empty() && !layer.shapes.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
             .in_file(path)
             .cure(format!("{option} takes lines or polygons; points are inputs without an option")));
@@ -121,8 +122,12 @@ fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, option: &str) -> Result
 }
 
 fn cure(layer: &Layer, option: &str) -> String {
-    let cure =
-        format!("name the attribute with the heights, {option} FILE:FIELD or FILE:LAYER:FIELD, or use --draped-lines");
+    let instead = match option {
+        "--breaklines" | "--soft-lines" => ", or use --draped-lines",
+        "--flat" => ", or give it with --flat-height",
+        _ => "",
+    };
+    let cure = format!("name the attribute with the heights, {option} FILE:FIELD or FILE:LAYER:FIELD{instead}");
     match layer.fields.as_slice() {
         [] => format!("{cure} (this layer has no attributes)"),
         fields => format!("{cure} (the attributes are {})", fields.join(", ")),

@@ -122,6 +122,8 @@ pub enum Notice {
     },
     /// The banks of a river contradict water: they rise downstream, or are not level across.
     RiverHeights {
+        /// The number of such rivers; the rest is about the worst of them.
+        rivers: usize,
         /// The river.
         name: String,
         /// The number of level lines at which the banks rise.

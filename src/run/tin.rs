@@ -197,8 +197,9 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     builder.crs = crs;
 
     // Lines first: they are few, and their errors are known before the points are read.
-    let Added { names, mut inputs, extent: line_extent, mut level_rings } =
-        layers.add_to(&mut builder, of_layers, &transforms, &units, journal)?;
+    let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven } =
+        layers.add_to(&mut builder, of_layers, &transforms, &units)?;
+    line_inputs::note_uneven(&uneven, &units, journal);
 
     let paths: Vec<&Path> = request.points.iter().map(Input::path).collect();
     let mut reach = Reach::new(request, &rim);
@@ -218,6 +219,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         memory::require_for_points(points.len())?;
         rim.find_limit(&report, &extents);
         let rings = std::mem::take(&mut level_rings);
+        let rings = if request.lines.flats.is_empty() { rings } else { Vec::new() };
         line_inputs::note_level_rings(&rings, &points, &names, default_tolerance, &units, journal);
         let mut builder = builder.clone();
         builder.max_edge = rim.max_edge;
@@ -236,7 +238,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
             Err(_) if reach.may_grow_into(&report) => (),
             Err(error) => {
                 return Err(match paths.as_slice() {
-                    [file] if request.breaklines.is_empty() => error.in_file(file),
+                    [file] if !layers.has_lines_with_heights() => error.in_file(file),
                     _ => error,
                 });
             }

@@ -150,13 +150,13 @@ impl TinBuilder {
         lines
     }
 
-    /// Adds a river: its banks, and level lines between them, which are soft. No point inside is
-    /// used. Returns the numbers of these lines.
+    /// Adds a river: its banks, and level lines between them. No point inside is used. Returns the
+    /// numbers of these lines.
     pub fn add_river(&mut self, river: River) -> Range<usize> {
         self.replaced.add_river(&river);
         let first = self.line_count();
         river.banks().iter().for_each(|bank| self.add_line(bank, EdgeKind::Bank));
-        river.level_lines().iter().for_each(|line| self.add_line(line, EdgeKind::Soft));
+        river.level_lines().iter().for_each(|line| self.add_line(line, EdgeKind::Bank));
         let lines = first..self.line_count();
         // The banks, and the level lines at both ends.
         let rim = vec![first, first + 1, first + 2, lines.end - 1];
@@ -273,10 +273,12 @@ impl TinBuilder {
         if let Some(bounds) = &self.bounds {
             report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
+        let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, name)?;
+        // In water, no line decides.
+        report.crossing_heights.retain(|crossing| !sites.contains(&crossing.site.map(f64::to_bits)));
         if self.crossing_heights == CrossingRule::Refuse {
             refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
         }
-        let Leveled { is_water } = areas::level(&mut triangulation, &self.waters, name)?;
         go_on()?;
         let kinds = LineKinds::new(std::mem::take(&mut self.line_kinds));
         let mut tin = Tin::new(triangulation, kinds, self.crs.take());

@@ -280,7 +280,7 @@ impl Surface for Tin {
     }
 
     fn write_tin(&self, out: &mut dyn Write) -> Result<()> {
-        compact::write(self, &self.triangulation, out)
+        compact::write(self, &self.triangulation, &self.kinds, out)
     }
 
     fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {

@@ -56,8 +56,8 @@ fn summaries_say_what_lines_became() {
         ("--soft-lines", vec![], "soft lines  1 in, 1 edges out, of l.geojson"),
         ("--walls", vec!["--wall-drop", "D"], "walls       1 in, 2 edges out, of l.geojson"),
         ("--walls", vec!["--wall-bottom", "1"], "walls       1 in, 2 edges out, of l.geojson"),
-        ("--rivers", vec!["--river-width", "0.3"], "rivers      1 in, 2 edges out, of l.geojson"),
-        ("--draped-lines", vec![], "draped      1 in, "),
+        ("--rivers", vec!["--river-width", "0.3"], "rivers      1 in, 4 edges out, of l.geojson"),
+        ("--draped-lines", vec![], "draped      1 in, of l.geojson ("),
         ("--breaklines", vec!["--densify", "0.5"], "breaklines  1 in, 6 edges out"),
     ] {
         let run = run_in(
@@ -87,8 +87,15 @@ fn mistakes_are_named() {
     let other = "[[[1,1,7],[2.5,1,7],[2.5,2.5,7],[1,1,7]]]";
     let all = "[[[-9,-9],[9,-9],[9,9],[-9,9],[-9,-9]]]";
     let line = "[[0.5,0.5,9],[2.5,0.5,9]]";
+    let two = "[[[0.2,0.4,5],[2.8,0.4,3]],[[0.2,1.4,5],[2.8,1.4,3]]]";
     type Case<'a> = (&'a [(&'a str, &'a str, &'a str)], &'a [&'a str], &'a [&'a str]);
-    let cases: [Case; 10] = [
+    let cases: [Case; 12] = [
+        (&[("Polygon", LAKE, "{}")], &["--rivers", "l.geojson"], &["record 1: a polygon is not a bank"]),
+        (
+            &[("LineString", line, "{}"), ("MultiLineString", two, "{}")],
+            &["--rivers", "l.geojson"],
+            &["record 2: the record has two banks, but the record before has one"],
+        ),
         (&[("LineString", open, "{}")], &["--flat", "l.geojson"], &["record 1: the shore is open", "close"]),
         (&[("Polygon", nothing, "{}")], &["--flat", "l.geojson"], &["record 1: the shore at 0.5 0.5 encloses nothing"]),
         (&[("Polygon", uneven, "{}")], &["--flat", "l.geojson"], &["the shore is not level: its heights are 9 to 9.5"]),

@@ -99,9 +99,10 @@ fn text(notice: &Notice) -> String {
             let inside = if *points == 1 { "1 point" } else { &format!("{points} points") };
             format!("{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use --flat")
         }
-        Notice::RiverHeights { name, rising, largest_rise, rise_at, largest_difference, difference_at } => {
+        Notice::RiverHeights { rivers, name, rising, largest_rise, rise_at, largest_difference, difference_at } => {
             let [[x, y], [u, v]] = [rise_at, difference_at].map(|at| at.map(neat));
-            let mut text = format!("the banks of the river {name} are not level");
+            let others = if *rivers > 1 { &format!(" ({} others are not, either)", rivers - 1) } else { "" };
+            let mut text = format!("the banks of the river {name} are not level{others}");
             if *rising > 0 {
                 text += &format!(": they rise downstream at {rising} vertices, by up to {largest_rise} (at {x} {y})");
             }

@@ -103,7 +103,11 @@ fn print_lines(built: &BuildReport, console: &Console) {
             LineRole::Walls => ("walls", *edges),
             LineRole::Flats => ("lakes", *edges),
             LineRole::Rivers => ("rivers", *edges),
-            LineRole::Draped => ("draped", tin.edges.of(EdgeKind::Draped)),
+            LineRole::Draped => {
+                let all = tin.edges.of(EdgeKind::Draped);
+                console.line(format_args!("draped      {lines} in, of {path} ({all} edges of all draped lines)"));
+                continue;
+            }
             LineRole::Holes => {
                 console.line(format_args!("holes       {lines} of {path}"));
                 continue;

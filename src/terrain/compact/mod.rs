@@ -284,10 +284,7 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
 
     /// The kind of an edge of a whole triangle, if the file states kinds beside the triangulation.
     fn stated_kind(&self, face: u32, i: usize) -> Found<Option<EdgeKind>> {
-        if !self.attributes.facts.edges.has_various() {
-            return Ok(None);
-        }
-        Ok(self.side(face, i)?.map(|side| side.kind))
+        Ok(if self.sides.is_empty() { None } else { self.side(face, i)?.map(|side| side.kind) })
     }
 
     fn kind(&self, face: u32, i: usize) -> Found<EdgeKind> {

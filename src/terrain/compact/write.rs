@@ -4,8 +4,9 @@ use std::io::{self, BufWriter, Write};
 
 use super::attributes::Attributes;
 use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, SIDES, Side, VERTICES};
-use crate::data::{EdgeKind, Face, LineEdges, Surface, SurfaceFacts};
+use crate::data::{EdgeKind, Face, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
+use crate::terrain::lines::kinds::LineKinds;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{CompactSection, ConstrainedDelaunay};
@@ -21,12 +22,13 @@ use crate::triangulation::{CompactSection, ConstrainedDelaunay};
 pub(in crate::terrain) fn write(
     surface: &dyn Surface,
     triangulation: &ConstrainedDelaunay<Terrain>,
+    kinds: &LineKinds,
     out: &mut dyn Write,
 ) -> Result<()> {
     // The rows are of a few bytes.
     let mut out = BufWriter::with_capacity(1 << 16, out);
     let facts = SurfaceFacts::of(surface);
-    let layers = Layers::of(surface, triangulation, &facts.edges)?;
+    let layers = Layers::of(surface, triangulation, facts.edges.has_various() || !kinds.are_breaklines())?;
     triangulation.write_compact(&mut out)?;
     layers.write(&mut out)?;
     let attributes = Attributes { crs: surface.crs().cloned(), facts };
@@ -48,7 +50,7 @@ struct Layers {
 }
 
 impl Layers {
-    fn of(surface: &dyn Surface, triangulation: &ConstrainedDelaunay<Terrain>, edges: &LineEdges) -> Result<Self> {
+    fn of(surface: &dyn Surface, triangulation: &ConstrainedDelaunay<Terrain>, has_kinds: bool) -> Result<Self> {
         let tds = triangulation.tds();
         let mut fragments: Vec<Face> = Vec::new();
         surface.faces_in(tds.cell_slots() as u32..surface.face_count() as u32, &mut fragments);
@@ -72,7 +74,7 @@ impl Layers {
         for (at, cell) in tds.cells().enumerate() {
             let face = cell.index() as u32;
             if surface.face(face).is_none() {
-                if edges.has_various() {
+                if has_kinds {
                     sides.extend(kinds_under(surface, face, at as u32));
                 }
                 continue;
@@ -80,7 +82,7 @@ impl Layers {
             inside[at / 8] |= 1 << (at % 8);
             for i in 0..3 {
                 let beside = surface.face(tds.neighbor(cell, i).index() as u32);
-                if beside.is_some() && !edges.has_various() {
+                if beside.is_some() && !has_kinds {
                     continue; // the triangulation says it all
                 }
                 let (kind, is_breakline) = (surface.edge_kind(face, i), triangulation.is_constrained(cell, i));

@@ -1,6 +1,6 @@
 //! Areas of water and walls: which points they replace, and the heights of all vertices in water.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Flat, River, Wall};
 use crate::error::{Error, Result};
@@ -107,6 +107,8 @@ impl Faces for Divided<'_> {
 pub(in crate::terrain) struct Leveled {
     /// For each cell number, true if the cell lies in water; empty if there is none.
     pub(in crate::terrain) is_water: Vec<bool>,
+    /// The bits of the sites of all vertices there.
+    pub(in crate::terrain) sites: FxHashSet<[u64; 2]>,
 }
 
 /// Gives all vertices in water its height, shores and banks included.
@@ -147,6 +149,13 @@ pub(in crate::terrain) fn level(
         regions.len() as u32 - 1
     });
 
+    // The vertices that the lines around rivers were given with.
+    let rivers = waters.iter().enumerate().filter(|(_, water)| matches!(water.level, Level::River(_)));
+    let given = rivers.flat_map(|(area, water)| {
+        let lines = water.rim.iter().flat_map(|&line| triangulation.line_vertices(LineId::new(line)));
+        lines.map(move |vertex| (area, *vertex))
+    });
+    let own: FxHashSet<(Domain, VertexId)> = given.collect();
     // The areas around each vertex, in order.
     let mut around: FxHashMap<VertexId, Vec<Domain>> = FxHashMap::default();
     for cell in tds.cells().filter(|cell| region[cell.index()] != 0) {
@@ -175,7 +184,7 @@ pub(in crate::terrain) fn level(
             continue;
         }
         let rivers = areas.iter().filter_map(|&area| match &waters[area].level {
-            Level::River(river) if is_own(triangulation, &waters[area], vertex) => Some((river, z)),
+            Level::River(river) if own.contains(&(area, vertex)) => Some((river, z)),
             Level::River(river) => Some((river, river.height_at([x, y]))),
             Level::Flat(_) => None,
         });
@@ -185,16 +194,13 @@ pub(in crate::terrain) fn level(
         }
     }
     let is_water = region.iter().map(|region| *region != 0).collect();
+    let mut sites = FxHashSet::default();
     for (vertex, height) in new_heights {
         let [x, y, _] = *triangulation.point(vertex);
+        sites.insert([x.to_bits(), y.to_bits()]);
         triangulation.replace_point(vertex, [x, y, height]);
     }
-    Ok(Leveled { is_water })
-}
-
-/// Returns true if a line around some water was given with a vertex.
-fn is_own(triangulation: &ConstrainedDelaunay<Terrain>, water: &Water, vertex: VertexId) -> bool {
-    water.rim.iter().any(|&line| triangulation.line_vertices(LineId::new(line)).contains(&vertex))
+    Ok(Leveled { is_water, sites })
 }
 
 #[cold]

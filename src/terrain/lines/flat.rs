@@ -48,7 +48,10 @@ impl Flat {
         let is_known = heights.iter().all(|z| z.is_finite());
         let level = match height {
             FlatHeight::Given(height) if height.is_finite() => height,
-            FlatHeight::Given(height) => return Err(Error::format(format!("the height of the lake is {height}"))),
+            FlatHeight::Given(height) => {
+                return Err(Error::format(format!("the height of the lake is {height}"))
+                    .cure("fill the attribute of --flat-height, or give a number"));
+            }
             _ if !is_known => {
                 return Err(Error::format("the shore has a vertex without a height")
                     .cure("name the attribute with the height (--flat FILE:FIELD), or give one with --flat-height"));

@@ -72,7 +72,8 @@ impl River {
     /// width is not above zero.
     pub fn along(middle: &[[f64; 3]], width: f64) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
-            return Err(Error::format(format!("a river of width {width}, expected a width above zero")));
+            return Err(Error::format(format!("a river of width {width}, expected a width above zero"))
+                .cure("fill the attribute of --river-width, or give a number"));
         }
         let middle = clean(middle)?;
         let sites: Vec<[f64; 2]> = middle.iter().map(|p| [p[0], p[1]]).collect();

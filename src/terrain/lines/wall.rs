@@ -78,6 +78,43 @@ impl Wall {
         Ok(Wall { upper: vertices.into_iter().map(|(p, _)| p).collect(), lower })
     }
 
+    /// Returns a wall from both of its edges, which may be drawn in opposite directions.
+    ///
+    /// # Errors
+    /// If an edge has fewer than two distinct vertices, the edges are the same in plan, or the lower
+    /// one is higher on average.
+    pub fn between(upper: &[[f64; 3]], lower: &[[f64; 3]]) -> Result<Self> {
+        let [upper, mut lower] = [upper, lower].map(|edge| {
+            let mut edge = edge.to_vec();
+            edge.dedup_by(|p, q| p[..2] == q[..2]);
+            edge
+        });
+        if upper.len() < 2 || lower.len() < 2 {
+            return Err(Error::format("an edge of the wall has fewer than two distinct vertices")
+                .cure("remove the record, or give the line its vertices"));
+        }
+        let gap = |p: [f64; 3], q: [f64; 3]| (p[0] - q[0]).hypot(p[1] - q[1]);
+        let [a, b, c, d] = [upper[0], upper[upper.len() - 1], lower[0], lower[lower.len() - 1]];
+        if gap(a, d) + gap(b, c) < gap(a, c) + gap(b, d) {
+            lower.reverse();
+        }
+        let same = |(p, q): (&[f64; 3], &[f64; 3])| p[..2] == q[..2];
+        if upper.len() == lower.len() && upper.iter().zip(&lower).all(same) {
+            return Err(Error::format("both edges of the wall are at the same place in plan")
+                .cure("draw them apart, or give the upper edge alone, with --wall-bottom or --wall-drop"));
+        }
+        let mean = |edge: &[[f64; 3]]| edge.iter().map(|p| p[2]).sum::<f64>() / edge.len() as f64;
+        if mean(&lower) >= mean(&upper) {
+            return Err(Error::format(format!(
+                "the second part of the wall, its lower edge, is at {} on average, not below the first at {}",
+                mean(&lower),
+                mean(&upper)
+            ))
+            .cure("the first part of the record is the upper edge"));
+        }
+        Ok(Wall { upper, lower })
+    }
+
     /// The rings around the area between the edges.
     pub(in crate::terrain) fn rings(&self) -> Vec<Vec<[f64; 2]>> {
         let [upper, mut lower] =
@@ -104,6 +141,16 @@ mod tests {
         assert_eq!(wall.rings(), [[[0.0, 0.0], [4.0, 0.0], [8.0, 0.0], [8.0, -0.5], [4.0, -0.5], [0.0, -0.5]]]);
         let wall = Wall::new(&LINE, &[3.0, 3.0, 4.0], 0.5, HighSide::Right).unwrap();
         assert_eq!(wall.lower[0], [0.0, 0.5, 3.0]);
+    }
+
+    #[test]
+    fn two_edges_stay_where_they_are() {
+        let lower = [[8.0, 0.5, 1.0], [0.0, 0.5, 2.0]]; // drawn the other way
+        let wall = Wall::between(&LINE, &lower).unwrap();
+        assert_eq!((wall.upper, wall.lower), (LINE.to_vec(), vec![lower[1], lower[0]]));
+        assert!(Wall::between(&lower, &LINE).unwrap_err().to_string().contains("not below the first"));
+        assert!(Wall::between(&LINE, &LINE).unwrap_err().to_string().contains("same place"));
+        assert!(Wall::between(&LINE, &lower[..1]).is_err());
     }
 
     #[test]

@@ -14,10 +14,11 @@ use crate::terrain::HighSide;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Lines and areas")]
 pub(in crate::cli) struct LineArgs {
-    /// Lines that the surface follows without a break (repeatable)
+    /// Lines that the surface follows, smooth across them (repeatable)
     ///
     /// Like breaklines, their edges are in the surface, with the heights of the lines. Smooth
-    /// methods of interpolation pass over them.
+    /// methods of interpolation (--method) pass over them. Where kinds of lines meet, the first of
+    /// these counts: holes, lakes, rivers, walls, breaklines, soft lines.
     #[arg(long, value_name = "FILE[:NAME]")]
     pub(in crate::cli) soft_lines: Vec<PathBuf>,
 
@@ -32,21 +33,27 @@ pub(in crate::cli) struct LineArgs {
     ///
     /// Each becomes two breaklines next to each other: the upper edge is the line as it is, the
     /// lower one is 1 cm beside it, to the right of the line's direction. The lower height comes
-    /// from --wall-bottom or --wall-drop; without them, each record must have two parts with as
-    /// many vertices, the upper and the lower edge. Points between the edges are left out.
+    /// from --wall-bottom or --wall-drop; without them, each record must have two parts, the upper
+    /// and the lower edge. Points between the edges are left out.
     #[arg(long, value_name = "FILE[:NAME]")]
     pub(in crate::cli) walls: Vec<PathBuf>,
 
     /// Height of the lower edge of walls, or the attribute that has it
-    #[arg(long, value_name = "HEIGHT|FIELD", allow_negative_numbers = true, conflicts_with = "wall_drop")]
+    #[arg(
+        long,
+        requires = "walls",
+        value_name = "HEIGHT|FIELD",
+        allow_negative_numbers = true,
+        conflicts_with = "wall_drop"
+    )]
     pub(in crate::cli) wall_bottom: Option<Number>,
 
     /// How far the lower edge of walls is below the upper one, or the attribute that says it
-    #[arg(long, value_name = "HEIGHT|FIELD", allow_negative_numbers = true)]
+    #[arg(long, requires = "walls", value_name = "HEIGHT|FIELD", allow_negative_numbers = true)]
     pub(in crate::cli) wall_drop: Option<Number>,
 
     /// Distance in plan between the edges of walls [default: 0.01 metres]
-    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, requires = "walls", value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     pub(in crate::cli) wall_width: Option<f64>,
 
     /// The side of a wall, in the direction of its line, on which the ground is higher
@@ -65,18 +72,18 @@ pub(in crate::cli) struct LineArgs {
     /// Polygons or closed lines with heights. The shore and everything inside get one height, to
     /// the last bit; points inside are left out. A shore that is not level is an error unless
     /// --flat-height says which height to use. A ring within a ring is the shore of an island.
-    #[arg(long, value_name = "FILE[:NAME]")]
+    #[arg(long, visible_alias = "lakes", value_name = "FILE[:NAME]")]
     pub(in crate::cli) flat: Vec<PathBuf>,
 
     /// Height of lakes [default: that of their shore, which must be level]
     ///
     /// The lowest or the mean height of the shore, a number, or the attribute that has the height
     /// of each lake. With a number or an attribute, the shore needs no heights.
-    #[arg(long, value_name = "lowest|mean|HEIGHT|FIELD", allow_negative_numbers = true)]
+    #[arg(long, requires = "flat", value_name = "lowest|mean|HEIGHT|FIELD", allow_negative_numbers = true)]
     pub(in crate::cli) flat_height: Option<FlatHeightArg>,
 
     /// Largest difference of heights of a level shore [default: 0.01 metres]
-    #[arg(long, value_name = "HEIGHT", value_parser = not_negative, allow_negative_numbers = true)]
+    #[arg(long, requires = "flat", value_name = "HEIGHT", value_parser = not_negative, allow_negative_numbers = true)]
     pub(in crate::cli) flat_tolerance: Option<f64>,
 
     /// Leave out points up to this distance outside of a shore, too
@@ -86,7 +93,7 @@ pub(in crate::cli) struct LineArgs {
     /// Table of the points that lakes, rivers and walls replaced
     ///
     /// Comma separated: x, y, z.
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, visible_alias = "replaced-points", value_name = "FILE.csv")]
     pub(in crate::cli) flat_points: Option<PathBuf>,
 
     /// Rivers: two banks with heights (repeatable)
@@ -100,7 +107,7 @@ pub(in crate::cli) struct LineArgs {
     pub(in crate::cli) rivers: Vec<PathBuf>,
 
     /// Width of rivers, or the attribute that has it: their lines run along the middle
-    #[arg(long, value_name = "LENGTH|FIELD", allow_negative_numbers = true)]
+    #[arg(long, requires = "rivers", value_name = "LENGTH|FIELD", allow_negative_numbers = true)]
     pub(in crate::cli) river_width: Option<Number>,
 
     /// Largest distance between vertices of breaklines and soft lines: more are added
