@@ -217,8 +217,8 @@ fn heights_are_continuous_and_those_of_a_breakline_on_it() {
                 for part in [0.1, 0.5, 0.83] {
                     let on = between(a, b, part);
                     let [z_left, z_right] = [left, right].map(|p| {
-                        // Nearer than the height of a sliver at the rim, in whose circle heights may
-                        // change at once.
+                        // Nearer than the height of a sliver at the rim, in whose circle heights
+                        // may change at once.
                         let [x, y] = towards(on, p, 1e-12);
                         interpolant.height(x, y).unwrap()
                     });

@@ -245,7 +245,7 @@ fn the_layer_and_the_field_of_heights_follow_the_file() {
     for spec in ["l.geojson:Z", "l.geojson:l:Z", "l.geojson:edges:z", "l.geojson::Z", "10:30/l:Z.geojson:Z"] {
         lines(spec).works(&["breaklines  1 in"]);
     }
-    lines("l.geojson").fails(1, &["l.geojson: record 1: the breakline has no heights", "FILE:LAYER:FIELD"]);
+    lines("l.geojson").fails(1, &["l.geojson: record 1: the line has no heights", "FILE:LAYER:FIELD"]);
     lines("l.geojson:roads:Z").fails(2, &["there is no layer \"roads\"", "\"edges\" or \"l\"", "FILE::Z"]);
     lines("l.geojson:H").fails(2, &["there is no field H", "name one of Z"]);
     lines("l.geojson:").fails(2, &["no name after the colon", "FILE::FIELD"]);
