@@ -51,7 +51,7 @@ fn read(
         check(parts).map_err(|e| at_record(e, path, record))?;
         lines.extend(drawn(parts, record - 1));
     }
-    // A tile without lakes is no mistake; a layer of something else is.
+    // An empty layer is fine, as of a tile without lakes; a layer of points, say, is a mistake.
     if lines.is_empty() && !layer.shapes.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
             .in_file(path)

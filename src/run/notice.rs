@@ -130,11 +130,11 @@ pub enum Notice {
         rising: usize,
         /// How far they rise, at most.
         largest_rise: Quantity,
-        /// Where.
+        /// Where they rise that far.
         rise_at: [f64; 2],
         /// The largest difference between the banks.
         largest_difference: Quantity,
-        /// Where.
+        /// Where they differ that much.
         difference_at: [f64; 2],
     },
     /// The given extent of a raster does not touch the surface.
