@@ -165,7 +165,7 @@ mod with_gdal {
         works(tin(&["a.gpkg:points:H", "a.gpkg:points:T"]), "is named twice");
         works(tin(&["a.gpkg:points:H", "--boundary", "a.gpkg:site"]), "added by the clip");
         fails(tin(&["a.gpkg:points:H", "a.gpkg:lines"]), &["has no points"]);
-        fails(lines("a.gpkg:lines"), &["the breakline has no heights", "FILE:LAYER:FIELD"]);
+        fails(lines("a.gpkg:lines"), &["the line has no heights", "FILE:LAYER:FIELD"]);
         fails(lines("a.gpkg::H"), &["there are 4 layers", "lines, a:b, points, site"]);
         fails(lines("a.gpkg:rivers:H"), &["there is no layer \"rivers\"", "lines, a:b, points, site"]);
         fails(lines("one.gpkg:H"), &["there is no layer \"H\"", "FILE::H"]);
