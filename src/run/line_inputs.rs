@@ -1,177 +1,27 @@
 //! Lines and areas of all kinds: what can be asked for, and how layers become lines of a TIN.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use rustc_hash::FxHashMap;
 
 use super::context::Journal;
 use super::crossings::LineNames;
 use super::input::Input;
 use super::layers::{self, Layers};
+use super::line_notes::{LevelRing, LineInput};
+use super::line_request::{FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
 use super::lines::{self, Drawn};
-use super::notice::Notice;
 use super::systems::{Role, Stated};
 use super::transforms::Transforms;
 use super::units::Units;
-use crate::data::{Bounds, EdgeKind, Layer, Shape};
+use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
-use crate::terrain::{Flat, FlatHeight, HighSide, Inside, River, RiverHeights, Tin, TinBuilder, Wall, densified};
-use crate::triangulation::LineId;
+use crate::terrain::{Flat, FlatHeight, River, RiverHeights, TinBuilder, Wall, densified};
+use crate::triangulation::num::unsigned_zero;
 
 /// The default distance between the upper and the lower edge of a wall.
 const WALL_WIDTH_METRES: f64 = 0.01;
-
-/// Lines and areas besides breaklines and the boundary. Where kinds meet, the first of these
-/// counts: holes, flats, rivers, walls, breaklines, soft lines.
-#[derive(Debug, Clone, Default)]
-pub struct LineRequest {
-    /// Lines with heights whose edges are in the surface, but that smooth methods of interpolation
-    /// pass over.
-    pub soft: Vec<Input<Layer>>,
-    /// Lines that get their heights from the finished surface.
-    pub draped: Vec<Input<Layer>>,
-    /// The upper edges of walls, with heights. A record with two parts is one wall: its upper and
-    /// its lower edge, where they are drawn.
-    pub walls: Vec<Input<Layer>>,
-    /// Options of walls.
-    pub wall: WallOptions,
-    /// Areas without data: they are left out of the finished surface.
-    pub holes: Vec<Input<Layer>>,
-    /// Level water: polygons, or lines that close, each with one height.
-    pub flats: Vec<Input<Layer>>,
-    /// Options of level water.
-    pub flat: FlatOptions,
-    /// Rivers: a record with two parts is one river between two banks; otherwise each record is a
-    /// bank, and two consecutive ones are one river.
-    pub rivers: Vec<Input<Layer>>,
-    /// The width of rivers: if it is given, each line runs along the middle of one.
-    pub river_width: Option<PerRecord>,
-    /// The largest distance in plan between vertices of breaklines and soft lines; more are added.
-    pub densify: Option<f64>,
-}
-
-/// A number for all records, or the attribute that has one for each.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PerRecord {
-    /// This number.
-    Number(f64),
-    /// The numbers of this attribute.
-    Field(String),
-}
-
-/// How the lower edge of a wall follows from the upper one, and where it lies.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct WallOptions {
-    /// The heights of the lower edge; `None` if each record has both edges.
-    pub lower: Option<LowerEdge>,
-    /// The distance between the edges in plan, in units of the coordinate system. `None` is 0.01
-    /// metres.
-    pub width: Option<f64>,
-    /// The side of the line on which the ground is higher.
-    pub high: HighSide,
-}
-
-/// The height of the lower edge of a wall.
-#[derive(Debug, Clone, PartialEq)]
-pub enum LowerEdge {
-    /// The height itself.
-    Height(PerRecord),
-    /// How far it is below the upper edge.
-    Drop(PerRecord),
-}
-
-/// The height of level water, and which points it replaces.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct FlatOptions {
-    /// The height.
-    pub height: FlatRule,
-    /// The largest difference between heights of a level shore. `None` is 0.01 metres, or 0.01
-    /// units if the unit is not known.
-    pub tolerance: Option<f64>,
-    /// Points up to this distance outside of the shore are left out, too.
-    pub buffer: f64,
-}
-
-/// Which height level water has.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub enum FlatRule {
-    /// That of its shore, which must be level.
-    #[default]
-    OfShore,
-    /// The lowest of its shore.
-    Lowest,
-    /// The mean of the vertices of its shore.
-    Mean,
-    /// A number, or that of an attribute.
-    Given(PerRecord),
-}
-
-/// What lines of a layer are used as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LineRole {
-    /// Hard breaklines.
-    Breaklines,
-    /// Soft lines.
-    Soft,
-    /// Walls.
-    Walls,
-    /// Level water.
-    Flats,
-    /// Rivers.
-    Rivers,
-    /// Draped lines.
-    Draped,
-    /// Areas without data.
-    Holes,
-    /// The boundary.
-    Boundary,
-}
-
-impl LineRole {
-    /// Returns the option of the program that takes such lines.
-    pub fn option(self) -> &'static str {
-        match self {
-            LineRole::Breaklines => "--breaklines",
-            LineRole::Soft => "--soft-lines",
-            LineRole::Walls => "--walls",
-            LineRole::Flats => "--flat",
-            LineRole::Rivers => "--rivers",
-            LineRole::Draped => "--draped-lines",
-            LineRole::Holes => "--holes",
-            LineRole::Boundary => "--boundary",
-        }
-    }
-
-    /// Returns the kind of edges that such lines become; `None` for areas to clip to.
-    fn edges(self) -> Option<EdgeKind> {
-        match self {
-            LineRole::Breaklines => Some(EdgeKind::Breakline),
-            LineRole::Soft => Some(EdgeKind::Soft),
-            LineRole::Walls => Some(EdgeKind::Wall),
-            LineRole::Flats => Some(EdgeKind::Shore),
-            LineRole::Rivers => Some(EdgeKind::Bank),
-            LineRole::Draped => Some(EdgeKind::Draped),
-            LineRole::Holes | LineRole::Boundary => None,
-        }
-    }
-}
-
-/// How many lines of an input were used.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct LineInput {
-    /// What they were used as.
-    pub role: LineRole,
-    /// The file.
-    pub path: PathBuf,
-    /// The lines, walls, lakes, rivers or areas; each part of a line counts.
-    pub lines: usize,
-    /// The distinct edges that they became, before the surface was clipped. Draped lines and areas
-    /// to clip to are counted with the edges of the surface only.
-    pub edges: usize,
-    /// The numbers of the lines of the TIN.
-    numbers: Range<usize>,
-}
 
 /// The layers of a request, by what they are used as.
 pub(super) struct LineLayers<'a> {
@@ -189,58 +39,8 @@ pub(super) struct Added {
     pub(super) level_rings: Vec<LevelRing>,
     /// Rivers whose banks rise, or differ across.
     pub(super) uneven: Vec<(String, RiverHeights)>,
-}
-
-/// A closed line of one height, that may be a shore.
-pub(super) struct LevelRing {
-    pub(super) line: usize,
-    pub(super) ring: Vec<[f64; 2]>,
-    pub(super) height: f64,
-}
-
-impl LineRequest {
-    /// Returns the inputs with what they are used as.
-    pub(super) fn inputs(&self) -> [(LineRole, &[Input<Layer>]); 6] {
-        [
-            (LineRole::Soft, &self.soft),
-            (LineRole::Walls, &self.walls),
-            (LineRole::Flats, &self.flats),
-            (LineRole::Rivers, &self.rivers),
-            (LineRole::Draped, &self.draped),
-            (LineRole::Holes, &self.holes),
-        ]
-    }
-
-    /// Returns the attribute that is needed of each record.
-    fn column(&self, role: LineRole) -> Option<&str> {
-        let number = match role {
-            LineRole::Walls => match self.wall.lower.as_ref()? {
-                LowerEdge::Height(number) | LowerEdge::Drop(number) => number,
-            },
-            LineRole::Flats => match &self.flat.height {
-                FlatRule::Given(number) => number,
-                FlatRule::OfShore | FlatRule::Lowest | FlatRule::Mean => return None,
-            },
-            LineRole::Rivers => self.river_width.as_ref()?,
-            _ => return None,
-        };
-        match number {
-            PerRecord::Field(name) => Some(name),
-            PerRecord::Number(_) => None,
-        }
-    }
-}
-
-impl PerRecord {
-    /// Returns the number of a record, counted from 0; NaN if it has none.
-    fn of(&self, layer: &Layer, fid: usize) -> f64 {
-        match self {
-            PerRecord::Number(number) => *number,
-            PerRecord::Field(name) => {
-                layer.column(name).and_then(|column| column.values.get(fid)).copied().unwrap_or(f64::NAN)
-            }
-        }
-    }
+    /// Rivers that overlap themselves, and where.
+    pub(super) overlaps: Vec<(String, [f64; 2])>,
 }
 
 impl<'a> LineLayers<'a> {
@@ -305,16 +105,22 @@ impl<'a> LineLayers<'a> {
                 extent: Bounds::default(),
                 level_rings: Vec::new(),
                 uneven: Vec::new(),
+                overlaps: Vec::new(),
             },
             file: 0,
             next: 0,
         };
         let mut by_file = by_file.iter();
         for (role, layers) in &self.groups {
-            for (path, layer) in layers {
-                let transform = by_file.next().copied().flatten();
+            let by_layer: Vec<Option<usize>> = by_file.by_ref().take(layers.len()).copied().collect();
+            let rivers = if *role == LineRole::Rivers { adding.rivers(layers, &by_layer)? } else { Vec::new() };
+            let mut rivers = rivers.into_iter();
+            for ((path, layer), transform) in layers.iter().zip(by_layer) {
                 let first = adding.next;
-                let lines = adding.add_layer(*role, layer, path, transform)?;
+                let lines = match rivers.next() {
+                    Some(rivers) => adding.add_rivers(rivers),
+                    None => adding.add_layer(*role, layer, path, transform)?,
+                };
                 let numbers = first..adding.next;
                 let path = path.to_path_buf();
                 adding.added.inputs.push(LineInput { role: *role, path, lines, edges: 0, numbers });
@@ -341,7 +147,6 @@ struct Adding<'a> {
 impl Adding<'_> {
     /// Adds the lines of a layer; returns their number.
     fn add_layer(&mut self, role: LineRole, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
-        let in_layer = |line: &Drawn, error: Error| lines::at_record(error, path, line.fid + 1);
         match role {
             LineRole::Holes if layer.shapes.is_empty() => Ok(0),
             LineRole::Boundary | LineRole::Holes => {
@@ -378,27 +183,14 @@ impl Adding<'_> {
                     } else {
                         self.builder.add_breakline(points);
                     }
-                    self.note_level_ring(line);
+                    self.added.level_rings.extend(LevelRing::of(&line.points, self.next, self.flat_tolerance()));
                     self.name(line, self.next..self.next + 1);
                 }
                 Ok(drawn.len())
             }
-            LineRole::Walls => {
-                let walls = records(lines::with_heights(layer, path, role.option())?);
-                for mut parts in walls.iter().cloned() {
-                    for part in &mut parts {
-                        self.transform(part, path, transform)?;
-                    }
-                    let wall = self.wall(&parts, layer).map_err(|error| in_layer(&parts[0], error))?;
-                    for wall in &wall {
-                        let numbers = self.builder.add_wall(wall);
-                        self.name(&parts[0], numbers);
-                    }
-                }
-                Ok(walls.len())
-            }
+            LineRole::Walls => self.add_walls(layer, path, transform),
             LineRole::Flats => self.add_flats(layer, path, transform),
-            LineRole::Rivers => self.add_rivers(layer, path, transform),
+            LineRole::Rivers => Ok(0), // joined with those of other layers
         }
     }
 
@@ -415,52 +207,87 @@ impl Adding<'_> {
         numbers.for_each(|_| self.added.names.add(self.file, line));
     }
 
-    fn note_level_ring(&mut self, line: &Drawn) {
-        let (Some(first), Some(last)) = (line.points.first(), line.points.last()) else { return };
-        let tolerance = self.flat_tolerance();
-        if line.points.len() > 3
-            && first[..2] == last[..2]
-            && line.points.iter().all(|p| (p[2] - first[2]).abs() <= tolerance)
-        {
-            let ring = line.points.iter().map(|p| [p[0], p[1]]).collect();
-            self.added.level_rings.push(LevelRing { line: self.next, ring, height: first[2] });
-        }
-    }
-
     fn flat_tolerance(&self) -> f64 {
         self.request.flat.tolerance.unwrap_or_else(|| self.units.height_of_metres(FLAT_TOLERANCE_METRES))
     }
 
-    /// The walls of a record.
-    fn wall(&self, parts: &[Drawn], layer: &Layer) -> Result<Vec<Wall>> {
+    fn add_walls(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
         let WallOptions { lower, width, high } = &self.request.wall;
         let width = width.unwrap_or_else(|| self.units.of_metres(WALL_WIDTH_METRES));
-        match lower {
-            Some(edge) => parts
-                .iter()
-                .map(|part| {
-                    let number = match edge {
-                        LowerEdge::Height(number) | LowerEdge::Drop(number) => number.of(layer, part.fid),
-                    };
-                    if !number.is_finite() {
-                        return Err(Error::format("the record has no height of the lower edge of the wall")
-                            .cure("fill the attribute of --wall-bottom or --wall-drop, or remove the record"));
-                    }
-                    let low = part.points.iter().map(|p| match edge {
-                        LowerEdge::Height(_) => number,
-                        LowerEdge::Drop(_) => p[2] - number,
-                    });
-                    Wall::new(&part.points, &low.collect::<Vec<f64>>(), width, *high)
-                })
-                .collect(),
-            None => match parts {
-                [upper, lower] => Ok(vec![Wall::between(&upper.points, &lower.points)?]),
-                _ => Err(Error::format("the lower edge of the wall is not known").cure(
-                    "give its height with --wall-bottom or --wall-drop, or make each record of two parts: the upper \
-                     and the lower edge",
-                )),
-            },
+        let drawn = lines::with_heights(layer, path, LineRole::Walls.option())?;
+        let mut walls: Vec<(Drawn, Wall)> = Vec::new();
+        if let Some(edge) = lower {
+            let mut edges: Vec<(Drawn, Vec<f64>)> = Vec::with_capacity(drawn.len());
+            for mut line in drawn {
+                let lower = self.lower_edge(&mut line, edge, layer, path, transform)?;
+                edges.push((line, lower));
+            }
+            let uppers: Vec<&[[f64; 3]]> = edges.iter().map(|(line, _)| line.points.as_slice()).collect();
+            let neighbors = wall_neighbors(&uppers);
+            for ((line, lower), neighbors) in edges.into_iter().zip(neighbors) {
+                let wall = Wall::continued(&line.points, &lower, width, *high, neighbors);
+                let wall = wall.map_err(|error| lines::at_record(error, path, line.fid + 1))?;
+                walls.push((line, wall));
+            }
+        } else {
+            for mut parts in records(drawn) {
+                for part in &mut parts {
+                    self.transform(part, path, transform)?;
+                }
+                let wall = match parts.as_slice() {
+                    [upper, lower] => Wall::between(&upper.points, &lower.points),
+                    _ => Err(Error::format("the lower edge of the wall is not known").cure(
+                        "give its height with --wall-bottom or --wall-drop, or make each record of two parts: the \
+                         upper and the lower edge",
+                    )),
+                };
+                let line = parts.swap_remove(0);
+                let wall = wall.map_err(|error| lines::at_record(error, path, line.fid + 1))?;
+                walls.push((line, wall));
+            }
         }
+        for (line, wall) in &walls {
+            let numbers = self.builder.add_wall(wall);
+            self.name(line, numbers);
+        }
+        Ok(walls.len())
+    }
+
+    /// Transforms the upper edge of a wall to the coordinate system of the result; returns the
+    /// heights of the lower edge. Attributes are in the units of the layer, numbers in those of the
+    /// result.
+    fn lower_edge(
+        &mut self,
+        line: &mut Drawn,
+        edge: &LowerEdge,
+        layer: &Layer,
+        path: &Path,
+        transform: Option<usize>,
+    ) -> Result<Vec<f64>> {
+        let (LowerEdge::Height(of_record) | LowerEdge::Drop(of_record)) = edge;
+        let number = of_record.of(layer, line.fid);
+        if !number.is_finite() {
+            let error = Error::format("the record has no height of the lower edge of the wall")
+                .cure("fill the attribute of --wall-bottom or --wall-drop, or remove the record");
+            return Err(lines::at_record(error, path, line.fid + 1));
+        }
+        let below = |upper: &[[f64; 3]]| -> Vec<[f64; 3]> {
+            let low = |p: &[f64; 3]| match edge {
+                LowerEdge::Height(_) => number,
+                LowerEdge::Drop(_) => p[2] - number,
+            };
+            upper.iter().map(|p| [p[0], p[1], low(p)]).collect()
+        };
+        let mut lower = match of_record {
+            PerRecord::Field(_) => below(&line.points),
+            PerRecord::Number(_) => Vec::new(),
+        };
+        self.transforms.apply(transform, &mut lower).map_err(|e| e.in_file(path))?;
+        self.transform(line, path, transform)?;
+        if lower.is_empty() {
+            lower = below(&line.points);
+        }
+        Ok(lower.iter().map(|p| p[2]).collect())
     }
 
     fn add_flats(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
@@ -476,7 +303,7 @@ impl Adding<'_> {
                 FlatRule::OfShore => FlatHeight::OfShore { tolerance: self.flat_tolerance() },
                 FlatRule::Lowest => FlatHeight::Lowest,
                 FlatRule::Mean => FlatHeight::Mean,
-                FlatRule::Given(number) => FlatHeight::Given(number.of(layer, first.fid)),
+                FlatRule::Given(number) => FlatHeight::Given(self.water_level(number, layer, &first, path, transform)?),
             };
             if !needs_heights {
                 rings.iter_mut().flat_map(|ring| &mut ring.points).for_each(|p| p[2] = 0.0);
@@ -492,7 +319,64 @@ impl Adding<'_> {
         Ok(lakes.len())
     }
 
-    fn add_rivers(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
+    /// The given height of a lake, in the units of the result: attributes are in those of the
+    /// layer.
+    fn water_level(
+        &self,
+        number: &PerRecord,
+        layer: &Layer,
+        ring: &Drawn,
+        path: &Path,
+        transform: Option<usize>,
+    ) -> Result<f64> {
+        let height = number.of(layer, ring.fid);
+        match (number, ring.points.first()) {
+            (PerRecord::Field(_), Some(&[x, y, _])) if height.is_finite() => {
+                let mut on_shore = [[x, y, height]];
+                self.transforms.apply(transform, &mut on_shore).map_err(|e| e.in_file(path))?;
+                Ok(on_shore[0][2])
+            }
+            _ => Ok(height),
+        }
+    }
+
+    /// The rivers of all layers, by layer: where one ends, another may go on.
+    fn rivers(&mut self, layers: &Layers, by_layer: &[Option<usize>]) -> Result<Vec<Vec<(Drawn, River)>>> {
+        let mut lines: Vec<(usize, Drawn)> = Vec::new();
+        let mut rivers: Vec<River> = Vec::new();
+        for (number, ((path, layer), transform)) in layers.iter().zip(by_layer).enumerate() {
+            for (line, river) in self.rivers_of(layer, path, *transform)? {
+                lines.push((number, line));
+                rivers.push(river);
+            }
+        }
+        River::join(&mut rivers);
+        let mut by_number: Vec<Vec<(Drawn, River)>> = layers.iter().map(|_| Vec::new()).collect();
+        for ((number, line), river) in lines.into_iter().zip(rivers) {
+            by_number[number].push((line, river));
+        }
+        Ok(by_number)
+    }
+
+    fn add_rivers(&mut self, rivers: Vec<(Drawn, River)>) -> usize {
+        let count = rivers.len();
+        for (line, river) in rivers {
+            let heights = river.heights();
+            let overlap = river.overlap();
+            let numbers = self.builder.add_river(river);
+            let name = |adding: &Self| adding.added.names.name(numbers.start);
+            self.name(&line, numbers.clone());
+            if heights.largest_rise.max(heights.largest_difference) > self.flat_tolerance() {
+                self.added.uneven.push((name(self), heights));
+            }
+            if let Some(at) = overlap {
+                self.added.overlaps.push((name(self), at));
+            }
+        }
+        count
+    }
+
+    fn rivers_of(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<Vec<(Drawn, River)>> {
         for (record, shape) in (1..).zip(&layer.shapes) {
             let error = match shape {
                 Shape::Polygon(_) => Error::format("a polygon is not a bank")
@@ -510,24 +394,28 @@ impl Adding<'_> {
             Some(_) => by_record.into_iter().flatten().map(|line| vec![line]).collect(),
             None => banks(by_record, path)?,
         };
-        for mut parts in rivers.iter().cloned() {
+        let mut named: Vec<(Drawn, River)> = Vec::with_capacity(rivers.len());
+        for mut parts in rivers {
+            let length = |part: &Drawn| part.points.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>();
+            let in_layer = length(&parts[0]);
             for part in &mut parts {
                 self.transform(part, path, transform)?;
             }
             let river = match (&self.request.river_width, parts.as_slice()) {
-                (Some(width), [middle, ..]) => River::along(&middle.points, width.of(layer, middle.fid)),
+                (Some(width @ PerRecord::Field(_)), [middle, ..]) => {
+                    // Attributes are in the units of the layer.
+                    let width = width.of(layer, middle.fid) * (length(middle) / in_layer);
+                    River::along(&middle.points, width)
+                }
+                (Some(PerRecord::Number(width)), [middle, ..]) => River::along(&middle.points, *width),
                 (_, [left, right, ..]) => River::between(&left.points, &right.points),
                 _ => continue, // banks come in pairs
             };
-            let river = river.map_err(|e| lines::at_record(e, path, parts[0].fid + 1))?;
-            let heights = river.heights();
-            let numbers = self.builder.add_river(river);
-            self.name(&parts[0], numbers.clone());
-            if heights.largest_rise.max(heights.largest_difference) > self.flat_tolerance() {
-                self.added.uneven.push((self.added.names.name(numbers.start), heights));
-            }
+            let line = parts.swap_remove(0);
+            let river = river.map_err(|e| lines::at_record(e, path, line.fid + 1))?;
+            named.push((line, river));
         }
-        Ok(rivers.len())
+        Ok(named)
     }
 }
 
@@ -561,21 +449,6 @@ fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
     }
 }
 
-/// Adds a notice about rivers whose banks contradict water, with the worst of them.
-pub(super) fn note_uneven(uneven: &[(String, RiverHeights)], units: &Units, journal: &Journal) {
-    let worst = |(_, heights): &&(String, RiverHeights)| heights.largest_rise.max(heights.largest_difference);
-    let Some((name, heights)) = uneven.iter().max_by(|p, q| worst(p).total_cmp(&worst(q))) else { return };
-    journal.add(Notice::RiverHeights {
-        rivers: uneven.len(),
-        name: name.clone(),
-        rising: heights.rising,
-        largest_rise: units.height(heights.largest_rise),
-        rise_at: heights.rise_at,
-        largest_difference: units.height(heights.largest_difference),
-        difference_at: heights.difference_at,
-    });
-}
-
 /// The default tolerance of level shores.
 const FLAT_TOLERANCE_METRES: f64 = 0.01;
 
@@ -584,56 +457,32 @@ fn records(drawn: Vec<Drawn>) -> Vec<Vec<Drawn>> {
     drawn.chunk_by(|p, q| p.fid == q.fid).map(<[Drawn]>::to_vec).collect()
 }
 
-/// Adds notices about closed lines of one height around points of other heights: they may be shores
-/// that were meant to be level.
-pub(super) fn note_level_rings(
-    rings: &[LevelRing],
-    points: &[[f64; 3]],
-    names: &LineNames,
-    tolerance: f64,
-    units: &Units,
-    journal: &Journal,
-) {
-    if rings.is_empty() {
-        return;
+/// The vertices before and after each upper edge: those of the one edge that ends where it begins,
+/// and of the one that begins where it ends. Where more meet, none continues another.
+fn wall_neighbors(edges: &[&[[f64; 3]]]) -> Vec<[Option<[f64; 2]>; 2]> {
+    let flat = |p: &[f64; 3]| [p[0], p[1]];
+    let key = |p: Option<&[f64; 3]>| p.map(|p| flat(p).map(|c| unsigned_zero(c).to_bits()));
+    let mut starts: FxHashMap<[u64; 2], Vec<usize>> = FxHashMap::default();
+    let mut ends: FxHashMap<[u64; 2], Vec<usize>> = FxHashMap::default();
+    for (number, edge) in edges.iter().enumerate() {
+        key(edge.first()).into_iter().for_each(|key| starts.entry(key).or_default().push(number));
+        key(edge.last()).into_iter().for_each(|key| ends.entry(key).or_default().push(number));
     }
-    let polygons: Vec<Vec<Vec<[f64; 2]>>> = rings.iter().map(|ring| vec![ring.ring.clone()]).collect();
-    let inside = Inside::new(&polygons);
-    // For each ring, the number of points inside that differ, and the largest difference.
-    let mut found = vec![(0_usize, 0.0_f64); rings.len()];
-    for [x, y, z] in points {
-        let Some(at) = inside.first_around([*x, *y]) else { continue };
-        let difference = (z - rings[at].height).abs();
-        if difference > tolerance {
-            found[at] = (found[at].0 + 1, found[at].1.max(difference));
-        }
-    }
-    let most = found.iter().enumerate().filter(|(_, (count, _))| *count > 0).max_by(|p, q| p.1.1.total_cmp(&q.1.1));
-    if let Some((at, (_, largest))) = most {
-        journal.add(Notice::LevelRings {
-            rings: found.iter().filter(|(count, _)| *count > 0).count(),
-            points: found.iter().map(|(count, _)| count).sum(),
-            name: names.name(rings[at].line),
-            largest: units.height(*largest),
-        });
-    }
+    let only = |table: &FxHashMap<[u64; 2], Vec<usize>>, at: Option<[u64; 2]>| match table.get(&at?)?.as_slice() {
+        [only] => Some(*only),
+        _ => None,
+    };
+    let of_edge = |edge: &&[[f64; 3]]| {
+        let [first, last] = [edge.first(), edge.last()];
+        let pair = |joint: Option<&[f64; 3]>| Some((only(&ends, key(joint))?, only(&starts, key(joint))?));
+        let away = |from: Option<&[f64; 3]>, p: &&[f64; 3]| from.is_some_and(|from| flat(from) != flat(p));
+        let before = pair(first).and_then(|(ending, _)| edges[ending].iter().rev().find(|p| away(first, p)));
+        let after = pair(last).and_then(|(_, starting)| edges[starting].iter().find(|p| away(last, p)));
+        [before.map(flat), after.map(flat)]
+    };
+    edges.iter().map(of_edge).collect()
 }
 
-/// Counts the distinct edges of the lines of each input.
-pub(super) fn count_edges(inputs: &mut [LineInput], tin: &Tin) {
-    let triangulation = tin.triangulation();
-    for input in inputs.iter_mut().filter(|input| input.role.edges().is_some()) {
-        let mut edges: Vec<[u32; 2]> = Vec::new();
-        // Level lines across rivers are not banks.
-        for line in input.numbers.clone().filter(|&line| tin.line_kind(line) == input.role.edges()) {
-            let chain = triangulation.chain(LineId::new(line));
-            edges.extend(chain.windows(2).map(|pair| {
-                let [a, b] = [pair[0], pair[1]].map(|vertex| vertex.index() as u32);
-                [a.min(b), a.max(b)]
-            }));
-        }
-        edges.sort_unstable();
-        edges.dedup();
-        input.edges = edges.len();
-    }
+fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
+    (p[0] - q[0]).hypot(p[1] - q[1])
 }

@@ -207,10 +207,7 @@ mod tests {
         let shapes = vec![line(0.0), Shape::Null, line(2.0)];
         let error = polygons(&layer(shapes), Path::new("l.shp"), OPTION).unwrap_err();
         let text = error.to_string();
-        assert!(
-            text.starts_with("l.shp: record 1: the boundary is not closed: a line ends at 0 0, the next"),
-            "{text}"
-        );
+        assert!(text.starts_with("l.shp: record 1: the lines are not closed: one ends at 0 0, the next"), "{text}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::line_request::LineRole;
 use super::units::Quantity;
 use crate::crs::Crs;
 
@@ -137,6 +138,26 @@ pub enum Notice {
         /// Where they differ that much.
         difference_at: [f64; 2],
     },
+    /// Rivers overlap themselves: what their banks enclose twice is not water.
+    RiverOverlap {
+        /// The number of such rivers; the rest is about the first of them.
+        rivers: usize,
+        /// The river.
+        name: String,
+        /// A position near which the banks meet.
+        at: [f64; 2],
+    },
+    /// Vertices of walls do not have the heights of their walls, since water counts first.
+    WallsInWater {
+        /// The number of such vertices.
+        vertices: usize,
+        /// The wall of the first of them.
+        name: String,
+        /// The position of the first.
+        at: [f64; 2],
+    },
+    /// No line or area of a kind touches the surface.
+    LinesApart(LineRole),
     /// The given extent of a raster does not touch the surface.
     ExtentApart,
     /// The default size of cells is used.
@@ -242,6 +263,9 @@ impl Notice {
             | Notice::EdgeLimitUnusual { .. }
             | Notice::LevelRings { .. }
             | Notice::RiverHeights { .. }
+            | Notice::RiverOverlap { .. }
+            | Notice::WallsInWater { .. }
+            | Notice::LinesApart(_)
             | Notice::ExtentApart
             | Notice::RegionAreasUnused(_)
             | Notice::SeedUnused { .. } => Severity::Warning,

@@ -87,7 +87,7 @@ impl Gap {
         let [x, y] = self.end;
         let far = |p| neat(distance(self.end, p));
         let next = self.nearest.map(|p| format!(", the next loose end is {} away, at {} {}", far(p), p[0], p[1]));
-        Error::format(format!("the boundary is not closed: a line ends at {x} {y}{}", next.unwrap_or_default()))
+        Error::format(format!("the lines are not closed: one ends at {x} {y}{}", next.unwrap_or_default()))
             .cure("close the gap, so that lines end where others begin, or use polygons")
     }
 }
@@ -121,7 +121,7 @@ mod tests {
         let error = rings(&[&[[0.0, 0.0], [4.0, 0.0]], &[[4.0, 0.5], [0.0, 4.0]], &[[0.0, 4.0], [0.0, 0.0]]]);
         assert_eq!(
             error.unwrap_err().error().to_string(),
-            "the boundary is not closed: a line ends at 4 0, the next loose end is 0.5 away, at 4 0.5"
+            "the lines are not closed: one ends at 4 0, the next loose end is 0.5 away, at 4 0.5"
         );
         let three = rings(&[&[[0.0, 0.0], [1.0, 0.0]], &[[0.0, 0.0], [0.0, 1.0]], &[[0.0, 0.0], [-1.0, 0.0]]]);
         assert!(three.unwrap_err().error().to_string().contains("ends at 0 0, the next loose end is 1 away, at 1 0"));

@@ -9,7 +9,9 @@ use super::context::{Journal, Size, Stage};
 use super::crossings::{self, LineNames};
 use super::extents;
 use super::input::{Input, MemoryPoints};
-use super::line_inputs::{self, Added, LineInput, LineLayers, LineRequest, LineRole};
+use super::line_inputs::{Added, LineLayers};
+use super::line_notes::{self, LineInput};
+use super::line_request::{LineRequest, LineRole};
 use super::memory;
 use super::notice::Notice;
 use super::open::{self, Content, content};
@@ -197,9 +199,10 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     builder.crs = crs;
 
     // Lines first: they are few, and their errors are known before the points are read.
-    let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven } =
+    let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven, overlaps } =
         layers.add_to(&mut builder, of_layers, &transforms, &units)?;
-    line_inputs::note_uneven(&uneven, &units, journal);
+    line_notes::note_uneven(&uneven, &units, journal);
+    line_notes::note_overlaps(&overlaps, journal);
 
     let paths: Vec<&Path> = request.points.iter().map(Input::path).collect();
     let mut reach = Reach::new(request, &rim);
@@ -220,7 +223,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         rim.find_limit(&report, &extents);
         let rings = std::mem::take(&mut level_rings);
         let rings = if request.lines.flats.is_empty() { rings } else { Vec::new() };
-        line_inputs::note_level_rings(&rings, &points, &names, default_tolerance, &units, journal);
+        line_notes::note_level_rings(&rings, &points, &names, default_tolerance, &units, journal);
         let mut builder = builder.clone();
         builder.max_edge = rim.max_edge;
         builder.window = reach.window().map(|read| Window { read, all: report.extent });
@@ -245,7 +248,11 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         }
         reach.grow();
     };
-    line_inputs::count_edges(&mut inputs, &tin);
+    line_notes::count_edges(&mut inputs, &tin);
+    line_notes::note_walls_in_water(tin.report(), &names, journal);
+    if request.bounds.is_none() && !layers.has_boundary() {
+        line_notes::note_apart(&inputs, tin.report(), journal);
+    }
     rim.note(&units, journal);
     reach.note(&points, &units, journal);
     crossings::note(tin.report(), &names, &units, journal);
@@ -258,7 +265,10 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         columns: files.columns(),
         lines: inputs,
         replaced: match request.replaced {
-            ReplacedPoints::Keep => replaced,
+            ReplacedPoints::Keep => {
+                let is_within = |p: &[f64; 3]| request.bounds.as_ref().is_none_or(|bounds| bounds.holds(p[0], p[1]));
+                replaced.into_iter().filter(is_within).collect()
+            }
             ReplacedPoints::Drop => Vec::new(),
         },
         tin: tin.report().clone(),

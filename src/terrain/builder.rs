@@ -20,6 +20,10 @@ use super::{CrossingRule, DuplicateRule, Flat, River, Tin, TinReport, Wall, Wind
 
 /// Builds a [`Tin`] from points and breaklines.
 ///
+/// A point that lies on a breakline between two of its vertices stays a vertex, with its own
+/// height: the surface follows the line in plan and the point in height. [`take_replaced_points`
+/// ](Self::take_replaced_points) is for water and walls only.
+///
 /// The result depends on the set of points and lines only, not on the order in which they are
 /// added. The exceptions are [`DuplicateRule::First`] and [`Last`](DuplicateRule::Last), for
 /// duplicates and crossings.
@@ -242,6 +246,7 @@ impl TinBuilder {
 
         self.take_replaced_points();
         report.points_replaced = self.replaced_count;
+        let walls = self.walls();
         // One vertex per site, in spatial order.
         let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
         go_on()?;
@@ -274,6 +279,12 @@ impl TinBuilder {
             report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
         let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, name)?;
+        for (line, heights) in walls {
+            let vertices = triangulation.line_vertices(LineId::new(line)).iter().zip(heights);
+            let at = vertices.map(|(vertex, height)| (*triangulation.point(*vertex), height));
+            let flooded = at.filter(|([x, y, z], height)| z != height && sites.contains(&[x.to_bits(), y.to_bits()]));
+            report.walls_in_water.extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
+        }
         // In water, no line decides.
         report.crossing_heights.retain(|crossing| !sites.contains(&crossing.site.map(f64::to_bits)));
         if self.crossing_heights == CrossingRule::Refuse {
@@ -320,6 +331,20 @@ impl TinBuilder {
         (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
         tin.report = report;
         Ok(tin)
+    }
+
+    /// The numbers of the edges of walls, with the heights of their vertices; none if there is no
+    /// water.
+    fn walls(&self) -> Vec<(usize, Vec<f64>)> {
+        if self.waters.is_empty() {
+            return Vec::new();
+        }
+        let walls = (0..self.line_count()).filter(|&line| self.line_kinds[line] == EdgeKind::Wall);
+        let heights = |line: usize| {
+            let start = if line == 0 { 0 } else { self.line_ends[line - 1] };
+            (line, self.line_points[start..self.line_ends[line]].iter().map(|p| p[2]).collect())
+        };
+        walls.map(heights).collect()
     }
 
     /// Merges the points and vertices that share a site, by the rules. Leaves `self.points` empty.

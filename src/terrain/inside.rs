@@ -1,5 +1,6 @@
 //! Point in polygon tests.
 
+use super::nearest::squared_distance;
 use crate::data::orientation;
 use crate::triangulation::num::Sign;
 
@@ -62,13 +63,8 @@ impl Inside {
         }
         let last = self.bands.len() - 1;
         let bands = self.band(y - distance).min(last)..=self.band(y + distance).min(last);
-        self.bands[bands].iter().flatten().any(|(_, [a, b])| {
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let length = along[0] * along[0] + along[1] * along[1];
-            let part = ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / length;
-            let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
-            (a[0] + part * along[0] - x).hypot(a[1] + part * along[1] - y) <= distance
-        })
+        let is_near = |(_, edge): &(usize, Edge)| squared_distance(*edge, [x, y]) <= distance * distance;
+        self.bands[bands].iter().flatten().any(is_near)
     }
 
     /// Returns true if a point lies in a polygon or on one of its rings.

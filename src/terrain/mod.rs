@@ -34,6 +34,7 @@
 //! given), and points are neither smoothed nor thinned out.
 
 mod admitted;
+mod boxes;
 mod builder;
 mod clip;
 mod compact;
@@ -48,6 +49,7 @@ mod interpolate;
 mod levels;
 mod linear;
 mod lines;
+mod nearest;
 mod rasterize;
 mod regions;
 mod selection;

@@ -27,6 +27,9 @@ pub struct TinReport {
     /// The sites within the bounds at which breaklines meet with heights that differ by more than
     /// the tolerance, from west to east.
     pub crossing_heights: Vec<CrossingHeights>,
+    /// The vertices of walls that have the height of water, which counts first, instead of their
+    /// own; each with the number of its line and its site.
+    pub walls_in_water: Vec<(usize, [f64; 2])>,
     /// Vertices of the surface.
     pub vertices: usize,
     /// Triangles of the surface.

@@ -269,10 +269,7 @@ fn breaklines_without_heights_are_refused_never_taken_as_0() {
     tin("part.geojson").fails(1, &["part.geojson: record 1: vertex 2 at 1 1 has no height"]);
     tin("points.geojson").fails(1, &["points.geojson", "no lines"]);
     let run = run_in(&folder, &["tin", "a.xyz", "--boundary", "flat.geojson", "-o", "t.ply"]);
-    run.fails(
-        1,
-        &["flat.geojson: record 1: the boundary is not closed: a line ends at 0 0", "1.414213562 away, at 1 1"],
-    );
+    run.fails(1, &["flat.geojson: record 1: the lines are not closed: one ends at 0 0", "1.414213562 away, at 1 1"]);
     let run = run_in(&folder, &["tin", "a.xyz", "--boundary", "points.geojson", "-o", "t.ply"]);
     run.fails(1, &["points.geojson", "no polygons and no lines"]);
     assert!(!folder.path().join("t.ply").exists());

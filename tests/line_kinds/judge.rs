@@ -1,10 +1,10 @@
 //! What each kind of line promises, asked of a finished surface, with whole numbers.
 
 use breakline::data::{EdgeKind, Surface};
-use breakline::terrain::Tin;
-use breakline::triangulation::LineId;
+use breakline::terrain::{River, Tin};
+use breakline::triangulation::{LineId, Location};
 
-use super::scene::{Ring, SIDE, Scene, WALL, floats};
+use super::scene::{Line, RIVER, Ring, SIDE, Scene, WALL, floats};
 
 /// Probes per cell, and their distance from lines.
 const PROBES: i64 = 4;
@@ -23,8 +23,10 @@ pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
     }
     edges(&tin)?;
     heights_of_lines(scene, &tin)?;
-    let without = Scene { draped: Vec::new(), holes: Vec::new(), ..scene.clone() };
+    let without = Scene { draped: Vec::new(), holes: Vec::new(), bounds: None, ..scene.clone() };
     let whole = without.build(0).map_err(|error| format!("without draped lines and holes: {error}"))?;
+    walls(scene, &whole)?;
+    rivers(scene, &whole)?;
     let mut judged = 0;
     for i in 0..SIDE * PROBES {
         for j in 0..SIDE * PROBES {
@@ -39,6 +41,9 @@ pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
 /// An error is right if lakes of different heights meet, or nothing is left.
 fn refused(scene: &Scene, error: &str) -> Result<(), String> {
     if error.starts_with("two lakes meet") && two_lakes_meet(scene) {
+        return Ok(());
+    }
+    if error.starts_with("no triangle is left") && (!scene.holes.is_empty() || scene.bounds.is_some()) {
         return Ok(());
     }
     Err(format!("refused: {error}"))
@@ -89,30 +94,127 @@ fn first_of(kinds: &[EdgeKind]) -> Option<EdgeKind> {
     order.into_iter().find(|kind| kinds.contains(kind))
 }
 
-/// The vertices of a line that meets no line of a kind before it have the heights of that line.
+/// The vertices of hard and soft lines that meet no line of a kind before theirs have the lowest of
+/// their heights.
 fn heights_of_lines(scene: &Scene, tin: &Tin) -> Result<(), String> {
     let in_water = |[x, y, _]: [f64; 3]| near_water(scene, [(x * 16.0) as i64, (y * 16.0) as i64]);
-    let at = |p: [f64; 3]| tin.triangulation().locate(&p, None);
-    for line in &scene.hard {
-        for p in floats(line) {
-            let lowest = scene
-                .hard
-                .iter()
-                .flatten()
-                .filter(|q| q[0] as f64 == p[0] && q[1] as f64 == p[1])
-                .map(|q| q[2] as f64)
-                .fold(f64::INFINITY, f64::min);
-            let on_wall = scene.walls.iter().any(|wall| near_line(wall, [p[0], p[1]]));
-            let breakline::triangulation::Location::Vertex(vertex) = at(p) else {
-                return Err(format!("no vertex at {p:?} of a breakline"));
+    for (lines, before) in [(&scene.hard, &[][..]), (&scene.soft, &scene.hard[..])] {
+        for p in lines.iter().flat_map(|line| floats(line)) {
+            let same = lines.iter().flatten().filter(|q| q[0] as f64 == p[0] && q[1] as f64 == p[1]);
+            let lowest = same.map(|q| q[2] as f64).fold(f64::INFINITY, f64::min);
+            let Location::Vertex(vertex) = tin.triangulation().locate(&p, None) else {
+                return Err(format!("no vertex at {p:?} of a line"));
             };
             let found = tin.triangulation().point(vertex)[2];
-            if !on_wall && !in_water(p) && found != lowest {
-                return Err(format!("the breakline's vertex {p:?} is at {found}, expected {lowest}"));
+            let is_theirs = scene.walls.iter().chain(before).any(|line| near_line(line, [p[0], p[1]], 4.0 * WALL));
+            if !is_theirs && !in_water(p) && found != lowest {
+                return Err(format!("the vertex {p:?} of a line is at {found}, expected {lowest}"));
             }
         }
     }
     Ok(())
+}
+
+/// Where a segment of a wall meets nothing else, its upper edge has the heights of its line, and
+/// its lower edge is 3 lower.
+fn walls(scene: &Scene, tin: &Tin) -> Result<(), String> {
+    let shores: Vec<Line> =
+        scene.lakes.iter().map(|(ring, _)| ring.iter().map(|p| [p[0], p[1], 0]).collect()).collect();
+    for (number, wall) in scene.walls.iter().enumerate() {
+        let others = scene.walls.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, wall)| wall);
+        let others: Vec<&Line> = others.chain(&scene.hard).chain(&scene.soft).chain(&shores).collect();
+        for (k, pair) in wall.windows(2).enumerate() {
+            let own = wall.windows(2).enumerate().filter(|(other, _)| *other != k).map(|(_, pair)| pair);
+            let is_sharp = own.into_iter().any(|other| turns_sharply(pair, other));
+            let is_met = others.iter().any(|other| are_close(pair, other, 0.05))
+                || scene.rivers.iter().any(|river| are_close(pair, river, 1.5 * RIVER))
+                || near_lake(scene, [pair[0][0] as f64, pair[0][1] as f64]);
+            if is_sharp || is_met {
+                continue;
+            }
+            let ends = floats(pair);
+            let along = [0, 1, 2].map(|axis| ends[1][axis] - ends[0][axis]);
+            let length = along[0].hypot(along[1]);
+            for part in [0.3, 0.5, 0.8] {
+                let [x, y, z] = [0, 1, 2].map(|axis| ends[0][axis] + part * along[axis]);
+                // At corners the lower edge is up to two widths further along, and has slopes of up
+                // to 8. A position is rounded to 1e-15, where the slope is 3 / WALL.
+                for (by, expected, bound) in [(0.0, z, 1e-9), (WALL, z - 3.0, 16.0 * WALL)] {
+                    let [x, y] = [x + by * along[1] / length, y - by * along[0] / length];
+                    let found = tin.elevation(x, y).ok_or_else(|| format!("no surface at {x} {y}, on a wall"))?;
+                    if (found - expected).abs() > bound {
+                        return Err(format!("the wall at {x} {y} is at {found}, expected {expected}"));
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Returns true if a segment touches a line or is no farther from it than a distance.
+fn are_close(segment: &[[i64; 3]], line: &[[i64; 3]], distance: f64) -> bool {
+    let plan = |pair: &[[i64; 3]]| [[pair[0][0], pair[0][1]], [pair[1][0], pair[1][1]]];
+    line.windows(2).any(|other| {
+        let near = |line: &[[i64; 3]], p: &[i64; 3]| near_line(line, [p[0] as f64, p[1] as f64], distance);
+        cross(plan(segment), plan(other))
+            || segment.iter().any(|p| near(other, p))
+            || other.iter().any(|p| near(segment, p))
+    })
+}
+
+/// Returns true if two segments of a line are not consecutive, or turn by more than 45 degrees.
+fn turns_sharply(segment: &[[i64; 3]], other: &[[i64; 3]]) -> bool {
+    let [p, q] = [segment, other].map(|pair| [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]]);
+    let is_next = segment[1] == other[0] || other[1] == segment[0];
+    let dot = (p[0] * q[0] + p[1] * q[1]) as f64;
+    !is_next || dot < 0.7 * (p[0] as f64).hypot(p[1] as f64) * (q[0] as f64).hypot(q[1] as f64)
+}
+
+/// Where a river meets no other water, it is level across at each vertex of its middle line, at the
+/// lowest height upstream.
+fn rivers(scene: &Scene, tin: &Tin) -> Result<(), String> {
+    for (number, river) in scene.rivers.iter().enumerate() {
+        let mut line = floats(river);
+        if line[0][2] < line[line.len() - 1][2] {
+            line.reverse();
+        }
+        if River::along(&line, RIVER).is_ok_and(|river| river.overlap().is_some()) {
+            continue;
+        }
+        let directions: Vec<[f64; 2]> = line.windows(2).map(|pair| direction(pair[0], pair[1])).collect();
+        let mut level = f64::INFINITY;
+        for (k, &[x, y, z]) in line.iter().enumerate() {
+            level = level.min(z);
+            let [before, after] = [directions[k.saturating_sub(1)], directions[k.min(directions.len() - 1)]];
+            let sum = [before[0] + after[0], before[1] + after[1]];
+            let half_cosine = sum[0].hypot(sum[1]) / 2.0;
+            let near = |line: &Line, by| near_line(line, [x, y], by);
+            let is_met = scene.rivers.iter().enumerate().any(|(other, line)| other != number && near(line, 4.0))
+                || scene.lakes.iter().any(|(ring, _)| near(&ring.iter().map(|p| [p[0], p[1], 0]).collect(), 2.0))
+                || near_lake(scene, [x, y]);
+            // At sharp bends, level lines meet on the inner bank.
+            if is_met || half_cosine < 0.9 {
+                continue;
+            }
+            let normal = [-sum[1], sum[0]].map(|c| c / (2.0 * half_cosine) / half_cosine * RIVER / 2.0);
+            for part in [-1.0, -0.6, 0.0, 0.25, 1.0] {
+                // The banks are rounded: stay within.
+                let part = part * (1.0 - 1e-9);
+                let [u, v] = [x + part * normal[0], y + part * normal[1]];
+                let found = tin.elevation(u, v).ok_or_else(|| format!("no surface at {u} {v}, in a river"))?;
+                if (found - level).abs() > 1e-6 {
+                    return Err(format!("the river at {u} {v} is at {found}, expected {level}"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn direction(from: [f64; 3], to: [f64; 3]) -> [f64; 2] {
+    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+    [(to[0] - from[0]) / length, (to[1] - from[1]) / length]
 }
 
 /// Judges the height at a position, in units of 1 / 16. Returns false if it is too close to a line
@@ -122,6 +224,14 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
     let height = tin.elevation(x, y);
     let before = whole.elevation(x, y);
     // Draped lines and holes change no height.
+    if let Some([min, max]) = scene.bounds
+        && (0..2).any(|k| at[k] < 16 * min[k] || at[k] > 16 * max[k])
+    {
+        return match height {
+            None => Ok(true),
+            Some(height) => Err(format!("at {x} {y}, outside of the bounds, the surface is at {height}")),
+        };
+    }
     let in_hole: Vec<Position> = scene.holes.iter().map(|hole| position(hole, at, 16)).collect();
     if in_hole.contains(&Position::Rim) {
         return Ok(false);
@@ -149,35 +259,30 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
 }
 
 fn near_wall(scene: &Scene, p: [f64; 2]) -> bool {
-    scene.walls.iter().any(|wall| near_line(wall, p))
+    scene.walls.iter().any(|wall| near_line(wall, p, 4.0 * WALL))
 }
 
-/// Returns true if a position is within a few widths of walls of a line.
-fn near_line(line: &[[i64; 3]], [x, y]: [f64; 2]) -> bool {
+/// Returns true if a position is no farther than a distance from a line.
+fn near_line(line: &[[i64; 3]], [x, y]: [f64; 2], distance: f64) -> bool {
     floats(line).windows(2).any(|pair| {
         let [a, b] = [pair[0], pair[1]];
         let along = [b[0] - a[0], b[1] - a[1]];
         let length = along[0].hypot(along[1]);
         let part = (((x - a[0]) * along[0] + (y - a[1]) * along[1]) / (length * length)).clamp(0.0, 1.0);
-        (a[0] + part * along[0] - x).hypot(a[1] + part * along[1] - y) <= 4.0 * WALL
+        (a[0] + part * along[0] - x).hypot(a[1] + part * along[1] - y) <= distance
     })
+}
+
+fn near_lake(scene: &Scene, [x, y]: [f64; 2]) -> bool {
+    let at = [(x * 16.0) as i64, (y * 16.0) as i64];
+    scene.lakes.iter().any(|(lake, _)| position(lake, at, 16) != Position::Outside)
 }
 
 /// Returns true if a position, in units of 1 / 16, lies in a lake or on its shore, or may lie in a
 /// river.
 fn near_water(scene: &Scene, at: [i64; 2]) -> bool {
-    let in_lake = scene.lakes.iter().any(|(lake, _)| position(lake, at, 16) != Position::Outside);
-    let [x, y] = at.map(|c| c as f64 / 16.0);
-    let near = |line: &Vec<[i64; 3]>| {
-        floats(line).windows(2).any(|pair| {
-            let [a, b] = [pair[0], pair[1]];
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let length = along[0].hypot(along[1]);
-            let part = (((x - a[0]) * along[0] + (y - a[1]) * along[1]) / (length * length)).clamp(0.0, 1.0);
-            (a[0] + part * along[0] - x).hypot(a[1] + part * along[1] - y) <= 1.5
-        })
-    };
-    in_lake || scene.rivers.iter().any(near)
+    let p = at.map(|c| c as f64 / 16.0);
+    near_lake(scene, p) || scene.rivers.iter().any(|river| near_line(river, p, 1.5 * RIVER))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

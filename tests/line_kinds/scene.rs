@@ -1,5 +1,6 @@
 //! Random sets of lines and areas of all kinds over points, on small integer grids.
 
+use breakline::data::Bounds;
 use breakline::terrain::{Flat, FlatHeight, HighSide, River, Tin, TinBuilder, Wall};
 use testkit::random::Random;
 
@@ -19,14 +20,19 @@ pub(crate) struct Scene {
     pub(crate) walls: Vec<Line>,
     /// Rings with the height of the water.
     pub(crate) lakes: Vec<(Ring, i64)>,
-    /// Lines along the middle of rivers of width 1.
+    /// Lines along the middle of rivers.
     pub(crate) rivers: Vec<Line>,
     pub(crate) holes: Vec<Ring>,
     pub(crate) draped: Vec<Line>,
+    /// The lower left and upper right corner of the box that the surface is clipped to.
+    pub(crate) bounds: Option<[[i64; 2]; 2]>,
 }
 
 /// The width of walls in a scene.
 pub(crate) const WALL: f64 = 1.0 / 1024.0;
+
+/// The width of rivers in a scene.
+pub(crate) const RIVER: f64 = 1.0;
 
 impl Scene {
     /// A scene with up to a few of each kind, of which `kinds` selects some (a bit for each).
@@ -47,6 +53,13 @@ impl Scene {
         scene.rivers = (0..count(random, 4)).map(|_| line(random, 3)).collect();
         scene.holes = (0..count(random, 5)).map(|_| triangle(random)).collect();
         scene.draped = (0..count(random, 6)).map(|_| line(random, 3)).collect();
+        if random.below(3) == 0 {
+            let [[x0, x1], [y0, y1]] = [0, 1].map(|_: u8| {
+                let low = random.below(SIDE as u64 / 2) as i64;
+                [low, low + 1 + random.below((SIDE - low) as u64) as i64]
+            });
+            scene.bounds = Some([[x0, y0], [x1, y1]]);
+        }
         scene
     }
 
@@ -68,7 +81,12 @@ impl Scene {
         if order > 0 {
             random.shuffle(&mut kinds);
         }
+        let bounds = self.bounds.map(|[min, max]| {
+            let corner = |[x, y]: [i64; 2], z: f64| [x as f64, y as f64, z];
+            Bounds { min: corner(min, f64::NEG_INFINITY), max: corner(max, f64::INFINITY) }
+        });
         let mut builder = TinBuilder::default();
+        builder.bounds = bounds;
         for kind in kinds {
             scene.add(kind, &mut builder)?;
         }
@@ -96,7 +114,7 @@ impl Scene {
             }
             5 => {
                 for middle in &self.rivers {
-                    builder.add_river(River::along(&floats(middle), 1.0)?);
+                    builder.add_river(River::along(&floats(middle), RIVER)?);
                 }
             }
             6 => self.holes.iter().for_each(|ring| builder.add_hole(&[plan(ring)])),

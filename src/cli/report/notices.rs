@@ -111,6 +111,23 @@ fn text(notice: &Notice) -> String {
             }
             text
         }
+        Notice::RiverOverlap { rivers, name, at } => {
+            let [x, y] = at.map(neat);
+            let others = if *rivers > 1 { &format!(" (and {} others)", rivers - 1) } else { "" };
+            format!(
+                "the banks of the river {name} meet near {x} {y}{others}: what they enclose twice is not water; divide \
+                 the line, or make it narrower"
+            )
+        }
+        Notice::WallsInWater { vertices, name, at } => {
+            let [x, y] = at.map(neat);
+            let count = if *vertices == 1 { "1 vertex" } else { &format!("{vertices} vertices") };
+            format!(
+                "{count} of walls have the height of water, which counts first (at {x} {y} of {name}): draw walls behind \
+                 the shore, by more than their width"
+            )
+        }
+        Notice::LinesApart(role) => format!("nothing of {} lies on the surface", role.option()),
         Notice::CrossingHeights { count, largest, at, .. } => {
             let points = if *count == 1 { "1 point" } else { &format!("{count} points") };
             let [x, y] = at.map(neat);

@@ -22,19 +22,18 @@
 //! triangles. Nothing is inserted.
 
 mod base;
-mod boxes;
 mod natural;
 mod smooth;
 mod vertices;
 
 use std::sync::OnceLock;
 
+use super::boxes::{Boxed, Boxes, Extent};
 use super::linear::linear;
 use crate::data::{Surface, corners, faces_under, orientation};
 use crate::error::Result;
 use crate::triangulation::num::Sign;
 use base::{Base, Site};
-use boxes::{Boxed, Boxes, Extent};
 use natural::{Tour, laplace, sibson};
 use smooth::Patch;
 use vertices::{Search, Vertices};

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::boxes::{Boxed, Boxes, Extent, Near};
+use super::super::boxes::{Boxed, Boxes, Extent, Near};
 use crate::data::{Surface, faces_under};
 
 /// The number of vertices that inverse distance weighting uses.

@@ -2,7 +2,9 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{Flat, River, Wall};
+use std::cell::OnceCell;
+
+use super::{Flat, River, RiverWater, Wall};
 use crate::error::{Error, Result};
 use crate::terrain::Inside;
 use crate::terrain::regions::{self, Domain, Faces};
@@ -35,7 +37,12 @@ pub(in crate::terrain) struct Replaced {
     polygons: Vec<Rings>,
     /// Shores, by the distance up to which points outside are replaced, too.
     buffers: Vec<(f64, Vec<Rings>)>,
+    /// Rings whose vertices were computed: a point on one of them may be outside by rounding.
+    computed: Vec<Rings>,
 }
+
+/// How far rounding moves a computed vertex, in units in the last place of the largest coordinate.
+const ROUNDING: f64 = 4.0;
 
 impl Replaced {
     pub(in crate::terrain) fn add_flat(&mut self, flat: &Flat) {
@@ -51,6 +58,7 @@ impl Replaced {
 
     pub(in crate::terrain) fn add_river(&mut self, river: &River) {
         self.polygons.push(vec![river.ring()]);
+        self.computed.push(vec![river.ring()]);
     }
 
     pub(in crate::terrain) fn add_wall(&mut self, wall: &Wall) {
@@ -67,8 +75,10 @@ impl Replaced {
     /// For each point, linear in the sides of the areas at about its y.
     pub(in crate::terrain) fn split_off(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
         let inside = Inside::new(&self.polygons);
-        let near: Vec<(f64, Inside)> =
-            self.buffers.iter().map(|(buffer, shores)| (*buffer, Inside::new(shores))).collect();
+        let largest = self.computed.iter().flatten().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let rounded = (ROUNDING * f64::EPSILON * largest, &self.computed);
+        let buffers = self.buffers.iter().map(|(buffer, shores)| (*buffer, shores)).chain([rounded]);
+        let near: Vec<(f64, Inside)> = buffers.map(|(distance, rings)| (distance, Inside::new(rings))).collect();
         let mut replaced = Vec::new();
         points.retain(|&p| {
             let site = [p[0], p[1]];
@@ -120,7 +130,7 @@ pub(in crate::terrain) struct Leveled {
 /// If lakes of different heights overlap or touch.
 ///
 /// # Complexity
-/// Linear in the cells; for vertices in rivers, also in the number of their level lines.
+/// Linear in the cells; for vertices in rivers, also logarithmic in the number of level lines.
 pub(in crate::terrain) fn level(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
     waters: &[Water],
@@ -167,6 +177,7 @@ pub(in crate::terrain) fn level(
     let mut vertices: Vec<(VertexId, Vec<Domain>)> = around.into_iter().collect();
     vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
     let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(vertices.len());
+    let surfaces: Vec<OnceCell<RiverWater>> = waters.iter().map(|_| OnceCell::new()).collect();
     for (vertex, mut areas) in vertices {
         areas.sort_unstable();
         areas.dedup();
@@ -184,11 +195,11 @@ pub(in crate::terrain) fn level(
             continue;
         }
         let rivers = areas.iter().filter_map(|&area| match &waters[area].level {
-            Level::River(river) if own.contains(&(area, vertex)) => Some((river, z)),
-            Level::River(river) => Some((river, river.height_at([x, y]))),
+            Level::River(_) if own.contains(&(area, vertex)) => Some(z),
+            Level::River(river) => Some(surfaces[area].get_or_init(|| RiverWater::new(river)).height([x, y])),
             Level::Flat(_) => None,
         });
-        let lowest = rivers.map(|(_, height)| height).fold(f64::INFINITY, f64::min);
+        let lowest = rivers.fold(f64::INFINITY, f64::min);
         if lowest.is_finite() {
             new_heights.push((vertex, lowest));
         }

@@ -93,9 +93,10 @@ fn check_ring(ring: &[[f64; 3]]) -> Result<()> {
         ))
         .cure("a lake needs a closed ring: join its ends, or pass polygons"));
     }
-    let area: f64 = ring.windows(2).map(|pair| cross(*first, pair[0], pair[1])).sum();
+    // Twice the areas of a fan of triangles; rings like an 8 have parts of both signs.
+    let area: f64 = ring.windows(2).map(|pair| cross(*first, pair[0], pair[1]).abs()).sum();
     let extent = ring.iter().fold(0.0_f64, |most, p| most.max((p[0] - first[0]).abs()).max((p[1] - first[1]).abs()));
-    if ring.len() < 4 || area.abs() <= extent * extent * f64::EPSILON {
+    if ring.len() < 4 || area <= extent * extent * f64::EPSILON {
         return Err(Error::format(format!("the shore at {} {} encloses nothing", first[0], first[1]))
             .cure("remove the record, or give the ring its vertices"));
     }
@@ -143,5 +144,7 @@ mod tests {
         assert!(message(ring([1.0; 4]), FlatHeight::Given(f64::NAN)).contains("NaN"));
         assert!(Flat::new(&[ring([f64::NAN; 4])], FlatHeight::Given(1.0)).is_ok());
         assert!(Flat::new(&[], FlatHeight::Lowest).is_err());
+        let eight = [[0.0, 0.0, 1.0], [4.0, 4.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0, 0.0, 1.0]];
+        assert!(Flat::new(&[eight.to_vec()], FlatHeight::Lowest).is_ok());
     }
 }

@@ -21,5 +21,6 @@ mod wall;
 
 pub use densify::densified;
 pub use flat::{Flat, FlatHeight};
+pub(super) use river::RiverWater;
 pub use river::{River, RiverHeights};
 pub use wall::{HighSide, Wall};

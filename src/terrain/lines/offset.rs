@@ -27,6 +27,62 @@ pub(super) fn offset(line: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
     (0..line.len()).map(at).collect()
 }
 
+/// Returns a parallel line without folds: where it runs against its line, as it does on the inside
+/// of bends that are tighter than its distance, its vertices move to one point: where its straight
+/// parts before and after the bend meet, or else their mean.
+///
+/// # Complexity
+/// Linear.
+pub(super) fn unfolded(parallel: &[[f64; 2]], line: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    // Runs of vertices that become one, as pool adjacent violators: sums of both lines, and a
+    // count.
+    let mut runs: Vec<([[f64; 2]; 2], usize)> = Vec::new();
+    for (&p, &q) in parallel.iter().zip(line) {
+        let mut run = ([p, q], 1);
+        while let Some((sums, count)) = runs.last()
+            && !advances((sums, *count), (&run.0, run.1))
+        {
+            run = ([0, 1].map(|of| [0, 1].map(|axis| sums[of][axis] + run.0[of][axis])), count + run.1);
+            runs.pop();
+        }
+        runs.push(run);
+    }
+    let mut smooth: Vec<[f64; 2]> = Vec::with_capacity(parallel.len());
+    for ([sum, _], count) in runs {
+        let (first, next) = (smooth.len(), smooth.len() + count);
+        let meet = || {
+            let before = first.checked_sub(1)?;
+            let [from, to] = [[before, first], [next - 1, next]].map(|ends| ends.map(|k| line.get(k)));
+            let directions = [step(*from[0]?, *from[1]?), step(*to[0]?, *to[1]?)];
+            meeting(parallel[before], parallel[next], directions)
+        };
+        let mean = sum.map(|c| c / count as f64);
+        let point = if count > 1 { meet().unwrap_or(mean) } else { mean };
+        smooth.extend(std::iter::repeat_n(point, count));
+    }
+    smooth
+}
+
+/// The point that lies ahead of one point in one direction, and behind another in a second one.
+fn meeting(p: [f64; 2], q: [f64; 2], [ahead, onward]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+    let turn = cross(ahead, onward);
+    let gap = step(p, q);
+    let (along, back) = (cross(gap, onward) / turn, cross(gap, ahead) / turn);
+    (along > 0.0 && back < 0.0).then(|| [0, 1].map(|axis| p[axis] + along * ahead[axis]))
+}
+
+fn step(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    [to[0] - from[0], to[1] - from[1]]
+}
+
+/// Returns true if a parallel line runs in the direction of its line from one run to the next.
+fn advances(from: (&[[f64; 2]; 2], usize), to: (&[[f64; 2]; 2], usize)) -> bool {
+    let step = |of: usize| [0, 1].map(|axis| to.0[of][axis] / to.1 as f64 - from.0[of][axis] / from.1 as f64);
+    let [parallel, line] = [step(0), step(1)];
+    parallel[0] * line[0] + parallel[1] * line[1] > 0.0
+}
+
 /// The unit vector to the left of a segment.
 fn normal([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> [f64; 2] {
     let length = (bx - ax).hypot(by - ay);
@@ -35,7 +91,7 @@ fn normal([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::offset;
+    use super::*;
 
     #[test]
     fn corners_are_mitered() {
@@ -54,6 +110,24 @@ mod tests {
         assert!((hairpin[1][0] - 4.0).hypot(hairpin[1][1]) < 2.001);
         assert!(offset(&[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]], 1.0).iter().flatten().all(|c| c.is_finite()));
         assert!(offset(&[[1.0, 1.0]], 1.0).is_empty());
+    }
+
+    #[test]
+    fn folds_become_one_point() {
+        // A right angle, rounded with a radius of 1.
+        let arc = (0..=9).map(|k| (f64::from(k) * 10.0 - 90.0).to_radians()).map(|a| [9.0 + a.cos(), 1.0 + a.sin()]);
+        let line: Vec<[f64; 2]> = [[0.0, 0.0]].into_iter().chain(arc).chain([[10.0, 10.0]]).collect();
+        for distance in [0.5, 3.0, -3.0] {
+            let parallel = offset(&line, distance);
+            let smooth = unfolded(&parallel, &line);
+            assert_eq!(smooth == parallel, distance < 1.0);
+            let steps = smooth.windows(2).zip(line.windows(2));
+            let along = steps.map(|(p, q)| (0..2).map(|k| (p[1][k] - p[0][k]) * (q[1][k] - q[0][k])).sum::<f64>());
+            assert!(along.into_iter().all(|along| along >= 0.0), "{distance}: {smooth:?}");
+        }
+        let inner = unfolded(&offset(&line, 3.0), &line);
+        assert_eq!((inner[0], inner[11]), ([0.0, 3.0], [7.0, 10.0]));
+        assert!(inner[1..11].iter().all(|p| p == &inner[1] && (p[0] - 7.0).hypot(p[1] - 3.0) < 1e-9), "{inner:?}");
     }
 
     /// Maps an expected point to the computed one that is within a rounding of it.

@@ -43,6 +43,21 @@ impl Wall {
     /// no height anywhere or its lower edge is above the upper one, or if it is narrower than
     /// rounding allows.
     pub fn new(upper: &[[f64; 3]], lower: &[f64], width: f64, high: HighSide) -> Result<Self> {
+        Self::continued(upper, lower, width, high, [None, None])
+    }
+
+    /// Like [`new`](Wall::new), for one of several walls that continue each other: their lower
+    /// edges meet, too. `neighbors` are the vertices before and after the line, in other walls.
+    ///
+    /// # Errors
+    /// Those of [`new`](Wall::new).
+    pub fn continued(
+        upper: &[[f64; 3]],
+        lower: &[f64],
+        width: f64,
+        high: HighSide,
+        neighbors: [Option<[f64; 2]>; 2],
+    ) -> Result<Self> {
         if lower.len() != upper.len() {
             return Err(Error::format(format!("{} vertices, but {} lower heights", upper.len(), lower.len())));
         }
@@ -68,12 +83,14 @@ impl Wall {
             return Err(Error::usage(format!("a wall of width {width}, expected at least {narrowest:e}")));
         }
         let site = |(p, _): &([f64; 3], f64)| [p[0], p[1]];
-        let sites: Vec<[f64; 2]> = vertices.iter().map(site).collect();
+        let [before, after] = neighbors;
+        let sites: Vec<[f64; 2]> = before.into_iter().chain(vertices.iter().map(site)).chain(after).collect();
         let distance = match high {
             HighSide::Left => -width,
             HighSide::Right => width,
         };
         let beside = offset(&sites, distance);
+        let beside = &beside[usize::from(before.is_some())..];
         let lower = beside.iter().zip(&vertices).map(|(&[x, y], &(_, low))| [x, y, low]).collect();
         Ok(Wall { upper: vertices.into_iter().map(|(p, _)| p).collect(), lower })
     }
@@ -99,7 +116,7 @@ impl Wall {
         }
         let same = |(p, q): (&[f64; 3], &[f64; 3])| p[..2] == q[..2];
         if upper.len() == lower.len() && upper.iter().zip(&lower).all(same) {
-            return Err(Error::format("both edges of the wall are at the same place in plan")
+            return Err(Error::format("both edges of the wall are the same in plan")
                 .cure("draw them apart, or give the upper edge alone, with --wall-bottom or --wall-drop"));
         }
         let mean = |edge: &[[f64; 3]]| edge.iter().map(|p| p[2]).sum::<f64>() / edge.len() as f64;
@@ -143,12 +160,23 @@ mod tests {
     }
 
     #[test]
+    fn walls_that_continue_each_other_meet_below() {
+        let corner = [[8.0, 0.0, 4.0], [8.0, 6.0, 4.0]];
+        let first = Wall::continued(&LINE, &[1.0; 3], 0.5, HighSide::Left, [None, Some([8.0, 6.0])]).unwrap();
+        let second = Wall::continued(&corner, &[1.0; 2], 0.5, HighSide::Left, [Some([4.0, 0.0]), None]).unwrap();
+        assert_eq!(first.lower[2], second.lower[0]);
+        let joined = [LINE.as_slice(), &corner[1..]].concat();
+        let whole = Wall::new(&joined, &[1.0; 4], 0.5, HighSide::Left).unwrap();
+        assert_eq!([first.lower.as_slice(), &second.lower[1..]].concat(), whole.lower);
+    }
+
+    #[test]
     fn two_edges_stay_where_they_are() {
         let lower = [[8.0, 0.5, 1.0], [0.0, 0.5, 2.0]]; // drawn the other way
         let wall = Wall::between(&LINE, &lower).unwrap();
         assert_eq!((wall.upper, wall.lower), (LINE.to_vec(), vec![lower[1], lower[0]]));
         assert!(Wall::between(&lower, &LINE).unwrap_err().to_string().contains("not below the first"));
-        assert!(Wall::between(&LINE, &LINE).unwrap_err().to_string().contains("same place"));
+        assert!(Wall::between(&LINE, &LINE).unwrap_err().to_string().contains("the same in plan"));
         assert!(Wall::between(&LINE, &lower[..1]).is_err());
     }
 

@@ -20,7 +20,12 @@ impl Extent {
 
     /// Returns the box of some points.
     pub(super) fn of(points: impl IntoIterator<Item = [f64; 3]>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |extent, [x, y, _]| extent.with(Extent { min: [x, y], max: [x, y] }))
+        Self::of_plan(points.into_iter().map(|[x, y, _]| [x, y]))
+    }
+
+    /// Returns the box of some positions.
+    pub(super) fn of_plan(sites: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        sites.into_iter().fold(Self::EMPTY, |extent, site| extent.with(Extent { min: site, max: site }))
     }
 
     fn with(self, other: Extent) -> Self {
@@ -34,8 +39,8 @@ impl Extent {
         self.min[axis] / 2.0 + self.max[axis] / 2.0
     }
 
-    fn contains(&self, q: [f64; 2]) -> bool {
-        (0..2).all(|i| self.min[i] <= q[i] && q[i] <= self.max[i])
+    fn overlaps(&self, other: &Extent) -> bool {
+        (0..2).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
     }
 
     /// Returns the square of the distance to a position; 0 within.
@@ -77,11 +82,16 @@ impl<T: Boxed> Boxes<T> {
         Boxes { items, nodes: levels.concat() }
     }
 
-    /// Calls `each` with items whose box contains a position, until it returns a value.
-    pub(super) fn find<R>(&self, q: [f64; 2], mut each: impl FnMut(&T) -> Option<R>) -> Option<R> {
+    /// Calls `each` with items whose box may contain a position, until it returns a value.
+    pub(super) fn find<R>(&self, q: [f64; 2], each: impl FnMut(&T) -> Option<R>) -> Option<R> {
+        self.find_in(Extent { min: q, max: q }, each)
+    }
+
+    /// Calls `each` with items whose box may overlap another box, until it returns a value.
+    pub(super) fn find_in<R>(&self, extent: Extent, mut each: impl FnMut(&T) -> Option<R>) -> Option<R> {
         let mut left = vec![(0, 0, self.items.len())];
         while let Some((node, start, end)) = left.pop() {
-            if start == end || !self.nodes[node].contains(q) {
+            if start == end || !self.nodes[node].overlaps(&extent) {
                 continue;
             }
             if 2 * node + 2 < self.nodes.len() {

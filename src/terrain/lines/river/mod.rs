@@ -1,14 +1,17 @@
 //! Rivers: two banks, level from one to the other, never rising downstream.
 
-use super::offset::offset;
+mod downstream;
+mod stations;
+mod water;
+
+use super::offset::{offset, unfolded};
 use crate::data::orientation;
 use crate::error::{Error, Result};
+use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::triangulation::num::Sign;
+use stations::stations;
 
-/// How much of the even distribution is mixed to the nearest points: many vertices of the outer
-/// bank of a bend are nearest to one point of the inner bank, and their level lines must not meet
-/// there.
-const EVEN: f64 = 0.05;
+pub(in crate::terrain) use water::RiverWater;
 
 /// A river between two banks.
 ///
@@ -26,7 +29,9 @@ const EVEN: f64 = 0.05;
 #[derive(Debug, Clone, PartialEq)]
 pub struct River {
     /// The ends of the level lines, in order downstream: left, right. Both have one height.
-    pub(in crate::terrain) stations: Vec<[[f64; 3]; 2]>,
+    stations: Vec<[[f64; 3]; 2]>,
+    /// The middles of the first and the last level line: where other rivers may continue it.
+    ends: [[f64; 2]; 2],
     heights: RiverHeights,
 }
 
@@ -45,6 +50,15 @@ pub struct RiverHeights {
     pub difference_at: [f64; 2],
 }
 
+impl RiverHeights {
+    fn add_rise(&mut self, rise: f64, at: [f64; 2]) {
+        self.rising += 1;
+        if rise > self.largest_rise {
+            (self.largest_rise, self.rise_at) = (rise, at);
+        }
+    }
+}
+
 impl River {
     /// Returns a river from its banks, which may be drawn in opposite directions. The end with the
     /// lower water is downstream.
@@ -53,7 +67,7 @@ impl River {
     /// If a bank has fewer than two distinct vertices or a vertex without a height.
     ///
     /// # Complexity
-    /// O(n m) for banks of n and m vertices.
+    /// O(n log n) for n vertices.
     pub fn between(left: &[[f64; 3]], right: &[[f64; 3]]) -> Result<Self> {
         let left = clean(left)?;
         let mut right = clean(right)?;
@@ -62,10 +76,14 @@ impl River {
             right.reverse();
         }
         let stations = stations(&left, &right);
-        Ok(Self::leveled(stations))
+        let ends = [stations[0], stations[stations.len() - 1]].map(|ends| middle(&ends));
+        Ok(Self::leveled(stations, ends))
     }
 
     /// Returns a river from the line along its middle, with heights, and its width.
+    ///
+    /// Where the line bends so sharply that level lines would cross on the inner bank, they meet
+    /// there in one point, and the water is level around the bend.
     ///
     /// # Errors
     /// If the line has fewer than two distinct vertices or a vertex without a height, or if the
@@ -76,11 +94,12 @@ impl River {
                 .cure("fill the attribute of --river-width, or give a number"));
         }
         let middle = clean(middle)?;
-        let sites: Vec<[f64; 2]> = middle.iter().map(|p| [p[0], p[1]]).collect();
-        let [left, right] = [width / 2.0, -width / 2.0].map(|distance| offset(&sites, distance));
+        let sites: Vec<[f64; 2]> = middle.iter().copied().map(flat).collect();
+        let [left, right] = [width / 2.0, -width / 2.0].map(|distance| unfolded(&offset(&sites, distance), &sites));
         let at = |([l, r], p): ([[f64; 2]; 2], &[f64; 3])| [[l[0], l[1], p[2]], [r[0], r[1], p[2]]];
-        let ends = left.into_iter().zip(right).map(|(l, r)| [l, r]);
-        Ok(Self::leveled(ends.zip(&middle).map(at).collect()))
+        let opposite = left.into_iter().zip(right).map(|(l, r)| [l, r]);
+        let ends = [sites[0], sites[sites.len() - 1]];
+        Ok(Self::leveled(opposite.zip(&middle).map(at).collect(), ends))
     }
 
     /// Returns how far the heights of the banks were from those of water.
@@ -89,50 +108,79 @@ impl River {
     }
 
     /// Gives each station the lower height of its ends, but no more than upstream.
-    fn leveled(mut stations: Vec<[[f64; 3]; 2]>) -> Self {
+    fn leveled(stations: Vec<[[f64; 3]; 2]>, ends: [[f64; 2]; 2]) -> Self {
         let lower = |[left, right]: &[[f64; 3]; 2]| left[2].min(right[2]);
-        if let (Some(first), Some(last)) = (stations.first(), stations.last())
+        let mut river = River { stations, ends, heights: RiverHeights::default() };
+        if let (Some(first), Some(last)) = (river.stations.first(), river.stations.last())
             && lower(first) < lower(last)
         {
-            stations.reverse();
-            stations.iter_mut().for_each(|ends| ends.swap(0, 1));
+            river.reverse();
         }
-        let mut heights = RiverHeights::default();
         let mut level = f64::INFINITY;
-        for ends in &mut stations {
-            let at = [(ends[0][0] + ends[1][0]) / 2.0, (ends[0][1] + ends[1][1]) / 2.0];
+        for ends in &mut river.stations {
+            let at = middle(ends);
             let (water, difference) = (lower(ends), (ends[0][2] - ends[1][2]).abs());
             if water > level {
-                heights.rising += 1;
-                if water - level > heights.largest_rise {
-                    (heights.largest_rise, heights.rise_at) = (water - level, at);
-                }
+                river.heights.add_rise(water - level, at);
             }
-            if difference > heights.largest_difference {
-                (heights.largest_difference, heights.difference_at) = (difference, at);
+            if difference > river.heights.largest_difference {
+                (river.heights.largest_difference, river.heights.difference_at) = (difference, at);
             }
             level = level.min(water);
             ends.iter_mut().for_each(|end| end[2] = level);
         }
-        River { stations, heights }
+        // Level lines that meet have one height, the lowest.
+        for k in (1..river.stations.len()).rev() {
+            let [before, after] = [river.stations[k - 1], river.stations[k]];
+            if (0..2).any(|side| flat(before[side]) == flat(after[side])) {
+                river.stations[k - 1].iter_mut().for_each(|end| end[2] = after[0][2]);
+            }
+        }
+        river
+    }
+
+    /// Exchanges upstream and downstream.
+    fn reverse(&mut self) {
+        self.stations.reverse();
+        self.stations.iter_mut().for_each(|ends| ends.swap(0, 1));
+        self.ends.reverse();
+    }
+
+    /// The heights at both ends.
+    fn levels(&self) -> [f64; 2] {
+        let level = |ends: Option<&[[f64; 3]; 2]>| ends.map_or(f64::NAN, |ends| ends[0][2]);
+        [level(self.stations.first()), level(self.stations.last())]
+    }
+
+    /// Lowers what is above a level, which the river has where another arrives at its beginning.
+    fn lower_to(&mut self, level: f64) {
+        self.heights.add_rise(self.levels()[0] - level, self.ends[0]);
+        self.stations.iter_mut().flatten().for_each(|end| end[2] = end[2].min(level));
     }
 
     /// The banks, in order downstream.
     pub(in crate::terrain) fn banks(&self) -> [Vec<[f64; 3]>; 2] {
-        [0, 1].map(|side| self.stations.iter().map(|ends| ends[side]).collect())
+        [0, 1].map(|side| {
+            let mut bank: Vec<[f64; 3]> = self.stations.iter().map(|ends| ends[side]).collect();
+            bank.dedup_by(|p, q| flat(*p) == flat(*q));
+            bank
+        })
     }
 
     /// The level lines: the first, the last, and those between that cross neither bank nor the one
     /// before.
+    ///
+    /// # Complexity
+    /// O(n log n) for n stations, if few segments of banks are close to each other.
     pub(in crate::terrain) fn level_lines(&self) -> Vec<[[f64; 3]; 2]> {
-        let banks = self.banks();
-        let sides: Vec<[[f64; 3]; 2]> =
-            banks.iter().flat_map(|bank| bank.windows(2).map(|pair| [pair[0], pair[1]])).collect();
         let (Some(first), Some(last)) = (self.stations.first(), self.stations.last()) else { return Vec::new() };
+        let sides = self.banks().into_iter().flat_map(|bank| sides(&bank));
+        let sides = Boxes::new(sides.collect());
         let mut lines: Vec<[[f64; 3]; 2]> = vec![*first];
         for line in self.stations.iter().skip(1).take(self.stations.len().saturating_sub(2)) {
             let before = lines[lines.len() - 1];
-            if !cross(line, &before) && !cross(line, last) && !sides.iter().any(|side| cross(line, side)) {
+            let crosses = |side: &Side| cross(line, &side.0).then_some(());
+            if !cross(line, &before) && !cross(line, last) && sides.find_in(Side(*line).extent(), crosses).is_none() {
                 lines.push(*line);
             }
         }
@@ -140,28 +188,40 @@ impl River {
         lines
     }
 
+    /// Returns a position at which the ring around the water meets itself; `None` if it does not.
+    /// Areas that it encloses twice are not water.
+    ///
+    /// # Complexity
+    /// O(n log n) for n stations, if few segments of banks are close to each other.
+    pub fn overlap(&self) -> Option<[f64; 2]> {
+        let [left, right] = self.banks();
+        let mut ring: Vec<[f64; 3]> = left.into_iter().chain(right.into_iter().rev()).collect();
+        ring.extend(ring.first().copied());
+        let all = sides(&ring);
+        let boxes = Boxes::new(all.clone());
+        all.iter()
+            .find_map(|side| boxes.find_in(side.extent(), |other| cross(&side.0, &other.0).then(|| middle(&side.0))))
+    }
+
     /// The ring around the water.
     pub(in crate::terrain) fn ring(&self) -> Vec<[f64; 2]> {
         let [left, right] = self.banks();
-        left.iter().chain(right.iter().rev()).map(|p| [p[0], p[1]]).collect()
+        left.into_iter().chain(right.into_iter().rev()).map(flat).collect()
     }
+}
 
-    /// The height of the water at a position; outside of it, that of the nearest level line.
-    ///
-    /// # Complexity
-    /// Linear in the number of level lines.
-    pub(in crate::terrain) fn height_at(&self, q: [f64; 2]) -> f64 {
-        for pair in self.stations.windows(2) {
-            let [[a, b], [c, d]] = [pair[0], pair[1]];
-            for corners in [[a, b, c], [b, d, c]] {
-                if contains(corners, q) {
-                    return super::super::linear::linear(corners, q);
-                }
-            }
-        }
-        let nearest = self.stations.iter().min_by(|s, t| squared(s, q).total_cmp(&squared(t, q)));
-        nearest.map_or(f64::NAN, |ends| ends[0][2])
+/// A segment of a bank.
+#[derive(Debug, Clone, Copy)]
+struct Side([[f64; 3]; 2]);
+
+impl Boxed for Side {
+    fn extent(&self) -> Extent {
+        Extent::of(self.0)
     }
+}
+
+fn sides(line: &[[f64; 3]]) -> Vec<Side> {
+    line.windows(2).map(|pair| Side([pair[0], pair[1]])).collect()
 }
 
 /// The vertices of a bank without repetitions.
@@ -171,133 +231,24 @@ fn clean(bank: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
             .cure("name the attribute with the heights: --rivers FILE:FIELD"));
     }
     let mut clean = bank.to_vec();
-    clean.dedup_by(|p, q| p[..2] == q[..2]);
+    clean.dedup_by(|p, q| flat(*p) == flat(*q));
     match clean.len() {
         0 | 1 => Err(Error::format("a bank has fewer than two distinct vertices")),
         _ => Ok(clean),
     }
 }
 
-/// Pairs of points on both banks, strictly advancing on each: one for each vertex of either.
-///
-/// Positions are fractions of the length of a bank. Each vertex and the nearest point of the other
-/// bank are a pair of positions. The pairs are made ascending on both banks, and define a map from
-/// one bank to the other, linear in between.
-fn stations(left: &[[f64; 3]], right: &[[f64; 3]]) -> Vec<[[f64; 3]; 2]> {
-    let [on_left, on_right] = [left, right].map(fractions);
-    let mut pairs: Vec<[f64; 2]> =
-        left.iter().zip(&on_left).map(|(p, u)| [*u, nearest_on(right, &on_right, *p)]).collect();
-    pairs.extend(right.iter().zip(&on_right).map(|(p, v)| [nearest_on(left, &on_left, *p), *v]));
-    pairs.sort_by(|p, q| (p[0] + p[1]).total_cmp(&(q[0] + q[1])).then(p[0].total_cmp(&q[0])));
-    let [u, v] = [0, 1].map(|bank| ascending(&pairs.iter().map(|pair| pair[bank]).collect::<Vec<f64>>()));
-    let even = |(u, v): (&f64, &f64)| [u, v].map(|position| (1.0 - EVEN) * position + EVEN * (u + v) / 2.0);
-    let mut map: Vec<[f64; 2]> = u.iter().zip(&v).map(even).collect();
-    // The ends of the banks belong together, and to nothing else.
-    map.retain(|pair| pair.iter().all(|position| (TIE..=1.0 - TIE).contains(position)));
-    map.insert(0, [0.0, 0.0]);
-    map.dedup_by(|p, q| p[0] - q[0] < TIE || p[1] - q[1] < TIE);
-    map.push([1.0, 1.0]);
-    let across = |from: usize, position: f64| {
-        let next = map.partition_point(|pair| pair[from] <= position).clamp(1, map.len() - 1);
-        let [low, high] = [map[next - 1], map[next]];
-        let part = (position - low[from]) / (high[from] - low[from]);
-        (low[1 - from] + part * (high[1 - from] - low[1 - from])).clamp(0.0, 1.0)
-    };
-    // A position that is almost that of a vertex becomes it.
-    let at_vertex = |fractions: &[f64], position: f64| {
-        let next = fractions.partition_point(|fraction| *fraction < position - TIE);
-        fractions.get(next).copied().filter(|fraction| *fraction <= position + TIE).unwrap_or(position)
-    };
-    let inner = |fractions: &[f64]| fractions[1..fractions.len() - 1].to_vec();
-    let mut found: Vec<[f64; 2]> =
-        inner(&on_left).into_iter().map(|u| [u, at_vertex(&on_right, across(0, u))]).collect();
-    found.extend(inner(&on_right).into_iter().map(|v| [at_vertex(&on_left, across(1, v)), v]));
-    found.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
-    found.dedup();
-    found.retain(|[u, v]| *u > 0.0 && *v > 0.0 && *u < 1.0 && *v < 1.0);
-    let inner = found.iter().map(|[u, v]| [at(left, &on_left, *u), at(right, &on_right, *v)]);
-    let [first, last] = [[left[0], right[0]], [left[left.len() - 1], right[right.len() - 1]]];
-    std::iter::once(first).chain(inner).chain([last]).collect()
+fn flat([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
 }
 
-/// Fractions that differ by less are the same position.
-const TIE: f64 = 1e-7;
-
-/// The length of a line up to each vertex, as a fraction of its whole length.
-fn fractions(line: &[[f64; 3]]) -> Vec<f64> {
-    let mut sum = 0.0;
-    let lengths = line.windows(2).map(|pair| {
-        sum += distance(pair[0], pair[1]);
-        sum
-    });
-    let lengths: Vec<f64> = std::iter::once(0.0).chain(lengths).collect();
-    let whole = lengths[lengths.len() - 1];
-    lengths.into_iter().map(|length| length / whole).collect()
-}
-
-/// The ascending sequence that is nearest to numbers, by least squares (pool adjacent violators).
-fn ascending(numbers: &[f64]) -> Vec<f64> {
-    let mut blocks: Vec<(f64, usize)> = Vec::new();
-    for &number in numbers {
-        let mut block = (number, 1);
-        while let Some(&(mean, count)) = blocks.last()
-            && mean > block.0
-        {
-            block.0 = (mean * count as f64 + block.0 * block.1 as f64) / (count + block.1) as f64;
-            block.1 += count;
-            blocks.pop();
-        }
-        blocks.push(block);
-    }
-    blocks.into_iter().flat_map(|(mean, count)| std::iter::repeat_n(mean, count)).collect()
-}
-
-/// The point of a line at a position.
-fn at(line: &[[f64; 3]], fractions: &[f64], position: f64) -> [f64; 3] {
-    let k = fractions.partition_point(|fraction| *fraction <= position).saturating_sub(1);
-    match line.get(k + 1) {
-        Some(next) if position > fractions[k] => {
-            between([line[k], *next], (position - fractions[k]) / (fractions[k + 1] - fractions[k]))
-        }
-        _ => line[k],
-    }
-}
-
-/// The point at a part of a segment.
-fn between([a, b]: [[f64; 3]; 2], part: f64) -> [f64; 3] {
-    [0, 1, 2].map(|axis| a[axis] + part * (b[axis] - a[axis]))
-}
-
-/// The position on a line that is nearest to a point.
-fn nearest_on(line: &[[f64; 3]], fractions: &[f64], p: [f64; 3]) -> f64 {
-    let mut best = (f64::INFINITY, 0.0);
-    for (k, pair) in line.windows(2).enumerate() {
-        let ends = [pair[0], pair[1]];
-        let part = part_of(ends, [p[0], p[1]]);
-        let distance = distance(between(ends, part), p);
-        if distance < best.0 {
-            best = (distance, fractions[k] + part * (fractions[k + 1] - fractions[k]));
-        }
-    }
-    best.1
-}
-
-/// The part of a segment, from 0 to 1, at which it is nearest to a point.
-fn part_of([a, b]: [[f64; 3]; 2], [x, y]: [f64; 2]) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let length = along[0] * along[0] + along[1] * along[1];
-    let part = ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / length;
-    if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 }
+/// The middle of a segment.
+fn middle([a, b]: &[[f64; 3]; 2]) -> [f64; 2] {
+    [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]
 }
 
 fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
-}
-
-/// The squared distance of a point from a segment.
-fn squared(ends: &[[f64; 3]; 2], q: [f64; 2]) -> f64 {
-    let near = between(*ends, part_of(*ends, q));
-    (near[0] - q[0]).powi(2) + (near[1] - q[1]).powi(2)
 }
 
 /// Returns true if two segments share a point other than a common end.
@@ -306,7 +257,7 @@ fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) -> bool {
     if is_apart(0) || is_apart(1) {
         return false;
     }
-    let same = |p: &[f64; 3], q: &[f64; 3]| p[..2] == q[..2];
+    let same = |p: &[f64; 3], q: &[f64; 3]| flat(*p) == flat(*q);
     let (ab, cd) = ([a, b], [c, d]);
     let shared = ab.iter().flat_map(|p| cd.iter().map(move |q| same(p, q))).filter(|is_same| *is_same).count();
     let sides = [[a, b, c], [a, b, d], [c, d, a], [c, d, b]].map(|[p, q, r]| orientation([*p, *q, *r]));
@@ -343,7 +294,7 @@ mod tests {
         assert_eq!(river.stations[0][0], [0.0, 2.0, 5.0]);
         assert_eq!(river.stations[2], [[10.0, 2.0, 4.0], [10.0, 0.0, 4.0]]);
         assert_eq!(river.level_lines().len(), 3);
-        assert_eq!(river.height_at([0.0, 1.0]), 5.0);
+        assert_eq!(RiverWater::new(&river).height([0.0, 1.0]), 5.0);
         assert_eq!(river.heights().rising, 0);
         assert!((river.heights().largest_difference - 1.4).abs() < 1e-12);
     }
@@ -356,8 +307,8 @@ mod tests {
         let heights = river.heights();
         assert_eq!((heights.rising, heights.largest_rise, heights.rise_at), (1, 0.5, [20.0, 0.0]));
         assert_eq!(river.stations[1], [[10.0, 2.0, 3.0], [10.0, -2.0, 3.0]]);
-        assert_eq!(river.height_at([15.0, 0.5]), 3.0);
-        assert_eq!(river.height_at([5.0, -1.0]), 4.0);
+        assert_eq!(RiverWater::new(&river).height([15.0, 0.5]), 3.0);
+        assert_eq!(RiverWater::new(&river).height([5.0, -1.0]), 4.0);
         let mut upstream = middle.to_vec();
         upstream.reverse();
         let other = River::along(&upstream, 4.0).unwrap();

@@ -1,0 +1,146 @@
+//! What looks wrong about lines and areas, and how many edges they became.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use super::context::Journal;
+use super::crossings::LineNames;
+use super::line_request::LineRole;
+use super::notice::Notice;
+use super::units::Units;
+use crate::data::EdgeKind;
+use crate::terrain::{Inside, RiverHeights, Tin, TinReport};
+use crate::triangulation::LineId;
+
+/// How many lines of an input were used.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LineInput {
+    /// What they were used as.
+    pub role: LineRole,
+    /// The file.
+    pub path: PathBuf,
+    /// The lines, walls, lakes, rivers or areas; each part of a line counts.
+    pub lines: usize,
+    /// The distinct edges that they became, before the surface was clipped. Draped lines and areas
+    /// to clip to are counted with the edges of the surface only.
+    pub edges: usize,
+    /// The numbers of the lines of the TIN.
+    pub(super) numbers: Range<usize>,
+}
+
+/// A closed line of one height, that may be a shore.
+pub(super) struct LevelRing {
+    pub(super) line: usize,
+    pub(super) ring: Vec<[f64; 2]>,
+    pub(super) height: f64,
+}
+
+impl LevelRing {
+    /// Returns the ring that a line of the builder is, if it is closed and its heights are within a
+    /// tolerance of the first.
+    pub(super) fn of(points: &[[f64; 3]], line: usize, tolerance: f64) -> Option<Self> {
+        let (first, last) = (points.first()?, points.last()?);
+        let is_ring = points.len() > 3 && first[..2] == last[..2];
+        if !is_ring || points.iter().any(|p| (p[2] - first[2]).abs() > tolerance) {
+            return None;
+        }
+        Some(LevelRing { line, ring: points.iter().map(|p| [p[0], p[1]]).collect(), height: first[2] })
+    }
+}
+
+/// Adds a notice about rivers that overlap themselves.
+pub(super) fn note_overlaps(overlaps: &[(String, [f64; 2])], journal: &Journal) {
+    if let Some((name, at)) = overlaps.first() {
+        journal.add(Notice::RiverOverlap { rivers: overlaps.len(), name: name.clone(), at: *at });
+    }
+}
+
+/// Adds a notice about walls along shores or in water.
+pub(super) fn note_walls_in_water(report: &TinReport, names: &LineNames, journal: &Journal) {
+    if let Some((line, at)) = report.walls_in_water.first() {
+        let (vertices, name) = (report.walls_in_water.len(), names.name(*line));
+        journal.add(Notice::WallsInWater { vertices, name, at: *at });
+    }
+}
+
+/// Adds notices about draped lines and holes, none of which lies on the surface. Nothing else may
+/// clip it.
+pub(super) fn note_apart(inputs: &[LineInput], report: &TinReport, journal: &Journal) {
+    let is_given = |role: LineRole| inputs.iter().any(|input| input.role == role && input.lines > 0);
+    if is_given(LineRole::Draped) && report.edges.of(EdgeKind::Draped) == 0 {
+        journal.add(Notice::LinesApart(LineRole::Draped));
+    }
+    if is_given(LineRole::Holes) && report.faces_clipped + report.faces_cut == 0 {
+        journal.add(Notice::LinesApart(LineRole::Holes));
+    }
+}
+
+/// Adds a notice about rivers whose banks contradict water, with the worst of them.
+pub(super) fn note_uneven(uneven: &[(String, RiverHeights)], units: &Units, journal: &Journal) {
+    let worst = |(_, heights): &&(String, RiverHeights)| heights.largest_rise.max(heights.largest_difference);
+    let Some((name, heights)) = uneven.iter().max_by(|p, q| worst(p).total_cmp(&worst(q))) else { return };
+    journal.add(Notice::RiverHeights {
+        rivers: uneven.len(),
+        name: name.clone(),
+        rising: heights.rising,
+        largest_rise: units.height(heights.largest_rise),
+        rise_at: heights.rise_at,
+        largest_difference: units.height(heights.largest_difference),
+        difference_at: heights.difference_at,
+    });
+}
+
+/// Adds notices about closed lines of one height around points of other heights: they may be shores
+/// that were meant to be level.
+pub(super) fn note_level_rings(
+    rings: &[LevelRing],
+    points: &[[f64; 3]],
+    names: &LineNames,
+    tolerance: f64,
+    units: &Units,
+    journal: &Journal,
+) {
+    if rings.is_empty() {
+        return;
+    }
+    let polygons: Vec<Vec<Vec<[f64; 2]>>> = rings.iter().map(|ring| vec![ring.ring.clone()]).collect();
+    let inside = Inside::new(&polygons);
+    // For each ring, the number of points inside that differ, and the largest difference.
+    let mut found = vec![(0_usize, 0.0_f64); rings.len()];
+    for [x, y, z] in points {
+        let Some(at) = inside.first_around([*x, *y]) else { continue };
+        let difference = (z - rings[at].height).abs();
+        if difference > tolerance {
+            found[at] = (found[at].0 + 1, found[at].1.max(difference));
+        }
+    }
+    let most = found.iter().enumerate().filter(|(_, (count, _))| *count > 0).max_by(|p, q| p.1.1.total_cmp(&q.1.1));
+    if let Some((at, (_, largest))) = most {
+        journal.add(Notice::LevelRings {
+            rings: found.iter().filter(|(count, _)| *count > 0).count(),
+            points: found.iter().map(|(count, _)| count).sum(),
+            name: names.name(rings[at].line),
+            largest: units.height(*largest),
+        });
+    }
+}
+
+/// Counts the distinct edges of the lines of each input.
+pub(super) fn count_edges(inputs: &mut [LineInput], tin: &Tin) {
+    let triangulation = tin.triangulation();
+    for input in inputs.iter_mut().filter(|input| input.role.edges().is_some()) {
+        let mut edges: Vec<[u32; 2]> = Vec::new();
+        // Level lines across rivers are not banks.
+        for line in input.numbers.clone().filter(|&line| tin.line_kind(line) == input.role.edges()) {
+            let chain = triangulation.chain(LineId::new(line));
+            edges.extend(chain.windows(2).map(|pair| {
+                let [a, b] = [pair[0], pair[1]].map(|vertex| vertex.index() as u32);
+                [a.min(b), a.max(b)]
+            }));
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        input.edges = edges.len();
+    }
+}
