@@ -134,4 +134,23 @@ fn what_looks_wrong_is_a_warning() {
     let shore = folder(&[("Polygon", LAKE, "{}")]);
     let run = run_in(&shore, &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"]);
     run.works(&["warning: a closed line of one height has 1 point of other heights inside, by up to 2", "--flat"]);
+    let parts = [("LineString", "[[0.2,1,5],[1.5,1,4]]", "{}"), ("LineString", "[[1.5,1,4.5],[2.8,1,3]]", "{}")];
+    let run =
+        run_in(&folder(&parts), &["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.4", "-o", "t.ply"]);
+    run.works(&["the river l.geojson fid 1 are not level: they rise downstream at 1 vertices, by up to 0.5", "1.5 1"]);
+    let hairpin = folder(&[("LineString", "[[0.2,1,5],[2.5,1,4],[0.2,1.1,3]]", "{}")]);
+    let run = run_in(&hairpin, &["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.6", "-o", "t.ply"]);
+    run.works(&["warning: the banks of the river l.geojson fid 0 meet near", "twice is not water"]);
+    let quay = folder_with(&[
+        ("p.xyz", SLOPE),
+        ("lake.geojson", &features(&[("Polygon", LAKE, "{}")])),
+        ("quay.geojson", &features(&[("LineString", "[[0.5,0.5,11],[1.5,0.5,11]]", "{}")])),
+    ]);
+    let args = ["tin", "p.xyz", "--flat", "lake.geojson", "--walls", "quay.geojson", "--wall-drop", "2", "-o", "t.ply"];
+    run_in(&quay, &args).works(&["2 vertices of walls have the height of water", "of quay.geojson fid 0"]);
+    let far = folder(&[("Polygon", "[[[50,50],[51,50],[51,51],[50,50]]]", "{}")]);
+    for option in ["--holes", "--draped-lines"] {
+        let run = run_in(&far, &["tin", "p.xyz", option, "l.geojson", "-o", "t.ply", "--overwrite"]);
+        run.works(&[&format!("warning: nothing of {option} lies on the surface")]);
+    }
 }

@@ -351,6 +351,45 @@ mod tests {
     }
 
     #[test]
+    fn water_does_not_rise_from_one_river_to_the_next() {
+        let reach =
+            |xs: [f64; 2], zs: [f64; 2]| River::along(&[[xs[0], 0.0, zs[0]], [xs[1], 0.0, zs[1]]], 2.0).unwrap();
+        // Out of order; the level one is drawn upstream.
+        let mut rivers = [
+            reach([20.0, 30.0], [4.5, 3.0]),
+            reach([20.0, 10.0], [4.2, 4.2]),
+            reach([0.0, 10.0], [5.0, 4.0]),
+            reach([50.0, 60.0], [9.0, 8.0]),
+        ];
+        River::join(&mut rivers);
+        let levels = rivers.each_ref().map(River::levels);
+        assert_eq!(levels, [[4.0, 3.0], [4.0, 4.0], [5.0, 4.0], [9.0, 8.0]]);
+        assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [1, 1, 0, 0]);
+        assert_eq!((rivers[0].heights().largest_rise, rivers[0].heights().rise_at), (0.5, [20.0, 0.0]));
+        // A ring of rivers, each of which begins above the end of the one before.
+        let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 0.0]];
+        let side = |pair: &[[f64; 2]]| {
+            River::along(&[[pair[0][0], pair[0][1], 5.0], [pair[1][0], pair[1][1], 4.0]], 1.0).unwrap()
+        };
+        let mut ring: Vec<River> = corners.windows(2).map(side).collect();
+        River::join(&mut ring);
+        assert!(ring.iter().all(|river| river.levels() == [4.0, 4.0]));
+    }
+
+    #[test]
+    fn a_tight_bend_is_water_all_around_and_level() {
+        let bend = [[0.0, 0.0, 9.0], [9.0, 0.0, 8.0], [9.7, 0.3, 7.0], [10.0, 1.0, 6.0], [10.0, 10.0, 5.0]];
+        let river = River::along(&bend, 6.0).unwrap();
+        assert_eq!(river.overlap(), None);
+        let [left, right] = river.banks();
+        assert_eq!((left.len(), right.len()), (3, 5));
+        assert!((left[1][0] - 7.0).hypot(left[1][1] - 3.0) < 1e-9, "{left:?}");
+        assert_eq!(river.stations.iter().map(|ends| ends[0][2]).collect::<Vec<_>>(), [9.0, 6.0, 6.0, 6.0, 5.0]);
+        let hairpin = River::along(&[[0.0, 0.0, 2.0], [9.0, 0.0, 1.0], [0.0, 1.0, 0.0]], 4.0).unwrap();
+        assert!(hairpin.overlap().is_some());
+    }
+
+    #[test]
     fn what_is_no_river_is_refused() {
         let line = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
         assert!(River::along(&line, 0.0).is_err() && River::along(&line, f64::NAN).is_err());
