@@ -12,7 +12,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// that has it.
     ///
     /// # Complexity
-    /// Expected linear time.
+    /// Linear in the cells.
     #[must_use]
     pub fn check_links(&self) -> Vec<TdsError> {
         let mut faults = Vec::new();
@@ -97,7 +97,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// sound, the complex is a closed manifold. Links are recognized up to dimension 2.
     ///
     /// # Complexity
-    /// Expected linear time.
+    /// Linear in the cells.
     #[must_use]
     pub fn check_manifold(&self) -> Vec<TdsError> {
         let width = (self.dimension() + 1) as usize;
@@ -112,28 +112,34 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 degree[slot(vertex)] += 1;
             }
         }
-        let mut reached = HashSet::new();
-        let mut stack = Vec::new();
-        let mut link: HashSet<VertexId> = HashSet::new();
-        for vertex in self.vertices().chain([VertexId::INFINITE]) {
-            reached.clear();
-            stack.extend(self.cell_of(vertex));
-            reached.extend(stack.iter().copied());
-            while let Some(cell) = stack.pop() {
+        // For each cell and vertex, the round in which it was reached last.
+        let mut cell_rounds = vec![0u32; self.cell_slots()];
+        let mut vertex_rounds = vec![0u32; self.vertex_slots() + 1];
+        let mut star: Vec<CellId> = Vec::new();
+        for (round, vertex) in (1..).zip(self.vertices().chain([VertexId::INFINITE])) {
+            star.clear();
+            star.extend(self.cell_of(vertex));
+            star.iter().for_each(|cell| cell_rounds[cell.index()] = round);
+            let mut next = 0;
+            while let Some(&cell) = star.get(next) {
+                next += 1;
                 for (i, &beside) in self.cell_neighbors(cell).iter().enumerate() {
-                    if self.vertex(cell, i) != vertex && reached.insert(beside) {
-                        stack.push(beside);
+                    if self.vertex(cell, i) != vertex
+                        && std::mem::replace(&mut cell_rounds[beside.index()], round) != round
+                    {
+                        star.push(beside);
                     }
                 }
             }
-            let mut is_sphere = reached.len() as u32 == degree[slot(vertex)];
-            if width == 4 && !reached.is_empty() {
+            let mut is_sphere = star.len() as u32 == degree[slot(vertex)];
+            if width == 4 && !star.is_empty() {
                 // The link is a connected surface with as many triangles as there are cells. It is
                 // a sphere if it has the Euler characteristic of one: that of others is smaller,
                 // also if vertices of the surface coincide.
-                link.clear();
-                link.extend(reached.iter().flat_map(|&cell| self.cell_vertices(cell)));
-                is_sphere &= 2 * (link.len() - 1) == reached.len() + 4;
+                let corners = star.iter().flat_map(|&cell| self.cell_vertices(cell));
+                let new = |v: &&VertexId| std::mem::replace(&mut vertex_rounds[slot(**v)], round) != round;
+                let in_star = corners.filter(new).count();
+                is_sphere &= 2 * (in_star - 1) == star.len() + 4;
             }
             if !is_sphere {
                 faults.push(TdsError::Link(vertex));

@@ -33,7 +33,8 @@ pub(in crate::cli) struct SurfaceArgs {
     /// record from an attribute. In formats with several layers per file, such as GeoPackage,
     /// `FILE:LAYER` names one, `FILE:LAYER:FIELD` both, and `FILE::FIELD` an attribute of the only
     /// layer. Where a vertex of a breakline and a point have the same position, the height of the
-    /// breakline is used. Lines without heights are refused (--draped-lines takes them).
+    /// breakline is used; a point that lies on a breakline between its vertices keeps its height.
+    /// Lines without heights are refused (--draped-lines takes them).
     #[arg(long, value_name = "FILE[:NAME]", help_heading = "Surface")]
     pub(in crate::cli) breaklines: Vec<PathBuf>,
 

@@ -130,6 +130,9 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
 
     /// Returns the flaws found by a check up to the given level, with exact predicates. If there
     /// are none, the triangulation is what it claims to be.
+    ///
+    /// # Complexity
+    /// Linear in the cells and the vertices of all lines.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let flaws = self.flaws(level, |cell, i| !self.is_constrained(cell, i));
