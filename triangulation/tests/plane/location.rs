@@ -208,11 +208,14 @@ fn buckets_of_any_size() {
     }
 }
 
-/// The plane, with rounded sides of a test's own that direct walks.
-#[derive(Debug, Clone, Copy)]
-struct RoughSides<F>(F);
+type Sides<'a> = &'a dyn Fn([&Point; 3], &Point) -> Option<[f64; 3]>;
 
-impl<F: Fn([&Point; 3], &Point) -> Option<[f64; 3]>> Geometry<3> for RoughSides<F> {
+/// The plane, with rounded sides of a test's own that direct walks. One type for all tests, so that
+/// triangulations are compiled once.
+#[derive(Clone, Copy)]
+struct RoughSides<'a>(Sides<'a>);
+
+impl Geometry<3> for RoughSides<'_> {
     type Point = Point;
 
     fn admits(&self, p: &Point) -> bool {
@@ -255,7 +258,7 @@ thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
 fn asked_one_by_one(position: impl Fn(f64) -> Point) -> usize {
     const COUNT: usize = 20_000;
     let mut random = Random(31);
-    let mut t = Delaunay::<_, 3>::new(RoughSides(rightly));
+    let mut t = Delaunay::<_, 3>::new(RoughSides(&rightly));
     ASKED.set(0);
     for _ in 0..COUNT {
         t.insert(position(random.unit())).unwrap();
@@ -282,7 +285,7 @@ fn walks_along_curves_are_cut_short() {
 fn walks_from_a_curve_look_for_an_exit() {
     const COUNT: usize = 20_000;
     let mut random = Random(36);
-    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(RoughSides(rightly)), Hierarchy::new(RoughSides(rightly)));
+    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(RoughSides(&rightly)), Hierarchy::new(RoughSides(&rightly)));
     for _ in 0..COUNT {
         let x = random.unit() - 0.5;
         t.insert_by(&mut hierarchy, [x, x * x], ()).unwrap();
@@ -296,7 +299,7 @@ fn walks_from_a_curve_look_for_an_exit() {
 }
 
 /// Whatever rounded numbers say, the answer is the same: with the Delaunay law, and without any.
-fn same_for_any_rough_sides(sides: impl Fn([&Point; 3], &Point) -> Option<[f64; 3]> + Copy) {
+fn same_for_any_rough_sides(sides: Sides<'_>) {
     let mut random = Random(33);
     for round in 0..40 {
         let side = 2 + round % 12;
@@ -331,12 +334,12 @@ fn rounded_numbers_change_no_answer() {
         dice.set(random.0);
         number
     };
-    same_for_any_rough_sides(|_, _| None);
-    same_for_any_rough_sides(|_, _| Some([f64::NAN; 3]));
-    same_for_any_rough_sides(|_, _| Some([1.0; 3])); // always there
-    same_for_any_rough_sides(|_, _| Some([-1.0, 1.0, 1.0])); // always over the same edge
-    same_for_any_rough_sides(|simplex, q| rightly(simplex, q).map(|sides| sides.map(|x| -x))); // away
-    same_for_any_rough_sides(|_, _| Some([thrown(), thrown(), thrown()]));
+    same_for_any_rough_sides(&|_, _| None);
+    same_for_any_rough_sides(&|_, _| Some([f64::NAN; 3]));
+    same_for_any_rough_sides(&|_, _| Some([1.0; 3])); // always there
+    same_for_any_rough_sides(&|_, _| Some([-1.0, 1.0, 1.0])); // always over the same edge
+    same_for_any_rough_sides(&|simplex, q| rightly(simplex, q).map(|sides| sides.map(|x| -x))); // away
+    same_for_any_rough_sides(&|_, _| Some([thrown(), thrown(), thrown()]));
 }
 
 /// Small whole numbers are not rounded: the signs of the sides are those of the orientations.
