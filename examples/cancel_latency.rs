@@ -1,7 +1,7 @@
 //! How soon a run ends after it was canceled.
 //!
 //! ```text
-//! cargo run --release --example cancel_latency -- TILE.laz ... DEM.tif LAYER.shp
+//! cargo run --release --features bench --example cancel_latency -- TILE.laz ... DEM.tif LAYER.shp
 //! ```
 //!
 //! Each verb is run to its end once, then canceled at 39 times that are spread evenly over that

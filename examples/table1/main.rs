@@ -2,7 +2,7 @@
 //! Pion, Teillaud and Yvinec 2002), with the paper's times beside ours.
 //!
 //! ```text
-//! cargo run --release --example table1 -- [--points N] [FILE.laz | FILE.xy | FILE.xyz ...]
+//! cargo run --release --features bench --example table1 -- [--points N] [FILE.laz | FILE.xy | FILE.xyz ...]
 //! ```
 //!
 //! A row is a kernel, a column a strategy that finds where a point lies: points are inserted one by

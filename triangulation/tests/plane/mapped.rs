@@ -56,6 +56,8 @@ where
     expected.len()
 }
 
+type Site = fn(&[f64; 3]) -> [f64; 2];
+
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     at: (f32, f32),
@@ -72,7 +74,7 @@ fn triangles_are_those_of_the_sites() {
         let mut grid = || random.around(side) as f64;
         let points: Vec<[f64; 3]> = (0..20).map(|_| [grid(), grid(), grid()]).collect();
         // Functions of one type, so that triangulations are compiled once.
-        let [upright, scaled]: [fn(&[f64; 3]) -> [f64; 2]; 2] = [|p| [p[0], p[2]], |p| [0.3 * p[0], 0.1 * p[1]]];
+        let [upright, scaled]: [Site; 2] = [|p| [p[0], p[2]], |p| [0.3 * p[0], 0.1 * p[1]]];
         count += same(Mapped::new(upright), &points, upright);
         count += same(Mapped::new(scaled), &points, scaled);
         count += same(Mapped::new(|p: &[f64; 3]| [p[1], p[2]]).with_kernel::<Fixed>(), &points, |p| [p[1], p[2]]);
