@@ -56,7 +56,7 @@ fn summaries_say_what_lines_became() {
         ("--soft-lines", vec![], "soft lines  1 in, 1 edges out, of l.geojson"),
         ("--walls", vec!["--wall-drop", "D"], "walls       1 in, 2 edges out, of l.geojson"),
         ("--walls", vec!["--wall-bottom", "1"], "walls       1 in, 2 edges out, of l.geojson"),
-        ("--rivers", vec!["--river-width", "0.3"], "rivers      1 in, 4 edges out, of l.geojson"),
+        ("--rivers", vec!["--river-width", "0.3"], "rivers      1 in, 6 edges out, of l.geojson"),
         ("--draped-lines", vec![], "draped      1 in, of l.geojson ("),
         ("--breaklines", vec!["--densify", "0.5"], "breaklines  1 in, 6 edges out"),
     ] {

@@ -6,6 +6,9 @@ use breakline::triangulation::{LineId, Location};
 
 use super::scene::{Line, RIVER, Ring, SIDE, Scene, WALL, floats};
 
+/// Four units in the last place of the largest coordinate.
+const MOVED: f64 = 4.0 * SIDE as f64 * f64::EPSILON;
+
 /// Probes per cell, and their distance from lines.
 const PROBES: i64 = 4;
 
@@ -246,8 +249,12 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
         return Err(format!("at {x} {y} the surface is {height:?}, without draped lines and holes {before:?}"));
     };
     // A cut moves lines by some units in the last place, and the surface by that times its slope,
-    // which is 3 / WALL at walls and unlimited where lines cross between grid points.
-    if (height - before).abs() > 1e-6 && !near_wall(scene, [x, y]) {
+    // which is unlimited where lines cross between grid points.
+    let around = [[-MOVED, 0.0], [MOVED, 0.0], [0.0, -MOVED], [0.0, MOVED]];
+    let heights = around.map(|[u, v]| whole.elevation(x + u, y + v).unwrap_or(before));
+    let lowest = heights.into_iter().fold(before, f64::min) - 1e-6;
+    let highest = heights.into_iter().fold(before, f64::max) + 1e-6;
+    if !(lowest..=highest).contains(&height) && !near_wall(scene, [x, y]) {
         return Err(format!("at {x} {y} draped lines change the height from {before} to {height}"));
     }
     for (lake, level) in &scene.lakes {

@@ -271,16 +271,18 @@ impl Patch {
     ///
     /// A vertex of the surface keeps its height. One on an edge has the height of the edge, one in
     /// a triangle that of its plane. If several edges are so close that they share a vertex,
-    /// breaklines precede other edges, and then the lowest is used.
+    /// breaklines precede other edges, level ones precede those with a slope (a shore stays level
+    /// where a line crosses it), and then the lowest is used.
     fn find_heights(&self, base: &ConstrainedDelaunay<Terrain>) -> Vec<f64> {
         let slots = self.triangulation.tds().vertex_slots();
-        let mut on_edges: Vec<Option<(bool, f64)>> = vec![None; slots];
+        let mut on_edges: Vec<Option<(bool, bool, f64)>> = vec![None; slots];
         for (edge, &[u, v]) in self.edges.iter().enumerate() {
             let is_plain = !is_breakline(base, [u, v]);
+            let has_slope = base.point(u)[2] != base.point(v)[2];
             let chain = self.chain_of_edge(edge);
             for &vertex in chain.iter().skip(1).rev().skip(1) {
                 let [x, y, _] = *self.triangulation.point(vertex);
-                let here = (is_plain, height_along(*base.point(u), *base.point(v), [x, y]));
+                let here = (is_plain, has_slope, height_along(*base.point(u), *base.point(v), [x, y]));
                 let known = on_edges[vertex.index()].get_or_insert(here);
                 if here < *known {
                     *known = here;
@@ -292,7 +294,7 @@ impl Patch {
             if let Some(corner) = self.vertices[slot] {
                 return base.point(corner)[2];
             }
-            if let Some((_, height)) = on_edges[slot] {
+            if let Some((.., height)) = on_edges[slot] {
                 return height;
             }
             if !self.triangulation.tds().is_vertex(vertex) {

@@ -30,6 +30,9 @@ pub(in crate::terrain) use water::RiverWater;
 pub struct River {
     /// The ends of the level lines, in order downstream: left, right. Both have one height.
     stations: Vec<[[f64; 3]; 2]>,
+    /// The vertices of the line along the middle, one for each station; none if there is no such
+    /// line.
+    middles: Vec<[f64; 2]>,
     /// The middles of the first and the last level line: where other rivers may continue it.
     ends: [[f64; 2]; 2],
     heights: RiverHeights,
@@ -77,7 +80,7 @@ impl River {
         }
         let stations = stations(&left, &right);
         let ends = [stations[0], stations[stations.len() - 1]].map(|ends| middle(&ends));
-        Ok(Self::leveled(stations, ends))
+        Ok(Self::leveled(stations, Vec::new(), ends))
     }
 
     /// Returns a river from the line along its middle, with heights, and its width.
@@ -99,7 +102,7 @@ impl River {
         let at = |([l, r], p): ([[f64; 2]; 2], &[f64; 3])| [[l[0], l[1], p[2]], [r[0], r[1], p[2]]];
         let opposite = left.into_iter().zip(right).map(|(l, r)| [l, r]);
         let ends = [sites[0], sites[sites.len() - 1]];
-        Ok(Self::leveled(opposite.zip(&middle).map(at).collect(), ends))
+        Ok(Self::leveled(opposite.zip(&middle).map(at).collect(), sites, ends))
     }
 
     /// Returns how far the heights of the banks were from those of water.
@@ -108,9 +111,9 @@ impl River {
     }
 
     /// Gives each station the lower height of its ends, but no more than upstream.
-    fn leveled(stations: Vec<[[f64; 3]; 2]>, ends: [[f64; 2]; 2]) -> Self {
+    fn leveled(stations: Vec<[[f64; 3]; 2]>, middles: Vec<[f64; 2]>, ends: [[f64; 2]; 2]) -> Self {
         let lower = |[left, right]: &[[f64; 3]; 2]| left[2].min(right[2]);
-        let mut river = River { stations, ends, heights: RiverHeights::default() };
+        let mut river = River { stations, middles, ends, heights: RiverHeights::default() };
         if let (Some(first), Some(last)) = (river.stations.first(), river.stations.last())
             && lower(first) < lower(last)
         {
@@ -143,6 +146,7 @@ impl River {
     fn reverse(&mut self) {
         self.stations.reverse();
         self.stations.iter_mut().for_each(|ends| ends.swap(0, 1));
+        self.middles.reverse();
         self.ends.reverse();
     }
 
@@ -168,23 +172,31 @@ impl River {
     }
 
     /// The level lines: the first, the last, and those between that cross neither bank nor the one
-    /// before.
+    /// before. Those of a river along a line pass through its vertices.
     ///
     /// # Complexity
     /// O(n log n) for n stations, if few segments of banks are close to each other.
-    pub(in crate::terrain) fn level_lines(&self) -> Vec<[[f64; 3]; 2]> {
-        let (Some(first), Some(last)) = (self.stations.first(), self.stations.last()) else { return Vec::new() };
+    pub(in crate::terrain) fn level_lines(&self) -> Vec<Vec<[f64; 3]>> {
         let sides = self.banks().into_iter().flat_map(|bank| sides(&bank));
         let sides = Boxes::new(sides.collect());
-        let mut lines: Vec<[[f64; 3]; 2]> = vec![*first];
-        for line in self.stations.iter().skip(1).take(self.stations.len().saturating_sub(2)) {
-            let before = lines[lines.len() - 1];
+        let count = self.stations.len();
+        let mut lines: Vec<Vec<[f64; 3]>> = Vec::with_capacity(count);
+        let mut before: Option<[[f64; 3]; 2]> = None;
+        for (number, line) in self.stations.iter().enumerate() {
             let crosses = |side: &Side| cross(line, &side.0).then_some(());
-            if !cross(line, &before) && !cross(line, last) && sides.find_in(Side(*line).extent(), crosses).is_none() {
-                lines.push(*line);
+            let is_end = number == 0 || number + 1 == count;
+            let is_free = || {
+                !before.is_some_and(|before| cross(line, &before))
+                    && !self.stations.last().is_some_and(|last| cross(line, last))
+                    && sides.find_in(Side(*line).extent(), crosses).is_none()
+            };
+            if is_end || is_free() {
+                let [left, right] = *line;
+                let middle = self.middles.get(number).map(|&[x, y]| [x, y, left[2]]);
+                lines.push(std::iter::once(left).chain(middle).chain([right]).collect());
+                before = Some(*line);
             }
         }
-        lines.push(*last);
         lines
     }
 
