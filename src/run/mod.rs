@@ -79,6 +79,7 @@ mod line_inputs;
 mod lines;
 mod memory;
 mod notice;
+mod notice_text;
 mod open;
 mod overlaps;
 mod point_files;
