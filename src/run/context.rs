@@ -92,6 +92,8 @@ pub enum Stage {
     DrawingContours,
     /// Files are written, without a count.
     Writing,
+    /// Heights are computed, counted in positions.
+    ComputingHeights,
 }
 
 impl Stage {
@@ -112,6 +114,7 @@ impl Stage {
             Stage::FindingContours => "finding contours",
             Stage::DrawingContours => "drawing contours",
             Stage::Writing => "writing",
+            Stage::ComputingHeights => "computing heights",
         }
     }
 }
