@@ -25,7 +25,7 @@ mod _breakline {
         write_points,
     };
     #[pymodule_export]
-    use super::surface::{Surface, edge_kinds, write_cells, write_contours};
+    use super::surface::{Surface, check_file, edge_kinds, write_cells, write_contours};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

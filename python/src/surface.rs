@@ -361,6 +361,16 @@ pub(crate) fn write_contours(
     })
 }
 
+/// Returns the flaws of a mesh in a file that may not be a surface, or of a surface of points, each
+/// with the positions that it concerns.
+#[pyfunction]
+pub(crate) fn check_file(py: Python<'_>, file: PathBuf, call: Call) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
+    let source = Source::of_files(&[file]).map_err(Failure)?;
+    let request = SurfaceRequest { source, ..SurfaceRequest::default() };
+    let checked = work::run(py, &call, |context| -> Result<_> { Ok(run::check(&request, context)?) })?;
+    Ok(checked.flaws.into_iter().map(|flaw| (flaw.flaw.to_string(), flaw.at)).collect())
+}
+
 /// Returns the name of each kind of edges, by its number.
 #[pyfunction]
 pub(crate) fn edge_kinds() -> Vec<String> {

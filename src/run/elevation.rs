@@ -1,7 +1,5 @@
 //! Heights of a surface at positions.
 
-use std::sync::OnceLock;
-
 use rayon::prelude::*;
 
 use super::context::{Context, Size, Stage};
@@ -35,13 +33,14 @@ pub fn elevations(
     context: &Context,
 ) -> Result<Vec<f64>> {
     let surface = product.triangles()?;
-    let finder = Finder { product, surface, method, interpolant: OnceLock::new() };
+    context.check()?;
+    let finder = Finder { product, interpolant: Interpolant::new(surface, method)? };
     let work = context.start(Stage::ComputingHeights, Size::Items(positions.len() as u64))?;
     let mut heights = vec![f64::NAN; positions.len()];
     if positions.len() <= FEW {
         let mut near = None;
         for (height, &q) in heights.iter_mut().zip(positions) {
-            *height = finder.height(q, &mut near)?;
+            *height = finder.height(q, &mut near);
         }
     } else {
         // Neighbors on a curve through the plane are near each other, and walks between them short.
@@ -51,8 +50,7 @@ pub fn elevations(
             .par_chunks(BATCH)
             .map(|batch| {
                 let mut near = None;
-                let found = batch.iter().map(|&i| finder.height(positions[i as usize], &mut near));
-                let found = found.collect::<Result<Vec<f64>>>()?;
+                let found = batch.iter().map(|&i| finder.height(positions[i as usize], &mut near)).collect();
                 work.add(batch.len() as u64)?;
                 Ok(found)
             })
@@ -69,35 +67,25 @@ pub fn elevations(
 /// Finds heights of a surface by a method.
 struct Finder<'a> {
     product: &'a SurfaceProduct,
-    surface: &'a dyn Surface,
-    method: Method,
-    /// Prepared when it is first needed.
-    interpolant: OnceLock<Interpolant<'a, dyn Surface>>,
+    interpolant: Interpolant<'a, dyn Surface + 'a>,
 }
 
 impl Finder<'_> {
-    fn height(&self, q: [f64; 2], near: &mut Option<CellId>) -> Result<f64> {
+    fn height(&self, q: [f64; 2], near: &mut Option<CellId>) -> f64 {
+        let interpolated = || self.interpolant.height(q[0], q[1]);
         let found = match &self.product.model {
-            Model::Tin(tin) if self.method == Method::Linear => tin.elevation_near(q, near),
-            Model::Compact(tin) if self.method == Method::Linear => match tin.elevation_in_whole(q, near) {
-                // What is in no whole triangle may be in a fragment.
-                None if tin.has_fragments() => self.interpolated(q)?,
-                height => height,
-            },
-            Model::Tin(_) | Model::Compact(_) | Model::Mesh(_) | Model::Raster(_) => self.interpolated(q)?,
+            Model::Tin(tin) if self.is_linear() => tin.elevation_near(q, near),
+            // What is in no whole triangle may be in a fragment.
+            Model::Compact(tin) if self.is_linear() => {
+                tin.elevation_in_whole(q, near).or_else(|| if tin.has_fragments() { interpolated() } else { None })
+            }
+            Model::Tin(_) | Model::Compact(_) | Model::Mesh(_) | Model::Raster(_) => interpolated(),
         };
-        Ok(found.unwrap_or(f64::NAN))
+        found.unwrap_or(f64::NAN)
     }
 
-    fn interpolated(&self, [x, y]: [f64; 2]) -> Result<Option<f64>> {
-        let interpolant = match self.interpolant.get() {
-            Some(interpolant) => interpolant,
-            None => {
-                let prepared = Interpolant::new(self.surface, self.method)?;
-                self.interpolant.get_or_init(|| prepared)
-            }
-        };
-        Ok(interpolant.height(x, y))
+    fn is_linear(&self) -> bool {
+        self.interpolant.method() == Method::Linear
     }
 }
 

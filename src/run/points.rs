@@ -105,8 +105,9 @@ pub struct PointsProduct {
 /// Those of [`write_points`], except those of writing; and if there is not enough memory.
 pub fn read_points(request: &PointsRequest, context: &Context) -> Result<PointsProduct> {
     let mut points = PointBatch::default();
-    let sink = |_: &[&PointInfo]| -> Result<Box<dyn PointSink + '_>> { Ok(Box::new(Collected(&mut points))) };
-    let report = transfer(request, Detail::Columns, Stage::ReadingPoints, context, sink)?;
+    let report = transfer(request, Detail::Columns, Stage::ReadingPoints, context, |_| {
+        Ok(Box::new(Collected(&mut points)) as Box<dyn PointSink>)
+    })?;
     Ok(PointsProduct { points, report })
 }
 

@@ -12,7 +12,7 @@ mod table;
 use std::fmt::Write;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use self::format::KnownBy;
 pub use self::format::{Content, Format, Holding, Product};
