@@ -270,8 +270,11 @@ fn refuse_existing(outputs: &[PathBuf], overwrite: bool) -> Result<()> {
 fn split(outputs: &[PathBuf]) -> (Vec<Destination<'_>>, Vec<Destination<'_>>) {
     let is_mesh = |path: &&PathBuf| formats::for_output(path, formats::Product::Surface).is_some();
     let (meshes, others): (Vec<_>, Vec<_>) = outputs.iter().partition(is_mesh);
-    let destinations = |paths: Vec<&'_ PathBuf>| paths.into_iter().map(|path| path.as_path().into()).collect();
     (destinations(meshes), destinations(others))
+}
+
+fn destinations(paths: Vec<&PathBuf>) -> Vec<Destination<'_>> {
+    paths.into_iter().map(|path| path.as_path().into()).collect()
 }
 
 /// Checks tetrahedra; returns the flaws.

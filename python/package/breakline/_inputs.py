@@ -51,6 +51,13 @@ def files(value: Any, parameter: str) -> "list[str]":
     return found
 
 
+def path(value: Any, parameter: str) -> str:
+    """Return one path as text."""
+    if not is_path(value):
+        raise usage(f"{parameter} is not a path", value, "pass a path", ArgumentTypeError)
+    return os.fsdecode(value)
+
+
 def _floats(values: Any, what: str) -> np.ndarray:
     """Return numbers as float64; a view if they are already."""
     try:
@@ -185,7 +192,7 @@ def _points_of(value: Any) -> "dict[str, Any]":
 
     if isinstance(value, Points):
         return _columns(value.x, value.y, value.z, classes=value.classification, flags=value.flags, crs=value.crs)
-    if all(hasattr(value, name) for name in ("X", "Y", "Z", "classification")):
+    if hasattr(value, "scales") or all(hasattr(value, name) for name in ("header", "X", "Y", "Z")):
         return _of_laspy(value)
     if hasattr(value, "geometry"):
         return _of_frame(value)

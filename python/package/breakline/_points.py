@@ -198,7 +198,7 @@ def points(
             _read(columns, partial),
             _systems(crs, to_crs),
             selection,
-            _inputs.files(output, "output")[0],
+            _inputs.path(output, "output"),
             bool(overwrite),
             request,
         )

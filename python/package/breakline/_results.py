@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import Any, Iterator, NamedTuple, Optional
 
 import numpy as np
 
-from . import _breakline
+from . import _breakline, _inputs
 from ._call import Progress, call
 from ._errors import UnsupportedError, usage
 
@@ -128,7 +127,7 @@ class Raster:
             cells[cells == 0] = np.nan
         with call(threads, progress) as request:
             _breakline.write_cells(
-                cells, self._gdal, self.crs, bool(shades), os.fspath(path), bool(overwrite), request
+                cells, self._gdal, self.crs, bool(shades), _inputs.path(path, "path"), bool(overwrite), request
             )
 
     def _surface(self) -> Any:
@@ -275,7 +274,7 @@ class Contours:
         """
         with call(threads, progress) as request:
             _breakline.write_contours(
-                self.coordinates, self.offsets, self.levels, self.crs, os.fspath(path), bool(overwrite), request
+                self.coordinates, self.offsets, self.levels, self.crs, _inputs.path(path, "path"), bool(overwrite), request
             )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import os
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
@@ -36,7 +35,7 @@ def _frame(resolution: Any, bounds: Any, align_to: Any) -> "dict[str, Any]":
     return {
         "resolution": None if resolution is None else float(resolution),
         "bounds": _inputs.bounds(bounds),
-        "align_to": None if align_to is None else os.fspath(align_to),
+        "align_to": None if align_to is None else _inputs.path(align_to, "align_to"),
     }
 
 
@@ -314,7 +313,7 @@ class Tin:
             If the format cannot hold the surface.
         """
         with call(threads, progress) as request:
-            self._surface.write(os.fspath(path), bool(overwrite), request)
+            self._surface.write(_inputs.path(path, "path"), bool(overwrite), request)
 
     def to_matplotlib(self) -> Any:
         """Return a ``matplotlib.tri.Triangulation`` of the surface in plan; heights are ``vertices[:, 2]``."""

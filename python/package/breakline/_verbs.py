@@ -24,9 +24,9 @@ def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any
             raise usage(f"{next(iter(surface))} is for building a TIN, but this is a surface already")
         return points._surface if isinstance(points, Tin) else points._surface()
     if _inputs.is_path(points) and os.path.isfile(points):
-        given = {name: surface.get(name) for name in ("crs", "to_crs", "force_degrees")}
+        systems = _systems(surface.get("crs"), surface.get("to_crs"), surface.get("force_degrees", False))
         with call(threads, progress) as request:
-            opened = _breakline.Surface.open(os.fspath(points), _systems(**{**given, "force_degrees": bool(given["force_degrees"])}), request)
+            opened = _breakline.Surface.open(os.fspath(points), systems, request)
         if opened is not None and opened.kind == "raster":
             return opened
     return tin(points, threads=threads, progress=progress, **surface)._surface
@@ -180,7 +180,7 @@ def info(
         ``"picture"`` or ``"plane"``.
     """
     with call(threads, progress) as request:
-        return json.loads(_breakline.info(os.fspath(path), _read(columns, partial), request))
+        return json.loads(_breakline.info(_inputs.path(path, "path"), _read(columns, partial), request))
 
 
 @dataclass(frozen=True)
@@ -283,8 +283,8 @@ def triangulate(
     -------
     Triangulation or SpaceTriangulation
     """
-    file = _inputs.files(path, "path")[0]
-    outputs = [os.fspath(target) for target in _inputs.as_sequence(output)]
+    file = _inputs.path(path, "path")
+    outputs = [_inputs.path(target, "output") for target in _inputs.as_sequence(output)]
     with call(threads, progress) as request:
         if in_space or _breakline.is_of_space(file):
             of_plane = {
