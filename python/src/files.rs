@@ -1,6 +1,7 @@
 //! Verbs from files to files or arrays: `info`, `points`, `triangulate`.
 
 use std::path::PathBuf;
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 
 use breakline::io::las::Rounding;
 use breakline::io::{Destination, formats};
@@ -12,11 +13,14 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays;
-use crate::errors::{Failure, Result};
+use crate::errors::{self, Failure, Result};
 use crate::notices;
 use crate::requests::{self, NumberOrName, ReadArguments, SystemArguments, bounds, choose};
 use crate::surface::write_to;
-use crate::work::{self, Call};
+use crate::work::{self, Call, POLL};
+
+/// The stack of the program's thread: that of a main thread.
+const STACK: usize = 8 << 20;
 
 /// Returns what is in a file as JSON, and its warnings.
 #[pyfunction]
@@ -35,9 +39,26 @@ pub(crate) fn describe() -> String {
 }
 
 /// Runs the program with its arguments, the first of which is its name; returns the exit code.
+///
+/// After the exception of a signal handler the process should end: the program still works, but
+/// none of its outputs appears.
 #[pyfunction]
-pub(crate) fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
-    py.detach(|| cli::run(arguments) as u8)
+pub(crate) fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> PyResult<u8> {
+    let (sender, receiver) = sync_channel(1);
+    let program = std::thread::Builder::new().stack_size(STACK);
+    program.spawn(move || sender.send(cli::run(arguments) as u8)).map_err(|e| Failure(e.into()))?;
+    loop {
+        match py.detach(|| receiver.recv_timeout(POLL)) {
+            Ok(code) => return Ok(code),
+            Err(RecvTimeoutError::Timeout) => {
+                if let Err(error) = py.check_signals() {
+                    std::mem::forget(io::abandon_outputs());
+                    return Err(error);
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => return Err(errors::internal(&"the program ended without a code")),
+        }
+    }
 }
 
 /// Options of selecting points, under the names that they have in Python.

@@ -29,6 +29,13 @@ mod _breakline {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // A decoder's panic that is caught and becomes an error is not printed.
+        let print = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !breakline::io::is_contained() {
+                print(panic);
+            }
+        }));
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -16,7 +16,7 @@ use crate::errors;
 use crate::notices;
 
 /// How often a call that waits looks for signals, and reports progress.
-const POLL: Duration = Duration::from_millis(50);
+pub(crate) const POLL: Duration = Duration::from_millis(50);
 
 /// What every long call takes: the number of threads, all cores if it is `None`, and the function
 /// that progress is reported to. In Python, a tuple of both.

@@ -1,6 +1,6 @@
 """The program: ``python -m breakline``."""
 
-import signal
+import os
 import sys
 
 from ._breakline import main as run
@@ -8,8 +8,10 @@ from ._breakline import main as run
 
 def main() -> int:
     """Run the command line with the arguments of this process."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # the program has no Python to return to
-    return run(["breakline", *sys.argv[1:]])
+    try:
+        return run(["breakline", *sys.argv[1:]])
+    except KeyboardInterrupt:
+        os._exit(130)  # at once: the program still works
 
 
 if __name__ == "__main__":

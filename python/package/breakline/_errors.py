@@ -12,16 +12,29 @@ from typing import Any, Optional, Sequence
 RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "bounds", "class": "classes", "return": "returns", "3d": "in_space"}
 
 
+#: Options of the program without a value.
+_SWITCHES = {"3d", "convex", "drop-withheld", "force-degrees", "overwrite", "partial", "region-areas", "round", "weighted"}
+
+_OPTION = re.compile(
+    r"--(?!features|release)([a-z0-9]+(?:-[a-z0-9]+)*)"
+    r"(?: ((?:[A-Z]{3,}(?:[:.][A-Za-z]+)*)|none|auto|split|lowest|mean)(?![A-Za-z]))?"
+)
+
+
 def in_python(text: str) -> str:
     """Return a text with the program's options and verbs as they are written in Python."""
 
     def option(match: "re.Match[str]") -> str:
-        name, value = match.group(1), match.group(2)
+        name, value = match.groups()
         parameter = RENAMED.get(name, name.replace("-", "_"))
-        return f"{parameter}={value[1:] if value else ''}".rstrip("=") if value else parameter
+        if name in _SWITCHES:
+            return f"{parameter}=True"
+        if value is None:
+            return parameter
+        is_text = ":" in value or value == "CRS" or value.islower()
+        return f'{parameter}="{value}"' if is_text else f"{parameter}={value}"
 
-    text = re.sub(r"`breakline ([a-z]+)`", r"breakline.\1()", text)
-    return re.sub(r"--([a-z0-9][a-z0-9-]*)((?: (?:[A-Z]{3,}(?:\.[a-z]+)?|none|auto|EPSG:CODE)\b)?)", option, text)
+    return _OPTION.sub(option, re.sub(r"`breakline ([a-z]+)`", r"breakline.\1()", text))
 
 
 class BreaklineError(Exception):
