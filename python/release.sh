@@ -16,7 +16,8 @@ case "$(uname -s)" in
     *) all=(x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-unknown-linux-musl aarch64-unknown-linux-musl
         x86_64-pc-windows-msvc) ;;
 esac
-for target in "${@:-${all[@]}}"; do
+[ $# -gt 0 ] || set -- "${all[@]}"
+for target; do
     rustup target add "${target/universal2/aarch64}"
     case "$target" in
         universal2-*) rustup target add x86_64-apple-darwin ;;
