@@ -10,7 +10,7 @@ use breakline::run::{
     self, CellProduct, Context, ContourOptions, DemOptions, HillshadeOptions, LightOptions, Model, Source,
     SurfaceProduct, SurfaceRequest,
 };
-use breakline::terrain::CompactTin;
+use breakline::terrain::{CompactTin, Method};
 use breakline::{Error, io};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -182,7 +182,7 @@ impl Surface {
         let positions = arrays::points::<2>(&positions);
         let product = &self.product;
         let find = |context: &Context<'_>| -> Result<_> { Ok(run::elevations(product, &positions, method, context)?) };
-        let heights = if positions.len() <= FEW {
+        let heights = if positions.len() <= FEW && method == Method::Linear && self.is_walked() {
             work::short(py, || find(&Context::default()))?
         } else {
             work::run(py, &call, find)?
@@ -264,6 +264,16 @@ impl Surface {
 }
 
 impl Surface {
+    /// Returns true if a height is found by a walk, without threads: those of another pool than ours
+    /// would not exist after a fork.
+    fn is_walked(&self) -> bool {
+        match &self.product.model {
+            Model::Tin(_) => true,
+            Model::Compact(tin) => !tin.has_fragments(),
+            Model::Mesh(_) | Model::Raster(_) => false,
+        }
+    }
+
     fn raster<'py>(&self, frame: &Frame, cells: Bound<'py, PyAny>) -> PyResult<Raster<'py>> {
         Ok((cells, frame.transform, self.product.crs().map(breakline::crs::Crs::to_wkt)))
     }

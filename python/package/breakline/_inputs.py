@@ -143,20 +143,25 @@ def _of_laspy(points: Any) -> "dict[str, Any]":
     steps = [np.asarray(axis).astype(np.int32, copy=False) for axis in (points.X, points.Y, points.Z)]
     withheld = getattr(points, "withheld", None)
     flags = None if withheld is None else np.asarray(withheld).astype(np.uint8) * np.uint8(4)
-    crs = None
-    if hasattr(header, "parse_crs"):
-        try:
-            crs = crs_text(header.parse_crs())
-        except Exception:  # needs pyproj; without it no system is known
-            crs = None
     return _columns(
         *steps,
         scale=[float(value) for value in scales],
         offset=[float(value) for value in offsets],
         classes=np.asarray(points.classification),
         flags=flags,
-        crs=crs,
+        crs=_system_of_laspy(header),
     )
+
+
+def _system_of_laspy(header: Any) -> Optional[str]:
+    """The coordinate system of a laspy header: its WKT, else what pyproj makes of it where that is installed."""
+    for record in [*getattr(header, "vlrs", ()), *(getattr(header, "evlrs", None) or ())]:
+        if type(record).__name__ == "WktCoordinateSystemVlr" and record.string:
+            return str(record.string).rstrip("\0")
+    try:
+        return crs_text(header.parse_crs())
+    except Exception:  # no pyproj, no such method, or keys that it does not know: then no system is known
+        return None
 
 
 def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
