@@ -13,20 +13,19 @@ import sys
 import threading
 import time
 
-import numpy as np
-
 import breakline
+import numpy as np
 
 MILLIONS = float(sys.argv[1]) if len(sys.argv) > 1 else 1.0
 COUNT = int(MILLIONS * 1_000_000)
 
 
-def median_of(function, times=7):
+def median_of(function, *arguments, times=7, **named):
     """Return the median of the seconds that a function takes, and what it returned last."""
     seconds = []
     for _ in range(times):
         start = time.perf_counter()
-        result = function()
+        result = function(*arguments, **named)
         seconds.append(time.perf_counter() - start)
     return statistics.median(seconds), result
 
@@ -35,6 +34,12 @@ def resident():
     """Return the megabytes of memory in use."""
     with open("/proc/self/statm") as statm:
         return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def interrupt(sent):
+    """Send Ctrl-C to this process, and add the time to a list."""
+    sent.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
 
 
 def points(count):
@@ -48,11 +53,11 @@ def main():
     """Print the figures."""
     cloud = points(COUNT)
     for threads in (1, 2):
-        seconds, tin = median_of(lambda: breakline.tin(cloud, threads=threads))
+        seconds, tin = median_of(breakline.tin, cloud, threads=threads)
         print(f"tin of {COUNT} points, threads={threads}: {seconds:.3f} s")
     queries = 1000 * np.random.default_rng(2).random((1_000_000, 2))
     for threads in (1, 2):
-        seconds, _ = median_of(lambda: tin.elevation(queries, threads=threads))
+        seconds, _ = median_of(tin.elevation, queries, threads=threads)
         print(f"elevation of 1 M positions, threads={threads}: {seconds:.3f} s")
     seconds, _ = median_of(lambda: [tin.elevation(queries[:1]) for _ in range(1000)])
     print(f"elevation of one position: {seconds * 1e3:.1f} us")
@@ -70,7 +75,9 @@ def main():
 
     together, _ = median_of(lambda: many(4))
     one, _ = median_of(alone)
-    print(f"4 threads of Python, a query of 1 M positions each: {one / together:.2f} times as fast as one after the other")
+    print(
+        f"4 threads of Python, a query of 1 M positions each: {one / together:.2f} times as fast as one after the other"
+    )
 
     seconds, contours = median_of(lambda: tin.contours(1.0, threads=1))
     print(f"contours, threads=1: {seconds:.3f} s, {len(contours)} lines")
@@ -84,7 +91,7 @@ def main():
         heights = tin.vertices[:, 2]
         levels = np.arange(np.ceil(heights.min()), heights.max())
         figure, axes = pyplot.subplots()
-        theirs, _ = median_of(lambda: axes.tricontour(triangulation, heights, levels), 3)
+        theirs, _ = median_of(lambda: axes.tricontour(triangulation, heights, levels), times=3)
         print(f"contours by matplotlib: {theirs:.3f} s, {theirs / seconds:.1f} times as long")
     except ImportError:
         print("contours by matplotlib: not installed")
@@ -98,7 +105,7 @@ def main():
     worst, kept = 0.0, 0.0
     for part in range(1, 10):
         sent = []
-        timer = threading.Timer(whole * part / 10, lambda: (sent.append(time.perf_counter()), os.kill(os.getpid(), signal.SIGINT)))
+        timer = threading.Timer(whole * part / 10, interrupt, args=(sent,))
         timer.start()
         try:
             breakline.tin(large)

@@ -3,10 +3,9 @@
 import importlib
 import pathlib
 
+import breakline
 import numpy as np
 import pytest
-
-import breakline
 
 FIXTURES = pathlib.Path(__file__).resolve().parents[2] / "fixtures"
 

@@ -5,9 +5,8 @@ The program describes itself (`breakline describe --json`), so that nothing new 
 
 import inspect
 
-import pytest
-
 import breakline
+import pytest
 from breakline._errors import RENAMED
 
 PROGRAM = breakline.describe()

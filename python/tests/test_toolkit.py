@@ -6,10 +6,9 @@ import pickle
 import subprocess
 import sys
 
+import breakline
 import numpy as np
 import pytest
-
-import breakline
 from conftest import FIXTURES, judge
 
 VALLEY = FIXTURES / "valley.laz"

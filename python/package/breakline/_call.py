@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, Callable, Iterator, Optional, Union
+from typing import Any, Callable, Optional, Union
 
 from ._errors import ArgumentTypeError, usage
 
@@ -48,7 +49,9 @@ def call(threads: Optional[int], progress: Progress) -> "Iterator[tuple[Optional
             raise usage("progress=True needs tqdm", None, "pip install tqdm, or pass a function") from None
         bar = _Bar()
     elif progress is not None and progress is not False and not callable(progress):
-        raise usage("progress is no function", progress, "pass True, or a function of three arguments", ArgumentTypeError)
+        raise usage(
+            "progress is no function", progress, "pass True, or a function of three arguments", ArgumentTypeError
+        )
     try:
         yield threads, bar or (progress if callable(progress) else None)
     finally:

@@ -6,14 +6,25 @@ import os
 import re
 import sys
 import warnings
-from typing import Any, Optional, Sequence
+from collections.abc import Sequence
+from typing import Any, Optional
 
 #: Options of the program whose parameters here have other names.
 RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "bounds", "class": "classes", "return": "returns", "3d": "in_space"}
 
 
 #: Options of the program without a value.
-_SWITCHES = {"3d", "convex", "drop-withheld", "force-degrees", "overwrite", "partial", "region-areas", "round", "weighted"}
+_SWITCHES = {
+    "3d",
+    "convex",
+    "drop-withheld",
+    "force-degrees",
+    "overwrite",
+    "partial",
+    "region-areas",
+    "round",
+    "weighted",
+}
 
 _OPTION = re.compile(
     r"--(?!features|release)([a-z0-9]+(?:-[a-z0-9]+)*)"
@@ -142,7 +153,9 @@ def _restore(kind: "type[BreaklineError]", attributes: "dict[str, Any]") -> Brea
     return error
 
 
-def usage(message: str, value: object = None, cure: Optional[str] = None, kind: "type[UsageError]" = UsageError) -> UsageError:
+def usage(
+    message: str, value: object = None, cure: Optional[str] = None, kind: "type[UsageError]" = UsageError
+) -> UsageError:
     """Return an error about an argument."""
     error = kind(message)
     error.message, error.cure = message, cure

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import glob
 import os
-from typing import Any, Iterable, Optional, Sequence
+from collections.abc import Iterable, Sequence
+from typing import Any, Optional
 
 import numpy as np
 
@@ -67,7 +68,9 @@ def _floats(values: Any, what: str) -> np.ndarray:
     if np.ma.isMaskedArray(values) and np.ma.is_masked(values):
         raise usage(f"{what} has masked values", None, "leave them out: a[~a.mask], or a.filled(nan)")
     if array.dtype.kind not in "fiub":
-        raise usage(f"{what} has the type {array.dtype}", None, "convert it: numpy.asarray(a, float)", ArgumentTypeError)
+        raise usage(
+            f"{what} has the type {array.dtype}", None, "convert it: numpy.asarray(a, float)", ArgumentTypeError
+        )
     return array.astype(np.float64, copy=False)
 
 
@@ -92,7 +95,9 @@ def crs_text(crs: Any) -> Optional[str]:
         found = getattr(crs, name, None)
         if found is not None:
             return str(found() if callable(found) else found) or None
-    raise usage("crs is not a coordinate system", crs, "pass 'EPSG:25832', a code, WKT or a pyproj.CRS", ArgumentTypeError)
+    raise usage(
+        "crs is not a coordinate system", crs, "pass 'EPSG:25832', a code, WKT or a pyproj.CRS", ArgumentTypeError
+    )
 
 
 def classes(values: Any) -> "Optional[list[int]]":
@@ -135,7 +140,7 @@ def _columns(x: Any, y: Any, z: Any, **others: Any) -> "dict[str, Any]":
 
 
 def _of_laspy(points: Any) -> "dict[str, Any]":
-    """The points of a laspy record: whole steps of its lattice, as they are."""
+    """Return the points of a laspy record: whole steps of its lattice, as they are."""
     header = getattr(points, "header", points)
     scales, offsets = getattr(points, "scales", None), getattr(points, "offsets", None)
     scales = header.scales if scales is None else scales
@@ -154,7 +159,7 @@ def _of_laspy(points: Any) -> "dict[str, Any]":
 
 
 def _system_of_laspy(header: Any) -> Optional[str]:
-    """The coordinate system of a laspy header: its WKT, else what pyproj makes of it where that is installed."""
+    """Return the system that a laspy header states: its WKT, else by pyproj where that is installed."""
     for record in [*getattr(header, "vlrs", ()), *(getattr(header, "evlrs", None) or ())]:
         if type(record).__name__ == "WktCoordinateSystemVlr" and record.string:
             return str(record.string).rstrip("\0")
@@ -165,7 +170,7 @@ def _system_of_laspy(header: Any) -> Optional[str]:
 
 
 def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
-    """The points of a structured array, a DataFrame or a dictionary of columns."""
+    """Return the points of a structured array, a DataFrame or a dictionary of columns."""
     known = {name.lower(): name for name in reversed(list(names))}
 
     def column(*spellings: str) -> Any:
@@ -179,7 +184,7 @@ def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
 
 
 def _of_frame(frame: Any) -> "dict[str, Any]":
-    """The points of a GeoDataFrame or a GeoSeries."""
+    """Return the points of a GeoDataFrame or a GeoSeries."""
     import shapely
 
     geometry = getattr(frame, "geometry", frame)
@@ -220,7 +225,11 @@ def points(value: Any) -> "list[Any]":
     if isinstance(value, (list, tuple)) and value:
         if all(is_path(item) for item in value):
             return list(files(value, "points"))
-        if not np.isscalar(value[0]) and (hasattr(value[0], "dtype") or hasattr(value[0], "geometry")) and np.ndim(value[0]) != 1:
+        if (
+            not np.isscalar(value[0])
+            and (hasattr(value[0], "dtype") or hasattr(value[0], "geometry"))
+            and np.ndim(value[0]) != 1
+        ):
             return [_points_of(item) for item in value]
     if value is None:
         raise usage("points is None", None, f"pass {_POINT_KINDS}", ArgumentTypeError)

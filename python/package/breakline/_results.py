@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Iterator, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
@@ -93,14 +94,18 @@ class Raster:
             raise missing("xarray", "to_xarray") from None
         c, a, b, f, d, e = self._gdal
         if b or d:
-            raise usage("the raster is rotated, and has no coordinates along its axes", None, "use .array and .transform")
+            raise usage(
+                "the raster is rotated, and has no coordinates along its axes", None, "use .array and .transform"
+            )
         rows, columns = self.array.shape
         coordinates = {"y": f + e * (np.arange(rows) + 0.5), "x": c + a * (np.arange(columns) + 0.5)}
         attributes = {"GeoTransform": " ".join(repr(value) for value in self._gdal)}
         if self.crs:
             attributes["crs_wkt"] = self.crs
         coordinates["spatial_ref"] = ((), 0, attributes)
-        return xarray.DataArray(self.array, coords=coordinates, dims=("y", "x"), name=name, attrs={"grid_mapping": "spatial_ref"})
+        return xarray.DataArray(
+            self.array, coords=coordinates, dims=("y", "x"), name=name, attrs={"grid_mapping": "spatial_ref"}
+        )
 
     def write(
         self, path: Any, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None
@@ -245,7 +250,9 @@ class Contours:
         import json
 
         flat = pyarrow.array(self.coordinates.reshape(-1))
-        pairs = pyarrow.FixedSizeListArray.from_arrays(flat, type=pyarrow.list_(pyarrow.field("xy", pyarrow.float64(), False), 2))
+        pairs = pyarrow.FixedSizeListArray.from_arrays(
+            flat, type=pyarrow.list_(pyarrow.field("xy", pyarrow.float64(), False), 2)
+        )
         if self.offsets[-1] > np.iinfo(np.int32).max:
             lines = pyarrow.LargeListArray.from_arrays(pyarrow.array(self.offsets), pairs)
         else:
@@ -274,7 +281,13 @@ class Contours:
         """
         with call(threads, progress) as request:
             _breakline.write_contours(
-                self.coordinates, self.offsets, self.levels, self.crs, _inputs.path(path, "path"), bool(overwrite), request
+                self.coordinates,
+                self.offsets,
+                self.levels,
+                self.crs,
+                _inputs.path(path, "path"),
+                bool(overwrite),
+                request,
             )
 
 

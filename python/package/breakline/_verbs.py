@@ -295,9 +295,7 @@ def triangulate(
                 if is_given:
                     raise usage(f"{name} is for the plane only", None, f"leave {name} out")
             alpha = alpha if alpha is None or isinstance(alpha, str) else float(alpha)
-            found = _breakline.triangulate_space(
-                file, bool(weighted), alpha, kernel, outputs, bool(overwrite), request
-            )
+            found = _breakline.triangulate_space(file, bool(weighted), alpha, kernel, outputs, bool(overwrite), request)
             lists = [found.pop(name) for name in ("vertices", "tetrahedra")]
             return SpaceTriangulation(*lists, found.pop("solid", None), found)
         if weighted or alpha is not None:
