@@ -47,18 +47,22 @@ pub(crate) fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> PyResu
     let (sender, receiver) = sync_channel(1);
     let program = std::thread::Builder::new().stack_size(STACK);
     program.spawn(move || sender.send(cli::run(arguments) as u8)).map_err(|e| Failure(e.into()))?;
-    loop {
-        match py.detach(|| receiver.recv_timeout(POLL)) {
-            Ok(code) => return Ok(code),
-            Err(RecvTimeoutError::Timeout) => {
-                if let Err(error) = py.check_signals() {
-                    std::mem::forget(io::abandon_outputs());
-                    return Err(error);
+    py.detach(move || {
+        loop {
+            match receiver.recv_timeout(POLL) {
+                Ok(code) => return Ok(code),
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(error) = Python::attach(|py| py.check_signals()) {
+                        std::mem::forget(io::abandon_outputs());
+                        return Err(error);
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(errors::internal(&"the program ended without a code"));
                 }
             }
-            Err(RecvTimeoutError::Disconnected) => return Err(errors::internal(&"the program ended without a code")),
         }
-    }
+    })
 }
 
 /// Options of selecting points, under the names that they have in Python.
