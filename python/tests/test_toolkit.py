@@ -46,8 +46,8 @@ def test_points_are_clipped_and_merged(tmp_path, ground):
 
 @pytest.mark.parametrize("make", ["array", "fortran", "strided", "points", "structured", "dict", "laspy", "frame"])
 def test_a_tin_is_the_same_whatever_the_points_are_kept_in(ground, make):
-    reference = breakline.tin(ground.xyz)
-    xyz = ground.xyz
+    xyz = ground.xyz[ground.flags & 4 == 0]  # withheld points are never used
+    reference = breakline.tin(xyz)
     if make == "fortran":
         xyz = np.asfortranarray(xyz)
     elif make == "strided":
@@ -57,7 +57,7 @@ def test_a_tin_is_the_same_whatever_the_points_are_kept_in(ground, make):
     elif make == "structured":
         xyz = np.array(list(map(tuple, xyz)), dtype=[("X", "f8"), ("Y", "f8"), ("Z", "f8")])
     elif make == "dict":
-        xyz = {"x": ground.x, "y": ground.y, "z": ground.z}
+        xyz = dict(zip("xyz", xyz.T))
     elif make == "laspy":
         xyz = judge("laspy").read(VALLEY)
     elif make == "frame":

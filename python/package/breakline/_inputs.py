@@ -71,7 +71,12 @@ def _floats(values: Any, what: str) -> np.ndarray:
         raise usage(
             f"{what} has the type {array.dtype}", None, "convert it: numpy.asarray(a, float)", ArgumentTypeError
         )
-    return array.astype(np.float64, copy=False)
+    return _aligned(array, np.float64)
+
+
+def _aligned(array: np.ndarray, dtype: Any) -> np.ndarray:
+    """Return an array of a type; a view, unless numbers begin at odd bytes, as in packed records."""
+    return np.require(array, dtype=dtype, requirements="A")
 
 
 def positions(values: Any, what: str = "positions", width: int = 2) -> np.ndarray:
@@ -145,7 +150,7 @@ def _of_laspy(points: Any) -> "dict[str, Any]":
     scales, offsets = getattr(points, "scales", None), getattr(points, "offsets", None)
     scales = header.scales if scales is None else scales
     offsets = header.offsets if offsets is None else offsets
-    steps = [np.asarray(axis).astype(np.int32, copy=False) for axis in (points.X, points.Y, points.Z)]
+    steps = [_aligned(np.asarray(axis), np.int32) for axis in (points.X, points.Y, points.Z)]
     withheld = getattr(points, "withheld", None)
     flags = None if withheld is None else np.asarray(withheld).astype(np.uint8) * np.uint8(4)
     return _columns(
@@ -298,12 +303,12 @@ def layers(value: Any, parameter: str, rings: bool = False) -> "list[Any]":
     for item in [value] if is_one else as_sequence(value):
         if is_path(item):
             found.append(os.fspath(item))
-        elif hasattr(item, "geom_type"):
-            loose.add_geometry(item, parameter)
-        elif hasattr(item, "geometry") or hasattr(item, "geom_type") or type(item).__name__ == "GeoSeries":
+        elif hasattr(item, "geometry"):
             shapes = _Shapes()
             shapes.add_frame(item, parameter)
             found.append(shapes.as_dict())
+        elif hasattr(item, "geom_type"):
+            loose.add_geometry(item, parameter)
         elif hasattr(item, "__geo_interface__"):
             import shapely.geometry
 
