@@ -7,7 +7,6 @@ use std::error::Error as _;
 
 use breakline::error::Kind;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
 
 /// An error of the library on its way to an exception: a type of this crate, so that `?` converts.
 pub(crate) struct Failure(pub(crate) breakline::Error);
@@ -103,16 +102,4 @@ pub(crate) fn internal(panic: &(dyn Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
     with_value("InternalError", text, None, Some("this is a defect of breakline: please report it with the data"))
-}
-
-/// Returns an `UnsupportedError` with the reason.
-#[cold]
-pub(crate) fn unsupported(message: &str, cure: &str) -> PyErr {
-    with_value("UnsupportedError", message, None, Some(cure))
-}
-
-/// Returns the text that `repr` has for a value, shortened.
-pub(crate) fn shown(value: &Bound<'_, PyAny>) -> String {
-    let text = value.repr().map(|text: Bound<'_, PyString>| text.to_string_lossy().into_owned());
-    text.unwrap_or_default().chars().take(60).collect()
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 
+use breakline::data::classes;
 use breakline::io::las::Rounding;
 use breakline::io::{Destination, formats};
 use breakline::run::{
@@ -319,5 +320,9 @@ pub(crate) fn is_of_space(file: PathBuf) -> bool {
 /// Returns the class of points with a name, such as "ground".
 #[pyfunction]
 pub(crate) fn class_number(name: &str) -> PyResult<u8> {
-    Ok(breakline::data::classes::parse(name).map_err(|why| Failure(Error::usage(why)))?)
+    let unknown = |_| {
+        let error = Error::usage(format!("`{name}` is not a class of points"));
+        Failure(error.cure("use a number from 0 to 255, or a name as in LAS 1.4, such as `ground`"))
+    };
+    Ok(classes::parse(name).map_err(unknown)?)
 }
