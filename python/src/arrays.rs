@@ -23,12 +23,12 @@ pub(crate) fn points<const N: usize>(array: &PyReadonlyArray2<'_, f64>) -> Vec<[
     rows(array.as_array())
 }
 
-/// Returns an array that has the memory of a vector.
+/// Returns an array of the numbers of a vector, which are not copied.
 pub(crate) fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>> {
     values.into_pyarray(py)
 }
 
-/// Returns an array of rows that has the memory of a vector.
+/// Returns an array of the rows of a vector, which are not copied.
 pub(crate) fn table<T: Element, const N: usize>(py: Python<'_>, rows: Vec<[T; N]>) -> PyResult<Bound<'_, PyAny>> {
     let count = rows.len();
     Ok(rows.into_flattened().into_pyarray(py).reshape([count, N])?.into_any())

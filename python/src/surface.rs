@@ -264,8 +264,8 @@ impl Surface {
 }
 
 impl Surface {
-    /// Returns true if a height is found by a walk, without threads: those of another pool than ours
-    /// would not exist after a fork.
+    /// Returns true if a height is found by a walk, without threads: those of another pool than
+    /// ours would not exist after a fork.
     fn is_walked(&self) -> bool {
         match &self.product.model {
             Model::Tin(_) => true,

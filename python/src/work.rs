@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::available_parallelism;
+use std::thread::{Builder, available_parallelism};
 use std::time::Duration;
 
 use breakline::run::{Context, Monitor, Notice, Progress, Size, Stage};
@@ -76,16 +76,19 @@ pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
     let cancel = AtomicBool::new(false);
     let mut interruption: Option<PyErr> = None;
     let outcome = py.detach(|| {
-        let (sender, receiver) = sync_channel(1);
-        pool.in_place_scope(|scope| {
-            scope.spawn(|_| {
-                let context = Context { monitor: &watch, cancel: &cancel };
+        std::thread::scope(|scope| {
+            let (sender, receiver) = sync_channel(1);
+            let (pool, watch, cancel) = (&pool, &watch, &cancel);
+            let worker = move || {
+                let context = Context { monitor: watch, cancel };
+                let outcome = pool.install(|| catch_unwind(AssertUnwindSafe(|| work(&context))));
                 // The receiver waits for as long as this is in scope.
-                let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(&context))));
-            });
+                let _ = sender.send(outcome);
+            };
+            Builder::new().name("breakline-call".to_owned()).spawn_scoped(scope, worker)?;
             loop {
                 match receiver.recv_timeout(POLL) {
-                    Ok(outcome) => return Some(outcome),
+                    Ok(outcome) => return Ok(Some(outcome)),
                     Err(RecvTimeoutError::Timeout) if interruption.is_none() => {
                         if let Err(error) = Python::attach(|py| watch.poll(py, progress.as_ref())) {
                             cancel.store(true, Ordering::Relaxed);
@@ -93,11 +96,12 @@ pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
                         }
                     }
                     Err(RecvTimeoutError::Timeout) => {}
-                    Err(RecvTimeoutError::Disconnected) => return None,
+                    Err(RecvTimeoutError::Disconnected) => return Ok(None),
                 }
             }
         })
     });
+    let outcome = outcome.map_err(|e: std::io::Error| errors::limit(&format!("a thread cannot be started: {e}")))?;
     if let Some(error) = interruption {
         return Err(error);
     }

@@ -50,8 +50,8 @@ pub struct HillshadeOptions {
     pub light: LightOptions,
 }
 
-/// The cells of a raster. For a surface they are computed on demand, so that the raster may be larger than
-/// memory.
+/// The cells of a raster. For a surface they are computed on demand, so that the raster may be
+/// larger than memory.
 pub struct CellProduct<'a> {
     source: Box<dyn BlockSource + 'a>,
     /// The triangles that cells are computed from; `None` for cells of a raster.
