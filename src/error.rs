@@ -128,6 +128,16 @@ impl Error {
         self.inner.cure.as_deref()
     }
 
+    /// Returns what was found, without the path and the location.
+    pub fn message(&self) -> &str {
+        &self.inner.message
+    }
+
+    /// Returns the location in the file, if any.
+    pub fn location(&self) -> Option<&str> {
+        self.inner.location.as_deref()
+    }
+
     /// Returns the path of the file that the error is about, if any.
     pub fn path(&self) -> Option<&Path> {
         self.inner.path.as_deref()

@@ -10,8 +10,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Where identifiers and comments are judged.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     "src",
+    "python/src",
     "tests",
     "benches",
     "examples",
@@ -24,7 +25,8 @@ const SOURCES: [&str; 9] = [
 
 /// The pages that are judged. Decisions and the changelog are not: they describe earlier states, in
 /// the words of their time.
-const PAGES: [&str; 5] = ["README.md", "docs", "triangulation/README.md", "triangulation/docs", "fixtures"];
+const PAGES: [&str; 6] =
+    ["README.md", "docs", "python/README.md", "triangulation/README.md", "triangulation/docs", "fixtures"];
 
 /// The widest comment, indentation included.
 const WIDTH: usize = 100;

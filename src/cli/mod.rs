@@ -10,6 +10,7 @@ mod verbs;
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -20,6 +21,7 @@ use self::input::habits;
 use self::report::console::{Console, Level};
 use self::report::{escape, summary};
 use crate::error::{Kind, Result};
+use crate::run::Facts;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,7 +67,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     match dispatch(&cli.verb, &cli.console, &console) {
         Ok(exit) => {
             match cli.verb {
-                Verb::Info(_) | Verb::Demo(_) => {}
+                Verb::Info(_) | Verb::Demo(_) | Verb::Describe(_) => {}
                 _ => summary::print_cost(start, &console),
             }
             exit
@@ -80,6 +82,16 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     }
 }
 
+/// Returns the description of the program that `describe --json` prints.
+pub fn description() -> String {
+    verbs::describe::describe().to_string()
+}
+
+/// Returns the contents of a file as the JSON object that `info --json` prints for it.
+pub fn facts_as_json(path: &Path, facts: &Facts) -> String {
+    verbs::info::as_json(path, facts).to_string()
+}
+
 fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
         Verb::Info(args) => verbs::info::run(args, console),
@@ -91,6 +103,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Hillshade(args) => verbs::hillshade::run(args, console),
         Verb::Check(args) => verbs::check::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console),
+        Verb::Describe(args) => verbs::describe::run(args),
     }
 }
 

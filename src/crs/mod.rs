@@ -71,7 +71,8 @@ impl Crs {
             let error = match registry::find_vertical(code) {
                 Some(vertical) => Error::usage(format!("EPSG:{code} ({}) is only a vertical system", vertical.name))
                     .cure(format!("state the horizontal system with it, as EPSG:25832+{code}")),
-                None => Error::usage(format!("EPSG:{code} is not the code of a coordinate system")),
+                None => Error::usage(format!("EPSG:{code} is not the code of a coordinate system"))
+                    .cure("write the code of a horizontal or compound system, such as EPSG:25832, or WKT"),
             };
             return Err(error);
         };

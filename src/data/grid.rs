@@ -24,23 +24,8 @@ impl Grid {
     /// # Errors
     /// If the raster does not fit into memory, or the source fails.
     pub fn collect(source: &dyn BlockSource) -> Result<Self> {
-        let frame = source.frame();
-        let count = frame.width.saturating_mul(frame.height);
-        let mut values = Vec::new();
-        if values.try_reserve_exact(count).is_err() {
-            return Err(Error::limit(format!("{} x {} cells do not fit into memory", frame.width, frame.height)));
-        }
-        values.resize(count, f64::NAN);
-        values.par_chunks_mut((frame.width * ROWS).max(1)).enumerate().try_for_each(|(i, strip)| {
-            let window = Window { row: i * ROWS, height: strip.len() / frame.width, ..frame.window() };
-            let mut block = vec![0.0; strip.len()];
-            source.fill(window, &mut block)?;
-            for (to, from) in strip.iter_mut().zip(block) {
-                *to = f64::from(from);
-            }
-            Ok::<(), Error>(())
-        })?;
-        Ok(Grid { frame, crs: source.crs().cloned(), values })
+        let values = collected(source)?;
+        Ok(Grid { frame: source.frame(), crs: source.crs().cloned(), values })
     }
 
     /// Returns the box around all cells, with the lowest and the highest height if there are any.
@@ -67,6 +52,34 @@ impl Grid {
     pub fn value(&self, column: usize, row: usize) -> f64 {
         self.values[row * self.frame.width + column]
     }
+}
+
+/// Reads all cells of a source, with all cores, row by row from the first; NaN is nodata.
+///
+/// # Errors
+/// If the raster does not fit into memory, or the source fails.
+pub fn cells(source: &dyn BlockSource) -> Result<Vec<f32>> {
+    collected(source)
+}
+
+fn collected<T: From<f32> + Copy + Send>(source: &dyn BlockSource) -> Result<Vec<T>> {
+    let frame = source.frame();
+    let count = frame.width.saturating_mul(frame.height);
+    let mut values = Vec::new();
+    if values.try_reserve_exact(count).is_err() {
+        return Err(Error::limit(format!("{} x {} cells do not fit into memory", frame.width, frame.height)));
+    }
+    values.resize(count, T::from(f32::NAN));
+    values.par_chunks_mut((frame.width * ROWS).max(1)).enumerate().try_for_each(|(i, strip)| {
+        let window = Window { row: i * ROWS, height: strip.len() / frame.width, ..frame.window() };
+        let mut block = vec![0.0; strip.len()];
+        source.fill(window, &mut block)?;
+        for (to, from) in strip.iter_mut().zip(block) {
+            *to = T::from(from);
+        }
+        Ok::<(), Error>(())
+    })?;
+    Ok(values)
 }
 
 /// A source that can fill any block of a raster: a TIN, a grid, the hillshade of either.
@@ -155,6 +168,7 @@ mod tests {
         assert_eq!(&block[..2], [(148 * 37 + 35) as f32 / 2.0, (148 * 37 + 36) as f32 / 2.0]);
         assert_eq!(block[3], (150 * 37 - 1) as f32 / 2.0);
         assert_eq!(Grid::collect(&grid).unwrap().values, grid.values);
+        assert!(cells(&grid).unwrap().into_iter().map(f64::from).eq(grid.values.iter().copied()));
         let beyond = Window { column: 35, row: 148, width: 3, height: 2 };
         assert!(grid.fill(beyond, &mut block).is_err());
         let short = Grid { values: vec![0.0; 37 * 149], ..grid };

@@ -26,6 +26,8 @@
 //! converts to and from the types of the crate `geo`.
 
 mod bounds;
+pub mod classes;
+mod columns;
 mod contour_line;
 mod frame;
 #[cfg(feature = "geo")]
@@ -41,14 +43,15 @@ mod surface_facts;
 mod triangles;
 
 pub use bounds::Bounds;
+pub use columns::Columns;
 pub use contour_line::ContourLine;
 pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
-pub use grid::{BlockSource, Grid};
+pub use grid::{BlockSource, Grid, cells};
 pub use las_head::LasHead;
 pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{not_finite, orientation};
-pub use points::{Columns, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
+pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
 pub use shape::{Column, Layer, Shape, ShapeKind};
 pub use surface::{BaseFace, EdgeKind, Face, LineEdges, Surface};
 pub(crate) use surface::{corners, faces, faces_under};

@@ -1,6 +1,4 @@
-use std::fmt;
-
-use super::{Bounds, LasHead, Lattice};
+use super::{Bounds, Columns, LasHead, Lattice};
 use crate::crs::Crs;
 use crate::error::Result;
 
@@ -95,27 +93,6 @@ impl PointBatch {
 fn retain<T: Copy>(column: &mut Vec<T>, keep: &[bool]) {
     let mut marks = keep.iter();
     column.retain(|_| marks.next().is_some_and(|keep| *keep));
-}
-
-/// The columns of a table that contain the coordinates, counted from 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Columns {
-    /// Eastings, or longitudes.
-    pub x: usize,
-    /// Northings, or latitudes.
-    pub y: usize,
-    /// Heights.
-    pub z: usize,
-    /// Classification codes, if there are any.
-    pub class: Option<usize>,
-}
-
-/// Formats the columns as "x 3, y 2, z 4".
-impl fmt::Display for Columns {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "x {}, y {}, z {}", self.x, self.y, self.z)?;
-        self.class.map_or(Ok(()), |class| write!(f, ", class {class}"))
-    }
 }
 
 /// What a file states about its points before they are read.

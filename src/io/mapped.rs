@@ -23,6 +23,17 @@ impl AsRef<[u8]> for Mapped {
     }
 }
 
+/// Copies bytes to memory of their own, so that they can be used like those of a file.
+///
+/// # Errors
+/// If the system has no memory for them.
+pub fn of_bytes(bytes: &[u8]) -> Result<Mapped> {
+    // A map of no bytes is refused by some systems; one byte more is not a TIN, either.
+    let mut map = memmap2::MmapMut::map_anon(bytes.len().max(1))?;
+    map[..bytes.len()].copy_from_slice(bytes);
+    Ok(Mapped(map.make_read_only()?))
+}
+
 /// Maps a file to memory. See [`Mapped`] for what must not happen to it meanwhile.
 ///
 /// # Errors

@@ -41,7 +41,7 @@ use super::mapped::Mapped;
 use super::output::Destination;
 pub use super::stl::Solid;
 use super::watch::{Watch, unwatched};
-use crate::data::{Mesh, Surface, Triangles};
+use crate::data::{EdgeKind, Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
 
 /// What a mesh file contains, counted.
@@ -90,6 +90,46 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
         lost_edges: if format.can_hold(Holding::Edges) { 0 } else { mesh.constrained_edges },
         origin: origin.map_err(|e| e.in_file(target.path()))?,
     })
+}
+
+/// Returns the vertices, faces and edges on lines of a surface in memory, in the order and with the
+/// numbers that [`write`] gives them in a file.
+///
+/// # Errors
+/// If something in the surface was found damaged.
+///
+/// # Complexity
+/// Linear.
+pub fn list(surface: &dyn Surface) -> Result<Triangles> {
+    let listing = Listing::new(surface);
+    let mut listed = Triangles {
+        vertices: Vec::with_capacity(listing.vertex_count),
+        faces: Vec::with_capacity(listing.face_count),
+        crs: surface.crs().cloned(),
+        ..Triangles::default()
+    };
+    listed.vertices.extend(listing.vertices());
+    listed.faces.extend(listing.faces());
+    if surface.has_lines() {
+        listed.lines.extend(listing.edges().filter(|(_, kind)| kind.is_constrained()));
+        let is_fragment = |(_, (_, _, is_fragment)): &(u32, (_, _, bool))| *is_fragment;
+        listed.fragments.extend((0..).zip(listing.lined_faces()).filter(is_fragment).map(|(number, _)| number));
+    }
+    surface.ensure_intact()?;
+    Ok(listed)
+}
+
+/// Returns all edges of a surface, each once with its kind; vertices have the numbers of [`list`].
+///
+/// # Errors
+/// If something in the surface was found damaged.
+///
+/// # Complexity
+/// Linear.
+pub fn edges(surface: &dyn Surface) -> Result<Vec<([u32; 2], EdgeKind)>> {
+    let edges = Listing::new(surface).edges().collect();
+    surface.ensure_intact()?;
+    Ok(edges)
 }
 
 /// Maps a TIN to memory; `None` for a file of another format, by its first bytes and its extension.

@@ -6,7 +6,7 @@ use super::notice::Notice;
 use super::surface::{Model, SurfaceProduct};
 use super::watched::Watched;
 use crate::crs::Crs;
-use crate::data::{BlockSource, Frame, Grid, Surface, Window};
+use crate::data::{self, BlockSource, Frame, Grid, Surface, Window};
 use crate::error::{Error, Result};
 use crate::io::geotiff::{self, CellFormat, RasterSummary};
 use crate::io::{Destination, png};
@@ -50,8 +50,8 @@ pub struct HillshadeOptions {
     pub light: LightOptions,
 }
 
-/// The cells of a raster. They are computed on demand, so that the raster may be larger than
-/// memory.
+/// The cells of a raster. For a surface they are computed on demand, so that the raster may be
+/// larger than memory.
 pub struct CellProduct<'a> {
     source: Box<dyn BlockSource + 'a>,
     /// The triangles that cells are computed from; `None` for cells of a raster.
@@ -143,6 +143,13 @@ fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light 
     Light { azimuth: options.azimuth, altitude: options.altitude, z_factor }
 }
 
+impl<'a> CellProduct<'a> {
+    /// Returns the cells of a grid that is in memory, to be written as `cells`.
+    pub fn of_grid(grid: &'a Grid, cells: CellFormat) -> Self {
+        CellProduct { source: Box::new(grid), surface: None, cells, notices: Vec::new() }
+    }
+}
+
 impl CellProduct<'_> {
     /// Returns about how many cells have a value; for a raster, the number of all cells.
     ///
@@ -160,6 +167,14 @@ impl CellProduct<'_> {
     /// If they do not fit into memory, or the run is canceled.
     pub fn collect(&self, context: &Context) -> Result<Grid> {
         Grid::collect(&self.watched(context)?)
+    }
+
+    /// Computes all cells, on all cores, as they are written: in half the memory of a [`Grid`].
+    ///
+    /// # Errors
+    /// Those of [`collect`](Self::collect).
+    pub fn collect_cells(&self, context: &Context) -> Result<(Frame, Vec<f32>)> {
+        Ok((self.frame(), data::cells(&self.watched(context)?)?))
     }
 
     /// Computes all cells, on all cores, and writes them as GeoTIFF: heights as 32-bit floats,

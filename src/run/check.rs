@@ -81,13 +81,23 @@ pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct
         return check_mesh(path, &systems, context);
     }
     let product = surface::triangles(&SurfaceRequest { source: request.source.clone(), systems }, context)?;
+    let flaws = surface_flaws(&product, context)?;
+    Ok(CheckProduct { product, flaws })
+}
+
+/// Returns the flaws of a surface that is built or read already, as [`check`] finds them. Of a mesh
+/// without lines, edges that are not Delaunay are among them.
+///
+/// # Errors
+/// If the surface is a raster, the file of a TIN is damaged, or the run is canceled.
+pub fn surface_flaws(product: &SurfaceProduct, context: &Context) -> Result<Vec<LocatedFlaw>> {
     if let Model::Compact(tin) = &product.model {
         tin.check()?;
     }
     let watched = checked(product.triangles()?, context)?;
     let flaws = flaws_beside(&[], &terrain::surface_flaws(&watched), &watched);
     watched.end()?;
-    Ok(CheckProduct { product, flaws })
+    Ok(flaws)
 }
 
 fn check_mesh(path: &Path, systems: &SystemOptions, context: &Context) -> Result<CheckProduct> {

@@ -92,6 +92,31 @@ pub enum Stage {
     DrawingContours,
     /// Files are written, without a count.
     Writing,
+    /// Heights are computed, counted in positions.
+    ComputingHeights,
+}
+
+impl Stage {
+    /// Returns what is done, as a text before a progress bar: "reading points".
+    pub fn title(self) -> &'static str {
+        match self {
+            Stage::ReadingPoints => "reading points",
+            Stage::WritingPoints => "writing points",
+            Stage::ReadingLayer => "reading lines",
+            Stage::ReadingCells => "reading cells",
+            Stage::ReadingTriangles => "reading triangles",
+            Stage::Reading => "reading",
+            Stage::Triangulating => "triangulating",
+            Stage::CheckingFaces => "checking faces",
+            Stage::WritingFaces => "writing faces",
+            Stage::WritingCells => "writing cells",
+            Stage::ShadingCells => "shading cells",
+            Stage::FindingContours => "finding contours",
+            Stage::DrawingContours => "drawing contours",
+            Stage::Writing => "writing",
+            Stage::ComputingHeights => "computing heights",
+        }
+    }
 }
 
 /// The number of items of a stage, if it is known when the stage begins.

@@ -5,6 +5,7 @@ use super::notice::Notice;
 use super::surface::{Model, SurfaceProduct};
 use super::units::Units;
 use super::watched::Watched;
+use crate::crs::Crs;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
 use crate::io::Destination;
@@ -64,6 +65,28 @@ pub fn contour<'a>(
         journal.add(Notice::DefaultInterval(Units::of(product.crs()).height(DEFAULT_INTERVAL)));
     }
     Ok(ContourProduct { product, levels, notices: journal.take() })
+}
+
+/// Writes lines that are in memory, in the format that the extension of `target` names; see
+/// [`ContourProduct::write`].
+///
+/// # Errors
+/// If there are too many lines for the format, the file cannot be written, or the run is canceled.
+pub fn write_contours(
+    lines: &[ContourLine],
+    crs: Option<&Crs>,
+    target: Destination,
+    context: &Context,
+) -> Result<ContourSummary> {
+    let count = lines.iter().map(|line| line.points.len().saturating_sub(1) as u64).sum();
+    target.put_whole(|target| {
+        contours::check_size(target, count)?;
+        let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
+        let is_wanted = |line: &&ContourLine| drawing.add(line.points.len().saturating_sub(1) as u64).is_ok();
+        let written = contours::write(target, &mut lines.iter().take_while(is_wanted).cloned(), crs);
+        drawing.end()?;
+        written
+    })
 }
 
 impl ContourProduct<'_> {

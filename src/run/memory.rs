@@ -12,6 +12,9 @@ const BYTES_A_POINT: u64 = 72;
 /// Bytes per point, including the coordinates.
 const BYTES_A_POINT_READ: u64 = BYTES_A_POINT + 24;
 
+/// Bytes per point in columns: coordinates, class, flags, return number.
+const BYTES_OF_COLUMNS: u64 = 27;
+
 /// Bytes per point while points in space are triangulated and written, without the coordinates:
 /// 400 of the triangulation and 330 of the lists, where a point has seven cells.
 const BYTES_A_POINT_OF_SPACE: u64 = 730;
@@ -37,6 +40,16 @@ struct Left {
 pub(super) fn require_for_points(count: usize) -> Result<()> {
     require(count as u64 * BYTES_A_POINT, &format!("a surface of {count} points"))
         .map_err(|e| e.cure("use fewer points: a part of the area (--bounds), a class (--class), or tiles one by one"))
+}
+
+/// Returns an error if there is not enough memory to double the columns of this many points, as a
+/// list that grows may.
+///
+/// # Errors
+/// Those of [`require_for_points`].
+pub(super) fn require_for_columns(count: usize) -> Result<()> {
+    require(count as u64 * BYTES_OF_COLUMNS, &format!("columns of {count} points"))
+        .map_err(|e| e.cure("use fewer points: a part of the area (--bounds), a class (--class)"))
 }
 
 /// Returns an error if there is not enough memory to triangulate this many points in space.

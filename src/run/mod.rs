@@ -9,9 +9,10 @@
 //! | build or read a surface | [`SurfaceRequest`] | [`surface()`], [`triangles`] | [`SurfaceProduct`] |
 //! | write it as a mesh | | [`write_mesh`] | |
 //! | heights at the centers of cells | [`DemOptions`] | [`dem`] | [`CellProduct`] |
+//! | heights at positions | positions | [`elevations`] | a list |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
-//! | select, clip and merge points | [`PointsRequest`] | [`write_points`] | [`PointsReport`] |
+//! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate points in space | [`SpaceOptions`] | [`triangulate_space`] | [`SpaceProduct`] |
@@ -69,6 +70,7 @@ mod check;
 mod context;
 mod contour;
 mod crossings;
+mod elevation;
 mod extents;
 mod facts;
 mod frame;
@@ -81,6 +83,7 @@ mod line_request;
 mod lines;
 mod memory;
 mod notice;
+mod notice_text;
 mod open;
 mod overlaps;
 mod point_files;
@@ -96,10 +99,11 @@ pub(crate) mod units;
 mod watched;
 
 pub use cells::{CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade};
-pub use check::{CheckProduct, FlawKind, LocatedFlaw, check};
+pub use check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
-pub use contour::{ContourOptions, ContourProduct, contour};
+pub use contour::{ContourOptions, ContourProduct, contour, write_contours};
 pub use crossings::LineNames;
+pub use elevation::elevations;
 pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
 pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
@@ -107,7 +111,7 @@ pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
 pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity};
 pub use overlaps::Overlap;
-pub use points::{PointsReport, PointsRequest, Withheld, write_points};
+pub use points::{PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points};
 pub use space::{
     Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceLaw, SpaceOptions, SpaceProduct, SpaceReport, check_space,
     is_of_space, triangulate_space,

@@ -7,8 +7,8 @@ use super::line_request::LineRole;
 use super::units::Quantity;
 use crate::crs::Crs;
 
-/// Something that was assumed or that looks wrong. The command line has a text for each; other
-/// callers can use their own.
+/// Something that was assumed or that looks wrong. Displayed as the command line prints it; other
+/// callers can have texts of their own.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Notice {

@@ -19,7 +19,7 @@ const GROUND: u8 = 2;
 pub(super) const FILES_KEPT_OPEN: usize = 100;
 
 /// The free memory is checked each time that this many further points are to be used.
-const ASK_EVERY: usize = 1 << 20;
+pub(super) const ASK_EVERY: usize = 1 << 20;
 
 /// A file of points.
 struct PointFile {

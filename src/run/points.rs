@@ -1,4 +1,4 @@
-//! Selecting, clipping and merging points from files to a file.
+//! Selecting, clipping and merging points from files, to a file or to memory.
 
 use std::path::{Path, PathBuf};
 
@@ -6,15 +6,15 @@ use super::context::{Context, Journal, Size, Stage};
 use super::input::{Input, is_read_once};
 use super::layers::{self, Layers};
 use super::notice::Notice;
-use super::point_files::FILES_KEPT_OPEN;
+use super::point_files::{ASK_EVERY, FILES_KEPT_OPEN};
 use super::systems::{self, Role, Stated, SystemOptions, Systems};
 use super::transforms::Transforms;
-use super::{lattice, open};
+use super::{lattice, memory, open};
 use crate::crs::Crs;
-use crate::data::{Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSource, PointSummary};
+use crate::data::{Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
 use crate::error::{Error, Result};
 use crate::io::Destination;
-use crate::io::las::{self, Rounding};
+use crate::io::las::{self, Detail, Rounding};
 use crate::io::points::{self, Options};
 use crate::terrain::Inside;
 
@@ -84,8 +84,43 @@ pub struct PointsReport {
 /// [`las::create`](crate::io::las::create)), no point is left, or the run is canceled. Nothing is
 /// written then.
 pub fn write_points(request: &PointsRequest, target: Destination, context: &Context) -> Result<PointsReport> {
+    let detail = points::detail_for(target)?;
+    transfer(request, detail, Stage::WritingPoints, context, |infos| points::create(target, infos, request.rounding))
+}
+
+/// Points in memory, and the report of reading them.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct PointsProduct {
+    /// The points, in columns. If any file has classes and flags, or return numbers, these are 0
+    /// for the points of files without them.
+    pub points: PointBatch,
+    /// Counts of the points.
+    pub report: PointsReport,
+}
+
+/// Reads points file after file, and returns the selected ones in the same order.
+///
+/// # Errors
+/// Those of [`write_points`], except those of writing; and if there is not enough memory.
+pub fn read_points(request: &PointsRequest, context: &Context) -> Result<PointsProduct> {
+    let mut points = PointBatch::default();
+    let report = transfer(request, Detail::Columns, Stage::ReadingPoints, context, |_| {
+        Ok(Box::new(Collected(&mut points)) as Box<dyn PointSink>)
+    })?;
+    Ok(PointsProduct { points, report })
+}
+
+/// Takes the selected points of all files to a sink.
+fn transfer<'s>(
+    request: &PointsRequest,
+    detail: Detail,
+    stage: Stage,
+    context: &Context,
+    create: impl FnOnce(&[&PointInfo]) -> Result<Box<dyn PointSink + 's>>,
+) -> Result<PointsReport> {
     let journal = Journal::new(context);
-    let options = Options { detail: points::detail_for(target)?, ..request.read };
+    let options = Options { detail, ..request.read };
     let open = |path: &Path| open::points_of_file(path, options, context).map_err(|e| e.in_file(path));
     let mut sources: Vec<Option<Box<dyn PointSource + Send>>> = Vec::new();
     let mut infos: Vec<PointInfo> = Vec::new();
@@ -111,9 +146,9 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     share_lattice(&mut infos, of_points);
     let all: Vec<&PointInfo> = infos.iter().collect();
     let mut report = PointsReport::default();
-    let mut sink = points::create(target, &all, request.rounding)?;
+    let mut sink = create(&all)?;
     let count = infos.iter().map(|info| info.count).sum::<Option<u64>>();
-    let work = journal.start(Stage::WritingPoints, count.map_or(Size::Unknown, Size::Items))?;
+    let work = journal.start(stage, count.map_or(Size::Unknown, Size::Items))?;
     let mut batch = PointBatch::default();
     for (((path, info), source), number) in request.files.iter().zip(&infos).zip(sources).zip(of_points) {
         let mut source = source.map_or_else(|| open(path), Ok)?;
@@ -144,6 +179,47 @@ pub fn write_points(request: &PointsRequest, target: Destination, context: &Cont
     report.crs.clone_from(&plan.crs);
     report.notices = journal.take();
     Ok(report)
+}
+
+/// A sink that keeps points in memory.
+struct Collected<'a>(&'a mut PointBatch);
+
+impl PointSink for Collected<'_> {
+    fn next_source(&mut self, _: &PointInfo) -> Result<()> {
+        Ok(())
+    }
+
+    fn write(&mut self, batch: &PointBatch) -> Result<()> {
+        let all = &mut *self.0;
+        let (before, after) = (all.len(), all.len() + batch.len());
+        if before / ASK_EVERY != after / ASK_EVERY {
+            memory::require_for_columns(after)?;
+        }
+        all.x.extend_from_slice(&batch.x);
+        all.y.extend_from_slice(&batch.y);
+        all.z.extend_from_slice(&batch.z);
+        extend(&mut all.class, &batch.class, before, after);
+        extend(&mut all.flags, &batch.flags, before, after);
+        extend(&mut all.return_number, &batch.return_number, before, after);
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<PointSummary> {
+        let all = self.0;
+        let mut bounds = Bounds::default();
+        (0..all.len()).for_each(|i| bounds.add([all.x[i], all.y[i], all.z[i]]));
+        Ok(PointSummary { count: all.len() as u64, bounds })
+    }
+}
+
+/// Appends values to a column that some sources do not have: it is empty as long as none has it.
+fn extend<T: Clone + Default>(column: &mut Vec<T>, values: &[T], before: usize, after: usize) {
+    if !values.is_empty() {
+        column.resize(before, T::default());
+        column.extend_from_slice(values);
+    } else if !column.is_empty() {
+        column.resize(after, T::default());
+    }
 }
 
 /// The coordinate system of the result, and how points get there.

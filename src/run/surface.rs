@@ -93,6 +93,13 @@ pub enum Model {
     Raster(Box<Grid>),
 }
 
+impl From<Model> for SurfaceProduct {
+    /// A surface that was made elsewhere, without a report.
+    fn from(model: Model) -> Self {
+        SurfaceProduct { model, built: None, notices: Vec::new() }
+    }
+}
+
 impl SurfaceProduct {
     /// Returns the triangles.
     ///

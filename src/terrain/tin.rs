@@ -81,10 +81,18 @@ impl Tin {
     /// # Complexity
     /// A walk through about as many triangles as lie in a row across the surface.
     pub fn elevation(&self, x: f64, y: f64) -> Option<f64> {
+        self.elevation_near([x, y], &mut None)
+    }
+
+    /// Like [`elevation`](Self::elevation), but the walk begins at the cell `near` and leaves the
+    /// one at the position there: with the same variable for positions next to each other, walks
+    /// are short. The result does not depend on it.
+    pub fn elevation_near(&self, q: [f64; 2], near: &mut Option<CellId>) -> Option<f64> {
         // Coordinates below the range of the arithmetic count as zero; those above are beyond all
         // vertices.
-        let [x, y] = [x, y].map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
-        let location = self.triangulation.locate(&[x, y, 0.0], None);
+        let [x, y] = q.map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
+        let location = self.triangulation.locate(&[x, y, 0.0], *near);
+        *near = location.cell(&self.triangulation).or(*near);
         let in_whole = match location {
             Location::Vertex(vertex) => {
                 let inside = self.triangulation.tds().around(vertex).any(|cell| self.inside[cell.index()]);
@@ -92,7 +100,10 @@ impl Tin {
             }
             Location::Cell { cell, .. } => {
                 let beside = location.facets().map(|(cell, i)| self.triangulation.tds().neighbor(cell, i));
-                let cell = std::iter::once(cell).chain(beside).find(|cell| self.inside[cell.index()]);
+                // On an edge, rounded heights of both cells may differ: one of them, however it was
+                // reached.
+                let either = std::iter::once(cell).chain(beside).filter(|cell| self.inside[cell.index()]);
+                let cell = either.min_by_key(|cell| cell.index());
                 let corners = |cell| self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
                 cell.map(|cell| linear(corners(cell), [x, y]))
             }

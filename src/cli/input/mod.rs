@@ -3,7 +3,6 @@
 //! The options as typed (`args`) are kept apart from their meaning (`plan`, `inputs`, `outputs`).
 
 pub(super) mod args;
-pub(super) mod classes;
 pub(super) mod habits;
 pub(super) mod inputs;
 pub(super) mod outputs;

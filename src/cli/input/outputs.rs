@@ -232,18 +232,16 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
         let missing = std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
         return Err(Error::from(missing).in_file(path).cure(format!("mkdir -p {}", folder.display())));
     }
-    for (file, _) in with_companions(path, format.extension, format.companions) {
+    for (file, _) in formats::with_companions(path, format.extension, format.companions) {
         if inputs.iter().any(|input| identity(input) == identity(&file)) {
             return Err(Error::usage("the output is one of the inputs").in_file(&file).cure("give it another name"));
         }
-        if io::is_stream(&file) {
-            continue;
+        if existing == Existing::Keep {
+            io::require_absent(&file)?;
         }
-        if file.symlink_metadata().is_ok() && existing == Existing::Keep {
-            let exists = std::io::Error::new(std::io::ErrorKind::AlreadyExists, "the file exists");
-            return Err(Error::from(exists).in_file(&file).cure("give it another name, or add --overwrite"));
+        if !io::is_stream(&file) {
+            io::probe(&file)?;
         }
-        io::probe(&file)?;
     }
     Ok(())
 }
@@ -252,30 +250,9 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
 pub(in crate::cli) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
     let format = formats.iter().find(|format| format.extension == target.extension);
     let companions = format.map_or(&[][..], |format| format.companions);
-    let mut files = with_companions(&target.path, target.extension, companions);
+    let mut files = formats::with_companions(&target.path, target.extension, companions);
     files.rotate_left(1);
     files.into_iter().map(|(path, extension)| Target { path, kind: target.kind, extension }).collect()
-}
-
-/// Returns a file and its companions, each with the extension of its format.
-fn with_companions(
-    path: &Path,
-    extension: &'static str,
-    companions: &'static [&'static str],
-) -> Vec<(PathBuf, &'static str)> {
-    let beside = companions.iter().map(|&companion| {
-        let path = match companion.strip_prefix(extension) {
-            // Appended to the whole name, whatever its case: `A.PNG.aux.xml`.
-            Some(behind) => {
-                let mut name = path.as_os_str().to_owned();
-                name.push(behind);
-                name.into()
-            }
-            None => path.with_extension(companion),
-        };
-        (path, companion)
-    });
-    std::iter::once((path.to_path_buf(), extension)).chain(beside).collect()
 }
 
 fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {

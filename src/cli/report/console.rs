@@ -8,7 +8,6 @@ use std::sync::{Mutex, PoisonError};
 use indicatif::{MultiProgress, ProgressDrawTarget};
 
 use super::escape;
-use super::notices;
 use super::progress::Bar;
 use crate::error::Error;
 use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
@@ -101,13 +100,11 @@ impl Monitor for Console {
     }
 
     fn notice(&self, notice: &Notice) {
-        let mut lines = notices::lines(notice).into_iter();
-        let first = lines.next().unwrap_or_default();
         match notice.severity() {
-            Severity::Detail => self.detail(first),
-            Severity::Note => self.note(first),
-            Severity::Warning => self.warning(first),
+            Severity::Detail => self.detail(notice),
+            Severity::Note => self.note(notice),
+            Severity::Warning => self.warning(notice),
         }
-        lines.for_each(|line| self.line(line));
+        notice.details().iter().for_each(|line| self.line(format_args!("            {line}")));
     }
 }

@@ -2,6 +2,5 @@
 
 pub(super) mod console;
 pub(super) mod escape;
-mod notices;
 mod progress;
 pub(super) mod summary;

@@ -25,7 +25,7 @@ impl Bar {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("=> ").with_key("rate", Rate));
         }
-        bar.set_message(title(stage));
+        bar.set_message(stage.title());
         bar.enable_steady_tick(Duration::from_millis(200));
         Bar(bar)
     }
@@ -34,26 +34,6 @@ impl Bar {
 impl Progress for Bar {
     fn add(&self, items: u64) {
         self.0.inc(items);
-    }
-}
-
-/// Returns the text before a bar.
-fn title(stage: Stage) -> &'static str {
-    match stage {
-        Stage::ReadingPoints => "reading points",
-        Stage::WritingPoints => "writing points",
-        Stage::ReadingLayer => "reading lines",
-        Stage::ReadingCells => "reading cells",
-        Stage::ReadingTriangles => "reading triangles",
-        Stage::Reading => "reading",
-        Stage::Triangulating => "triangulating",
-        Stage::CheckingFaces => "checking faces",
-        Stage::WritingFaces => "writing faces",
-        Stage::WritingCells => "writing cells",
-        Stage::ShadingCells => "shading cells",
-        Stage::FindingContours => "finding contours",
-        Stage::DrawingContours => "drawing contours",
-        Stage::Writing => "writing",
     }
 }
 

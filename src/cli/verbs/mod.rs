@@ -4,6 +4,7 @@ pub(super) mod check;
 pub(super) mod contour;
 pub(super) mod dem;
 pub(super) mod demo;
+pub(super) mod describe;
 pub(super) mod hillshade;
 pub(super) mod info;
 pub(super) mod points;

@@ -12,7 +12,7 @@ mod table;
 use std::fmt::Write;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use self::format::KnownBy;
 pub use self::format::{Content, Format, Holding, Product};
@@ -191,4 +191,26 @@ pub fn markdown() -> String {
         let _ = writeln!(text, "| {} |", cells.join(" | ").replace("|  |", "| |"));
     }
     text
+}
+
+/// Returns a file and its companions, each with the extension of its format. `companions` are
+/// those of [`Format::beside`].
+pub fn with_companions(
+    path: &Path,
+    extension: &'static str,
+    companions: &'static [&'static str],
+) -> Vec<(PathBuf, &'static str)> {
+    let beside = companions.iter().map(|&companion| {
+        let path = match companion.strip_prefix(extension) {
+            // Appended to the whole name, whatever its case: `A.PNG.aux.xml`.
+            Some(behind) => {
+                let mut name = path.as_os_str().to_owned();
+                name.push(behind);
+                name.into()
+            }
+            None => path.with_extension(companion),
+        };
+        (path, companion)
+    });
+    std::iter::once((path.to_path_buf(), extension)).chain(beside).collect()
 }

@@ -68,6 +68,16 @@ impl<'a> Listing<'a> {
         })
     }
 
+    /// Returns all edges, each with its kind: once, with the face of the smaller number.
+    pub(super) fn edges(&self) -> impl Iterator<Item = ([u32; 2], EdgeKind)> + '_ {
+        data::faces(self.surface).flat_map(move |face| {
+            let is_first =
+                move |i: &usize| self.surface.neighbor(face.number, *i).is_none_or(|other| face.number < other);
+            let ends = move |i: usize| [1, 2].map(|k| self.number[face.corners[(i + k) % 3] as usize]);
+            (0..3).filter(is_first).map(move |i| (ends(i), face.edges[i]))
+        })
+    }
+
     /// Returns the coordinates of each face's corners, counter-clockwise.
     pub(super) fn triangles(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         self.corners().map(|corners| corners.map(|v| self.surface.position(v)))
@@ -95,5 +105,7 @@ mod tests {
         let kinds: Vec<_> = listing.lined_faces().map(|(_, kinds, _)| kinds).collect();
         let [rim, line] = [EdgeKind::Rim, EdgeKind::Breakline];
         assert_eq!(kinds, [[rim, rim, line], [rim, line, rim]]);
+        let edges: Vec<_> = listing.edges().collect();
+        assert_eq!(edges, [([2, 1], rim), ([1, 0], rim), ([0, 2], line), ([3, 2], rim), ([0, 3], rim)]);
     }
 }

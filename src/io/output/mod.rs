@@ -139,6 +139,19 @@ pub fn is_stream(target: &Path) -> bool {
     matches!(TargetKind::of(target), Ok(TargetKind::Stream))
 }
 
+/// Returns an error if a file exists at the path of an output that must not replace it. Pipes and
+/// devices are not replaced.
+///
+/// # Errors
+/// If a file, a folder or a link exists there.
+pub fn require_absent(target: &Path) -> Result<()> {
+    if is_stream(target) || target.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let exists = io::Error::new(io::ErrorKind::AlreadyExists, "the file exists");
+    Err(Error::from(exists).in_file(target).cure("give it another name, or add --overwrite"))
+}
+
 fn temporary_for(path: &Path) -> Result<(File, Temporary)> {
     let replaced = target::replaceable(path)?;
     let (file, temporary) = Temporary::create(path)?;

@@ -19,9 +19,11 @@ use crate::crs::Crs;
 use crate::data::{BaseFace, EdgeKind, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::kernel::RANGE;
 use crate::triangulation::tds::{CellId, Complex, VertexId};
-use crate::triangulation::{Compact, CompactError, CompactSection};
+use crate::triangulation::{Compact, CompactError, CompactSection, Location};
 
+use super::linear::linear;
 use attributes::Attributes;
 use layout::{ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, SIDE, SIDES, Side, VERTEX, VERTICES};
 pub(super) use write::write;
@@ -182,6 +184,35 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     /// Sets the coordinate system; coordinates do not change.
     pub fn set_crs(&mut self, crs: Option<Crs>) {
         self.attributes.crs = crs;
+    }
+
+    /// Returns true if a boundary or bounds have cut triangles, and the surface contains fragments
+    /// of them.
+    pub fn has_fragments(&self) -> bool {
+        !self.fragments.is_empty()
+    }
+
+    /// Returns the height at a position in plan, linear on the whole triangle there; `None` outside
+    /// of the whole triangles of the surface. [`Interpolant`](super::Interpolant) finds heights in
+    /// fragments, too.
+    ///
+    /// The walk begins at the cell `near` and leaves the one at the position there, see
+    /// [`Tin::elevation_near`](super::Tin::elevation_near).
+    pub fn elevation_in_whole(&self, q: [f64; 2], near: &mut Option<CellId>) -> Option<f64> {
+        self.or_record(self.find_elevation(q, near), None)
+    }
+
+    fn find_elevation(&self, q: [f64; 2], near: &mut Option<CellId>) -> Found<Option<f64>> {
+        let q = q.map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
+        let location = self.triangulation.locate(&[q[0], q[1], 0.0], *near)?;
+        *near = location.cell_in(&self.triangulation)?.or(*near);
+        let inside = location.cells(&self.triangulation)?.into_iter().find(|cell| self.is_inside(cell.index()));
+        let Some(cell) = inside else { return Ok(None) };
+        if let Location::Vertex(vertex) = location {
+            return self.point(vertex.index() as u32).map(|[_, _, z]| Some(z));
+        }
+        let [a, b, c] = self.triangulation.corners(cell)?.map(|vertex| self.point(vertex.index() as u32));
+        Ok(Some(linear([a?, b?, c?], q)))
     }
 
     fn face_numbers(&self) -> usize {

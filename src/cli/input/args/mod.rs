@@ -22,8 +22,8 @@ pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, Sur
 pub(in crate::cli) use switches::expand_switches;
 pub(in crate::cli) use systems::SystemArgs;
 pub(in crate::cli) use verbs::{
-    CheckArgs, ContourArgs, DemArgs, DemoArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs, PointsArgs, TinArgs,
-    TriangulateArgs,
+    CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs,
+    PointsArgs, TinArgs, TriangulateArgs,
 };
 
 /// Lidar and breaklines to TIN, DEM, contours and mesh
@@ -98,6 +98,7 @@ pub(in crate::cli) enum Verb {
     Hillshade(HillshadeArgs),
     Check(CheckArgs),
     Demo(DemoArgs),
+    Describe(DescribeArgs),
 }
 
 #[cfg(test)]

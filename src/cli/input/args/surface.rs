@@ -6,7 +6,7 @@ use super::lines::LineArgs;
 use super::parse::{Corners, EdgeLength, not_negative, positive};
 use super::reading::ReadArgs;
 use super::systems::SystemArgs;
-use crate::cli::input::classes;
+use crate::data::classes;
 use crate::terrain::{CrossingRule, DuplicateRule};
 use crate::triangulation::OnCrossing;
 

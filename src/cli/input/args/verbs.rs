@@ -6,7 +6,7 @@ use super::parse::{Corners, altitude, finite, positive, smallest_angle};
 use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
-use crate::cli::input::classes;
+use crate::data::classes;
 use crate::run::{Alpha, Arithmetic};
 use crate::terrain::Method;
 
@@ -469,6 +469,19 @@ pub(in crate::cli) struct CheckArgs {
     /// Replace an existing crossing report
     #[arg(long)]
     pub(in crate::cli) overwrite: bool,
+}
+
+/// Describe the program: all verbs with their options, values and defaults
+///
+/// For programs that wrap this one, and for tests of them.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline describe --json | jq '.verbs[].name'")]
+pub(in crate::cli) struct DescribeArgs {
+    /// Print a JSON object, with all texts of the help
+    #[arg(long)]
+    pub(in crate::cli) json: bool,
 }
 
 /// Try everything on a small valley that comes with the program

@@ -52,6 +52,11 @@ pub(in crate::cli) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
     Ok(exit)
 }
 
+/// Returns the facts about a file, and the warnings, as JSON.
+pub(in crate::cli) fn as_json(path: &Path, facts: &Facts) -> serde_json::Value {
+    sheet(path, facts).to_json(&path.display().to_string())
+}
+
 /// Removes files that belong to another of the files, such as the parts of shapefiles that
 /// `FOLDER/*` matches; they are read with the `.shp`.
 fn drop_parts(files: &mut Vec<PathBuf>, console: &Console) {

@@ -1,8 +1,8 @@
 use serde_json::{Map, Value, json};
 
 use super::Sheet;
-use crate::cli::input::classes;
 use crate::cli::report::summary::counted;
+use crate::data::classes;
 use crate::data::{Columns, Lattice};
 use crate::run::PointFacts;
 use crate::triangulation::num::unsigned_zero;

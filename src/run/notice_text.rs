@@ -1,22 +1,33 @@
 //! The texts of notices.
 
-use crate::run::units::{bytes, neat, number};
-use crate::run::{CrossingNote, Notice, Quantity, Seed, SeedFlaw};
+use std::fmt;
 
-/// Returns the text of a notice, then the lines that are printed below it.
-pub(super) fn lines(notice: &Notice) -> Vec<String> {
-    let mut lines = vec![text(notice)];
-    if let Notice::CrossingHeights { count, first, .. } = notice {
-        lines.extend(first.iter().map(|CrossingNote { at, low, high, chosen }| {
+use super::notice::{CrossingNote, Notice, Seed, SeedFlaw};
+use super::units::{Quantity, bytes, neat, number};
+
+/// Formats the notice as the program prints it, without its [details](Notice::details). Options are
+/// named as on the command line.
+impl fmt::Display for Notice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&text(self))
+    }
+}
+
+impl Notice {
+    /// Returns the lines that explain the notice further, if any.
+    pub fn details(&self) -> Vec<String> {
+        let Notice::CrossingHeights { count, first, .. } = self else { return Vec::new() };
+        let each = first.iter().map(|CrossingNote { at, low, high, chosen }| {
             let [x, y] = at.map(neat);
             let [low, high] = [low, high].map(|(z, line)| format!("{} of {line}", neat(*z)));
-            format!("            {x} {y}: {low}, {high}; {} is used", neat(*chosen))
-        }));
+            format!("{x} {y}: {low}, {high}; {} is used", neat(*chosen))
+        });
+        let mut lines: Vec<String> = each.collect();
         if *count > first.len() {
-            lines.push(format!("            and {} more (--crossing-report FILE.csv)", count - first.len()));
+            lines.push(format!("and {} more (--crossing-report FILE.csv)", count - first.len()));
         }
+        lines
     }
-    lines
 }
 
 fn text(notice: &Notice) -> String {

@@ -27,12 +27,15 @@ const NAMES: [&str; 23] = [
 ];
 
 /// Returns the name of a class.
-pub(in crate::cli) fn name(class: usize) -> &'static str {
+pub fn name(class: usize) -> &'static str {
     NAMES.get(class).copied().unwrap_or(if class < 64 { "reserved" } else { "user-defined" })
 }
 
 /// Parses a class: `2`, `ground`, `low-vegetation`.
-pub(in crate::cli) fn parse(text: &str) -> Result<u8, String> {
+///
+/// # Errors
+/// If the text is neither a number up to 255 nor a name; the error says what is expected.
+pub fn parse(text: &str) -> Result<u8, String> {
     let plain = text.trim().replace(['-', '_'], " ").to_ascii_lowercase();
     let by_name = || NAMES.iter().position(|name| *name == plain).map(|class| class as u8);
     plain.parse().ok().or_else(by_name).ok_or_else(|| {

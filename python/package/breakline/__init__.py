@@ -1,0 +1,91 @@
+"""Lidar and breaklines to TIN, DEM, contours and meshes: exact, fast, with numpy arrays in and out.
+
+>>> import breakline
+>>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+>>> tin.elevation([[5, 5], [20, 20]])
+array([ 2., nan])
+
+==================  ==================================================
+what                function
+==================  ==================================================
+points to columns   :func:`read_points`
+points to a file    :func:`points`
+a surface           :func:`tin`, which returns a :class:`Tin`
+heights             :meth:`Tin.elevation`
+a raster            :meth:`Tin.dem`, :func:`dem`
+contours            :meth:`Tin.contours`, :func:`contour`
+a picture           :meth:`Tin.hillshade`, :func:`hillshade`
+flaws               :meth:`Tin.check`, :func:`check`
+facts about a file  :func:`info`
+Triangle's files    :func:`triangulate`
+==================  ==================================================
+
+Lengths and heights are in the units of the coordinate system. Errors are :class:`BreaklineError`; what looks wrong is
+a :class:`BreaklineWarning`.
+"""
+
+from ._breakline import __version__
+from ._errors import (
+    ArgumentTypeError,
+    BreaklineError,
+    BreaklineWarning,
+    CanceledError,
+    FileError,
+    FileKeptError,
+    FileMissingError,
+    FormatError,
+    InternalError,
+    LimitError,
+    UnsupportedError,
+    UsageError,
+)
+from ._points import Points, points, read_points
+from ._results import Contour, Contours, Raster
+from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
+from ._verbs import (
+    SpaceTriangulation,
+    Triangulation,
+    check,
+    contour,
+    dem,
+    describe,
+    hillshade,
+    info,
+    triangulate,
+)
+
+__all__ = [
+    "EDGE_KINDS",
+    "ArgumentTypeError",
+    "BreaklineError",
+    "BreaklineWarning",
+    "CanceledError",
+    "Contour",
+    "Contours",
+    "FileError",
+    "FileKeptError",
+    "FileMissingError",
+    "Flaw",
+    "FormatError",
+    "InternalError",
+    "LimitError",
+    "Notice",
+    "Points",
+    "Raster",
+    "SpaceTriangulation",
+    "Tin",
+    "Triangulation",
+    "UnsupportedError",
+    "UsageError",
+    "__version__",
+    "check",
+    "contour",
+    "dem",
+    "describe",
+    "hillshade",
+    "info",
+    "points",
+    "read_points",
+    "tin",
+    "triangulate",
+]

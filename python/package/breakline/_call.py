@@ -1,0 +1,59 @@
+"""What every long call takes: threads and progress."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, Callable, Optional, Union
+
+from ._errors import ArgumentTypeError, usage
+
+#: True for a progress bar, or a function that is called with the stage, the items done, and their number or None.
+Progress = Union[bool, Callable[[str, int, Optional[int]], Any], None]
+
+
+class _Bar:
+    """A bar of tqdm for the stage in progress."""
+
+    def __init__(self) -> None:
+        self.stage: Optional[str] = None
+        self.bar: Any = None
+
+    def __call__(self, stage: str, done: int, total: Optional[int]) -> None:
+        from tqdm.auto import tqdm
+
+        if stage != self.stage:
+            self.close()
+            self.stage, self.bar = stage, tqdm(desc=stage, total=total, unit_scale=True)
+        self.bar.update(done - self.bar.n)
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.close()
+
+
+@contextmanager
+def call(threads: Optional[int], progress: Progress) -> "Iterator[tuple[Optional[int], Any]]":
+    """Yield the arguments of a long call; close the progress bar after it."""
+    if threads is not None:
+        if isinstance(threads, bool) or not hasattr(threads, "__index__"):
+            raise usage("threads is not a whole number", threads, "pass 1 or more, or None", ArgumentTypeError)
+        threads = threads.__index__()
+        if threads < 1:
+            raise usage("threads is less than 1", threads, "pass 1 or more, or None for one per core")
+    bar: Optional[_Bar] = None
+    if progress is True:
+        try:
+            import tqdm.auto  # noqa: F401
+        except ImportError:
+            raise usage("progress=True needs tqdm", None, "pip install tqdm, or pass a function") from None
+        bar = _Bar()
+    elif progress is not None and progress is not False and not callable(progress):
+        raise usage(
+            "progress is no function", progress, "pass True, or a function of three arguments", ArgumentTypeError
+        )
+    try:
+        yield threads, bar or (progress if callable(progress) else None)
+    finally:
+        if bar is not None:
+            bar.close()

@@ -1,0 +1,320 @@
+"""What users have, as what the library takes: arrays, records, frames, geometries, paths."""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterable, Sequence
+from typing import Any, Optional
+
+import numpy as np
+
+from . import _breakline
+from ._errors import ArgumentTypeError, usage
+
+_POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
+_LINE_KINDS = "paths, arrays (n, 3), shapely geometries, or a GeoDataFrame"
+
+#: The numbers of the kinds of shapes.
+_LINES, _POLYGON = 1, 2
+
+
+def is_path(value: Any) -> bool:
+    """Return True for a path, as text or as an object."""
+    return isinstance(value, (str, os.PathLike))
+
+
+def as_sequence(value: Any) -> "list[Any]":
+    """Return a list of one or many things that are paths, arrays or objects."""
+    if value is None:
+        return []
+    return list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+def files(value: Any, parameter: str) -> "list[str]":
+    """Return the files that paths and globs stand for, in order."""
+    found: "list[str]" = []
+    for path in as_sequence(value):
+        if not is_path(path):
+            raise usage(f"{parameter} takes paths", path, "pass a path, or a list of paths", ArgumentTypeError)
+        text = os.fspath(path)
+        if isinstance(text, bytes):
+            text = os.fsdecode(text)
+        if not os.path.exists(text) and any(sign in text for sign in "*?["):
+            matches = sorted(glob.glob(text))
+            if not matches:
+                raise usage(f"{parameter}: no file matches", text, "check the pattern and the working folder")
+            found.extend(matches)
+        else:
+            found.append(text)
+    if not found:
+        raise usage(f"{parameter} names no file", value, "pass a path, or a list of paths")
+    return found
+
+
+def path(value: Any, parameter: str) -> str:
+    """Return one path as text."""
+    if not is_path(value):
+        raise usage(f"{parameter} is not a path", value, "pass a path", ArgumentTypeError)
+    return os.fsdecode(value)
+
+
+def _floats(values: Any, what: str) -> np.ndarray:
+    """Return numbers as float64; a view if they are already."""
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # rows of different lengths
+        raise usage(f"{what} is not an array: {error}", None, "pass rows of equal length", ArgumentTypeError) from None
+    if np.ma.isMaskedArray(values) and np.ma.is_masked(values):
+        raise usage(f"{what} has masked values", None, "leave them out: a[~a.mask], or a.filled(nan)")
+    if array.dtype.kind not in "fiub":
+        raise usage(
+            f"{what} has the type {array.dtype}", None, "convert it: numpy.asarray(a, float)", ArgumentTypeError
+        )
+    return _aligned(array, np.float64)
+
+
+def _aligned(array: np.ndarray, dtype: Any) -> np.ndarray:
+    """Return an array of a type; a view, unless numbers begin at odd bytes, as in packed records."""
+    return np.require(array, dtype=dtype, requirements="A")
+
+
+def positions(values: Any, what: str = "positions", width: int = 2) -> np.ndarray:
+    """Return positions as an array (n, width) of float64."""
+    array = _floats(values, what)
+    if array.ndim == 1 and array.size == 0:
+        array = array.reshape(0, width)
+    if array.ndim != 2 or array.shape[1] != width:
+        shape = tuple(array.shape)
+        raise usage(f"{what} has the shape {shape}, expected (n, {width})", None, f"pass an array (n, {width})")
+    return array
+
+
+def crs_text(crs: Any) -> Optional[str]:
+    """Return a coordinate system as text: EPSG:25832, or WKT."""
+    if crs is None or isinstance(crs, str):
+        return crs
+    if isinstance(crs, (int, np.integer)):
+        return f"EPSG:{int(crs)}"
+    for name in ("to_wkt", "wkt", "ExportToWkt"):  # pyproj and rasterio, others, GDAL
+        found = getattr(crs, name, None)
+        if found is not None:
+            return str(found() if callable(found) else found) or None
+    raise usage(
+        "crs is not a coordinate system", crs, "pass 'EPSG:25832', a code, WKT or a pyproj.CRS", ArgumentTypeError
+    )
+
+
+def classes(values: Any) -> "Optional[list[int]]":
+    """Return classes of points by number; names as in LAS 1.4 are understood."""
+    if values is None:
+        return None
+    several = values.split(",") if isinstance(values, str) else values
+    if isinstance(several, (int, np.integer)):
+        several = [several]
+    numbers = []
+    for value in several:
+        number = _breakline.class_number(value) if isinstance(value, str) else int(value)
+        if not 0 <= number <= 255:
+            raise usage("classes are numbers from 0 to 255", value, "use a number, or a name such as 'ground'")
+        numbers.append(number)
+    return numbers
+
+
+def bounds(values: Any, parameter: str = "bounds") -> "Optional[list[float]]":
+    """Return a box in plan as west, south, east, north."""
+    if values is None:
+        return None
+    corners = [float(value) for value in values]
+    if len(corners) != 4 or not all(np.isfinite(corners)) or corners[0] >= corners[2] or corners[1] >= corners[3]:
+        raise usage(f"{parameter} is not a box", values, "pass (xmin, ymin, xmax, ymax) with xmin < xmax, ymin < ymax")
+    return corners
+
+
+def _columns(x: Any, y: Any, z: Any, **others: Any) -> "dict[str, Any]":
+    found = {"axes": [x, y, z], "scale": [1.0] * 3, "offset": [0.0] * 3, "classes": None, "flags": None, "crs": None}
+    found.update(others)
+    lengths = [len(axis) for axis in found["axes"]]
+    for name in ("classes", "flags"):
+        if found[name] is not None:
+            found[name] = np.asarray(found[name]).astype(np.uint8, copy=False)
+            lengths.append(len(found[name]))
+    if len(set(lengths)) > 1:
+        raise usage("columns of points differ in length", lengths, "pass columns of equal length")
+    return found
+
+
+def _of_laspy(points: Any) -> "dict[str, Any]":
+    """Return the points of a laspy record: whole steps of its lattice, as they are."""
+    header = getattr(points, "header", points)
+    scales, offsets = getattr(points, "scales", None), getattr(points, "offsets", None)
+    scales = header.scales if scales is None else scales
+    offsets = header.offsets if offsets is None else offsets
+    steps = [_aligned(np.asarray(axis), np.int32) for axis in (points.X, points.Y, points.Z)]
+    withheld = getattr(points, "withheld", None)
+    flags = None if withheld is None else np.asarray(withheld).astype(np.uint8) * np.uint8(4)
+    return _columns(
+        *steps,
+        scale=[float(value) for value in scales],
+        offset=[float(value) for value in offsets],
+        classes=np.asarray(points.classification),
+        flags=flags,
+        crs=_system_of_laspy(header),
+    )
+
+
+def _system_of_laspy(header: Any) -> Optional[str]:
+    """Return the system that a laspy header states: its WKT, else by pyproj where that is installed."""
+    for record in [*getattr(header, "vlrs", ()), *(getattr(header, "evlrs", None) or ())]:
+        if type(record).__name__ == "WktCoordinateSystemVlr" and record.string:
+            return str(record.string).rstrip("\0")
+    try:
+        return crs_text(header.parse_crs())
+    except Exception:  # no pyproj, no such method, or keys that it does not know: then no system is known
+        return None
+
+
+def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
+    """Return the points of a structured array, a DataFrame or a dictionary of columns."""
+    known = {name.lower(): name for name in reversed(list(names))}
+
+    def column(*spellings: str) -> Any:
+        return next((points[known[spelling]] for spelling in spellings if spelling in known), None)
+
+    axes = [column(axis) for axis in "xyz"]
+    if any(axis is None for axis in axes):
+        raise usage("the points have no columns x, y and z", sorted(known.values()), "name the columns x, y and z")
+    axes = [_floats(axis, f"column {name}") for axis, name in zip(axes, "xyz")]
+    return _columns(*axes, classes=column("classification", "class"), flags=column("flags"))
+
+
+def _of_frame(frame: Any) -> "dict[str, Any]":
+    """Return the points of a GeoDataFrame or a GeoSeries."""
+    import shapely
+
+    geometry = getattr(frame, "geometry", frame)
+    shapes = np.asarray(geometry.values)
+    if not np.isin(shapely.get_type_id(shapes), (0, 4)).all():
+        raise usage("the frame has geometries other than points", None, "pass lines as breaklines")
+    coordinates = shapely.get_coordinates(shapes, include_z=True)
+    if np.isnan(coordinates[:, 2]).any():
+        raise usage("points of the frame have no height", None, "set z: geopandas.points_from_xy(x, y, z)")
+    return _columns(*coordinates.T, crs=crs_text(getattr(frame, "crs", None)))
+
+
+def _points_of(value: Any) -> "dict[str, Any]":
+    from ._points import Points
+
+    if isinstance(value, Points):
+        return _columns(value.x, value.y, value.z, classes=value.classification, flags=value.flags, crs=value.crs)
+    if hasattr(value, "scales") or all(hasattr(value, name) for name in ("header", "X", "Y", "Z")):
+        return _of_laspy(value)
+    if hasattr(value, "geometry"):
+        return _of_frame(value)
+    names = getattr(getattr(value, "dtype", None), "names", None)
+    if names:
+        return _of_fields(value, names)
+    if isinstance(value, dict) or hasattr(value, "columns"):
+        return _of_fields(value, [str(name) for name in (value if isinstance(value, dict) else value.columns)])
+    array = _floats(value, "points")
+    if array.ndim != 2 or array.shape[1] != 3:
+        shape = tuple(array.shape)
+        raise usage(f"points have the shape {shape}, expected (n, 3)", None, f"pass {_POINT_KINDS}")
+    return _columns(*array.T)
+
+
+def points(value: Any) -> "list[Any]":
+    """Return the inputs of points: paths, or columns."""
+    if is_path(value):
+        return list(files(value, "points"))
+    if isinstance(value, (list, tuple)) and value:
+        if all(is_path(item) for item in value):
+            return list(files(value, "points"))
+        if (
+            not np.isscalar(value[0])
+            and (hasattr(value[0], "dtype") or hasattr(value[0], "geometry"))
+            and np.ndim(value[0]) != 1
+        ):
+            return [_points_of(item) for item in value]
+    if value is None:
+        raise usage("points is None", None, f"pass {_POINT_KINDS}", ArgumentTypeError)
+    return [_points_of(value)]
+
+
+class _Shapes:
+    """Shapes that are collected for the library."""
+
+    def __init__(self) -> None:
+        self.vertices: "list[np.ndarray]" = []
+        self.parts: "list[int]" = []
+        self.shapes: "list[tuple[int, int]]" = []
+        self.columns: "list[tuple[str, list[float]]]" = []
+        self.crs: Optional[str] = None
+
+    def add(self, kind: int, parts: "Sequence[np.ndarray]") -> None:
+        self.vertices.extend(parts)
+        self.parts.extend(len(part) for part in parts)
+        self.shapes.append((kind, len(parts)))
+
+    def add_array(self, values: Any, kind: int, parameter: str) -> None:
+        array = _floats(values, parameter)
+        if array.ndim != 2 or array.shape[1] not in (2, 3):
+            shape = tuple(array.shape)
+            raise usage(f"a line of {parameter} has the shape {shape}, expected (n, 3)", None, f"pass {_LINE_KINDS}")
+        if array.shape[1] == 2:
+            array = np.column_stack([array, np.full(len(array), np.nan)])
+        self.add(kind, [array])
+
+    def add_geometry(self, geometry: Any, parameter: str) -> None:
+        import shapely
+
+        if geometry is None or geometry.is_empty:
+            return self.add(_LINES, [])
+        parts = list(shapely.get_parts(geometry))
+        kinds = {part.geom_type for part in parts}
+        if kinds <= {"LineString", "LinearRing"}:
+            lines, kind = parts, _LINES
+        elif kinds == {"Polygon"}:
+            lines, kind = [ring for part in parts for ring in (part.exterior, *part.interiors)], _POLYGON
+        else:
+            raise usage(f"{parameter} takes lines and polygons", geometry.geom_type, "pass points as points")
+        self.add(kind, [shapely.get_coordinates(line, include_z=True) for line in lines])
+
+    def add_frame(self, frame: Any, parameter: str) -> None:
+        geometry = getattr(frame, "geometry", frame)
+        for shape in np.asarray(geometry.values):
+            self.add_geometry(shape, parameter)
+        self.crs = crs_text(getattr(frame, "crs", None))
+        for name in getattr(frame, "columns", ()):
+            if getattr(frame[name].dtype, "kind", "") in "fiu" and frame[name].dtype != object:
+                self.columns.append((str(name), np.asarray(frame[name], dtype=float).tolist()))
+
+    def as_dict(self) -> "dict[str, Any]":
+        vertices = np.concatenate(self.vertices) if self.vertices else np.empty((0, 3))
+        names = ("parts", "shapes", "columns", "crs")
+        return {"vertices": np.ascontiguousarray(vertices), **{name: getattr(self, name) for name in names}}
+
+
+def layers(value: Any, parameter: str, rings: bool = False) -> "list[Any]":
+    """Return the inputs of lines: paths, or shapes. Arrays are rings of polygons if ``rings``."""
+    found: "list[Any]" = []
+    loose = _Shapes()
+    is_one = hasattr(value, "dtype") and np.ndim(value) == 2
+    for item in [value] if is_one else as_sequence(value):
+        if is_path(item):
+            found.append(os.fspath(item))
+        elif hasattr(item, "geometry"):
+            shapes = _Shapes()
+            shapes.add_frame(item, parameter)
+            found.append(shapes.as_dict())
+        elif hasattr(item, "geom_type"):
+            loose.add_geometry(item, parameter)
+        elif hasattr(item, "__geo_interface__"):
+            import shapely.geometry
+
+            loose.add_geometry(shapely.geometry.shape(item.__geo_interface__), parameter)
+        else:
+            loose.add_array(item, _POLYGON if rings else _LINES, parameter)
+    if loose.shapes:
+        found.append(loose.as_dict())
+    return found

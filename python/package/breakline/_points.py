@@ -1,0 +1,204 @@
+"""Points in columns, and the verb ``points``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+import numpy as np
+
+from . import _breakline, _inputs
+from ._call import Progress, call
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points in columns of equal length.
+
+    Attributes
+    ----------
+    x, y, z : ndarray of float64, (n,)
+        Coordinates, in the units of the coordinate system.
+    classification : ndarray of uint8, (n,), or None
+        Classes as in LAS (2 is ground); None if no file has any.
+    flags : ndarray of uint8, (n,), or None
+        1 synthetic, 2 key point, 4 withheld, 8 overlap.
+    return_number : ndarray of uint8, (n,), or None
+    crs : str or None
+        The coordinate system, as WKT.
+    report : dict
+        Counts of points that were read, and why others are not here.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    classification: Optional[np.ndarray] = None
+    flags: Optional[np.ndarray] = None
+    return_number: Optional[np.ndarray] = None
+    crs: Optional[str] = None
+    report: "dict[str, Any]" = field(default_factory=dict, repr=False, compare=False)
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    @property
+    def xyz(self) -> np.ndarray:
+        """The coordinates as an array (n, 3) of float64, made anew."""
+        return np.column_stack([self.x, self.y, self.z])
+
+
+def _read(columns: Any, partial: bool) -> "dict[str, Any]":
+    if columns is not None and not isinstance(columns, str):
+        columns = ",".join(str(int(number)) for number in columns)
+    return {"columns": columns, "partial": bool(partial)}
+
+
+def _selection(
+    classes: Any, returns: Any, drop_withheld: bool, bounds: Any, boundary: Any, round: bool
+) -> "dict[str, Any]":
+    return {
+        "classes": _inputs.classes(classes),
+        "returns": None if returns is None else [int(number) for number in returns],
+        "drop_withheld": bool(drop_withheld),
+        "bounds": _inputs.bounds(bounds),
+        "boundary": [] if boundary is None else _inputs.files(boundary, "boundary"),
+        "round": bool(round),
+    }
+
+
+def _systems(crs: Any, to_crs: Any, force_degrees: bool = False) -> "dict[str, Any]":
+    return {
+        "crs": _inputs.crs_text(crs),
+        "to_crs": _inputs.crs_text(to_crs),
+        "force_degrees": bool(force_degrees),
+    }
+
+
+def read_points(
+    paths: Any,
+    *,
+    classes: Any = None,
+    returns: Any = None,
+    drop_withheld: bool = False,
+    bounds: Any = None,
+    boundary: Any = None,
+    crs: Any = None,
+    to_crs: Any = None,
+    columns: Any = None,
+    partial: bool = False,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> Points:
+    """Read points from files into columns.
+
+    Parameters
+    ----------
+    paths : path or list of paths
+        LAS, LAZ, COPC, text (x y z) or vector layers; globs are expanded.
+    classes : int, str or list of these, optional
+        Classes to keep, by number or by name (``"ground"``); all by default.
+    returns : list of int, optional
+        Return numbers to keep.
+    drop_withheld : bool
+        Leave out points that are flagged as withheld.
+    bounds : (xmin, ymin, xmax, ymax), optional
+        A rectangle to clip to, including its border.
+    boundary : path or list of paths, optional
+        Polygons to clip to.
+    crs : str, int or pyproj.CRS, optional
+        Coordinate system to assign, whatever the files state.
+    to_crs : str, int or pyproj.CRS, optional
+        Coordinate system to reproject to; needs a build with PROJ.
+    columns : str or (x, y, z), optional
+        Columns of text files: ``"PNEZD"``, ``"XYZ"``, or numbers from 1.
+    partial : bool
+        Use the remaining points of truncated LAS and LAZ files.
+    threads : int, optional
+        Number of threads; one per core by default.
+    progress : bool or callable, optional
+        See :func:`breakline.tin`.
+
+    Returns
+    -------
+    Points
+
+    Raises
+    ------
+    FileError
+        If a file cannot be read.
+    FormatError
+        If a file is damaged.
+    UsageError
+        If no point is left, or an argument makes no sense.
+
+    Notes
+    -----
+    Linear in the points; 27 bytes of memory for each.
+    """
+    selection = _selection(classes, returns, drop_withheld, bounds, boundary, False)
+    with call(threads, progress) as request:
+        found = _breakline.read_points(
+            _inputs.files(paths, "paths"), _read(columns, partial), _systems(crs, to_crs), selection, request
+        )
+    return Points(**found)
+
+
+def points(
+    inputs: Any,
+    output: Any,
+    *,
+    classes: Any = None,
+    returns: Any = None,
+    drop_withheld: bool = False,
+    bounds: Any = None,
+    boundary: Any = None,
+    round: bool = False,
+    crs: Any = None,
+    to_crs: Any = None,
+    columns: Any = None,
+    partial: bool = False,
+    overwrite: bool = False,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> "dict[str, Any]":
+    """Select, clip and merge points of files to a file, with all their attributes.
+
+    Points are written in the order of the files. From LAS and LAZ to LAS and LAZ every byte of a point stays.
+
+    Parameters
+    ----------
+    inputs : path or list of paths
+        LAS, LAZ, COPC, text or vector layers.
+    output : path
+        The file to write: ``.las``, ``.laz``, ``.xyz``, ``.txt`` or ``.csv``.
+    round : bool
+        Round coordinates to the nearest step of the first file's scale, if scales and offsets do not fit together.
+    overwrite : bool
+        Replace a file that exists.
+    classes, returns, drop_withheld, bounds, boundary, crs, to_crs, columns, partial, threads, progress
+        As for :func:`read_points`.
+
+    Returns
+    -------
+    dict
+        Counts of points that were written, and why others were not.
+
+    Raises
+    ------
+    FileKeptError
+        If the output exists and ``overwrite`` is False.
+    UsageError
+        If no point is left, or files cannot be merged without loss.
+    """
+    selection = _selection(classes, returns, drop_withheld, bounds, boundary, round)
+    with call(threads, progress) as request:
+        return _breakline.write_points(
+            _inputs.files(inputs, "inputs"),
+            _read(columns, partial),
+            _systems(crs, to_crs),
+            selection,
+            _inputs.path(output, "output"),
+            bool(overwrite),
+            request,
+        )

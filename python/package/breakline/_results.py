@@ -1,0 +1,301 @@
+"""Rasters and contours: what a surface gives, and what can be done with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from . import _breakline, _inputs
+from ._call import Progress, call
+from ._errors import UnsupportedError, usage
+
+
+def missing(package: str, what: str) -> UnsupportedError:
+    """Return the error for a package that is not installed."""
+    error = UnsupportedError(f"{what} needs {package}")
+    error.message, error.cure = f"{what} needs {package}", f"pip install {package}"
+    return error
+
+
+class Affine(NamedTuple):
+    """A transform from column and row to coordinates, as those of the package ``affine``.
+
+    ``x = a * column + b * row + c``, ``y = d * column + e * row + f``, at the corners of cells.
+    """
+
+    a: float
+    b: float
+    c: float
+    d: float
+    e: float
+    f: float
+
+
+def _affine(gdal: "tuple[float, ...]") -> Any:
+    """Return a transform from GDAL's order; of the package ``affine`` where that is installed."""
+    c, a, b, f, d, e = gdal
+    try:
+        from affine import Affine as Whole
+    except ImportError:
+        return Affine(a, b, c, d, e, f)
+    return Whole(a, b, c, d, e, f)
+
+
+@dataclass(frozen=True)
+class Raster:
+    """A raster of heights or shades.
+
+    Attributes
+    ----------
+    array : ndarray, (rows, columns)
+        Heights as float32, nan where there is none; or shades as uint8 from 1 to 255, 0 where there is none. The first
+        row is the northernmost, unless the raster is aligned to one that is not.
+    transform : affine.Affine
+        From column and row to coordinates, at the corners of cells.
+    crs : str or None
+        The coordinate system, as WKT.
+    """
+
+    array: np.ndarray
+    transform: Any
+    crs: Optional[str] = None
+
+    @property
+    def shape(self) -> "tuple[int, int]":
+        """The numbers of rows and columns."""
+        return self.array.shape
+
+    @property
+    def _gdal(self) -> "list[float]":
+        a, b, c, d, e, f = tuple(self.transform)[:6]
+        return [float(value) for value in (c, a, b, f, d, e)]
+
+    @property
+    def bounds(self) -> "tuple[float, float, float, float]":
+        """The box around all cells: xmin, ymin, xmax, ymax."""
+        c, a, b, f, d, e = self._gdal
+        rows, columns = self.array.shape
+        xs = [c + a * i + b * j for i in (0, columns) for j in (0, rows)]
+        ys = [f + d * i + e * j for i in (0, columns) for j in (0, rows)]
+        return min(xs), min(ys), max(xs), max(ys)
+
+    def to_xarray(self, name: str = "elevation") -> Any:
+        """Return an ``xarray.DataArray`` with the centers of cells as coordinates ``x`` and ``y``.
+
+        The coordinate system is in ``attrs["crs_wkt"]``, the transform in GDAL's order in ``attrs["GeoTransform"]``, as
+        rioxarray reads them from ``spatial_ref``.
+        """
+        try:
+            import xarray
+        except ImportError:
+            raise missing("xarray", "to_xarray") from None
+        c, a, b, f, d, e = self._gdal
+        if b or d:
+            raise usage(
+                "the raster is rotated, and has no coordinates along its axes", None, "use .array and .transform"
+            )
+        rows, columns = self.array.shape
+        coordinates = {"y": f + e * (np.arange(rows) + 0.5), "x": c + a * (np.arange(columns) + 0.5)}
+        attributes = {"GeoTransform": " ".join(repr(value) for value in self._gdal)}
+        if self.crs:
+            attributes["crs_wkt"] = self.crs
+        coordinates["spatial_ref"] = ((), 0, attributes)
+        return xarray.DataArray(
+            self.array, coords=coordinates, dims=("y", "x"), name=name, attrs={"grid_mapping": "spatial_ref"}
+        )
+
+    def write(
+        self, path: Any, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None
+    ) -> None:
+        """Write the raster as GeoTIFF; shades also as PNG. The bytes are those of the command line.
+
+        Parameters
+        ----------
+        path : path
+            ``.tif``; for shades also ``.png``.
+        overwrite : bool
+            Replace a file that exists.
+        threads, progress
+            See :func:`breakline.tin`.
+
+        Raises
+        ------
+        FileKeptError
+            If the file exists and ``overwrite`` is False.
+        """
+        shades = self.array.dtype == np.uint8
+        cells = self.array.astype(np.float64)
+        if shades:
+            cells[cells == 0] = np.nan
+        with call(threads, progress) as request:
+            _breakline.write_cells(
+                cells, self._gdal, self.crs, bool(shades), _inputs.path(path, "path"), bool(overwrite), request
+            )
+
+    def _surface(self) -> Any:
+        return _breakline.Surface.of_cells(self.array.astype(np.float64), self._gdal, self.crs)
+
+    def contours(
+        self,
+        interval: Optional[float] = None,
+        *,
+        base: float = 0.0,
+        levels: Any = (),
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> "Contours":
+        """Draw contours between the centers of cells; see :meth:`breakline.Tin.contours`."""
+        return draw(self._surface(), self.crs, interval, base, levels, threads, progress)
+
+    def hillshade(
+        self,
+        *,
+        azimuth: float = 315.0,
+        altitude: float = 45.0,
+        z_factor: Optional[float] = None,
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> "Raster":
+        """Shade the heights; see :meth:`breakline.Tin.hillshade`."""
+        frame = {"resolution": None, "bounds": None, "align_to": None}
+        with call(threads, progress) as request:
+            light = (float(azimuth), float(altitude), z_factor)
+            return of_cells(self._surface().hillshade(frame, "linear", light, request))
+
+
+def of_cells(found: "tuple[Any, Any, Any]") -> Raster:
+    """Return a raster from what the library returns."""
+    array, transform, crs = found
+    return Raster(array, _affine(transform), crs)
+
+
+class Contour(NamedTuple):
+    """A line at one height, with higher ground on its right; a closed one ends where it begins."""
+
+    level: float
+    points: np.ndarray
+
+
+@dataclass(frozen=True)
+class Contours:
+    """Contours of a surface, sorted by height.
+
+    Iterating yields :class:`Contour`, whose points are views into ``coordinates``.
+
+    Attributes
+    ----------
+    coordinates : ndarray of float64, (n, 2)
+        The vertices of all lines, one after the other.
+    offsets : ndarray of int64, (m + 1,)
+        Line i has the vertices from ``offsets[i]`` to ``offsets[i + 1]``.
+    levels : ndarray of float64, (m,)
+        The height of each line.
+    crs : str or None
+        The coordinate system, as WKT.
+    """
+
+    coordinates: np.ndarray
+    offsets: np.ndarray
+    levels: np.ndarray
+    crs: Optional[str] = None
+
+    def __len__(self) -> int:
+        return len(self.levels)
+
+    def __getitem__(self, index: int) -> Contour:
+        index = range(len(self))[index]
+        return Contour(float(self.levels[index]), self.coordinates[self.offsets[index] : self.offsets[index + 1]])
+
+    def __iter__(self) -> "Iterator[Contour]":
+        return (self[index] for index in range(len(self)))
+
+    @property
+    def __geo_interface__(self) -> "dict[str, Any]":
+        """The lines as a GeoJSON-like ``FeatureCollection``, each with the property ``level``."""
+        features = [
+            {
+                "type": "Feature",
+                "properties": {"level": line.level},
+                "geometry": {"type": "LineString", "coordinates": line.points.tolist()},
+            }
+            for line in self
+        ]
+        return {"type": "FeatureCollection", "features": features}
+
+    def to_shapely(self) -> np.ndarray:
+        """Return an array of ``shapely.LineString``."""
+        try:
+            import shapely
+        except ImportError:
+            raise missing("shapely", "to_shapely") from None
+        return shapely.from_ragged_array(shapely.GeometryType.LINESTRING, self.coordinates, (self.offsets,))
+
+    def to_geopandas(self) -> Any:
+        """Return a ``geopandas.GeoDataFrame`` with the columns ``level`` and ``geometry``."""
+        try:
+            import geopandas
+        except ImportError:
+            raise missing("geopandas", "to_geopandas") from None
+        return geopandas.GeoDataFrame({"level": self.levels}, geometry=self.to_shapely(), crs=self.crs)
+
+    def to_arrow(self) -> Any:
+        """Return a ``pyarrow.Table`` with ``level`` and ``geometry``, a GeoArrow linestring; arrays are not copied."""
+        try:
+            import pyarrow
+        except ImportError:
+            raise missing("pyarrow", "to_arrow") from None
+        import json
+
+        flat = pyarrow.array(self.coordinates.reshape(-1))
+        pairs = pyarrow.FixedSizeListArray.from_arrays(
+            flat, type=pyarrow.list_(pyarrow.field("xy", pyarrow.float64(), False), 2)
+        )
+        if self.offsets[-1] > np.iinfo(np.int32).max:
+            lines = pyarrow.LargeListArray.from_arrays(pyarrow.array(self.offsets), pairs)
+        else:
+            lines = pyarrow.ListArray.from_arrays(pyarrow.array(self.offsets.astype(np.int32)), pairs)
+        metadata = {"crs": self.crs, "crs_type": "wkt2:2019"} if self.crs else {}
+        extension = {"ARROW:extension:name": "geoarrow.linestring", "ARROW:extension:metadata": json.dumps(metadata)}
+        fields = [pyarrow.field("level", pyarrow.float64()), pyarrow.field("geometry", lines.type, metadata=extension)]
+        return pyarrow.table([pyarrow.array(self.levels), lines], schema=pyarrow.schema(fields))
+
+    def __arrow_c_stream__(self, requested_schema: Any = None) -> Any:
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def write(
+        self, path: Any, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None
+    ) -> None:
+        """Write the lines as a shapefile or as GeoJSON. The bytes are those of the command line.
+
+        Parameters
+        ----------
+        path : path
+            ``.shp``, ``.geojson`` or ``.json``.
+        overwrite : bool
+            Replace files that exist.
+        threads, progress
+            See :func:`breakline.tin`.
+        """
+        with call(threads, progress) as request:
+            _breakline.write_contours(
+                self.coordinates,
+                self.offsets,
+                self.levels,
+                self.crs,
+                _inputs.path(path, "path"),
+                bool(overwrite),
+                request,
+            )
+
+
+def draw(surface: Any, crs: Any, interval: Any, base: Any, levels: Any, threads: Any, progress: Any) -> Contours:
+    """Draw the contours of a surface of the library."""
+    levels = [float(level) for level in np.atleast_1d(np.asarray(levels, dtype=float))]
+    if interval is not None and levels:
+        raise usage("interval and levels are given", None, "use one of them")
+    interval = None if interval is None else float(interval)
+    with call(threads, progress) as request:
+        return Contours(*surface.contours(interval, float(base), levels, request), crs=crs)

@@ -1,0 +1,507 @@
+"""Surfaces: the verbs ``tin`` and ``check``, and what can be asked of a surface."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from . import _breakline, _inputs
+from ._call import Progress, call
+from ._errors import ArgumentTypeError, in_python, usage
+from ._points import _read, _systems
+from ._results import Contours, Raster, draw, missing, of_cells
+
+#: The name of each kind of edges, by its number in ``Tin.edge_kinds``.
+EDGE_KINDS: "tuple[str, ...]" = tuple(_breakline.edge_kinds())
+
+
+class Flaw(NamedTuple):
+    """What is wrong with a surface, and the positions that it concerns, (n, 2)."""
+
+    text: str
+    at: np.ndarray
+
+
+class Notice(NamedTuple):
+    """What was assumed or looks wrong; ``severity`` is ``"detail"``, ``"note"`` or ``"warning"``."""
+
+    severity: str
+    text: str
+
+
+def _frame(resolution: Any, bounds: Any, align_to: Any) -> "dict[str, Any]":
+    return {
+        "resolution": None if resolution is None else float(resolution),
+        "bounds": _inputs.bounds(bounds),
+        "align_to": None if align_to is None else _inputs.path(align_to, "align_to"),
+    }
+
+
+def _number_or_name(value: Any) -> Any:
+    return value if value is None or isinstance(value, str) else float(value)
+
+
+class Tin:
+    """A surface of triangles over points and breaklines. Made by :func:`tin`, and never changed.
+
+    All methods may be called from many threads at once; they release the interpreter's lock. A ``Tin`` can be pickled:
+    into the bytes of a ``.tin`` file, which open in milliseconds.
+    """
+
+    __slots__ = ("_surface", "_report", "_lists", "_edges", "__weakref__")
+
+    def __init__(self, surface: Any, report: "Optional[dict[str, Any]]" = None) -> None:
+        if not isinstance(surface, _breakline.Surface):
+            raise usage("a Tin is made by breakline.tin", surface, "call breakline.tin(points)", ArgumentTypeError)
+        self._surface = surface
+        self._report = report
+        self._lists: Any = None
+        self._edges: Any = None
+
+    def __repr__(self) -> str:
+        report = self.report
+        name = self.crs_name or "no coordinate system"
+        return f"<breakline.Tin: {report['vertices']} vertices, {report['triangles']} triangles, {name}>"
+
+    def __reduce__(self) -> Any:
+        return _unpickle, (self.to_bytes(), self.report)
+
+    def to_bytes(self) -> bytes:
+        """Return the bytes of a ``.tin`` file.
+
+        Raises
+        ------
+        UnsupportedError
+            If the surface was read from a mesh, and has no triangulation.
+        """
+        with call(None, None) as request:
+            return self._surface.to_bytes(request)
+
+    @property
+    def kind(self) -> str:
+        """``"tin"``, or ``"mesh"`` for triangles from a file of another kind."""
+        return self._surface.kind
+
+    @property
+    def crs(self) -> Optional[str]:
+        """The coordinate system, as WKT; None if it is not known."""
+        return self._surface.crs[0] if self._surface.crs else None
+
+    @property
+    def crs_name(self) -> Optional[str]:
+        """The coordinate system in words."""
+        return self._surface.crs[1] if self._surface.crs else None
+
+    @property
+    def bounds(self) -> "tuple[float, float, float, float]":
+        """The box around the surface in plan: xmin, ymin, xmax, ymax."""
+        low, high = self._surface.extent
+        return low[0], low[1], high[0], high[1]
+
+    @property
+    def report(self) -> "dict[str, Any]":
+        """Counts of vertices, triangles and edges, and of what was done with the input."""
+        if self._report is None:
+            self._report = self._surface.report()
+        return self._report
+
+    @property
+    def notices(self) -> "list[Notice]":
+        """What was assumed and what looks wrong, in the order in which it was found."""
+        return [Notice(severity, in_python(text)) for severity, text in self._surface.notices]
+
+    @property
+    def replaced_points(self) -> np.ndarray:
+        """The points that water and walls replaced, (n, 3) float64; empty unless ``flat_points=True`` was given."""
+        return self._surface.replaced_points()
+
+    def _listed(self) -> Any:
+        if self._lists is None:
+            with call(None, None) as request:
+                self._lists = self._surface.list(request)
+        return self._lists
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """The vertices, (n, 3) float64, in the order of the files that :meth:`write` writes.
+
+        Made when first asked for, in linear time, and kept; read-only.
+        """
+        return self._listed()[0]
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """The corners of the triangles, (m, 3) int32, counter-clockwise, as indices of ``vertices``.
+
+        Numbered as in the files that :meth:`write` writes; made when first asked for, and kept; read-only.
+        """
+        return self._listed()[1]
+
+    def _edge_lists(self) -> Any:
+        if self._edges is None:
+            with call(None, None) as request:
+                self._edges = self._surface.edges(request)
+        return self._edges
+
+    @property
+    def edges(self) -> np.ndarray:
+        """The ends of all edges, (k, 2) int32, each edge once; read-only."""
+        return self._edge_lists()[0]
+
+    @property
+    def edge_kinds(self) -> np.ndarray:
+        """The kind of each edge, (k,) uint8; :data:`breakline.EDGE_KINDS` has the names. Read-only."""
+        return self._edge_lists()[1]
+
+    def elevation(
+        self, xy: Any, *, method: str = "linear", threads: Optional[int] = None, progress: Progress = None
+    ) -> Any:
+        """Return heights at positions.
+
+        Parameters
+        ----------
+        xy : array_like, (..., 2)
+            Positions in plan, in any order.
+        method : str
+            ``"linear"`` (on each triangle), ``"nearest"``, ``"natural"``, ``"laplace"``, ``"smooth"`` or ``"idw"``.
+        threads, progress
+            See :func:`tin`.
+
+        Returns
+        -------
+        ndarray of float64, (...)
+            nan outside of the surface, and where a coordinate is not finite. A single height for a single position.
+
+        Notes
+        -----
+        O(n log n) for n positions with ``"linear"``. Other methods first prepare the whole surface, with each call.
+        """
+        array = np.asarray(xy)
+        if array.ndim < 1 or array.shape[-1] != 2:
+            if array.size:
+                raise usage(f"positions have the shape {array.shape}, expected (n, 2)", None, "pass an array (n, 2)")
+            array = array.reshape(*array.shape[:-1], 0, 2)
+        flat = _inputs.positions(array.reshape(-1, 2))
+        with call(threads, progress) as request:
+            heights = self._surface.elevations(flat, method, request)
+        return heights.reshape(array.shape[:-1])[()]
+
+    def dem(
+        self,
+        resolution: Optional[float] = None,
+        *,
+        bounds: Any = None,
+        align_to: Any = None,
+        method: str = "linear",
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Raster:
+        """Return heights at the centers of cells.
+
+        Parameters
+        ----------
+        resolution : float, optional
+            Size of a cell, 1 by default, in the units of the coordinate system. Cells start at multiples of it.
+        bounds : (xmin, ymin, xmax, ymax), optional
+            Extent of the raster, enlarged to whole cells; that of the surface by default.
+        align_to : path, optional
+            A raster whose grid of cells is used.
+        method : str
+            As for :meth:`elevation`.
+        threads, progress
+            See :func:`tin`.
+
+        Returns
+        -------
+        Raster
+            float32, nan where there is no surface.
+        """
+        with call(threads, progress) as request:
+            return of_cells(self._surface.dem(_frame(resolution, bounds, align_to), method, request))
+
+    def hillshade(
+        self,
+        resolution: Optional[float] = None,
+        *,
+        bounds: Any = None,
+        align_to: Any = None,
+        method: str = "linear",
+        azimuth: float = 315.0,
+        altitude: float = 45.0,
+        z_factor: Optional[float] = None,
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Raster:
+        """Return shades from 1 (dark) to 255 (facing the light), 0 where there is no surface.
+
+        Parameters
+        ----------
+        azimuth : float
+            Direction that the light comes from, in degrees clockwise from north.
+        altitude : float
+            Angle of the light above the horizon, in degrees.
+        z_factor : float, optional
+            Factor for heights; by default what converts them to the units of x and y.
+        resolution, bounds, align_to, method, threads, progress
+            As for :meth:`dem`.
+
+        Returns
+        -------
+        Raster
+            uint8.
+        """
+        light = (float(azimuth), float(altitude), None if z_factor is None else float(z_factor))
+        with call(threads, progress) as request:
+            return of_cells(self._surface.hillshade(_frame(resolution, bounds, align_to), method, light, request))
+
+    def contours(
+        self,
+        interval: Optional[float] = None,
+        *,
+        base: float = 0.0,
+        levels: Any = (),
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Contours:
+        """Draw contours, exactly on the triangles.
+
+        They never cross, none is lost where a vertex lies on a level, and higher ground is on the right.
+
+        Parameters
+        ----------
+        interval : float, optional
+            Height between contours, 1 by default.
+        base : float
+            A height at which there is a contour.
+        levels : sequence of float
+            These heights instead of an interval.
+        threads, progress
+            See :func:`tin`.
+        """
+        return draw(self._surface, self.crs, interval, base, levels, threads, progress)
+
+    def check(self, *, threads: Optional[int] = None, progress: Progress = None) -> "list[Flaw]":
+        """Return the flaws of the surface; none proves that it is correct.
+
+        Links between triangles, orientation, overlaps, and the Delaunay law between lines, by exact predicates.
+        """
+        with call(threads, progress) as request:
+            flaws = self._surface.check(request)
+        return [Flaw(text, np.array(at, dtype=float).reshape(-1, 2)) for text, at in flaws]
+
+    def write(
+        self, path: Any, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None
+    ) -> None:
+        """Write the surface as ``.tin``, ``.ply``, ``.obj``, ``.off`` or ``.stl``.
+
+        Parameters
+        ----------
+        path : path
+            Its extension names the format.
+        overwrite : bool
+            Replace a file that exists.
+        threads, progress
+            See :func:`tin`.
+
+        Raises
+        ------
+        FileKeptError
+            If the file exists and ``overwrite`` is False.
+        UnsupportedError
+            If the format cannot hold the surface.
+        """
+        with call(threads, progress) as request:
+            self._surface.write(_inputs.path(path, "path"), bool(overwrite), request)
+
+    def to_matplotlib(self) -> Any:
+        """Return a ``matplotlib.tri.Triangulation`` of the surface in plan; heights are ``vertices[:, 2]``."""
+        try:
+            from matplotlib.tri import Triangulation
+        except ImportError:
+            raise missing("matplotlib", "to_matplotlib") from None
+        return Triangulation(self.vertices[:, 0], self.vertices[:, 1], self.triangles)
+
+
+def _unpickle(data: bytes, report: "dict[str, Any]") -> Tin:
+    return Tin(_breakline.Surface.of_bytes(data), report)
+
+
+def tin(
+    points: Any,
+    *,
+    breaklines: Any = None,
+    boundary: Any = None,
+    bounds: Any = None,
+    max_edge: Any = None,
+    max_edge_inside: Optional[float] = None,
+    classes: Any = None,
+    crs: Any = None,
+    to_crs: Any = None,
+    force_degrees: bool = False,
+    duplicates: str = "lowest",
+    on_crossing: str = "split",
+    crossing_z: str = "lowest",
+    crossing_tolerance: Optional[float] = None,
+    soft_lines: Any = None,
+    draped_lines: Any = None,
+    walls: Any = None,
+    wall_bottom: Any = None,
+    wall_drop: Any = None,
+    wall_width: Optional[float] = None,
+    wall_high: str = "left",
+    holes: Any = None,
+    flat: Any = None,
+    flat_height: Any = None,
+    flat_tolerance: Optional[float] = None,
+    flat_buffer: float = 0.0,
+    flat_points: bool = False,
+    rivers: Any = None,
+    river_width: Any = None,
+    densify: Optional[float] = None,
+    columns: Any = None,
+    partial: bool = False,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> Tin:
+    """Build a TIN of points and breaklines, or open one.
+
+    Every breakline becomes edges of the TIN; everywhere else the triangulation is Delaunay, and it does not depend on
+    the order of the input.
+
+    Parameters
+    ----------
+    points : array_like (n, 3), record, frame, path or list of paths
+        Points with heights: an array of x, y, z; columns (:class:`Points`, a structured array such as PDAL's, a
+        DataFrame or a dict with x, y, z and Classification); a laspy record, whose integers are taken as they are; a
+        GeoDataFrame of points; or files, also by globs. Or one file of a surface (``.tin``, ``.ply``, ...), which is
+        then opened. Arrays are copied.
+    breaklines : paths, arrays (k, 3), shapely geometries or GeoDataFrame, or a list of these, optional
+        Lines with heights that the surface must follow. ``"edges.shp:FIELD"`` takes heights from an attribute.
+    boundary : as breaklines, optional
+        Polygons that the surface is clipped to; arrays (k, 2) or (k, 3) are closed rings.
+    bounds : (xmin, ymin, xmax, ymax), optional
+        A rectangle to clip to. Points around it are used, too.
+    max_edge : float, "auto" or "none", optional
+        Longest edge at the rim; 100 metres by default.
+    max_edge_inside : float, optional
+        Longest edge anywhere: triangles with longer ones leave a hole.
+    classes : int, str or list of these, optional
+        Classes of points to use. By default 2 (ground) if any point has it, else all. Withheld points are never used.
+    crs : str, int or pyproj.CRS, optional
+        Coordinate system to assign, whatever the input states.
+    to_crs : str, int or pyproj.CRS, optional
+        Coordinate system to reproject to; needs a build with PROJ.
+    force_degrees : bool
+        Go on although coordinates are in degrees.
+    duplicates : str
+        Which height is used where points have the same position: ``"lowest"``, ``"highest"``, ``"mean"``, ``"first"``
+        or ``"last"``.
+    on_crossing : str
+        ``"split"`` or ``"reject"`` breaklines that cross between their vertices.
+    crossing_z : str
+        Which height is used there: as ``duplicates``, or ``"error"``.
+    crossing_tolerance : float, optional
+        Largest difference of heights where breaklines meet that is not reported; 0.01 metres by default.
+    soft_lines, draped_lines, walls, holes, flat, rivers : as breaklines, optional
+        Lines and areas of other kinds: lines that smooth methods pass over; lines without heights, draped over the
+        surface; upper edges of walls; areas without data; lakes, level to the last bit; rivers, two banks each.
+    wall_bottom, wall_drop : float or str, optional
+        Height of the lower edge of walls, or how far it is below the upper one; or the attribute that has it.
+    wall_width : float, optional
+        Distance in plan between the edges of walls; 0.01 metres by default.
+    wall_high : str
+        The side of a wall on which the ground is higher, ``"left"`` or ``"right"``.
+    flat_height : float or str, optional
+        Height of lakes: ``"lowest"`` or ``"mean"`` of the shore, a number, or the attribute that has it.
+    flat_tolerance : float, optional
+        Largest difference of heights of a level shore; 0.01 metres by default.
+    flat_buffer : float
+        Leave out points up to this distance outside of a shore, too.
+    flat_points : bool
+        Keep the points that lakes, rivers and walls replace in ``Tin.replaced_points``.
+    river_width : float or str, optional
+        Width of rivers, or the attribute that has it: their lines run along the middle.
+    densify : float, optional
+        Largest distance between vertices of breaklines and soft lines: more are added.
+    columns : str or (x, y, z), optional
+        Columns of text files: ``"PNEZD"``, ``"XYZ"``, or numbers from 1.
+    partial : bool
+        Use the remaining points of truncated LAS and LAZ files.
+    threads : int, optional
+        Number of threads; one per core by default. Results do not depend on it.
+    progress : bool or callable, optional
+        True for a bar of tqdm; or a function that is called about 20 times a second, on the calling thread, with the
+        name of the stage, the items done and their number (or None). An exception in it cancels the work.
+
+    Returns
+    -------
+    Tin
+
+    Raises
+    ------
+    FormatError
+        If the data cannot form a surface: a coordinate is not finite, a line has no heights.
+    UsageError
+        If an argument makes no sense.
+    FileError
+        If a file cannot be read.
+    KeyboardInterrupt
+        Soon after Ctrl-C; memory is freed.
+
+    Notes
+    -----
+    O(n log n) for n points; about 100 bytes of memory for each.
+    """
+    options = dict(locals())
+    given = {name: value for name, value in options.items() if name in _LINES}
+    found = _inputs.points(points)
+    systems = _systems(crs, to_crs, force_degrees)
+    is_file = len(found) == 1 and isinstance(found[0], str)
+    with call(threads, progress) as request:
+        opened = _breakline.Surface.open(found[0], systems, request) if is_file else None
+        if opened is not None:
+            _refuse_building(found[0], options)
+            if opened.kind == "raster":
+                raise usage("the file is a raster; points, a .tin or a .ply are needed", found[0], "pass points")
+            return Tin(opened)
+        lines = {name: _inputs.layers(value, name, name in _AREAS) for name, value in given.items()}
+        arguments = {
+            **lines,
+            "bounds": _inputs.bounds(bounds),
+            "max_edge": "none" if max_edge == np.inf else _number_or_name(max_edge),
+            "max_edge_inside": max_edge_inside,
+            "classes": _inputs.classes(classes),
+            "duplicates": duplicates,
+            "on_crossing": on_crossing,
+            "crossing_z": crossing_z,
+            "crossing_tolerance": crossing_tolerance,
+            "wall_bottom": _number_or_name(wall_bottom),
+            "wall_drop": _number_or_name(wall_drop),
+            "wall_width": wall_width,
+            "wall_high": wall_high,
+            "flat_height": _number_or_name(flat_height),
+            "flat_tolerance": flat_tolerance,
+            "flat_buffer": float(flat_buffer),
+            "flat_points": bool(flat_points),
+            "river_width": _number_or_name(river_width),
+            "densify": densify,
+        }
+        return Tin(_breakline.Surface.build(found, _read(columns, partial), systems, arguments, request))
+
+
+#: Parameters that take lines or areas, and those of them whose arrays are rings.
+_LINES = {"breaklines", "boundary", "soft_lines", "draped_lines", "walls", "holes", "flat", "rivers"}
+_AREAS = {"boundary", "holes", "flat"}
+#: Parameters that mean something for a surface that exists already.
+_FOR_ANY = {"points", "crs", "force_degrees", "threads", "progress"}
+_DEFAULTS = {name: parameter.default for name, parameter in inspect.signature(tin).parameters.items()}
+
+
+def _refuse_building(file: str, options: "dict[str, Any]") -> None:
+    """Refuse options that are only for building a surface."""
+    for name, value in options.items():
+        default = _DEFAULTS[name]
+        if name not in _FOR_ANY and not (value is default or isinstance(value, (str, float)) and value == default):
+            raise usage(f"{name} is for building a TIN, but {file} is a surface already", value, f"leave {name} out")

@@ -1,0 +1,314 @@
+"""The verbs of the program that take any input, as functions."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from . import _breakline, _inputs
+from ._call import Progress, call
+from ._errors import usage
+from ._points import _read, _systems
+from ._results import Contours, Raster, draw, of_cells
+from ._tin import Flaw, Tin, _frame, tin
+
+
+def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any) -> Any:
+    """Return the surface of the library for a Tin, a raster, or what ``tin`` takes."""
+    if isinstance(points, (Tin, Raster)):
+        if surface:
+            raise usage(f"{next(iter(surface))} is for building a TIN, but this is a surface already")
+        return points._surface if isinstance(points, Tin) else points._surface()
+    if _inputs.is_path(points) and os.path.isfile(points):
+        systems = _systems(surface.get("crs"), surface.get("to_crs"), surface.get("force_degrees", False))
+        with call(threads, progress) as request:
+            opened = _breakline.Surface.open(os.fspath(points), systems, request)
+        if opened is not None and opened.kind == "raster":
+            return opened
+    return tin(points, threads=threads, progress=progress, **surface)._surface
+
+
+def dem(
+    points: Any,
+    *,
+    resolution: Optional[float] = None,
+    extent: Any = None,
+    align_to: Any = None,
+    method: str = "linear",
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **surface: Any,
+) -> Raster:
+    """Return heights at the centers of cells.
+
+    Parameters
+    ----------
+    points
+        A :class:`Tin`, or what :func:`tin` takes.
+    extent : (xmin, ymin, xmax, ymax), optional
+        Extent of the raster; ``bounds`` clips the surface, as in :func:`tin`.
+    resolution, align_to, method, threads, progress
+        As for :meth:`Tin.dem`.
+    **surface
+        Parameters of :func:`tin`.
+    """
+    found = _surface(points, surface, threads, progress)
+    with call(threads, progress) as request:
+        return of_cells(found.dem(_frame(resolution, extent, align_to), method, request))
+
+
+def hillshade(
+    points: Any,
+    *,
+    resolution: Optional[float] = None,
+    extent: Any = None,
+    align_to: Any = None,
+    method: str = "linear",
+    azimuth: float = 315.0,
+    altitude: float = 45.0,
+    z_factor: Optional[float] = None,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **surface: Any,
+) -> Raster:
+    """Return shades of a surface or of a raster of heights.
+
+    Parameters
+    ----------
+    points
+        A :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes.
+    resolution, extent, align_to, method
+        As for :func:`dem`; a raster keeps its cells.
+    azimuth, altitude, z_factor, threads, progress
+        As for :meth:`Tin.hillshade`.
+    **surface
+        Parameters of :func:`tin`.
+    """
+    found = _surface(points, surface, threads, progress)
+    light = (float(azimuth), float(altitude), None if z_factor is None else float(z_factor))
+    with call(threads, progress) as request:
+        return of_cells(found.hillshade(_frame(resolution, extent, align_to), method, light, request))
+
+
+def contour(
+    points: Any,
+    *,
+    interval: Optional[float] = None,
+    base: float = 0.0,
+    levels: Any = (),
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **surface: Any,
+) -> Contours:
+    """Return contours of a surface or of a raster of heights.
+
+    Parameters
+    ----------
+    points
+        A :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes.
+    interval, base, levels, threads, progress
+        As for :meth:`Tin.contours`.
+    **surface
+        Parameters of :func:`tin`.
+    """
+    found = _surface(points, surface, threads, progress)
+    crs = found.crs[0] if found.crs else None
+    return draw(found, crs, interval, base, levels, threads, progress)
+
+
+def check(
+    points: Any,
+    *,
+    weighted: bool = False,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **surface: Any,
+) -> "list[Flaw]":
+    """Return the flaws of a surface, or of tetrahedra in a file; none proves that it is correct.
+
+    Parameters
+    ----------
+    points
+        A :class:`Tin`, the path of a mesh (also one that is no surface) or of an ``.ele``, or what :func:`tin` takes.
+    weighted : bool
+        The vertices of tetrahedra have weights: check that they are regular.
+    threads, progress
+        As for :func:`tin`.
+    **surface
+        Parameters of :func:`tin`.
+    """
+    is_file = _inputs.is_path(points) and os.path.isfile(points)
+    with call(threads, progress) as request:
+        if is_file and _breakline.is_of_space(os.fspath(points)):
+            found = _breakline.check_space(os.fspath(points), bool(weighted), request)
+            return [Flaw(text, np.empty((0, 2))) for text in found]
+        if weighted:
+            raise usage("weighted is for the tetrahedra of an .ele", weighted, "leave it out")
+        if is_file and not surface:
+            flaws = _breakline.check_file(os.fspath(points), request)
+            return [Flaw(text, np.array(at, dtype=float).reshape(-1, 2)) for text, at in flaws]
+    return (points if isinstance(points, Tin) else tin(points, threads=threads, progress=progress, **surface)).check(
+        threads=threads, progress=progress
+    )
+
+
+def info(
+    path: Any,
+    *,
+    columns: Any = None,
+    partial: bool = False,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> "dict[str, Any]":
+    """Return what is in a file: counts, bounds, classes, coordinate system, warnings.
+
+    Parameters
+    ----------
+    path : path
+        Points, a vector layer, a raster or a mesh; read to its end.
+    columns, partial, threads, progress
+        As for :func:`tin`.
+
+    Returns
+    -------
+    dict
+        As ``breakline info --json`` prints it; ``kind`` is ``"points"``, ``"layer"``, ``"raster"``, ``"mesh"``,
+        ``"picture"`` or ``"plane"``.
+    """
+    with call(threads, progress) as request:
+        return json.loads(_breakline.info(_inputs.path(path, "path"), _read(columns, partial), request))
+
+
+@dataclass(frozen=True)
+class Triangulation:
+    """A triangulation in the plane, with the counts of how it came to be.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, (n, 2)
+        Those of the file, then those added.
+    vertex_markers : ndarray of int64, (n,)
+    triangles : ndarray of int64, (m, 3)
+        Counter-clockwise, as indices of ``vertices``.
+    segments : ndarray of int64, (k, 2)
+        Constrained edges, including the boundary.
+    report : dict
+    """
+
+    vertices: np.ndarray
+    vertex_markers: np.ndarray
+    triangles: np.ndarray
+    segments: np.ndarray
+    report: "dict[str, int]"
+
+
+@dataclass(frozen=True)
+class SpaceTriangulation:
+    """A triangulation in space.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, (n, 3)
+    tetrahedra : ndarray of int64, (m, 4)
+    solid : dict or None
+        The alpha shape: ``triangles`` (k, 3), ``alpha``, ``volume``, ``parts``, ``is_manifold``.
+    report : dict
+        ``points``, ``duplicates``, ``hidden``, ``dimension``, ``volume``.
+    """
+
+    vertices: np.ndarray
+    tetrahedra: np.ndarray
+    solid: "Optional[dict[str, Any]]"
+    report: "dict[str, Any]"
+
+
+def triangulate(
+    path: Any,
+    *,
+    output: Any = None,
+    in_space: bool = False,
+    weighted: bool = False,
+    alpha: Any = None,
+    convex: bool = False,
+    on_crossing: str = "split",
+    min_angle: Optional[float] = None,
+    max_area: Optional[float] = None,
+    region_areas: bool = False,
+    max_added: Optional[int] = None,
+    kernel: str = "adaptive",
+    overwrite: bool = False,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> Any:
+    """Triangulate a ``.node`` or ``.poly`` file of Triangle, or points in space.
+
+    For arrays, see :func:`breakline.triangle.triangulate` and :class:`breakline.spatial.Delaunay`.
+
+    Parameters
+    ----------
+    path : path
+        A ``.node`` or ``.poly`` file; in space also LAS, LAZ, text, PLY, OBJ or OFF.
+    output : path or list of paths, optional
+        Files to write, in the formats of their extensions.
+    in_space : bool
+        Triangulate in space: tetrahedra. Assumed for a ``.node`` of dimension 3.
+    weighted : bool
+        Points in space have weights: a regular triangulation.
+    alpha : float or "auto", optional
+        In space, the squared radius of the alpha shape; ``"auto"`` is the smallest that is one solid with all points.
+    convex : bool
+        Keep the whole convex hull.
+    on_crossing : str
+        ``"split"`` or ``"reject"`` segments that cross between their ends.
+    min_angle : float, optional
+        Add vertices until no angle is smaller, in degrees.
+    max_area : float, optional
+        Add vertices until no triangle is larger.
+    region_areas : bool
+        Apply the largest areas of the regions of a ``.poly``.
+    max_added : int, optional
+        Stop after this many added vertices.
+    kernel : str
+        ``"adaptive"`` and ``"exact"`` are exact; ``"fast"`` is plain floating point, for experiments.
+    overwrite : bool
+        Replace files that exist.
+    threads, progress
+        As for :func:`tin`.
+
+    Returns
+    -------
+    Triangulation or SpaceTriangulation
+    """
+    file = _inputs.path(path, "path")
+    outputs = [_inputs.path(target, "output") for target in _inputs.as_sequence(output)]
+    with call(threads, progress) as request:
+        if in_space or _breakline.is_of_space(file):
+            of_plane = {
+                "convex": convex, "on_crossing": on_crossing != "split", "min_angle": min_angle is not None,
+                "max_area": max_area is not None, "region_areas": region_areas, "max_added": max_added is not None,
+            }  # fmt: skip
+            for name, is_given in of_plane.items():
+                if is_given:
+                    raise usage(f"{name} is for the plane only", None, f"leave {name} out")
+            alpha = alpha if alpha is None or isinstance(alpha, str) else float(alpha)
+            found = _breakline.triangulate_space(file, bool(weighted), alpha, kernel, outputs, bool(overwrite), request)
+            lists = [found.pop(name) for name in ("vertices", "tetrahedra")]
+            return SpaceTriangulation(*lists, found.pop("solid", None), found)
+        if weighted or alpha is not None:
+            raise usage(f"{'weighted' if weighted else 'alpha'} is for points in space", None, "add in_space=True")
+        options = {
+            "convex": bool(convex), "on_crossing": on_crossing, "min_angle": min_angle, "max_area": max_area,
+            "region_areas": bool(region_areas), "max_added": max_added, "kernel": kernel,
+        }  # fmt: skip
+        found = _breakline.triangulate(file, options, outputs, bool(overwrite), request)
+    lists = [found.pop(name) for name in ("vertices", "vertex_markers", "triangles", "segments")]
+    return Triangulation(*lists, found)
+
+
+def describe() -> "dict[str, Any]":
+    """Return the description of the command line, as ``breakline describe --json`` prints it."""
+    return json.loads(_breakline.describe())

@@ -1,0 +1,40 @@
+//! Arrays of numpy to numbers, and numbers to arrays.
+
+use numpy::ndarray::ArrayView2;
+use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+/// Returns the rows of an array as points, in any layout of memory.
+pub(crate) fn rows<T: Element + Copy + Default, const N: usize>(array: ArrayView2<'_, T>) -> Vec<[T; N]> {
+    // In C order the rows are next to each other already.
+    if let Some(flat) = array.as_slice().filter(|_| array.ncols() == N) {
+        return flat.as_chunks().0.to_vec();
+    }
+    let row = |row: numpy::ndarray::ArrayView1<'_, T>| {
+        let mut point = [T::default(); N];
+        point.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+        point
+    };
+    array.rows().into_iter().map(row).collect()
+}
+
+/// Returns the rows of an array of positions, copied so that other threads may change it meanwhile.
+pub(crate) fn points<const N: usize>(array: &PyReadonlyArray2<'_, f64>) -> Vec<[f64; N]> {
+    rows(array.as_array())
+}
+
+/// Returns an array of the numbers of a vector, which are not copied.
+pub(crate) fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>> {
+    values.into_pyarray(py)
+}
+
+/// Returns an array of the rows of a vector, which are not copied.
+pub(crate) fn table<T: Element, const N: usize>(py: Python<'_>, rows: Vec<[T; N]>) -> PyResult<Bound<'_, PyAny>> {
+    let count = rows.len();
+    Ok(rows.into_flattened().into_pyarray(py).reshape([count, N])?.into_any())
+}
+
+/// Makes an array read-only, for one that is kept and given to everyone who asks.
+pub(crate) fn read_only<'py>(array: &Bound<'py, PyAny>) -> PyResult<()> {
+    array.call_method1("setflags", (false,)).map(drop)
+}

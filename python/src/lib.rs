@@ -1,0 +1,41 @@
+//! The module `breakline._breakline`: arrays become requests, products become arrays.
+//!
+//! Everything is one call of `breakline::run`. What a user sees is the Python package around it, in
+//! `package/breakline`.
+
+use pyo3::prelude::*;
+
+mod arrays;
+mod errors;
+mod files;
+mod notices;
+mod reports;
+mod requests;
+mod surface;
+mod work;
+
+/// Arrays in, arrays out: the functions behind the package.
+#[pymodule]
+mod _breakline {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::files::{
+        check_space, class_number, describe, info, is_of_space, main, read_points, triangulate, triangulate_space,
+        write_points,
+    };
+    #[pymodule_export]
+    use super::surface::{Surface, check_file, edge_kinds, write_cells, write_contours};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // A decoder's panic that is caught and becomes an error is not printed.
+        let print = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !breakline::io::is_contained() {
+                print(panic);
+            }
+        }));
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,369 @@
+//! Arguments become requests.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use breakline::crs::Crs;
+use breakline::data::{Bounds, Column, Lattice, Layer, PointBatch, PointFlags, Shape};
+use breakline::io::las::Cut;
+use breakline::io::points;
+use breakline::run::{
+    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints, PerRecord,
+    ReplacedPoints, SystemOptions, TinRequest, WallOptions,
+};
+use breakline::terrain::{Classes, CrossingRule, DuplicateRule, HighSide, Method};
+use breakline::triangulation::OnCrossing;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays;
+use crate::errors::{self, Failure};
+
+/// Returns what a name stands for.
+pub(crate) fn choose<T: Copy>(parameter: &str, name: &str, table: &[(&str, T)]) -> PyResult<T> {
+    table.iter().find(|(known, _)| *known == name).map(|(_, value)| *value).ok_or_else(|| {
+        let known: Vec<&str> = table.iter().map(|(known, _)| *known).collect();
+        errors::usage(
+            &format!("{parameter} has an unknown value"),
+            &format!("'{name}'"),
+            &format!("use one of {}", known.join(", ")),
+        )
+    })
+}
+
+const DUPLICATES: [(&str, DuplicateRule); 5] = [
+    ("lowest", DuplicateRule::Lowest),
+    ("highest", DuplicateRule::Highest),
+    ("mean", DuplicateRule::Mean),
+    ("first", DuplicateRule::First),
+    ("last", DuplicateRule::Last),
+];
+
+const ON_CROSSING: [(&str, OnCrossing); 2] = [("split", OnCrossing::Split), ("reject", OnCrossing::Reject)];
+
+const METHODS: [(&str, Method); 6] = [
+    ("linear", Method::Linear),
+    ("nearest", Method::Nearest),
+    ("natural", Method::Natural),
+    ("laplace", Method::Laplace),
+    ("smooth", Method::Smooth),
+    ("idw", Method::Idw),
+];
+
+/// Returns the method of interpolation with a name.
+pub(crate) fn method(name: &str) -> PyResult<Method> {
+    choose("method", name, &METHODS)
+}
+
+/// Returns the rule for crossing segments with a name.
+pub(crate) fn on_crossing(name: &str) -> PyResult<OnCrossing> {
+    choose("on_crossing", name, &ON_CROSSING)
+}
+
+fn crossing_rule(name: &str) -> PyResult<CrossingRule> {
+    if name == "error" {
+        return Ok(CrossingRule::Refuse);
+    }
+    choose("crossing_z", name, &DUPLICATES).map(CrossingRule::Choose)
+}
+
+/// Returns the coordinate system that a text names or defines.
+pub(crate) fn crs(text: Option<&str>) -> PyResult<Option<Crs>> {
+    Ok(text.map(Crs::from_user).transpose().map_err(Failure)?)
+}
+
+/// A box in plan: west, south, east, north.
+pub(crate) fn bounds(corners: Option<[f64; 4]>) -> Option<Bounds> {
+    corners.map(|[x0, y0, x1, y1]| Bounds { min: [x0, y0, f64::NEG_INFINITY], max: [x1, y1, f64::INFINITY] })
+}
+
+/// A coordinate of many points: numbers, or whole steps of a lattice.
+#[derive(FromPyObject)]
+pub(crate) enum Axis<'py> {
+    Numbers(PyReadonlyArray1<'py, f64>),
+    Steps(PyReadonlyArray1<'py, i32>),
+}
+
+/// Points in arrays.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct PointColumns<'py> {
+    axes: [Axis<'py>; 3],
+    scale: [f64; 3],
+    offset: [f64; 3],
+    classes: Option<PyReadonlyArray1<'py, u8>>,
+    flags: Option<PyReadonlyArray1<'py, u8>>,
+    crs: Option<String>,
+}
+
+impl Axis<'_> {
+    /// Returns the numbers, copied so that other threads may change the array meanwhile.
+    fn read(&self, axis: usize, lattice: &Lattice) -> Vec<f64> {
+        match self {
+            Axis::Numbers(numbers) => numbers.as_array().iter().copied().collect(),
+            Axis::Steps(steps) => {
+                let on_axis = |&step: &i32| {
+                    let mut all = [0; 3];
+                    all[axis] = step;
+                    lattice.point(all)[axis]
+                };
+                steps.as_array().iter().map(on_axis).collect()
+            }
+        }
+    }
+}
+
+impl PointColumns<'_> {
+    fn read(&self) -> PyResult<MemoryPoints> {
+        let lattice = Lattice { scale: self.scale, offset: self.offset };
+        let [x, y, z] = [0, 1, 2].map(|k| self.axes[k].read(k, &lattice));
+        let bytes = |column: &Option<PyReadonlyArray1<'_, u8>>| -> Vec<u8> {
+            column.as_ref().map(|column| column.as_array().iter().copied().collect()).unwrap_or_default()
+        };
+        let flags = bytes(&self.flags).into_iter().map(PointFlags).collect();
+        let points = PointBatch { x, y, z, class: bytes(&self.classes), flags, ..PointBatch::default() };
+        Ok(MemoryPoints { points, crs: crs(self.crs.as_deref())? })
+    }
+}
+
+/// Points in a file, or in arrays.
+#[derive(FromPyObject)]
+pub(crate) enum PointInput<'py> {
+    File(PathBuf),
+    Columns(PointColumns<'py>),
+}
+
+/// Returns the inputs of points.
+pub(crate) fn point_inputs(inputs: &[PointInput<'_>]) -> PyResult<Vec<Input<MemoryPoints>>> {
+    let read = |input: &PointInput<'_>| match input {
+        PointInput::File(path) => Ok(Input::File(path.clone())),
+        PointInput::Columns(columns) => Ok(Input::Memory(Arc::new(columns.read()?))),
+    };
+    inputs.iter().map(read).collect()
+}
+
+/// Lines and polygons in arrays: all vertices one after the other, the number of vertices of each
+/// part, and for each shape its kind (1 line, 2 polygon) and the number of its parts.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Shapes<'py> {
+    vertices: PyReadonlyArray2<'py, f64>,
+    parts: Vec<usize>,
+    shapes: Vec<(u8, usize)>,
+    columns: Vec<(String, Vec<f64>)>,
+    crs: Option<String>,
+}
+
+impl Shapes<'_> {
+    fn read(&self) -> PyResult<Layer> {
+        let mut vertices = arrays::points::<3>(&self.vertices).into_iter();
+        let mut parts = self.parts.iter().map(|&count| vertices.by_ref().take(count).collect::<Vec<_>>());
+        let shapes = self.shapes.iter().map(|&(kind, count)| {
+            let parts = parts.by_ref().take(count).collect();
+            if kind == 2 { Shape::Polygon(parts) } else { Shape::Lines(parts) }
+        });
+        let shapes = shapes.collect();
+        let columns: Vec<Column> =
+            self.columns.iter().map(|(name, values)| Column { name: name.clone(), values: values.clone() }).collect();
+        let fields = columns.iter().map(|column| column.name.clone()).collect();
+        Ok(Layer { shapes, crs: crs(self.crs.as_deref())?, fields, columns, ..Layer::default() })
+    }
+}
+
+/// A vector layer in a file, or in arrays.
+#[derive(FromPyObject)]
+pub(crate) enum LayerInput<'py> {
+    File(PathBuf),
+    Shapes(Shapes<'py>),
+}
+
+fn layers(inputs: &[LayerInput<'_>]) -> PyResult<Vec<Input<Layer>>> {
+    let read = |input: &LayerInput<'_>| match input {
+        LayerInput::File(path) => Ok(Input::File(path.clone())),
+        LayerInput::Shapes(shapes) => Ok(Input::Memory(Arc::new(shapes.read()?))),
+    };
+    inputs.iter().map(read).collect()
+}
+
+/// A number, or a name.
+#[derive(FromPyObject)]
+pub(crate) enum NumberOrName {
+    Number(f64),
+    Name(String),
+}
+
+impl NumberOrName {
+    fn per_record(&self) -> PerRecord {
+        match self {
+            NumberOrName::Number(number) => PerRecord::Number(*number),
+            NumberOrName::Name(name) => PerRecord::Field(name.clone()),
+        }
+    }
+}
+
+/// Options of reading files of points.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct ReadArguments {
+    columns: Option<String>,
+    partial: bool,
+}
+
+impl ReadArguments {
+    pub(crate) fn options(&self) -> PyResult<points::Options> {
+        let columns = self.columns.as_deref().map(|text| {
+            text.parse().map_err(|why: String| {
+                errors::usage(&format!("columns: {why}"), &format!("'{text}'"), "write 'PNEZD', 'XYZ' or (2, 1, 3)")
+            })
+        });
+        let cut = if self.partial { Cut::Accept } else { Cut::Refuse };
+        Ok(points::Options { columns: columns.transpose()?, cut, ..points::Options::default() })
+    }
+}
+
+/// Coordinate systems of the input and of the result.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct SystemArguments {
+    crs: Option<String>,
+    to_crs: Option<String>,
+    force_degrees: bool,
+}
+
+impl SystemArguments {
+    pub(crate) fn options(&self) -> PyResult<SystemOptions> {
+        let degrees = if self.force_degrees { Degrees::Allow } else { Degrees::Refuse };
+        Ok(SystemOptions { assign: crs(self.crs.as_deref())?, target: crs(self.to_crs.as_deref())?, degrees })
+    }
+}
+
+/// Options of building a surface, under the names that they have in Python.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct SurfaceArguments<'py> {
+    breaklines: Vec<LayerInput<'py>>,
+    boundary: Vec<LayerInput<'py>>,
+    bounds: Option<[f64; 4]>,
+    max_edge: Option<NumberOrName>,
+    max_edge_inside: Option<f64>,
+    classes: Option<Vec<u8>>,
+    duplicates: String,
+    on_crossing: String,
+    crossing_z: String,
+    crossing_tolerance: Option<f64>,
+    soft_lines: Vec<LayerInput<'py>>,
+    draped_lines: Vec<LayerInput<'py>>,
+    walls: Vec<LayerInput<'py>>,
+    wall_bottom: Option<NumberOrName>,
+    wall_drop: Option<NumberOrName>,
+    wall_width: Option<f64>,
+    wall_high: String,
+    holes: Vec<LayerInput<'py>>,
+    flat: Vec<LayerInput<'py>>,
+    flat_height: Option<NumberOrName>,
+    flat_tolerance: Option<f64>,
+    flat_buffer: f64,
+    flat_points: bool,
+    rivers: Vec<LayerInput<'py>>,
+    river_width: Option<NumberOrName>,
+    densify: Option<f64>,
+}
+
+impl SurfaceArguments<'_> {
+    /// Returns the request for a TIN of these points.
+    pub(crate) fn request(&self, points: &[PointInput<'_>], read: &ReadArguments) -> PyResult<TinRequest> {
+        Ok(TinRequest {
+            points: point_inputs(points)?,
+            read: read.options()?,
+            classes: self.classes.clone().map_or(Classes::GroundOrAll, Classes::Only),
+            breaklines: layers(&self.breaklines)?,
+            boundary: layers(&self.boundary)?,
+            lines: self.lines()?,
+            bounds: bounds(self.bounds),
+            max_edge: self.edge_limit()?,
+            max_edge_inside: positive("max_edge_inside", self.max_edge_inside)?,
+            replaced: if self.flat_points { ReplacedPoints::Keep } else { ReplacedPoints::Drop },
+            duplicates: choose("duplicates", &self.duplicates, &DUPLICATES)?,
+            on_crossing: on_crossing(&self.on_crossing)?,
+            crossing_heights: crossing_rule(&self.crossing_z)?,
+            crossing_tolerance: self.crossing_tolerance,
+        })
+    }
+
+    fn edge_limit(&self) -> PyResult<EdgeLimit> {
+        match &self.max_edge {
+            None => Ok(EdgeLimit::Standard),
+            Some(NumberOrName::Number(length)) if length.is_infinite() => Ok(EdgeLimit::Unlimited),
+            Some(NumberOrName::Number(length)) => {
+                Ok(positive("max_edge", Some(*length))?.map_or(EdgeLimit::Standard, EdgeLimit::Length))
+            }
+            Some(NumberOrName::Name(name)) => {
+                choose("max_edge", name, &[("auto", EdgeLimit::Auto), ("none", EdgeLimit::Unlimited)])
+            }
+        }
+    }
+
+    fn lines(&self) -> PyResult<LineRequest> {
+        let lower = match (&self.wall_bottom, &self.wall_drop) {
+            (Some(height), None) => Some(LowerEdge::Height(height.per_record())),
+            (None, Some(drop)) => Some(LowerEdge::Drop(drop.per_record())),
+            (None, None) => None,
+            (Some(_), Some(_)) => {
+                return Err(errors::usage("wall_bottom and wall_drop are given", "both", "use one of them"));
+            }
+        };
+        let high = choose("wall_high", &self.wall_high, &[("left", HighSide::Left), ("right", HighSide::Right)])?;
+        let height = match &self.flat_height {
+            None => FlatRule::OfShore,
+            Some(NumberOrName::Name(name)) if name == "lowest" => FlatRule::Lowest,
+            Some(NumberOrName::Name(name)) if name == "mean" => FlatRule::Mean,
+            Some(given) => FlatRule::Given(given.per_record()),
+        };
+        Ok(LineRequest {
+            soft: layers(&self.soft_lines)?,
+            draped: layers(&self.draped_lines)?,
+            walls: layers(&self.walls)?,
+            wall: WallOptions { lower, width: positive("wall_width", self.wall_width)?, high },
+            holes: layers(&self.holes)?,
+            flats: layers(&self.flat)?,
+            flat: FlatOptions { height, tolerance: self.flat_tolerance, buffer: self.flat_buffer },
+            rivers: layers(&self.rivers)?,
+            river_width: self.river_width.as_ref().map(NumberOrName::per_record),
+            densify: positive("densify", self.densify)?,
+        })
+    }
+}
+
+/// Returns a number if it is above zero and finite.
+pub(crate) fn positive(parameter: &str, number: Option<f64>) -> PyResult<Option<f64>> {
+    match number {
+        Some(number) if !(number > 0.0 && number.is_finite()) => Err(errors::usage(
+            &format!("{parameter} is not a finite number above zero"),
+            &number.to_string(),
+            "use a number above zero, or None",
+        )),
+        number => Ok(number),
+    }
+}
+
+/// Size and position of a raster.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct FrameArguments {
+    resolution: Option<f64>,
+    bounds: Option<[f64; 4]>,
+    align_to: Option<PathBuf>,
+}
+
+impl FrameArguments {
+    pub(crate) fn options(&self) -> PyResult<FrameOptions> {
+        if self.resolution.is_some() && self.align_to.is_some() {
+            return Err(errors::usage("resolution and align_to are given", "both", "use one of them"));
+        }
+        Ok(FrameOptions {
+            resolution: positive("resolution", self.resolution)?,
+            extent: bounds(self.bounds),
+            align_to: self.align_to.clone(),
+        })
+    }
+}

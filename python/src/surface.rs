@@ -1,0 +1,388 @@
+//! Surfaces: built from arrays and files, asked for heights, products and files.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use breakline::data::{ContourLine, EdgeKind, Frame, Grid};
+use breakline::io::geotiff::CellFormat;
+use breakline::io::{Destination, formats, mapped, mesh};
+use breakline::run::{
+    self, CellProduct, Context, ContourOptions, DemOptions, HillshadeOptions, LightOptions, Model, Source,
+    SurfaceProduct, SurfaceRequest,
+};
+use breakline::terrain::{CompactTin, Method};
+use breakline::{Error, io};
+use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::errors::{Failure, Result};
+use crate::requests::{self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments};
+use crate::work::{self, Call};
+use crate::{arrays, notices, reports};
+
+/// So many positions are searched on the calling thread: waking others takes longer.
+const FEW: usize = 1 << 8;
+
+/// A raster in Python: its cells by rows, its transform in GDAL's order, and its coordinate system
+/// as WKT.
+type Raster<'py> = (Bound<'py, PyAny>, [f64; 6], Option<String>);
+
+/// Contours in Python: all vertices, where each line begins among them (and where the last one
+/// ends), and the height of each line.
+type Contours<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+/// A surface of triangles or cells, and how it came to be.
+#[pyclass(frozen, module = "breakline._breakline")]
+pub(crate) struct Surface {
+    product: Arc<SurfaceProduct>,
+}
+
+impl Surface {
+    fn of(product: SurfaceProduct) -> Self {
+        Surface { product: Arc::new(product) }
+    }
+}
+
+#[pymethods]
+impl Surface {
+    /// Builds the TIN of points and lines.
+    #[staticmethod]
+    fn build(
+        py: Python<'_>,
+        points: Vec<PointInput<'_>>,
+        read: ReadArguments,
+        systems: SystemArguments,
+        options: SurfaceArguments<'_>,
+        call: Call,
+    ) -> PyResult<Self> {
+        let source = Source::Points(Box::new(options.request(&points, &read)?));
+        let request = SurfaceRequest { source, systems: systems.options()? };
+        // The arrays are copied, and may be changed.
+        drop((points, options));
+        work::run(py, &call, move |context| -> Result<_> { Ok(run::triangles(&request, context)?) }).map(Surface::of)
+    }
+
+    /// Reads a mesh or a raster, or opens a TIN; `None` if the file has points.
+    #[staticmethod]
+    fn open(py: Python<'_>, file: PathBuf, systems: SystemArguments, call: Call) -> PyResult<Option<Self>> {
+        let source = Source::of_files(&[file]).map_err(Failure)?;
+        if matches!(source, Source::Points(_)) {
+            return Ok(None);
+        }
+        let request = SurfaceRequest { source, systems: systems.options()? };
+        let product = work::run(py, &call, |context| -> Result<_> { Ok(run::surface(&request, context)?) })?;
+        Ok(Some(Surface::of(product)))
+    }
+
+    /// Returns the surface between the centers of the cells of a raster.
+    #[staticmethod]
+    fn of_cells(cells: PyReadonlyArray2<'_, f64>, transform: [f64; 6], crs: Option<&str>) -> PyResult<Self> {
+        let grid = grid(&cells, transform, crs)?;
+        grid.frame.checked().map_err(Failure)?;
+        Ok(Surface::of(Model::Raster(Box::new(grid)).into()))
+    }
+
+    /// Opens a TIN in the bytes that [`to_bytes`](Self::to_bytes) returns.
+    #[staticmethod]
+    fn of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let product = work::short(py, || -> Result<_> {
+            let tin = CompactTin::open(mapped::of_bytes(bytes)?, "(bytes)")?;
+            Ok(Model::Compact(Box::new(tin)).into())
+        })?;
+        Ok(Surface::of(product))
+    }
+
+    /// Returns the TIN in the bytes of its file.
+    fn to_bytes<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyBytes>> {
+        let product = &self.product;
+        let bytes = work::run(py, &call, |_| -> Result<_> {
+            let mut bytes = Vec::new();
+            product.triangles()?.write_tin(&mut bytes)?;
+            Ok(bytes)
+        })?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// "tin", "mesh" or "raster".
+    #[getter]
+    fn kind(&self) -> &'static str {
+        match &self.product.model {
+            Model::Tin(_) | Model::Compact(_) => "tin",
+            Model::Mesh(_) => "mesh",
+            Model::Raster(_) => "raster",
+        }
+    }
+
+    /// The coordinate system: WKT, name and EPSG code.
+    #[getter]
+    fn crs(&self) -> Option<(String, String, Option<u32>)> {
+        self.product.crs().map(|crs| (crs.to_wkt(), crs.describe(), crs.epsg))
+    }
+
+    /// The lowest and the highest coordinates.
+    #[getter]
+    fn extent(&self, py: Python<'_>) -> PyResult<([f64; 3], [f64; 3])> {
+        let extent = work::short(py, || -> Result<_> { Ok(self.product.extent()) })?;
+        Ok((extent.min, extent.max))
+    }
+
+    /// What was assumed and what looks wrong, each with the name of its severity.
+    #[getter]
+    fn notices(&self) -> Vec<(&'static str, String)> {
+        notices::pairs(&self.product.notices)
+    }
+
+    /// Counts of the surface, and of how it was built.
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        reports::of_surface(py, &self.product)
+    }
+
+    /// The points that water and walls replaced, (n, 3).
+    fn replaced_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::table(py, self.product.built.as_ref().map(|built| built.replaced.clone()).unwrap_or_default())
+    }
+
+    /// Returns the vertices (n, 3) and the corners of the triangles (m, 3), as a file lists them.
+    fn list<'py>(&self, py: Python<'py>, call: Call) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let product = &self.product;
+        let (vertices, faces) = work::run(py, &call, |_| -> Result<_> {
+            let listed = mesh::list(product.triangles()?)?;
+            Ok((listed.vertices, signed(listed.faces)?))
+        })?;
+        let lists = (arrays::table(py, vertices)?, arrays::table(py, faces)?);
+        arrays::read_only(&lists.0)?;
+        arrays::read_only(&lists.1)?;
+        Ok(lists)
+    }
+
+    /// Returns the ends of all edges (k, 2) and their kinds (k,).
+    fn edges<'py>(&self, py: Python<'py>, call: Call) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let product = &self.product;
+        let (ends, kinds) = work::run(py, &call, |_| -> Result<_> {
+            let (ends, kinds): (Vec<[u32; 2]>, Vec<u8>) =
+                mesh::edges(product.triangles()?)?.into_iter().map(|(ends, kind)| (ends, kind.number())).unzip();
+            Ok((signed(ends)?, kinds))
+        })?;
+        let lists = (arrays::table(py, ends)?, arrays::column(py, kinds).into_any());
+        arrays::read_only(&lists.0)?;
+        arrays::read_only(&lists.1)?;
+        Ok(lists)
+    }
+
+    /// Returns the height at each position (n, 2).
+    fn elevations<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        method: &str,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let method = requests::method(method)?;
+        let positions = arrays::points::<2>(&positions);
+        let product = &self.product;
+        let find = |context: &Context<'_>| -> Result<_> { Ok(run::elevations(product, &positions, method, context)?) };
+        let heights = if positions.len() <= FEW && method == Method::Linear && self.is_walked() {
+            work::short(py, || find(&Context::default()))?
+        } else {
+            work::run(py, &call, find)?
+        };
+        Ok(arrays::column(py, heights).into_any())
+    }
+
+    /// Computes heights at the centers of cells.
+    fn dem<'py>(&self, py: Python<'py>, frame: FrameArguments, method: &str, call: Call) -> PyResult<Raster<'py>> {
+        let options = DemOptions { frame: frame.options()?, method: requests::method(method)? };
+        let product = &self.product;
+        let (frame, heights) = work::run(py, &call, |context| -> Result<_> {
+            Ok(run::dem(product, &options, context)?.collect_cells(context)?)
+        })?;
+        self.raster(&frame, arrays::column(py, heights).reshape([frame.height, frame.width])?.into_any())
+    }
+
+    /// Computes shades from 1 to 255, 0 where there is no height.
+    fn hillshade<'py>(
+        &self,
+        py: Python<'py>,
+        frame: FrameArguments,
+        method: &str,
+        light: (f64, f64, Option<f64>),
+        call: Call,
+    ) -> PyResult<Raster<'py>> {
+        let (azimuth, altitude, z_factor) = light;
+        let light = LightOptions { azimuth, altitude, z_factor };
+        let options = HillshadeOptions { frame: frame.options()?, method: requests::method(method)?, light };
+        let product = &self.product;
+        let (frame, shades) = work::run(py, &call, |context| -> Result<_> {
+            let (frame, shades) = run::hillshade(product, &options, context)?.collect_cells(context)?;
+            // A conversion that saturates: NaN becomes 0.
+            Ok((frame, shades.into_iter().map(|shade| shade as u8).collect::<Vec<u8>>()))
+        })?;
+        self.raster(&frame, arrays::column(py, shades).reshape([frame.height, frame.width])?.into_any())
+    }
+
+    /// Draws contours.
+    fn contours<'py>(
+        &self,
+        py: Python<'py>,
+        interval: Option<f64>,
+        base: f64,
+        levels: Vec<f64>,
+        call: Call,
+    ) -> PyResult<Contours<'py>> {
+        let options = ContourOptions { interval, base, levels };
+        let product = &self.product;
+        let (points, starts, levels) = work::run(py, &call, |context| -> Result<_> {
+            let lines = run::contour(product, &options, context)?.collect(context)?;
+            let levels: Vec<f64> = lines.iter().map(|line| line.level).collect();
+            let mut starts = vec![0];
+            starts.extend(lines.iter().scan(0, |end, line| {
+                *end += line.points.len() as i64;
+                Some(*end)
+            }));
+            let points: Vec<[f64; 2]> = lines.into_iter().flat_map(|line| line.points).collect();
+            Ok((points, starts, levels))
+        })?;
+        let column = |values| arrays::column(py, values).into_any();
+        Ok((arrays::table(py, points)?, arrays::column(py, starts).into_any(), column(levels)))
+    }
+
+    /// Returns the flaws, each with the positions that it concerns.
+    fn check(&self, py: Python<'_>, call: Call) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
+        let product = &self.product;
+        let flaws = work::run(py, &call, |context| -> Result<_> { Ok(run::surface_flaws(product, context)?) })?;
+        Ok(flaws.into_iter().map(|flaw| (flaw.flaw.to_string(), flaw.at)).collect())
+    }
+
+    /// Writes the surface as a mesh.
+    fn write(&self, py: Python<'_>, file: PathBuf, overwrite: bool, call: Call) -> PyResult<()> {
+        let product = &self.product;
+        write_to(py, &file, overwrite, &call, |target, context| {
+            run::write_mesh(product.triangles()?, target, context).map(drop)
+        })
+    }
+}
+
+impl Surface {
+    /// Returns true if a height is found by a walk, without threads: those of another pool than
+    /// ours would not exist after a fork.
+    fn is_walked(&self) -> bool {
+        match &self.product.model {
+            Model::Tin(_) => true,
+            Model::Compact(tin) => !tin.has_fragments(),
+            Model::Mesh(_) | Model::Raster(_) => false,
+        }
+    }
+
+    fn raster<'py>(&self, frame: &Frame, cells: Bound<'py, PyAny>) -> PyResult<Raster<'py>> {
+        Ok((cells, frame.transform, self.product.crs().map(breakline::crs::Crs::to_wkt)))
+    }
+}
+
+/// Writes a file, unless there is one that must be kept.
+pub(crate) fn write_to(
+    py: Python<'_>,
+    file: &PathBuf,
+    overwrite: bool,
+    call: &Call,
+    write: impl FnOnce(Destination<'_>, &Context<'_>) -> breakline::Result<()> + Send,
+) -> PyResult<()> {
+    work::run(py, call, |context| -> Result<()> {
+        if !overwrite {
+            let extension = formats::of_name(file).map_or("", |format| format.extensions[0]);
+            let beside = formats::of_name(file).map_or(&[][..], |format| format.beside);
+            formats::with_companions(file, extension, beside)
+                .iter()
+                .try_for_each(|(path, _)| io::require_absent(path))?;
+        }
+        Ok(write(file.as_path().into(), context)?)
+    })
+}
+
+/// Returns numbers with a sign, as numpy's index arrays have.
+fn signed<const N: usize>(rows: Vec<[u32; N]>) -> Result<Vec<[i32; N]>> {
+    let largest = rows.iter().flatten().max().copied().unwrap_or(0);
+    if i32::try_from(largest).is_err() {
+        return Err(Error::limit(format!("vertex {largest} has no number of 32 bits with a sign")).into());
+    }
+    Ok(rows.into_iter().map(|row| row.map(u32::cast_signed)).collect())
+}
+
+/// Returns the cells of an array as a grid.
+fn grid(cells: &PyReadonlyArray2<'_, f64>, transform: [f64; 6], crs: Option<&str>) -> PyResult<Grid> {
+    let cells = cells.as_array();
+    let (height, width) = cells.dim();
+    let frame = Frame { width, height, transform };
+    Ok(Grid { frame, crs: requests::crs(crs)?, values: cells.iter().copied().collect() })
+}
+
+/// Writes cells as GeoTIFF: heights, or shades, which can also be written as PNG.
+#[pyfunction]
+pub(crate) fn write_cells(
+    py: Python<'_>,
+    cells: PyReadonlyArray2<'_, f64>,
+    transform: [f64; 6],
+    crs: Option<&str>,
+    shades: bool,
+    file: PathBuf,
+    overwrite: bool,
+    call: Call,
+) -> PyResult<()> {
+    let grid = grid(&cells, transform, crs)?;
+    let format = if shades { CellFormat::Shades } else { CellFormat::Heights };
+    let is_picture = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    if is_picture && !shades {
+        return Err(Failure(
+            Error::usage("heights are not written as a picture").in_file(&file).cure("write .tif, or a hillshade"),
+        )
+        .into());
+    }
+    write_to(py, &file, overwrite, &call, |target, context| {
+        let cells = CellProduct::of_grid(&grid, format);
+        if is_picture { cells.write_picture(target, context) } else { cells.write(target, context).map(drop) }
+    })
+}
+
+/// Writes contours, given as [`Surface::contours`] returns them.
+#[pyfunction]
+pub(crate) fn write_contours(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    starts: PyReadonlyArray1<'_, i64>,
+    levels: PyReadonlyArray1<'_, f64>,
+    crs: Option<&str>,
+    file: PathBuf,
+    overwrite: bool,
+    call: Call,
+) -> PyResult<()> {
+    let crs = requests::crs(crs)?;
+    let mut points = arrays::points::<2>(&points).into_iter();
+    let (starts, levels) = (starts.to_vec()?, levels.to_vec()?);
+    let lines: Vec<ContourLine> = starts
+        .windows(2)
+        .zip(levels)
+        .map(|(ends, level)| {
+            let count = usize::try_from(ends[1].saturating_sub(ends[0])).unwrap_or(0);
+            ContourLine { level, points: points.by_ref().take(count).collect() }
+        })
+        .collect();
+    write_to(py, &file, overwrite, &call, |target, context| {
+        run::write_contours(&lines, crs.as_ref(), target, context).map(drop)
+    })
+}
+
+/// Returns the flaws of a mesh in a file that may not be a surface, or of a surface of points, each
+/// with the positions that it concerns.
+#[pyfunction]
+pub(crate) fn check_file(py: Python<'_>, file: PathBuf, call: Call) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
+    let source = Source::of_files(&[file]).map_err(Failure)?;
+    let request = SurfaceRequest { source, ..SurfaceRequest::default() };
+    let checked = work::run(py, &call, |context| -> Result<_> { Ok(run::check(&request, context)?) })?;
+    Ok(checked.flaws.into_iter().map(|flaw| (flaw.flaw.to_string(), flaw.at)).collect())
+}
+
+/// Returns the name of each kind of edges, by its number.
+#[pyfunction]
+pub(crate) fn edge_kinds() -> Vec<String> {
+    EdgeKind::ALL.iter().map(|kind| format!("{kind:?}").to_lowercase()).collect()
+}

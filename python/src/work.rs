@@ -1,0 +1,193 @@
+//! Long calls: on threads of our own, without the interpreter's lock, and canceled by Ctrl-C.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{Builder, available_parallelism};
+use std::time::Duration;
+
+use breakline::run::{Context, Monitor, Notice, Progress, Size, Stage};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::errors;
+use crate::notices;
+
+/// How often a call that waits looks for signals, and reports progress.
+pub(crate) const POLL: Duration = Duration::from_millis(50);
+
+/// What every long call takes: the number of threads, all cores if it is `None`, and the function
+/// that progress is reported to. In Python, a tuple of both.
+#[derive(FromPyObject)]
+pub(crate) struct Call(Option<usize>, Option<Py<PyAny>>);
+
+/// The pools of this process, by their numbers of threads.
+struct Pools {
+    process: u32,
+    by_size: BTreeMap<usize, Arc<ThreadPool>>,
+}
+
+/// Locked only while the interpreter's lock is held, so that no other thread has it when the
+/// process forks.
+static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, by_size: BTreeMap::new() });
+
+/// Returns the pool with this number of threads; it is started when it is first used in a process.
+fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
+    let size = match threads {
+        Some(0) => return Err(errors::usage("threads is 0", "0", "use 1 or more, or None for one per core")),
+        Some(size) => size,
+        None => available_parallelism().map_or(1, usize::from),
+    };
+    let mut pools = locked(&POOLS);
+    if pools.process != std::process::id() {
+        // After a fork the threads are gone, and waiting for them would never end.
+        std::mem::forget(std::mem::take(&mut pools.by_size));
+        pools.process = std::process::id();
+    }
+    if let Some(pool) = pools.by_size.get(&size) {
+        return Ok(Arc::clone(pool));
+    }
+    let name = |i: usize| format!("breakline-{i}");
+    let pool = ThreadPoolBuilder::new().num_threads(size).thread_name(name).build();
+    let pool = Arc::new(pool.map_err(|e| errors::limit(&format!("{size} threads cannot be started: {e}")))?);
+    pools.by_size.insert(size, Arc::clone(&pool));
+    Ok(pool)
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Does the work on the threads of a pool, without the interpreter's lock. Meanwhile the calling
+/// thread handles signals and reports progress.
+///
+/// # Errors
+/// That of the work; the exception of a signal handler (`KeyboardInterrupt`) or of the function
+/// that progress is reported to, which cancels the work; an `InternalError` if the work panics.
+pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    Call(threads, progress): &Call,
+    work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
+    let pool = pool(py, *threads)?;
+    let watch = Watch::default();
+    let cancel = AtomicBool::new(false);
+    let mut interruption: Option<PyErr> = None;
+    let outcome = py.detach(|| {
+        std::thread::scope(|scope| {
+            let (sender, receiver) = sync_channel(1);
+            let (pool, watch, cancel) = (&pool, &watch, &cancel);
+            let worker = move || {
+                let context = Context { monitor: watch, cancel };
+                let outcome = pool.install(|| catch_unwind(AssertUnwindSafe(|| work(&context))));
+                // The receiver waits for as long as this is in scope.
+                let _ = sender.send(outcome);
+            };
+            Builder::new().name("breakline-call".to_owned()).spawn_scoped(scope, worker)?;
+            loop {
+                match receiver.recv_timeout(POLL) {
+                    Ok(outcome) => return Ok(Some(outcome)),
+                    Err(RecvTimeoutError::Timeout) if interruption.is_none() => {
+                        if let Err(error) = Python::attach(|py| watch.poll(py, progress.as_ref())) {
+                            cancel.store(true, Ordering::Relaxed);
+                            interruption = Some(error);
+                        }
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Err(RecvTimeoutError::Disconnected) => return Ok(None),
+                }
+            }
+        })
+    });
+    let outcome = outcome.map_err(|e: std::io::Error| errors::limit(&format!("a thread cannot be started: {e}")))?;
+    if let Some(error) = interruption {
+        return Err(error);
+    }
+    match outcome {
+        Some(Ok(Ok(done))) => {
+            watch.finish(py, progress.as_ref())?;
+            notices::warn(py, &watch.notices.into_inner().unwrap_or_else(PoisonError::into_inner))?;
+            Ok(done)
+        }
+        Some(Ok(Err(error))) => Err(error.into()),
+        Some(Err(panic)) => Err(errors::internal(panic.as_ref())),
+        None => Err(errors::internal(&"the work ended without a result")),
+    }
+}
+
+/// Does short work on the calling thread, without the interpreter's lock.
+///
+/// # Errors
+/// That of the work; an `InternalError` if it panics.
+pub(crate) fn short<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, E> + Send,
+) -> PyResult<T> {
+    match py.detach(|| catch_unwind(AssertUnwindSafe(work))) {
+        Ok(outcome) => outcome.map_err(Into::into),
+        Err(panic) => Err(errors::internal(panic.as_ref())),
+    }
+}
+
+/// A stage that has begun, and the items that are done of it.
+struct Begun {
+    stage: Stage,
+    size: Size,
+    done: Arc<AtomicU64>,
+}
+
+/// Keeps what a run reports, until the calling thread passes it on.
+#[derive(Default)]
+struct Watch {
+    stage: Mutex<Option<Begun>>,
+    notices: Mutex<Vec<Notice>>,
+}
+
+/// Counts the items of a stage.
+struct Count(Arc<AtomicU64>);
+
+impl Progress for Count {
+    fn add(&self, items: u64) {
+        self.0.fetch_add(items, Ordering::Relaxed);
+    }
+}
+
+impl Monitor for Watch {
+    fn start(&self, stage: Stage, size: Size) -> Box<dyn Progress> {
+        let done = Arc::default();
+        *locked(&self.stage) = Some(Begun { stage, size, done: Arc::clone(&done) });
+        Box::new(Count(done))
+    }
+
+    fn notice(&self, notice: &Notice) {
+        locked(&self.notices).push(notice.clone());
+    }
+}
+
+impl Watch {
+    /// Handles signals and reports progress; the exception of either.
+    fn poll(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+        py.check_signals()?;
+        self.report(py, progress)
+    }
+
+    fn report(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+        let Some(progress) = progress else { return Ok(()) };
+        let begun = locked(&self.stage);
+        let Some(Begun { stage, size, done }) = begun.as_ref() else { return Ok(()) };
+        let total = match size {
+            Size::Items(count) => Some(*count),
+            Size::Unknown | Size::Uncounted => None,
+        };
+        let arguments = (stage.title(), done.load(Ordering::Relaxed), total);
+        drop(begun);
+        progress.call1(py, arguments).map(drop)
+    }
+
+    /// Reports the last stage as it ended.
+    fn finish(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+        self.report(py, progress)
+    }
+}

@@ -1,0 +1,220 @@
+"""What crosses the border between Python and Rust: bad input, errors, warnings, threads, processes, signals."""
+
+import gc
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import breakline
+import numpy as np
+import pytest
+
+SQUARE = np.array([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], dtype=float)
+
+
+@pytest.mark.parametrize(
+    "points, kind",
+    [
+        (None, TypeError),
+        (7, ValueError),
+        (np.zeros((4, 2)), ValueError),
+        (np.zeros((2, 3, 3)), ValueError),
+        (np.zeros(3), ValueError),
+        ([["a", "b", "c"]], TypeError),
+        ([[1, 2, 3], [1, 2]], TypeError),
+        (np.zeros((3, 3), dtype=complex), TypeError),
+        (np.array([[0, 0, 0], [1, 0, np.nan], [0, 1, 0]]), ValueError),
+        (np.array([[0, 0, 0], [np.inf, 0, 0], [0, 1, 0]]), ValueError),
+        (np.empty((0, 3)), ValueError),
+        (SQUARE[:2], ValueError),
+        (np.zeros((5, 3)), ValueError),
+        (np.ma.masked_array(SQUARE, SQUARE == 3), ValueError),
+        ({"x": [1, 2], "y": [1, 2]}, ValueError),
+        ({"x": [1, 2], "y": [1, 2], "z": [1]}, ValueError),
+        ([], ValueError),
+        ("no-such-file.laz", FileNotFoundError),
+        (os.curdir, OSError),
+    ],
+)
+def test_points_that_cannot_be_used_are_refused_with_a_cure(points, kind):
+    with pytest.raises(kind) as caught:
+        breakline.tin(points)
+    assert isinstance(caught.value, breakline.BreaklineError)
+    assert caught.value.message
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"max_edge": -1.0},
+        {"max_edge": "far"},
+        {"bounds": (3, 3, 1, 1)},
+        {"bounds": (1, 2, 3)},
+        {"classes": "grass"},
+        {"classes": 300},
+        {"duplicates": "best"},
+        {"crs": "EPSG:1"},
+        {"crs": object()},
+        {"threads": 0},
+        {"threads": 1.5},
+        {"progress": 3},
+        {"breaklines": np.zeros((3, 5))},
+        {"breaklines": [np.zeros((3, 2))]},
+        {"wall_bottom": 1.0, "wall_drop": 1.0},
+        {"columns": "XYQ"},
+    ],
+)
+def test_options_that_make_no_sense_are_refused_with_a_cure(options):
+    with pytest.raises(breakline.BreaklineError) as caught:
+        breakline.tin(SQUARE, **options)
+    assert caught.value.cure, str(caught.value)
+    assert "--" not in str(caught.value)
+
+
+def test_numbers_of_other_types_are_taken():
+    for dtype in (np.float32, np.int32, np.int64, np.uint8, ">f8"):
+        tin = breakline.tin(SQUARE.astype(dtype))
+        assert len(tin.triangles) == 2
+    frozen = SQUARE.copy()
+    frozen.flags.writeable = False
+    assert len(breakline.tin(frozen).triangles) == 2
+
+
+def test_an_error_in_a_file_names_file_location_and_cure(tmp_path):
+    (tmp_path / "broken.xyz").write_text("1 2 3\n4 5 6\n7 eight 9\n")
+    with pytest.raises(breakline.FormatError) as caught:
+        breakline.tin(tmp_path / "broken.xyz")
+    error = caught.value
+    assert error.file.endswith("broken.xyz") and error.location == "line 3"
+    again = pickle.loads(pickle.dumps(error))
+    assert (again.file, again.location, again.cure, str(again)) == (error.file, error.location, error.cure, str(error))
+    with pytest.raises(breakline.FileMissingError) as caught:
+        breakline.info(tmp_path / "none.laz")
+    assert caught.value.errno == 2
+
+
+def test_what_looks_wrong_is_a_warning_at_the_line_of_the_caller(tmp_path):
+    first = np.array([[0, 5, 1], [10, 5, 1]], dtype=float)
+    second = np.array([[5, 0, 9], [5, 10, 9]], dtype=float)
+    with pytest.warns(breakline.BreaklineWarning, match="different heights") as caught:
+        tin = breakline.tin(SQUARE, breaklines=[first, second])
+    assert caught[0].filename == __file__
+    assert tin.report["crossing_heights"][0]["at"] == [5.0, 5.0]
+    assert any(notice.severity == "warning" for notice in tin.notices)
+
+
+def test_results_do_not_depend_on_threads(cloud):
+    one, two = (breakline.tin(cloud, threads=threads) for threads in (1, 2))
+    assert np.array_equal(one.triangles, two.triangles)
+    xy = cloud[::-1, :2] + 0.25
+    assert np.array_equal(one.elevation(xy, threads=1), one.elevation(xy, threads=2), equal_nan=True)
+
+
+def test_progress_is_reported_and_may_cancel(cloud):
+    calls = []
+    breakline.tin(cloud, progress=lambda *call: calls.append(call))
+    assert calls and all(isinstance(stage, str) and done >= 0 for stage, done, _ in calls)
+
+    def refuse(stage, done, total):
+        raise LookupError("no more")
+
+    points = np.tile(cloud, (30, 1)) + np.random.default_rng(5).random((300_000, 3))
+    with pytest.raises(LookupError, match="no more"):
+        breakline.tin(points, progress=refuse)
+
+
+def test_eight_threads_at_once(cloud):
+    expected = breakline.tin(cloud).triangles
+    results, errors = [], []
+
+    def work():
+        try:
+            tin = breakline.tin(cloud)
+            results.append(np.array_equal(tin.triangles, expected) and np.isfinite(tin.elevation(cloud[:, :2])).all())
+        except BaseException as error:  # reported below
+            errors.append(error)
+
+    threads = [threading.Thread(target=work) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(120)
+    assert not errors and results == [True] * 8
+
+
+def _count(points):
+    return len(breakline.tin(points).triangles)
+
+
+@pytest.mark.parametrize("method", multiprocessing.get_all_start_methods())
+@pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
+def test_processes_of_all_kinds(cloud, method):
+    expected = _count(cloud)  # so that this process has threads before it forks
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map_async(_count, [cloud] * 4).get(timeout=120) == [expected] * 4
+
+
+def test_control_c_ends_a_long_call_soon():
+    script = (
+        "import numpy, time, breakline, sys\n"
+        "points = numpy.random.default_rng(1).random((2_000_000, 3)) * 1000\n"
+        "print('ready', flush=True)\n"
+        "try:\n"
+        "    while True: breakline.tin(points)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('interrupted', flush=True)\n"
+    )
+    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    try:
+        assert child.stdout.readline().strip() == "ready"
+        time.sleep(0.5)
+        child.send_signal(signal.SIGINT)
+        assert child.stdout.readline().strip() == "interrupted"
+        assert child.wait(30) == 0
+    finally:
+        child.kill()
+
+
+def _resident():
+    with open("/proc/self/statm") as statm:
+        return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="the system does not report memory")
+def test_memory_of_many_calls_is_flat():
+    def calls(count):
+        for _ in range(count):
+            tin = breakline.tin(SQUARE, threads=1)
+            tin.elevation([[5, 5]])
+            assert len(tin.triangles) == 2 and len(tin.edges) == 5
+            with pytest.raises(breakline.BreaklineError):
+                breakline.tin(SQUARE[:2], threads=1)
+        gc.collect()
+
+    calls(500)
+    before = _resident()
+    calls(4500)
+    assert _resident() - before < 4 << 20
+
+
+def test_the_class_cannot_be_made_by_hand():
+    with pytest.raises(breakline.ArgumentTypeError):
+        breakline.Tin(SQUARE)
+
+
+def test_import_is_fast():
+    script = "import numpy, time; start = time.process_time(); import breakline; print(time.process_time() - start)"
+    times = [float(subprocess.check_output([sys.executable, "-c", script])) for _ in range(3)]
+    assert min(times) < 0.1
+
+
+def test_the_example_of_the_package_runs():
+    import doctest
+
+    failed, tried = doctest.testmod(breakline)
+    assert tried and not failed

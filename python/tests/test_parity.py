@@ -1,0 +1,117 @@
+"""Every verb of the program is a function, and every option a parameter.
+
+The program describes itself (`breakline describe --json`), so that nothing new is forgotten.
+"""
+
+import inspect
+
+import breakline
+import pytest
+from breakline._errors import RENAMED
+
+PROGRAM = breakline.describe()
+VERBS = {verb["name"]: verb for verb in PROGRAM["verbs"]}
+
+#: Verbs that are no functions, and why.
+NO_FUNCTIONS = {"demo": "writes files to look at and prints commands to type"}
+
+#: Options that are no parameters of any function, and what there is instead.
+ELSEWHERE = {
+    "quiet": "messages are warnings and Tin.notices",
+    "verbose": "messages are warnings and Tin.notices",
+    "json": "functions return dictionaries",
+    "parse": "the letters of LAStools; columns=(1, 2, 3) says the same",
+    "crossing-report": "Tin.report['crossing_heights']",
+}
+
+#: Verbs that return what has a method `write`, which takes `output` and `overwrite`.
+WRITTEN = {"tin": breakline.Tin, "dem": breakline.Raster, "hillshade": breakline.Raster, "contour": breakline.Contours}
+
+#: Options that a verb does not need because of what it returns.
+OF_RESULTS = {"check": {"overwrite"}}
+
+#: Names of positional arguments.
+POSITIONAL = {"inputs": {"points", "inputs"}, "input": {"path"}, "files": {"path"}}
+
+
+def parameters(function):
+    """Return the parameters of a function, with those of `tin` where they are passed on."""
+    own = inspect.signature(function).parameters
+    passes = any(parameter.kind is parameter.VAR_KEYWORD for parameter in own.values())
+    passed = inspect.signature(breakline.tin).parameters if passes else {}
+    return {**passed, **{name: value for name, value in own.items() if value.kind is not value.VAR_KEYWORD}}
+
+
+def parameter_name(verb, option):
+    """Return the name of the parameter for an option of a verb."""
+    if option == "te" and verb in ("dem", "hillshade"):
+        return "extent"
+    return RENAMED.get(option, option.replace("-", "_"))
+
+
+@pytest.mark.parametrize("verb", sorted(VERBS))
+def test_a_verb_is_a_function_and_its_options_are_parameters(verb):
+    if verb in NO_FUNCTIONS:
+        assert not hasattr(breakline, verb)
+        return
+    found = parameters(getattr(breakline, verb))
+    for option in [*VERBS[verb]["options"], *PROGRAM["options"]]:
+        name = option["name"]
+        if name in ELSEWHERE or name in OF_RESULTS.get(verb, ()) or verb == "describe":
+            continue
+        if option["positional"]:
+            assert POSITIONAL[name] & set(found), name
+        elif name in ("output", "overwrite") and verb in WRITTEN:
+            write = inspect.signature(WRITTEN[verb].write).parameters
+            assert {"path", "overwrite"} <= set(write)
+        else:
+            assert parameter_name(verb, name) in found, f"{verb} --{name}"
+
+
+@pytest.mark.parametrize("verb", sorted(set(VERBS) - set(NO_FUNCTIONS) - {"describe"}))
+def test_parameters_are_options(verb):
+    known = {parameter_name(verb, option["name"]) for option in [*VERBS[verb]["options"], *PROGRAM["options"]]}
+    known |= {"points", "inputs", "path", "progress"}
+    if verb in WRITTEN or verb == "check":
+        known |= {"bounds"}
+    assert set(parameters(getattr(breakline, verb))) <= known
+
+
+@pytest.mark.parametrize("verb", sorted(set(VERBS) - set(NO_FUNCTIONS)))
+def test_defaults_and_values_are_those_of_the_program(verb):
+    if verb == "describe":
+        return
+    found = parameters(getattr(breakline, verb))
+    for option in VERBS[verb]["options"]:
+        parameter = found.get(parameter_name(verb, option["name"]))
+        if parameter is None or option["positional"] or not option["takes_value"]:
+            continue
+        default = option.get("default", [None])[0]
+        if isinstance(parameter.default, float):
+            assert parameter.default == float(default)
+        elif isinstance(parameter.default, str):
+            assert parameter.default == default
+
+
+SQUARE = [[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3], [4, 5, 2]]
+
+
+@pytest.mark.parametrize("option", ["duplicates", "on-crossing", "crossing-z", "wall-high"])
+def test_every_value_of_an_option_is_understood(option):
+    (found,) = (one for one in VERBS["tin"]["options"] if one["name"] == option)
+    for value in found["values"]:
+        breakline.tin(SQUARE, **{option.replace("-", "_"): value["value"]})
+
+
+def test_every_method_is_understood():
+    (found,) = (option for option in VERBS["dem"]["options"] if option["name"] == "method")
+    tin = breakline.tin(SQUARE)
+    for value in found["values"]:
+        assert tin.dem(2, method=value["value"]).shape == (5, 5)
+
+
+def test_functions_and_classes_are_documented():
+    for name in breakline.__all__:
+        thing = getattr(breakline, name)
+        if callable(thing):
+            assert (thing.__doc__ or "").strip(), name
