@@ -59,6 +59,8 @@ def compare(name, rivals, ours, runs):
                     slow.add(key)
                 del result
     medians = {key: statistics.median(values) for key, values in seconds.items()}
+    if not rivals:
+        print(f"{name:<34}{medians['1']:>10.3f}{medians['2']:>11.3f}", flush=True)
     for rival in rivals:
         once = " (1 run)" if rival in slow else ""
         print(
