@@ -11,7 +11,9 @@ mod files;
 mod notices;
 mod reports;
 mod requests;
+mod spatial;
 mod surface;
+mod triangle;
 mod work;
 
 /// Arrays in, arrays out: the functions behind the package.
@@ -26,6 +28,12 @@ mod _breakline {
     };
     #[pymodule_export]
     use super::surface::{Surface, check_file, edge_kinds, write_cells, write_contours};
+
+    #[pymodule_export]
+    use super::spatial::{Tessellation, Values};
+
+    #[pymodule_export]
+    use super::triangle::triangulate_arrays;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

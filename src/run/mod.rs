@@ -16,7 +16,7 @@
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate points in space | [`SpaceOptions`] | [`triangulate_space`] | [`SpaceProduct`] |
-//! | triangulate Triangle's files | [`TriangulateOptions`] | [`triangulate()`] | [`TriangulateProduct`] |
+//! | triangulate Triangle's files | [`TriangulateOptions`] | [`triangulate()`], [`triangulate_graph`] | [`TriangulateProduct`] |
 //!
 //! # A DEM of points in memory
 //!
@@ -119,5 +119,7 @@ pub use space::{
 pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
 pub use systems::{Degrees, SystemOptions};
 pub use tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
-pub use triangulate::{Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate};
+pub use triangulate::{
+    Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate, triangulate_graph,
+};
 pub use units::Quantity;

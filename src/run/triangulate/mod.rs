@@ -107,23 +107,48 @@ pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context)
     let journal = Journal::new(context);
     let graph = open::line_graph(path, context)?;
     journal.add_warnings(path, &graph.warnings);
+    triangulate_journaled(&graph, path, options, context, journal)
+}
+
+/// Triangulates points and segments in memory. Errors and notices call them by a name, as if it
+/// were that of their file.
+///
+/// # Errors
+/// If segments cross and that is refused, the refinement does not end, no triangle is left, or the
+/// run is canceled; if a segment names a vertex that does not exist.
+pub fn triangulate_graph(
+    graph: &LineGraph,
+    name: &Path,
+    options: &TriangulateOptions,
+    context: &Context,
+) -> Result<TriangulateProduct> {
+    triangulate_journaled(graph, name, options, context, Journal::new(context))
+}
+
+fn triangulate_journaled(
+    graph: &LineGraph,
+    path: &Path,
+    options: &TriangulateOptions,
+    context: &Context,
+    journal: Journal,
+) -> Result<TriangulateProduct> {
     if !options.region_areas
         && graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute))
     {
         journal.add(Notice::RegionAreasUnused(path.to_path_buf()));
     }
 
-    let built = build(&graph, options, path, context)?;
+    let built = build(graph, options, path, context)?;
     if options.max_added.is_none() && built.shortfall.contains(&Shortfall::Limit) {
         return Err(unfinished(&built).in_file(path));
     }
-    note_seeds(&built, &graph, path, &journal);
+    note_seeds(&built, graph, path, &journal);
     // In a refined triangulation the hull is a constraint; triangles beyond it are only effects of
     // rounding.
-    let outside = if options.keeps_hull(&graph) && !options.refines() { Outside::Keep } else { Outside::Remove };
-    let is_kept = carve::kept(&built, &graph, outside);
-    let attributes = carve::attributes(&built, &graph, &is_kept);
-    let triangulated = assemble::assemble(&graph, &built, &is_kept, &attributes);
+    let outside = if options.keeps_hull(graph) && !options.refines() { Outside::Keep } else { Outside::Remove };
+    let is_kept = carve::kept(&built, graph, outside);
+    let attributes = carve::attributes(&built, graph, &is_kept);
+    let triangulated = assemble::assemble(graph, &built, &is_kept, &attributes);
     if triangulated.triangles.is_empty() && !built.faces.is_empty() {
         return Err(Error::format("no triangle is left: all can be reached from outside or from a hole")
             .in_file(path)
@@ -248,7 +273,7 @@ fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
             let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
             Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
                 .in_file(&graph.node_file)
-                .at(format!("line {}", graph.node_lines[i]))
+                .at(graph.node_lines.get(i).map_or_else(|| format!("vertex {number}"), |line| format!("line {line}")))
                 .cure("leave out --kernel fast: the others take any finite coordinate")
         }
         InputError::Crossing { segments, at: [x, y] } => {

@@ -1,4 +1,5 @@
 use std::ops::Deref;
+use std::sync::atomic::AtomicBool;
 
 use crate::geometry::{Coordinates, Geometry};
 use crate::tds::{CellId, VertexId};
@@ -82,10 +83,37 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
     /// Rote 2003), on one thread: linear in practice, quadratic at worst, as is the result. Peak
     /// memory is about 380 bytes for each point, if they are spread evenly.
     pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
-        let grain = bulk::Grain::default();
+        Self::from_points_in_grains(geometry, points, bulk::Grain::default())
+    }
+
+    /// Like [`from_points`](Self::from_points), but set to true by any thread, `cancel` ends the
+    /// work early. It is not polled while the points are sorted.
+    ///
+    /// # Errors
+    /// Those of [`from_points`](Self::from_points), and [`InputError::Canceled`].
+    pub fn from_points_unless(
+        geometry: G,
+        points: &[G::Point],
+        cancel: &AtomicBool,
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
+        let stop = bulk::Stop::new(cancel);
+        Self::from_points_in_grains(geometry, points, bulk::Grain::until(&stop))
+    }
+
+    fn from_points_in_grains(
+        geometry: G,
+        points: &[G::Point],
+        grain: bulk::Grain,
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         let (sites, vertices) = bulk::Sites::of(&geometry, points, grain)?;
+        if grain.stops() {
+            return Err(InputError::Canceled);
+        }
         let mut triangulation = Self::new(geometry);
         let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, grain);
+        if grain.is_stopped() {
+            return Err(InputError::Canceled);
+        }
         let count = points.len();
         triangulation.inner.points = points;
         // A vertex without a cell: the predicates contradict each other.

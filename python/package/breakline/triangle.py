@@ -1,0 +1,354 @@
+"""A drop-in for the package `triangle`: the same dict, the same switches, no process that exits.
+
+>>> from breakline import triangle
+>>> square = {"vertices": [[0, 0], [0, 1], [1, 1], [1, 0]]}
+>>> len(triangle.triangulate(square)["triangles"])
+2
+
+What differs is listed in ``docs/python-drop-ins.md``.
+"""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Mapping
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._breakline import triangulate_arrays
+from ._call import call
+from ._errors import ArgumentTypeError, BreaklineWarning, FormatError, LimitError, UnsupportedError, UsageError, usage
+
+__all__ = ["convex_hull", "delaunay", "triangulate"]
+
+#: A switch with its number.
+_SWITCH = re.compile(r"([A-Za-z])(\d+\.?\d*|\.\d+)?")
+
+#: Switches without a number that are obeyed.
+_OBEYED = frozenset("pqaAcenjBPNEOS")
+
+#: Switches that change nothing here, with the reason.
+_HARMLESS = {
+    "C": "results are correct by construction; the tests of breakline check them",
+    "F": "one algorithm",
+    "Q": "nothing is printed",
+    "V": "nothing is printed",
+    "X": "predicates are always exact",
+    "i": "one algorithm",
+    "l": "one algorithm",
+    "v": "triangulate() of the package returns no Voronoi diagram either",
+    "z": "numbers begin at 0",
+}
+
+#: Switches that raise, with the reason.
+_ABSENT = {
+    "D": "meshes are constrained Delaunay; Delaunay as a whole exists in Rust only (ConstrainedDelaunay::conformed)",
+    "I": "it is about files",
+    "Y": "no rule forbids vertices on the boundary",
+    "g": "it is about files",
+    "h": "it prints a page of help",
+    "o": "elements of higher order do not exist",
+    "r": "an earlier mesh cannot be refined: triangulate its vertices and segments again, with p and the new bounds",
+    "s": "segments are never split merely to recover them",
+    "u": "there is no user-defined constraint on triangles",
+}
+
+#: Keys of the dict.
+_KEYS = frozenset(
+    "vertices vertex_attributes vertex_markers triangles triangle_max_area triangle_attributes segments"
+    " segment_markers holes regions neighbors edges edge_markers".split()
+)
+
+#: The smallest angle of the switch q without a number, in degrees.
+_ANGLE = 20.0
+
+
+def __getattr__(name: str) -> NoReturn:
+    absent = {
+        "compare": "plot with matplotlib",
+        "get_data": "use triangle.get_data",
+        "loads": "use breakline.triangulate, which reads Triangle's files",
+        "plot": "plot with matplotlib",
+        "show_data": "use triangle.show_data",
+        "voronoi": "use the Rust crate breakline-triangulation (voronoi_cell), or triangle.voronoi",
+    }
+    if name in absent:
+        raise AttributeError(f"breakline.triangle has no {name}: {absent[name]}")
+    raise AttributeError(f"module 'breakline.triangle' has no attribute {name!r}")
+
+
+class UnknownKeyError(UsageError, KeyError):
+    """The dict has a key that the package `triangle` does not have."""
+
+    __str__ = UsageError.__str__
+
+
+def triangulate(tri: Mapping[str, Any], opts: str = "", *, threads: int | None = None) -> dict[str, NDArray[Any]]:
+    """Triangulate points and segments.
+
+    Parameters
+    ----------
+    tri : dict
+        The input, by the names of the package `triangle`:
+
+        ``vertices`` : (n, 2) floats. Positions.
+        ``vertex_attributes`` : (n, k) floats, optional. Interpolated for added vertices.
+        ``vertex_markers`` : (n,) or (n, 1) ints, optional.
+        ``segments`` : (m, 2) ints, optional. Ends of segments; used with ``p``.
+        ``segment_markers`` : (m,) or (m, 1) ints, optional.
+        ``holes`` : (h, 2) floats, optional. A site in each hole; used with ``p``.
+        ``regions`` : (r, 4) floats, optional. A site, an attribute (used with ``A``) and a largest
+        area (used with ``a`` without a number) of each region.
+
+        Other keys of the package are accepted, and ignored.
+    opts : str, optional
+        Switches of Triangle:
+
+        ``p`` : use segments, holes and regions.
+        ``q``, ``q30`` : add vertices until no angle is smaller than 20 degrees, or than this.
+        ``a0.5``, ``a`` : add vertices until no triangle is larger than this, or than the area of
+        its region.
+        ``A`` : return the attributes of regions.
+        ``c`` : keep the convex hull.
+        ``e``, ``n`` : return edges, neighbors.
+        ``S100`` : add at most so many vertices.
+        ``j`` : drop vertices that are in no triangle.
+        ``O`` : ignore holes.
+        ``B``, ``P``, ``N``, ``E`` : return no markers, segments, vertices, triangles.
+        ``z Q V X C i F l v`` : accepted; they change nothing.
+
+        All others raise, with the reason.
+    threads : int, optional
+        The number of threads; all processors by default. The result does not depend on it.
+
+    Returns
+    -------
+    dict
+        ``vertices`` (float64), ``vertex_markers``, ``triangles`` (int32), and what the switches and
+        the input ask for: ``vertex_attributes``, ``triangle_attributes`` (float64), ``neighbors``,
+        ``edges``, ``edge_markers``, ``segments``, ``segment_markers`` (int32), ``holes``,
+        ``regions``.
+
+    Raises
+    ------
+    UsageError
+        If there are less than three vertices, a shape is wrong, a segment names a vertex that does
+        not exist, or a coordinate is not finite; a `ValueError`.
+    ArgumentTypeError
+        If a dtype does not fit; a `TypeError`.
+    UnknownKeyError
+        If the dict has an unknown key; a `KeyError`.
+    UnsupportedError
+        If a switch does not exist here; a `NotImplementedError` whose message has the reason.
+    FormatError
+        If no triangle is left, because the outer boundary is open.
+    LimitError
+        If a million added vertices do not reach the bounds.
+
+    Warns
+    -----
+    BreaklineWarning
+        If some triangles are not as ``q`` and ``a`` require: at small angles between segments, or
+        because ``S`` ended the refinement.
+
+    Notes
+    -----
+    O(n log n) for n vertices and segments; refinement in time proportional to its result. Where
+    segments cross, a vertex is added.
+
+    Examples
+    --------
+    >>> square = {"vertices": [[0, 0], [0, 1], [1, 1], [1, 0]]}
+    >>> mesh = triangulate(square, "qa0.1")
+    >>> len(mesh["triangles"]) >= 10
+    True
+    """
+    switches = _switches(opts)
+    unknown = sorted(set(tri) - _KEYS)
+    if unknown:
+        raise usage(f"unknown keys {', '.join(unknown)}", cure=f"known are {', '.join(sorted(_KEYS))}", kind=UnknownKeyError)
+    graph = _graph(tri, switches)
+    if len(graph["vertices"]) < 3:
+        raise usage(f"{len(graph['vertices'])} vertices, expected at least three")
+    options = {
+        "convex": "c" in switches or "p" not in switches,
+        "min_angle": switches.get("q"),
+        "max_area": switches.get("a"),
+        "region_areas": "a" in switches and switches["a"] is None and len(graph["regions"]) > 0,
+        "max_added": switches.get("S"),
+    }
+    try:
+        with call(threads, None) as checked:
+            arrays, short = triangulate_arrays(graph, options, checked)
+    except FormatError as error:
+        error.cure = "close the outer boundary with segments, or add the switch c to keep the convex hull"
+        raise
+    except LimitError as error:
+        error.cure = "use a smaller angle or a larger area, or end the refinement by the switch S"
+        raise
+    if short:
+        warnings.warn(
+            f"{short} triangles are not as {opts!r} requires: at small angles between segments, or because the limit"
+            " of added vertices was reached",
+            BreaklineWarning,
+            stacklevel=2,
+        )
+    return _selected(arrays, tri, graph, switches)
+
+
+def delaunay(pts: ArrayLike) -> NDArray[np.int32]:
+    """Return the triangles of a Delaunay triangulation of points, as an (m, 3) array of int32."""
+    return triangulate({"vertices": pts})["triangles"]
+
+
+def convex_hull(pts: ArrayLike) -> NDArray[np.int32]:
+    """Return the edges of the convex hull of points, as a (k, 2) array of int32."""
+    return triangulate({"vertices": pts}, "c")["segments"]
+
+
+def _unsupported(message: str) -> UnsupportedError:
+    error = UnsupportedError(message)
+    error.message, error.cure = message, "leave the switch out"
+    return error
+
+
+def _switches(opts: str) -> dict[str, Any]:
+    """Return the switches that are obeyed, with their numbers or None."""
+    switches = {}
+    position = 0
+    while position < len(opts):
+        match = _SWITCH.match(opts, position)
+        if match is None:
+            raise usage(f"switches {opts!r}: {opts[position]!r} at position {position} is not a letter")
+        letter, number = match.groups()
+        if letter in _ABSENT:
+            raise _unsupported(f"switch {letter!r} of {opts!r}: {_ABSENT[letter]}")
+        if letter not in _OBEYED and letter not in _HARMLESS:
+            raise usage(f"switches {opts!r}: {letter!r} is no switch of Triangle")
+        if number is not None and letter not in "qaS":
+            raise usage(f"switches {opts!r}: {letter!r} takes no number")
+        if letter == "q":
+            switches[letter] = _ANGLE if number is None else float(number)
+        elif letter == "S":
+            switches[letter] = 0 if number is None else int(float(number))
+        elif letter == "a":
+            switches[letter] = None if number is None else float(number)
+            if switches[letter] == 0:
+                raise usage(f"switches {opts!r}: the largest area is 0, expected more")
+        elif letter in _OBEYED:
+            switches[letter] = None
+        position = match.end()
+    return switches
+
+
+def _graph(tri: Mapping[str, Any], switches: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
+    """Return the arrays of the input that the switches use."""
+    lines = tri if "p" in switches else {}
+    vertices = _floats(tri, "vertices", 2)
+    count = len(vertices)
+    segments = _integers(lines, "segments")
+    if segments.ndim != 2 or segments.shape[1] != 2:
+        raise usage(f"segments of shape {segments.shape}, expected (m, 2)")
+    outside = (segments < 0) | (segments >= count)
+    if outside.any():
+        row = int(np.nonzero(outside.any(axis=1))[0][0])
+        raise usage(f"segment {row} joins vertices {segments[row].tolist()}, expected 0 to {count - 1}")
+    attributes = np.asarray(tri.get("vertex_attributes", np.empty((count, 0))), dtype=np.float64)
+    if len(attributes) != count:
+        raise usage(f"{len(attributes)} vertex_attributes, expected one row for each of {count} vertices")
+    return {
+        "vertices": vertices,
+        "vertex_attributes": attributes.reshape(count, attributes.size // max(count, 1)),
+        "vertex_markers": _markers(tri, "vertex_markers", count),
+        "segments": segments.astype(np.uint32),
+        "segment_markers": _markers(lines, "segment_markers", len(segments)),
+        "holes": _floats({} if "O" in switches else lines, "holes", 2),
+        "regions": _floats(lines, "regions", 4),
+    }
+
+
+def _floats(tri: Mapping[str, Any], key: str, width: int) -> NDArray[np.float64]:
+    values = tri.get(key, ())
+    if np.ma.isMaskedArray(values):
+        raise usage(f"{key} cannot be a masked array", cure="pass those that are not masked")
+    values = np.asarray(values)
+    if values.size == 0:
+        return np.empty((0, width))
+    if values.dtype.kind not in "biuf":
+        raise usage(f"{key} of dtype {values.dtype}, expected real numbers", kind=ArgumentTypeError)
+    if values.ndim != 2 or values.shape[1] != width:
+        raise usage(f"{key} of shape {values.shape}, expected (n, {width})")
+    values = values.astype(np.float64)
+    wrong = ~np.isfinite(values).all(axis=1)
+    if wrong.any():
+        row = int(np.nonzero(wrong)[0][0])
+        raise usage(f"row {row} of {key} is {values[row].tolist()}, expected finite numbers")
+    return values
+
+
+def _integers(tri: Mapping[str, Any], key: str) -> NDArray[Any]:
+    values = np.asarray(tri.get(key, ()))
+    if values.size == 0:
+        return np.empty((0, 2), np.int64)
+    if values.dtype.kind not in "iu":
+        raise usage(f"{key} of dtype {values.dtype}, expected integers", kind=ArgumentTypeError)
+    return values
+
+
+def _markers(tri: Mapping[str, Any], key: str, count: int) -> NDArray[np.int32]:
+    values = np.asarray(tri.get(key, ()))
+    if values.size == 0:
+        return np.zeros(count, np.int32)
+    if values.dtype.kind not in "iu":
+        raise usage(f"{key} of dtype {values.dtype}, expected integers", kind=ArgumentTypeError)
+    if values.size != count:
+        raise usage(f"{key} of shape {values.shape}, expected one for each of {count}")
+    return values.reshape(count).astype(np.int32)
+
+
+def _selected(
+    arrays: dict[str, NDArray[Any]],
+    tri: Mapping[str, Any],
+    graph: Mapping[str, NDArray[Any]],
+    switches: Mapping[str, Any],
+) -> dict[str, NDArray[Any]]:
+    """Return the arrays that the switches ask for."""
+    if "j" in switches:
+        _drop_unused(arrays)
+    wanted = ["vertices", "vertex_markers", "triangles"]
+    if graph["vertex_attributes"].shape[1]:
+        wanted.append("vertex_attributes")
+    if "A" in switches and len(graph["regions"]):
+        wanted.append("triangle_attributes")
+    if "n" in switches:
+        wanted.append("neighbors")
+    if "p" in switches or "c" in switches:
+        wanted += ["segments", "segment_markers"]
+    if "e" in switches:
+        wanted += ["edges", "edge_markers"]
+    if "B" in switches:
+        wanted = [name for name in wanted if not name.endswith("_markers")]
+    for switch, dropped in (("N", "vertices"), ("N", "vertex_markers"), ("N", "vertex_attributes"),
+                            ("E", "triangles"), ("E", "triangle_attributes"),
+                            ("P", "segments"), ("P", "segment_markers")):
+        if switch in switches and dropped in wanted:
+            wanted.remove(dropped)
+    selected = {name: arrays[name] for name in wanted}
+    if "p" in switches and "P" not in switches:
+        given = {"holes": _floats(tri, "holes", 2), "regions": graph["regions"]}
+        selected.update({name: given[name] for name in given if name in tri})
+    return selected
+
+
+def _drop_unused(arrays: dict[str, NDArray[Any]]) -> None:
+    """Remove vertices that are in no triangle, and number the others anew."""
+    used = np.zeros(len(arrays["vertices"]), bool)
+    used[arrays["triangles"].ravel()] = True
+    numbers = (np.cumsum(used) - 1).astype(np.int32)
+    for name in ("vertices", "vertex_markers", "vertex_attributes"):
+        arrays[name] = arrays[name][used]
+    for name in ("triangles", "segments", "edges"):
+        arrays[name] = numbers[arrays[name]]

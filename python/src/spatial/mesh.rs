@@ -1,0 +1,240 @@
+//! A Delaunay triangulation with the numbers of scipy: points in the order in which they were
+//! given, simplices without infinite ones.
+
+use std::convert::Infallible;
+use std::sync::atomic::AtomicBool;
+
+use breakline::triangulation::geometry::{Coordinates, Metric};
+use breakline::triangulation::num::unsigned_zero;
+use breakline::triangulation::tds::{CellId, Neighbors, Tds, VertexId};
+use breakline::triangulation::{Delaunay, InputError};
+use rayon::prelude::*;
+
+/// No simplex, and no point.
+pub(super) const NONE: i32 = -1;
+
+/// Points or simplices per parallel task.
+pub(super) const CHUNK: usize = 1 << 12;
+
+/// A geometry of the plane or of space, with `D` coordinates and simplices of `N` corners.
+pub(super) trait Dimension<const N: usize, const D: usize>:
+    Coordinates<N, Point = [f64; D]> + Metric<N> + Copy + Default
+{
+    /// Returns Sibson's coordinates, see [`Delaunay::sibson`].
+    fn sibson(t: &Delaunay<Self, N>, q: &[f64; D], near: Option<CellId>) -> Option<Vec<(VertexId, f64)>>;
+
+    /// Returns the inverse of the matrix whose rows are these; `None` if it is nearly singular.
+    fn inverse(rows: [[f64; D]; D]) -> Option<[[f64; D]; D]>;
+}
+
+/// A Delaunay triangulation of input points. Each vertex is named by the first point at its site.
+pub(super) struct Mesh<G: Dimension<N, D>, const N: usize, const D: usize> {
+    pub(super) t: Delaunay<G, N>,
+    /// The number of points.
+    count: usize,
+    /// The first point at each vertex.
+    pub(super) point_of: Vec<i32>,
+    /// The other points at vertices, in order.
+    repeated: Vec<(i32, VertexId)>,
+    /// The cell of each simplex.
+    cells: Vec<CellId>,
+    /// The simplex of each cell; [`NONE`] for an infinite one.
+    simplex_of: Vec<i32>,
+    /// The bounding box of the points: the smallest coordinates, then the largest.
+    pub(super) bounds: [[f64; D]; 2],
+}
+
+impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
+    /// Triangulates points; negative zeros among them become zeros.
+    ///
+    /// # Errors
+    /// If a point is refused, or the work is canceled.
+    pub(super) fn new(points: &mut [[f64; D]], cancel: &AtomicBool) -> Result<Self, InputError> {
+        make_zeros_unsigned(points);
+        let (t, vertices) = Delaunay::from_points_unless(G::default(), points, cancel)?;
+        let bounds = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
+        let (point_of, repeated) = (Vec::new(), Vec::new());
+        let mut mesh = Mesh { t, count: 0, point_of, repeated, cells: Vec::new(), simplex_of: Vec::new(), bounds };
+        mesh.adopt(points, &vertices);
+        Ok(mesh)
+    }
+
+    /// Inserts more points; negative zeros among them become zeros.
+    ///
+    /// # Errors
+    /// If a point is refused; nothing has changed then.
+    pub(super) fn add(&mut self, points: &mut [[f64; D]]) -> Result<(), InputError> {
+        make_zeros_unsigned(points);
+        let vertices = self.t.insert_all(points)?;
+        self.adopt(points, &vertices);
+        Ok(())
+    }
+
+    /// Numbers new points, whose vertices are given, and all simplices.
+    fn adopt(&mut self, points: &[[f64; D]], vertices: &[VertexId]) {
+        let before = self.count as i32;
+        self.count += points.len();
+        self.point_of.resize(self.t.tds().vertex_slots(), NONE);
+        for (point, &vertex) in (before..).zip(vertices) {
+            let first = &mut self.point_of[vertex.index()];
+            if *first == NONE {
+                *first = point;
+            } else {
+                self.repeated.push((point, vertex));
+            }
+        }
+        let [low, high] = &mut self.bounds;
+        for p in points {
+            for axis in 0..D {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+        self.cells.clear();
+        if self.t.dimension() == D as i32 {
+            self.cells.extend(self.t.finite_cells());
+        }
+        self.simplex_of.clear();
+        self.simplex_of.resize(self.t.tds().cell_slots(), NONE);
+        for (simplex, cell) in (0..).zip(&self.cells) {
+            self.simplex_of[cell.index()] = simplex;
+        }
+    }
+
+    /// The number of input points.
+    pub(super) fn point_count(&self) -> usize {
+        self.count
+    }
+
+    /// The number of simplices; 0 if the points do not span the plane or the space.
+    pub(super) fn simplex_count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Returns the simplex of a finite cell.
+    pub(super) fn simplex(&self, cell: CellId) -> i32 {
+        self.simplex_of[cell.index()]
+    }
+
+    /// Returns the corners of all simplices, as points.
+    pub(super) fn simplices(&self) -> Vec<[i32; N]> {
+        self.of_cells(|cell| self.t.tds().corners(cell).map(|v| self.point_of[v.index()]))
+    }
+
+    /// Returns the simplex opposite each corner; [`NONE`] beyond the hull.
+    pub(super) fn neighbors(&self) -> Vec<[i32; N]> {
+        self.of_cells(|cell| std::array::from_fn(|i| self.simplex(self.t.tds().neighbor(cell, i))))
+    }
+
+    /// Returns the affine maps from positions to barycentric coordinates: for each simplex `D` rows
+    /// of an inverse matrix, then its last corner; not numbers where a simplex is nearly flat.
+    pub(super) fn transforms(&self) -> Vec<[[f64; D]; N]> {
+        self.of_cells(|cell| {
+            let corners = self.t.tds().corners(cell).map(|v| *self.t.point(v));
+            let last = corners[D];
+            // Column `i` is the vector from the last corner to corner `i`.
+            let matrix = std::array::from_fn(|row| std::array::from_fn(|i| corners[i][row] - last[row]));
+            let mut map = [last; N];
+            match G::inverse(matrix) {
+                Some(inverse) => map[..D].copy_from_slice(&inverse),
+                None => map = [[f64::NAN; D]; N],
+            }
+            map
+        })
+    }
+
+    fn of_cells<T: Send>(&self, value: impl Fn(CellId) -> T + Sync) -> Vec<T> {
+        self.cells.par_iter().with_min_len(CHUNK).map(|&cell| value(cell)).collect()
+    }
+
+    /// Returns the facets of the convex hull, as points: the corners of a simplex without one of
+    /// them, in their order.
+    pub(super) fn hull(&self) -> Vec<[i32; D]> {
+        let mut facets = Vec::new();
+        for &cell in &self.cells {
+            for k in 0..N {
+                if self.simplex(self.t.tds().neighbor(cell, k)) == NONE {
+                    let corner = |j: usize| self.t.tds().vertex(cell, if j < k { j } else { j + 1 });
+                    facets.push(std::array::from_fn(|j| self.point_of[corner(j).index()]));
+                }
+            }
+        }
+        facets
+    }
+
+    /// Returns the points that are not corners, because another point is at their site: their
+    /// number, a simplex there, and that other point.
+    pub(super) fn coplanar(&self) -> Vec<[i32; 3]> {
+        let at = self.simplices_at();
+        let listed = self.repeated.iter().map(|&(point, vertex)| {
+            let first = self.point_of[vertex.index()];
+            [point, at[first as usize], first]
+        });
+        listed.collect()
+    }
+
+    /// Returns a simplex at each point: the first that has its site as a corner.
+    pub(super) fn simplex_at(&self) -> Vec<i32> {
+        let mut at = self.simplices_at();
+        for &(point, vertex) in &self.repeated {
+            at[point as usize] = at[self.point_of[vertex.index()] as usize];
+        }
+        at
+    }
+
+    fn simplices_at(&self) -> Vec<i32> {
+        let mut at = vec![NONE; self.point_count()];
+        for (simplex, &cell) in self.cells.iter().enumerate().rev() {
+            for v in self.t.tds().corners(cell) {
+                at[self.point_of[v.index()] as usize] = simplex as i32;
+            }
+        }
+        at
+    }
+
+    /// Returns the neighbors of all points: those of point `k` are `indices[starts[k]..starts[k +
+    /// 1]]`. A point that is not a corner has none.
+    pub(super) fn neighbor_points(&self) -> (Vec<i32>, Vec<i32>)
+    where
+        Tds<N>: Neighbors<N, Error = Infallible>,
+    {
+        let mut vertex_of = vec![None; self.point_count()];
+        for (v, &point) in self.point_of.iter().enumerate().filter(|&(_, &point)| point != NONE) {
+            vertex_of[point as usize] = Some(VertexId::new(v));
+        }
+        let around = |vertex: VertexId, all: &mut Vec<i32>| {
+            let start = all.len();
+            let Ok(neighbors) = self.t.tds().neighbors_of(vertex);
+            let finite = neighbors.map(|Ok(v)| v).filter(|&v| v != VertexId::INFINITE);
+            all.extend(finite.map(|v| self.point_of[v.index()]));
+            if D > 2 {
+                // In space a neighbor may be met several times.
+                all[start..].sort_unstable();
+                let unique = all.split_off(start);
+                all.extend(unique.iter().enumerate().filter(|&(i, v)| i == 0 || unique[i - 1] != *v).map(|(_, v)| v));
+            }
+            (all.len() - start) as i32
+        };
+        let chunks: Vec<(Vec<i32>, Vec<i32>)> = vertex_of
+            .par_chunks(CHUNK)
+            .map(|vertices| {
+                let mut all = Vec::new();
+                let counts = vertices.iter().map(|v| v.map_or(0, |v| around(v, &mut all))).collect();
+                (counts, all)
+            })
+            .collect();
+        let mut starts = vec![0];
+        let mut end = 0;
+        for count in chunks.iter().flat_map(|(counts, _)| counts) {
+            end += count;
+            starts.push(end);
+        }
+        (starts, chunks.into_iter().flat_map(|(_, all)| all).collect())
+    }
+}
+
+/// Negative zeros become zeros: equal points are recognized by their bits.
+fn make_zeros_unsigned<const D: usize>(points: &mut [[f64; D]]) {
+    let chunks = points.as_flattened_mut().par_chunks_mut(CHUNK);
+    chunks.for_each(|chunk| chunk.iter_mut().for_each(|x| *x = unsigned_zero(*x)));
+}

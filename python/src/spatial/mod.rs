@@ -1,0 +1,322 @@
+//! Drop-ins for `scipy.spatial.Delaunay` and the interpolators over it: what is computed. The
+//! signatures of scipy are in `package/breakline/spatial.py`.
+
+mod dimensions;
+mod mesh;
+mod queries;
+
+use std::sync::atomic::AtomicBool;
+use std::sync::{PoisonError, RwLock, RwLockReadGuard};
+
+use breakline::Error;
+use breakline::run::Context;
+use breakline::triangulation::InputError;
+use breakline::triangulation::geometry::{Plane, Space};
+use breakline::triangulation::kernel::{Adaptive, Kernel, Range};
+use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use self::mesh::Mesh;
+use self::queries::{FEW, Field};
+use crate::arrays::{column, points, table};
+use crate::errors::{Failure, Result};
+use crate::work::{self, Call};
+
+/// A triangulation of the plane or of space.
+enum Any {
+    Plane(Mesh<Plane, 3, 2>),
+    Space(Mesh<Space, 4, 3>),
+}
+
+/// Positions in the plane or in space.
+enum Positions {
+    Plane(Vec<[f64; 2]>),
+    Space(Vec<[f64; 3]>),
+}
+
+/// Calls a method of the triangulation in the plane or in space.
+macro_rules! of_dimension {
+    ($any:expr, $mesh:ident => $call:expr) => {
+        match $any {
+            Any::Plane($mesh) => $call,
+            Any::Space($mesh) => $call,
+        }
+    };
+}
+
+/// Like `of_dimension`, with positions of the same dimension; of another one there are none.
+macro_rules! at_positions {
+    ($any:expr, $positions:expr, ($mesh:ident, $at:ident) => $call:expr) => {
+        match ($any, $positions) {
+            (Any::Plane($mesh), Positions::Plane($at)) => $call,
+            (Any::Space($mesh), Positions::Space($at)) => $call,
+            (Any::Plane(_), Positions::Space(_)) | (Any::Space(_), Positions::Plane(_)) => Default::default(),
+        }
+    };
+}
+
+impl Positions {
+    /// Copies an array of shape (n, 2) or (n, 3).
+    fn of(array: &PyReadonlyArray2<'_, f64>) -> Self {
+        match array.shape()[1] {
+            2 => Positions::Plane(points(array)),
+            _ => Positions::Space(points(array)),
+        }
+    }
+
+    fn count(&self) -> usize {
+        match self {
+            Positions::Plane(points) => points.len(),
+            Positions::Space(points) => points.len(),
+        }
+    }
+
+    fn triangulated(self, cancel: &AtomicBool) -> Result<Any> {
+        Ok(match self {
+            Positions::Plane(mut points) => {
+                Any::Plane(Mesh::new(&mut points, cancel).map_err(|e| refused(&e, &points))?)
+            }
+            Positions::Space(mut points) => {
+                Any::Space(Mesh::new(&mut points, cancel).map_err(|e| refused(&e, &points))?)
+            }
+        })
+    }
+}
+
+/// A Delaunay triangulation of points in the plane or in space, numbered as scipy does.
+///
+/// Arrays have rows of `d` coordinates, for `d` of 2 or 3; `n` is the number of points, `m` that of
+/// simplices.
+#[pyclass(frozen, module = "breakline._breakline")]
+pub(crate) struct Tessellation {
+    any: RwLock<Any>,
+}
+
+impl Tessellation {
+    /// Waits for the end of an insertion, so that no thread that has the interpreter's lock may
+    /// call this.
+    fn read(&self) -> RwLockReadGuard<'_, Any> {
+        self.any.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Computes something from the triangulation.
+    fn compute<T: Send>(
+        &self,
+        py: Python<'_>,
+        call: &Call,
+        compute: impl FnOnce(&Any, &AtomicBool) -> T + Send,
+    ) -> PyResult<T> {
+        work::run(py, call, |context| Result::Ok(compute(&self.read(), context.cancel)))
+    }
+
+    /// Answers queries: a few on the calling thread, because other threads take longer to answer.
+    fn answer<T: Send>(
+        &self,
+        py: Python<'_>,
+        call: &Call,
+        positions: &PyReadonlyArray2<'_, f64>,
+        answer: impl FnOnce(&Any, &Positions, &AtomicBool) -> T + Send,
+    ) -> PyResult<T> {
+        let positions = Positions::of(positions);
+        if positions.count() <= FEW {
+            return work::short(py, || Result::Ok(answer(&self.read(), &positions, Context::default().cancel)));
+        }
+        self.compute(py, call, |any, cancel| answer(any, &positions, cancel))
+    }
+}
+
+#[pymethods]
+impl Tessellation {
+    /// Triangulates points of shape (n, d).
+    #[new]
+    fn new(py: Python<'_>, points: PyReadonlyArray2<'_, f64>, call: Call) -> PyResult<Self> {
+        let points = Positions::of(&points);
+        let any = work::run(py, &call, |context| points.triangulated(context.cancel))?;
+        Ok(Tessellation { any: RwLock::new(any) })
+    }
+
+    /// Inserts more points, of shape (n, d).
+    fn add(&self, py: Python<'_>, points: PyReadonlyArray2<'_, f64>, call: Call) -> PyResult<()> {
+        let mut points = Positions::of(&points);
+        work::run(py, &call, |_| {
+            let mut any = self.any.write().unwrap_or_else(PoisonError::into_inner);
+            at_positions!(&mut *any, &mut points, (mesh, at) => mesh.add(at).map_err(|e| refused(&e, at))?);
+            Result::Ok(())
+        })
+    }
+
+    /// The numbers of points and of simplices; there are none of these if the points do not span
+    /// the plane or the space.
+    fn counts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
+        let counts = || of_dimension!(&*self.read(), mesh => (mesh.point_count(), mesh.simplex_count()));
+        work::short(py, || Result::Ok(counts()))
+    }
+
+    /// The corners of simplices and their neighbors: two arrays of shape (m, d + 1).
+    fn tables<'py>(&self, py: Python<'py>, call: Call) -> PyResult<[Bound<'py, PyAny>; 2]> {
+        enum Tables {
+            Plane([Vec<[i32; 3]>; 2]),
+            Space([Vec<[i32; 4]>; 2]),
+        }
+        let tables = self.compute(py, &call, |any, _| match any {
+            Any::Plane(mesh) => Tables::Plane([mesh.simplices(), mesh.neighbors()]),
+            Any::Space(mesh) => Tables::Space([mesh.simplices(), mesh.neighbors()]),
+        })?;
+        Ok(match tables {
+            Tables::Plane([simplices, neighbors]) => [table(py, simplices)?, table(py, neighbors)?],
+            Tables::Space([simplices, neighbors]) => [table(py, simplices)?, table(py, neighbors)?],
+        })
+    }
+
+    /// The maps to barycentric coordinates: an array of shape (m, d + 1, d).
+    fn transforms<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (maps, d) = self.compute(py, &call, |any, _| match any {
+            Any::Plane(mesh) => (mesh.transforms().into_flattened().into_flattened(), 2),
+            Any::Space(mesh) => (mesh.transforms().into_flattened().into_flattened(), 3),
+        })?;
+        let count = maps.len() / (d * (d + 1));
+        maps.into_pyarray(py).reshape([count, d + 1, d])
+    }
+
+    /// The facets of the convex hull: an array of shape (k, d).
+    fn hull<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyAny>> {
+        let (hull, d) = self.compute(py, &call, |any, _| match any {
+            Any::Plane(mesh) => (mesh.hull().into_flattened(), 2),
+            Any::Space(mesh) => (mesh.hull().into_flattened(), 3),
+        })?;
+        let count = hull.len() / d;
+        Ok(hull.into_pyarray(py).reshape([count, d])?.into_any())
+    }
+
+    /// Points at the site of an earlier one: an array of shape (k, 3).
+    fn coplanar<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyAny>> {
+        table(py, self.compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.coplanar()))?)
+    }
+
+    /// A simplex at each point: an array of shape (n,).
+    fn simplex_at<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyArray1<i32>>> {
+        Ok(column(py, self.compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.simplex_at()))?))
+    }
+
+    /// The neighbors of points: where those of each begin, and all of them.
+    fn neighbor_points<'py>(&self, py: Python<'py>, call: Call) -> PyResult<[Bound<'py, PyArray1<i32>>; 2]> {
+        let (starts, all) = self.compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.neighbor_points()))?;
+        Ok([column(py, starts), column(py, all)])
+    }
+
+    /// The simplex at each position of shape (q, d): an array of shape (q,).
+    fn find<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        tolerance: f64,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyArray1<i32>>> {
+        let found = self.answer(
+            py,
+            &call,
+            &positions,
+            |any, positions, cancel| at_positions!(any, positions, (mesh, at) => mesh.find(at, tolerance, cancel)),
+        )?;
+        Ok(column(py, found))
+    }
+
+    /// The point nearest to each position of shape (q, d): an array of shape (q,).
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyArray1<i32>>> {
+        let nearest = self.answer(
+            py,
+            &call,
+            &positions,
+            |any, positions, cancel| at_positions!(any, positions, (mesh, at) => mesh.nearest(at, cancel)),
+        )?;
+        Ok(column(py, nearest))
+    }
+}
+
+/// Values at the points of a triangulation.
+#[pyclass(frozen, module = "breakline._breakline")]
+pub(crate) struct Values {
+    tessellation: Py<Tessellation>,
+    field: Field,
+    /// The values outside of the hull.
+    outside: Vec<f64>,
+    tolerance: f64,
+}
+
+#[pymethods]
+impl Values {
+    /// Takes values of shape (n, k), one row for each point, and the row that positions outside of
+    /// the hull get; outside by no more than a tolerance counts as inside.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        tessellation: Py<Tessellation>,
+        values: PyReadonlyArray2<'_, f64>,
+        outside: Vec<f64>,
+        tolerance: f64,
+        call: Call,
+    ) -> PyResult<Self> {
+        let values = values.as_array().to_owned();
+        let field =
+            tessellation.get().compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.field(values.view())))?;
+        Ok(Values { tessellation, field, outside, tolerance })
+    }
+
+    /// Values that are linear on each simplex, at positions of shape (q, d): an array of shape
+    /// (q * k,).
+    fn linear<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let values = self.tessellation.get().answer(py, &call, &positions, |any, positions, cancel| {
+            at_positions!(any, positions, (mesh, at) => {
+                mesh.linear(at, &self.field, &self.outside, self.tolerance, cancel)
+            })
+        })?;
+        Ok(column(py, values))
+    }
+
+    /// Values by natural neighbors, at positions of shape (q, d): an array of shape (q * k,).
+    fn natural<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let values = self.tessellation.get().answer(py, &call, &positions, |any, positions, cancel| {
+            at_positions!(any, positions, (mesh, at) => {
+                mesh.natural(at, &self.field, &self.outside, self.tolerance, cancel)
+            })
+        })?;
+        Ok(column(py, values))
+    }
+}
+
+/// Returns the error of points that were refused; it names the first of them.
+#[cold]
+fn refused<const D: usize>(error: &InputError, points: &[[f64; D]]) -> Failure {
+    let InputError::Coordinate(row) = *error else {
+        return Failure(if *error == InputError::Canceled {
+            Error::canceled()
+        } else {
+            Error::limit(error.to_string())
+        });
+    };
+    let point = &points[row];
+    let refused = if point.iter().all(|x| x.is_finite()) {
+        let Range { min, max } = Adaptive::RANGE;
+        let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
+        Error::limit(format!("the point is at {point:?}, {expected}")).cure("scale the coordinates")
+    } else {
+        Error::usage(format!("the point is at {point:?}: points cannot contain NaN or infinity"))
+            .cure("leave such points out: points[numpy.isfinite(points).all(axis=1)]")
+    };
+    Failure(refused.at(format!("row {row}")))
+}
