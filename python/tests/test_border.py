@@ -196,9 +196,9 @@ def test_memory_of_many_calls_is_flat():
                 breakline.tin(SQUARE[:2], threads=1)
         gc.collect()
 
-    calls(500)
+    calls(200)
     before = _resident()
-    calls(4500)
+    calls(1800)
     assert _resident() - before < 4 << 20
 
 
