@@ -206,7 +206,9 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         let q = q.map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
         let location = self.triangulation.locate(&[q[0], q[1], 0.0], *near)?;
         *near = location.cell_in(&self.triangulation)?.or(*near);
-        let inside = location.cells(&self.triangulation)?.into_iter().find(|cell| self.is_inside(cell.index()));
+        // The first of them, however they were reached: rounded heights of two cells may differ.
+        let inside = location.cells(&self.triangulation)?.into_iter().filter(|cell| self.is_inside(cell.index()));
+        let inside = inside.min_by_key(|cell| cell.index());
         let Some(cell) = inside else { return Ok(None) };
         if let Location::Vertex(vertex) = location {
             return self.point(vertex.index() as u32).map(|[_, _, z]| Some(z));
