@@ -3,6 +3,8 @@
 //! Everything is one call of `breakline::run`. What a user sees is the Python package around it, in
 //! `package/breakline`.
 
+#![allow(clippy::too_many_arguments, reason = "functions have the parameters of those in Python")]
+
 use pyo3::prelude::*;
 
 mod arrays;

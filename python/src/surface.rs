@@ -1,6 +1,6 @@
 //! Surfaces: built from arrays and files, asked for heights, products and files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use breakline::data::{ContourLine, EdgeKind, Frame, Grid};
@@ -282,7 +282,7 @@ impl Surface {
 /// Writes a file, unless there is one that must be kept.
 pub(crate) fn write_to(
     py: Python<'_>,
-    file: &PathBuf,
+    file: &Path,
     overwrite: bool,
     call: &Call,
     write: impl FnOnce(Destination<'_>, &Context<'_>) -> breakline::Result<()> + Send,
@@ -295,7 +295,7 @@ pub(crate) fn write_to(
                 .iter()
                 .try_for_each(|(path, _)| io::require_absent(path))?;
         }
-        Ok(write(file.as_path().into(), context)?)
+        Ok(write(file.into(), context)?)
     })
 }
 
