@@ -282,7 +282,11 @@ impl TinBuilder {
         for (line, heights) in walls {
             let vertices = triangulation.line_vertices(LineId::new(line)).iter().zip(heights);
             let at = vertices.map(|(vertex, height)| (*triangulation.point(*vertex), height));
-            let flooded = at.filter(|([x, y, z], height)| z != height && sites.contains(&[x.to_bits(), y.to_bits()]));
+            let flooded = at.filter(|([x, y, z], height)| {
+                z != height
+                    && sites.contains(&[x.to_bits(), y.to_bits()])
+                    && self.bounds.as_ref().is_none_or(|bounds| bounds.holds(*x, *y))
+            });
             report.walls_in_water.extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
         }
         // In water, no line decides.

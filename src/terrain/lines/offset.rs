@@ -27,6 +27,13 @@ pub(super) fn offset(line: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
     (0..line.len()).map(at).collect()
 }
 
+/// Returns true if a parallel line has a miter at the second of three points; otherwise the corner
+/// is cut off.
+pub(super) fn is_mitered([p, q, r]: [[f64; 2]; 3]) -> bool {
+    let [before, after] = [normal([p, q]), normal([q, r])];
+    (before[0] + after[0]).hypot(before[1] + after[1]) / 2.0 >= 1.0 / LONGEST_MITER
+}
+
 /// Returns a parallel line without folds: where it runs against its line, as it does on the inside
 /// of bends that are tighter than its distance, its vertices move to one point: where its straight
 /// parts before and after the bend meet, or else their mean.
@@ -63,10 +70,21 @@ pub(super) fn unfolded(parallel: &[[f64; 2]], line: &[[f64; 2]]) -> Vec<[f64; 2]
     smooth
 }
 
+/// The least sine and cosine of the turn at which parts before and after a bend are extended: those
+/// that are nearly parallel meet far away.
+const LEAST_TURN: f64 = 0.1;
+const LEAST_COSINE: f64 = -0.5;
+
 /// The point that lies ahead of one point in one direction, and behind another in a second one.
+/// `None` if the directions are nearly the same or opposite.
 fn meeting(p: [f64; 2], q: [f64; 2], [ahead, onward]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
     let turn = cross(ahead, onward);
+    let lengths = ahead[0].hypot(ahead[1]) * onward[0].hypot(onward[1]);
+    let cosine = (ahead[0] * onward[0] + ahead[1] * onward[1]) / lengths;
+    if !(turn.abs() / lengths > LEAST_TURN && cosine > LEAST_COSINE) {
+        return None;
+    }
     let gap = step(p, q);
     let (along, back) = (cross(gap, onward) / turn, cross(gap, ahead) / turn);
     (along > 0.0 && back < 0.0).then(|| [0, 1].map(|axis| p[axis] + along * ahead[axis]))
@@ -128,6 +146,23 @@ mod tests {
         let inner = unfolded(&offset(&line, 3.0), &line);
         assert_eq!((inner[0], inner[11]), ([0.0, 3.0], [7.0, 10.0]));
         assert!(inner[1..11].iter().all(|p| p == &inner[1] && (p[0] - 7.0).hypot(p[1] - 3.0) < 1e-9), "{inner:?}");
+    }
+
+    /// In a turn of about half a circle, the parts before and after do not meet: the bank stays
+    /// near.
+    #[test]
+    fn bends_that_turn_back_stay_near_their_lines() {
+        let turned = |[x, y]: [f64; 2], quarter: usize| [[x, y], [-y, x], [-x, -y], [y, -x]][quarter];
+        for end in [[0.0, 1.0], [0.0, 0.9], [0.0, 0.999], [0.0, 1.1], [9.0, 1.0]] {
+            for (quarter, side) in (0..4).flat_map(|quarter| [(quarter, 1.0), (quarter, -1.0)]) {
+                let line = [[0.0, 0.0], [10.0, 0.0], [10.0, 1.0], end].map(|[x, y]| turned([x, side * y], quarter));
+                for distance in [2.0, -2.0] {
+                    let parallel = unfolded(&offset(&line, distance), &line);
+                    let is_near = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).hypot(p[1] - q[1]) < 12.0;
+                    assert!(parallel.iter().zip(&line).all(is_near), "{line:?} {distance}: {parallel:?}");
+                }
+            }
+        }
     }
 
     /// Maps an expected point to the computed one that is within a rounding of it.

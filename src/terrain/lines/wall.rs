@@ -1,6 +1,6 @@
 //! Walls: an upper and a lower edge next to each other.
 
-use super::offset::offset;
+use super::offset::{is_mitered, offset};
 use crate::error::{Error, Result};
 
 /// On which side of a wall, seen in the direction of its line, the ground is higher.
@@ -47,7 +47,8 @@ impl Wall {
     }
 
     /// Like [`new`](Wall::new), for one of several walls that continue each other: their lower
-    /// edges meet, too. `neighbors` are the vertices before and after the line, in other walls.
+    /// edges meet, too. `neighbors` are the vertices before and after the line, in other walls (no
+    /// difference where a wall turns back).
     ///
     /// # Errors
     /// Those of [`new`](Wall::new).
@@ -83,8 +84,11 @@ impl Wall {
             return Err(Error::usage(format!("a wall of width {width}, expected at least {narrowest:e}")));
         }
         let site = |(p, _): &([f64; 3], f64)| [p[0], p[1]];
+        let own: Vec<[f64; 2]> = vertices.iter().map(site).collect();
         let [before, after] = neighbors;
-        let sites: Vec<[f64; 2]> = before.into_iter().chain(vertices.iter().map(site)).chain(after).collect();
+        let before = before.filter(|p| is_mitered([*p, own[0], own[1]]));
+        let after = after.filter(|p| is_mitered([own[own.len() - 2], own[own.len() - 1], *p]));
+        let sites: Vec<[f64; 2]> = before.into_iter().chain(own).chain(after).collect();
         let distance = match high {
             HighSide::Left => -width,
             HighSide::Right => width,
@@ -168,6 +172,11 @@ mod tests {
         let joined = [LINE.as_slice(), &corner[1..]].concat();
         let whole = Wall::new(&joined, &[1.0; 4], 0.5, HighSide::Left).unwrap();
         assert_eq!([first.lower.as_slice(), &second.lower[1..]].concat(), whole.lower);
+        // There and back: a wall with two sides.
+        let back = [LINE[2], LINE[0]];
+        let there = Wall::continued(&LINE, &[1.0; 3], 0.5, HighSide::Left, [Some([8.0, 0.0]), Some([0.0, 0.0])]);
+        let back = Wall::continued(&back, &[1.0; 2], 0.5, HighSide::Left, [Some([4.0, 0.0]), Some([4.0, 0.0])]);
+        assert!(there.unwrap().lower.iter().all(|p| p[1] == -0.5) && back.unwrap().lower.iter().all(|p| p[1] == 0.5));
     }
 
     #[test]

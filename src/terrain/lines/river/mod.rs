@@ -156,9 +156,8 @@ impl River {
         [level(self.stations.first()), level(self.stations.last())]
     }
 
-    /// Lowers what is above a level, which the river has where another arrives at its beginning.
+    /// Lowers what is above a level.
     fn lower_to(&mut self, level: f64) {
-        self.heights.add_rise(self.levels()[0] - level, self.ends[0]);
         self.stations.iter_mut().flatten().for_each(|end| end[2] = end[2].min(level));
     }
 
@@ -378,6 +377,32 @@ mod tests {
         assert_eq!(levels, [[4.0, 3.0], [4.0, 4.0], [5.0, 4.0], [9.0, 8.0]]);
         assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [1, 1, 0, 0]);
         assert_eq!((rivers[0].heights().largest_rise, rivers[0].heights().rise_at), (0.5, [20.0, 0.0]));
+        // A level one that need not be lowered is turned, too, and what follows is lowered to it;
+        // in any order.
+        let set = || {
+            [
+                reach([0.0, 10.0], [5.0, 4.0]),
+                reach([20.0, 10.0], [3.9, 3.9]),
+                reach([20.0, 30.0], [4.5, 3.0]),
+                reach([30.0, 40.0], [9.0, 2.0]),
+                reach([50.0, 40.0], [2.5, 2.5]),
+            ]
+        };
+        let joined = |order: [usize; 5]| {
+            let all = set();
+            let mut rivers: Vec<River> = order.map(|k| all[k].clone()).to_vec();
+            River::join(&mut rivers);
+            let mut found: Vec<String> = rivers.iter().map(|river| format!("{river:?}")).collect();
+            found.sort();
+            (rivers, found)
+        };
+        let (rivers, expected) = joined([0, 1, 2, 3, 4]);
+        let levels: Vec<[f64; 2]> = rivers.iter().map(River::levels).collect();
+        assert_eq!(levels, [[5.0, 4.0], [3.9, 3.9], [3.9, 3.0], [3.0, 2.0], [2.0, 2.0]]);
+        assert!((rivers[2].heights().largest_rise - 0.6).abs() < 1e-12 && rivers[2].heights().rising == 1);
+        for order in [[4, 3, 2, 1, 0], [2, 0, 4, 1, 3], [1, 4, 0, 3, 2], [3, 2, 1, 0, 4]] {
+            assert_eq!(joined(order).1, expected, "{order:?}");
+        }
         // A ring of rivers, each of which begins above the end of the one before.
         let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 0.0]];
         let side = |pair: &[[f64; 2]]| {
