@@ -172,7 +172,7 @@ mod tests {
         let joined = [LINE.as_slice(), &corner[1..]].concat();
         let whole = Wall::new(&joined, &[1.0; 4], 0.5, HighSide::Left).unwrap();
         assert_eq!([first.lower.as_slice(), &second.lower[1..]].concat(), whole.lower);
-        // There and back: a wall with two sides.
+        // Drawn twice, in both directions: a wall with two sides.
         let back = [LINE[2], LINE[0]];
         let there = Wall::continued(&LINE, &[1.0; 3], 0.5, HighSide::Left, [Some([8.0, 0.0]), Some([0.0, 0.0])]);
         let back = Wall::continued(&back, &[1.0; 2], 0.5, HighSide::Left, [Some([4.0, 0.0]), Some([4.0, 0.0])]);
