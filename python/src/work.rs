@@ -63,13 +63,27 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Does the work on the threads of a pool, without the interpreter's lock. Meanwhile the calling
 /// thread handles signals and reports progress.
 ///
+/// The work must not take a lock: see [`run_around`].
+///
 /// # Errors
 /// That of the work; the exception of a signal handler (`KeyboardInterrupt`) or of the function
 /// that progress is reported to, which cancels the work; an `InternalError` if the work panics.
 pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
     py: Python<'_>,
-    Call(threads, progress): &Call,
+    call: &Call,
     work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
+    run_around(py, call, |pool, context| pool.install(|| work(context)))
+}
+
+/// Like [`run`], for work that takes a lock, and then uses the pool.
+///
+/// A thread of a pool that waits for another one takes up other calls; were it to hold a lock, and
+/// such a call to ask for it, neither would ever end.
+pub(crate) fn run_around<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    Call(threads, progress): &Call,
+    work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
     let pool = pool(py, *threads)?;
     let watch = Watch::default();
@@ -81,7 +95,7 @@ pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
             let (pool, watch, cancel) = (&pool, &watch, &cancel);
             let worker = move || {
                 let context = Context { monitor: watch, cancel };
-                let outcome = pool.install(|| catch_unwind(AssertUnwindSafe(|| work(&context))));
+                let outcome = catch_unwind(AssertUnwindSafe(|| work(pool, &context)));
                 // The receiver waits for as long as this is in scope.
                 let _ = sender.send(outcome);
             };

@@ -69,7 +69,20 @@ impl<T: Boxed> Boxes<T> {
     ///
     /// # Complexity
     /// O(n log n); about 8 bytes for each item in addition to the items.
-    pub(super) fn new(mut items: Vec<T>) -> Self {
+    pub(super) fn new(items: Vec<T>) -> Self {
+        Self::divided(items, ALONE)
+    }
+
+    /// Builds the tree on the calling thread alone.
+    ///
+    /// A lock may be held meanwhile: a thread that waits for another one takes up other work, which
+    /// might ask for the same lock.
+    pub(super) fn by_one_thread(items: Vec<T>) -> Self {
+        Self::divided(items, usize::MAX)
+    }
+
+    /// Builds the tree; subtrees with fewer items than `alone` are built by one thread.
+    fn divided(mut items: Vec<T>, alone: usize) -> Self {
         let leaves = items.len().div_ceil(LEAF).max(1).next_power_of_two();
         let mut levels: Vec<Vec<Extent>> = Vec::new();
         let mut width = 1;
@@ -78,7 +91,7 @@ impl<T: Boxed> Boxes<T> {
             width *= 2;
         }
         let mut views: Vec<&mut [Extent]> = levels.iter_mut().map(Vec::as_mut_slice).collect();
-        build(&mut items, &mut views);
+        build(&mut items, &mut views, alone);
         Boxes { items, nodes: levels.concat() }
     }
 
@@ -146,7 +159,7 @@ fn halved(start: usize, end: usize) -> usize {
 
 /// Sorts the items of a node into its subtrees, and finds all boxes. `levels` are the nodes below,
 /// its own first.
-fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]]) {
+fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]], alone: usize) {
     let extent = items.iter().fold(Extent::EMPTY, |extent, item| extent.with(item.extent()));
     let Some((own, below)) = levels.split_first_mut() else { return };
     if let Some(node) = own.first_mut() {
@@ -161,7 +174,7 @@ fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]]) {
         let key = |item: &T| item.extent().middle(axis);
         items.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
     }
-    let is_small = items.len() < ALONE;
+    let is_small = items.len() < alone;
     let (low, high) = items.split_at_mut(middle);
     let (mut left, mut right) = (Vec::with_capacity(below.len()), Vec::with_capacity(below.len()));
     for level in below.iter_mut() {
@@ -170,9 +183,9 @@ fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]]) {
         right.push(second);
     }
     if is_small {
-        build(low, &mut left);
-        build(high, &mut right);
+        build(low, &mut left, alone);
+        build(high, &mut right, alone);
     } else {
-        join(|| build(low, &mut left), || build(high, &mut right));
+        join(|| build(low, &mut left, alone), || build(high, &mut right, alone));
     }
 }

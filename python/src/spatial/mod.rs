@@ -106,7 +106,11 @@ impl Tessellation {
         call: &Call,
         compute: impl FnOnce(&Any, &AtomicBool) -> T + Send,
     ) -> PyResult<T> {
-        work::run(py, call, |context| Result::Ok(compute(&self.read(), context.cancel)))
+        work::run_around(py, call, |pool, context| {
+            let any = self.read();
+            let any: &Any = &any;
+            Result::Ok(pool.install(|| compute(any, context.cancel)))
+        })
     }
 
     /// Answers queries: a few on the calling thread, because other threads take longer to answer.
@@ -138,10 +142,13 @@ impl Tessellation {
     /// Inserts more points, of shape (n, d).
     fn add(&self, py: Python<'_>, points: PyReadonlyArray2<'_, f64>, call: Call) -> PyResult<()> {
         let mut points = Positions::of(&points);
-        work::run(py, &call, |_| {
+        work::run_around(py, &call, |pool, _| {
             let mut any = self.any.write().unwrap_or_else(PoisonError::into_inner);
-            at_positions!(&mut *any, &mut points, (mesh, at) => mesh.add(at).map_err(|e| refused(&e, at))?);
-            Result::Ok(())
+            let (any, points) = (&mut *any, &mut points);
+            pool.install(|| {
+                at_positions!(any, points, (mesh, at) => mesh.add(at).map_err(|e| refused(&e, at))?);
+                Result::Ok(())
+            })
         })
     }
 

@@ -169,7 +169,7 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
                 number,
                 extent: Extent::of(corners.map(|v| self.surface.position(v))),
             };
-            Boxes::new(corners(self.surface).map(located).collect())
+            Boxes::by_one_thread(corners(self.surface).map(located).collect())
         });
         let face = faces.find(q, |face| is_in(face.number).then_some(face.number))?;
         Some(self.height_in(face, q, &mut Scratch::default()))
@@ -228,7 +228,7 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
             let is_cut = |number: u32| self.surface.face(number).is_none();
             let faces = faces_under(self.surface).filter(|face| is_cut(face.number));
             let extent = |corners: [u32; 3]| Extent::of(corners.map(|v| base.point(v)));
-            Boxes::new(faces.map(|face| Located { number: face.number, extent: extent(face.corners) }).collect())
+            Boxes::by_one_thread(faces.map(|face| Located { number: face.number, extent: extent(face.corners) }).collect())
         });
         beneath.find(q, |face| holds(base.corners(face.number), q).then_some(face.number))
     }
