@@ -286,7 +286,7 @@ impl SurfaceArguments<'_> {
             duplicates: choose("duplicates", &self.duplicates, &DUPLICATES)?,
             on_crossing: on_crossing(&self.on_crossing)?,
             crossing_heights: crossing_rule(&self.crossing_z)?,
-            crossing_tolerance: self.crossing_tolerance,
+            crossing_tolerance: not_negative("crossing_tolerance", self.crossing_tolerance)?,
         })
     }
 
@@ -326,11 +326,27 @@ impl SurfaceArguments<'_> {
             wall: WallOptions { lower, width: positive("wall_width", self.wall_width)?, high },
             holes: layers(&self.holes)?,
             flats: layers(&self.flat)?,
-            flat: FlatOptions { height, tolerance: self.flat_tolerance, buffer: self.flat_buffer },
+            flat: FlatOptions {
+                height,
+                tolerance: not_negative("flat_tolerance", self.flat_tolerance)?,
+                buffer: not_negative("flat_buffer", Some(self.flat_buffer))?.unwrap_or_default(),
+            },
             rivers: layers(&self.rivers)?,
             river_width: self.river_width.as_ref().map(NumberOrName::per_record),
             densify: positive("densify", self.densify)?,
         })
+    }
+}
+
+/// Returns a number if it is not below zero, and finite.
+fn not_negative(parameter: &str, number: Option<f64>) -> PyResult<Option<f64>> {
+    match number {
+        Some(number) if !(number >= 0.0 && number.is_finite()) => Err(errors::usage(
+            &format!("{parameter} is {number}"),
+            &number.to_string(),
+            "pass a number that is not below zero",
+        )),
+        _ => Ok(number),
     }
 }
 

@@ -427,3 +427,34 @@ def test_interruption():
             Delaunay(points)
     timer.join()
     assert Delaunay(points[:10]).nsimplex > 0
+
+
+@pytest.mark.parametrize("ndim", DIMENSIONS)
+def test_points_are_added_while_others_ask(ndim):
+    """Insertions and queries of several threads end, with one answer for what did not change."""
+    triangulation = Delaunay(random_points(3000, ndim), incremental=True, threads=2)
+    positions = np.random.default_rng(7).random((20_000, ndim)) + 5.0
+    failures = []
+
+    def ask():
+        try:
+            for _ in range(8):
+                assert (triangulation.find_simplex(positions) == -1).all()
+        except Exception as error:  # noqa: BLE001 - a thread's failure would be lost
+            failures.append(error)
+
+    def add():
+        try:
+            for k in range(8):
+                triangulation.add_points(random_points(200, ndim, seed=k + 1))
+        except Exception as error:  # noqa: BLE001
+            failures.append(error)
+
+    threads = [threading.Thread(target=work, daemon=True) for work in (ask, add, ask)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(timeout=120)
+    assert not any(thread.is_alive() for thread in threads)
+    assert not failures
+    assert len(triangulation.points) == 3000 + 8 * 200

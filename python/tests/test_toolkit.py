@@ -265,3 +265,10 @@ def test_points_in_space_become_tetrahedra(tmp_path):
     assert len(found.tetrahedra) == len(scipy.Delaunay(points).simplices)
     assert found.report["volume"] == pytest.approx(scipy.ConvexHull(points).volume)
     assert found.solid["parts"] == 1
+
+
+def test_withheld_points_of_records_are_never_used():
+    names = [("X", "f8"), ("Y", "f8"), ("Z", "f8"), ("Withheld", "u1")]
+    corners = [(0, 0, 1, 0), (10, 0, 1, 0), (10, 10, 1, 0), (0, 10, 1, 0), (5, 5, 99, 1)]
+    tin = breakline.tin(np.array(corners, dtype=names))
+    assert tin.elevation([5.0, 5.0]) == 1.0

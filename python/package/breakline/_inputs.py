@@ -115,6 +115,8 @@ def classes(values: Any) -> "Optional[list[int]]":
     numbers = []
     for value in several:
         number = _breakline.class_number(value) if isinstance(value, str) else int(value)
+        if number != value and not isinstance(value, str):
+            raise usage("classes are whole numbers", value, "use a number, or a name such as 'ground'")
         if not 0 <= number <= 255:
             raise usage("classes are numbers from 0 to 255", value, "use a number, or a name such as 'ground'")
         numbers.append(number)
@@ -137,11 +139,21 @@ def _columns(x: Any, y: Any, z: Any, **others: Any) -> "dict[str, Any]":
     lengths = [len(axis) for axis in found["axes"]]
     for name in ("classes", "flags"):
         if found[name] is not None:
-            found[name] = np.asarray(found[name]).astype(np.uint8, copy=False)
+            found[name] = _bytes(found[name], name)
             lengths.append(len(found[name]))
     if len(set(lengths)) > 1:
         raise usage("columns of points differ in length", lengths, "pass columns of equal length")
     return found
+
+
+def _bytes(values: Any, name: str) -> Any:
+    """Return whole numbers from 0 to 255 as uint8, without a copy if they are that already."""
+    values = np.asarray(values)
+    if values.dtype == np.uint8:
+        return values
+    if values.size and (values.dtype.kind not in "biu" or values.min() < 0 or values.max() > 255):
+        raise usage(f"{name} of points are whole numbers from 0 to 255", str(values.dtype), "convert the column")
+    return values.astype(np.uint8)
 
 
 def _of_laspy(points: Any) -> "dict[str, Any]":
@@ -185,7 +197,10 @@ def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
     if any(axis is None for axis in axes):
         raise usage("the points have no columns x, y and z", sorted(known.values()), "name the columns x, y and z")
     axes = [_floats(axis, f"column {name}") for axis, name in zip(axes, "xyz")]
-    return _columns(*axes, classes=column("classification", "class"), flags=column("flags"))
+    withheld = column("withheld")  # as PDAL names it
+    if withheld is not None:
+        withheld = (np.asarray(withheld) != 0).astype(np.uint8) * np.uint8(4)
+    return _columns(*axes, classes=column("classification", "class"), flags=withheld)
 
 
 def _of_frame(frame: Any) -> "dict[str, Any]":

@@ -178,6 +178,8 @@ class Tin:
         -----
         O(n log n) for n positions with ``"linear"``. Other methods first prepare the whole surface, with each call.
         """
+        if np.ma.is_masked(xy):
+            raise usage("positions have masked values", None, "leave them out: xy[~xy.mask.any(axis=1)]")
         array = np.asarray(xy)
         if array.ndim < 1 or array.shape[-1] != 2:
             if array.size:

@@ -664,7 +664,7 @@ def _numbers(array: Any) -> NDArray[np.float64]:
     array = np.asarray(array)
     if array.dtype.kind not in "biuf" and array.size:
         raise usage(f"coordinates of dtype {array.dtype}, expected real numbers", kind=ArgumentTypeError)
-    return array.astype(np.float64, copy=False)
+    return np.require(array, np.float64, "A")
 
 
 def _points_of(points: Any) -> NDArray[np.float64]:

@@ -228,7 +228,9 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
             let is_cut = |number: u32| self.surface.face(number).is_none();
             let faces = faces_under(self.surface).filter(|face| is_cut(face.number));
             let extent = |corners: [u32; 3]| Extent::of(corners.map(|v| base.point(v)));
-            Boxes::by_one_thread(faces.map(|face| Located { number: face.number, extent: extent(face.corners) }).collect())
+            Boxes::by_one_thread(
+                faces.map(|face| Located { number: face.number, extent: extent(face.corners) }).collect(),
+            )
         });
         beneath.find(q, |face| holds(base.corners(face.number), q).then_some(face.number))
     }
