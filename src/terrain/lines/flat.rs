@@ -1,6 +1,7 @@
 //! Lakes: rings at one height.
 
 use crate::error::{Error, Result};
+use crate::triangulation::num::unsigned_zero;
 
 /// Which height level water has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,7 +97,13 @@ fn check_ring(ring: &[[f64; 3]]) -> Result<()> {
     // Twice the areas of a fan of triangles; rings like an 8 have parts of both signs.
     let area: f64 = ring.windows(2).map(|pair| cross(*first, pair[0], pair[1]).abs()).sum();
     let extent = ring.iter().fold(0.0_f64, |most, p| most.max((p[0] - first[0]).abs()).max((p[1] - first[1]).abs()));
-    if ring.len() < 4 || area <= extent * extent * f64::EPSILON {
+    // What is drawn twice encloses nothing.
+    let bits = |p: &[f64; 3]| [p[0], p[1]].map(|c| unsigned_zero(c).to_bits());
+    let side = |pair: &[[f64; 3]]| [bits(&pair[0]).min(bits(&pair[1])), bits(&pair[0]).max(bits(&pair[1]))];
+    let mut sides: Vec<[[u64; 2]; 2]> = ring.windows(2).map(side).collect();
+    sides.sort_unstable();
+    let odd = sides.chunk_by(|p, q| p == q).filter(|same| same.len() % 2 == 1 && same[0][0] != same[0][1]).count();
+    if odd < 3 || area <= extent * extent * f64::EPSILON {
         return Err(Error::format(format!("the shore at {} {} encloses nothing", first[0], first[1]))
             .cure("remove the record, or give the ring its vertices"));
     }
@@ -144,6 +151,8 @@ mod tests {
         assert!(message(ring([1.0; 4]), FlatHeight::Given(f64::NAN)).contains("NaN"));
         assert!(Flat::new(&[ring([f64::NAN; 4])], FlatHeight::Given(1.0)).is_ok());
         assert!(Flat::new(&[], FlatHeight::Lowest).is_err());
+        let twice = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [4.0, 4.0, 1.0], [4.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
+        assert_eq!(message(twice.to_vec(), FlatHeight::Lowest), "the shore at 0 0 encloses nothing");
         let eight = [[0.0, 0.0, 1.0], [4.0, 4.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0, 0.0, 1.0]];
         assert!(Flat::new(&[eight.to_vec()], FlatHeight::Lowest).is_ok());
     }
