@@ -93,7 +93,7 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
 }
 
 /// Returns the vertices, faces and edges on lines of a surface in memory, in the order and with the
-/// numbers that [`write`] gives them in a file.
+/// numbers that [`write()`] gives them in a file.
 ///
 /// # Errors
 /// If something in the surface was found damaged.
