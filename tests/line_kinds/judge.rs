@@ -201,10 +201,15 @@ fn rivers(scene: &Scene, tin: &Tin) -> Result<(), String> {
                 continue;
             }
             let normal = [-sum[1], sum[0]].map(|c| c / (2.0 * half_cosine) / half_cosine * RIVER / 2.0);
+            // Banks and ends are rounded: stay within.
+            let inward = match k {
+                0 => after,
+                k if k == directions.len() => before.map(|c| -c),
+                _ => [0.0; 2],
+            };
             for part in [-1.0, -0.6, 0.0, 0.25, 1.0] {
-                // The banks are rounded: stay within.
                 let part = part * (1.0 - 1e-9);
-                let [u, v] = [x + part * normal[0], y + part * normal[1]];
+                let [u, v] = [0, 1].map(|axis| [x, y][axis] + part * normal[axis] + 1e-9 * inward[axis]);
                 let found = tin.elevation(u, v).ok_or_else(|| format!("no surface at {u} {v}, in a river"))?;
                 if (found - level).abs() > 1e-6 {
                     return Err(format!("the river at {u} {v} is at {found}, expected {level}"));
@@ -254,7 +259,8 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
     let heights = around.map(|[u, v]| whole.elevation(x + u, y + v).unwrap_or(before));
     let lowest = heights.into_iter().fold(before, f64::min) - 1e-6;
     let highest = heights.into_iter().fold(before, f64::max) + 1e-6;
-    if !(lowest..=highest).contains(&height) && !near_wall(scene, [x, y]) {
+    let is_as_before = (lowest..=highest).contains(&height) || may_be_exchanged(whole, [x, y], height);
+    if !is_as_before && !near_wall(scene, [x, y]) {
         return Err(format!("at {x} {y} draped lines change the height from {before} to {height}"));
     }
     for (lake, level) in &scene.lakes {
@@ -263,6 +269,24 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
         }
     }
     Ok(true)
+}
+
+/// Returns true if a height is between those that the triangle at a position has with the heights of
+/// other vertices next to its corners: a cut that moves lines may exchange such vertices.
+fn may_be_exchanged(tin: &Tin, p: [f64; 2], height: f64) -> bool {
+    let triangulation = tin.triangulation();
+    let Location::Cell { cell, .. } = triangulation.locate(&[p[0], p[1], 0.0], None) else { return false };
+    let Some(corners) = tin.triangle(cell.index() as u32) else { return false };
+    let twice = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let [a, b, c] = corners.map(|[x, y, _]| [x, y]);
+    let shares = [twice(b, c, p), twice(c, a, p), twice(a, b, p)].map(|area| area / twice(a, b, c));
+    let near = corners.map(|[x, y, _]| {
+        let vertices = triangulation.tds().vertices().map(|vertex| *triangulation.point(vertex));
+        let near = vertices.filter(|q| (q[0] - x).abs().max((q[1] - y).abs()) <= MOVED);
+        near.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q[2]), high.max(q[2])])
+    });
+    let [low, high] = [0, 1].map(|end| (0..3).map(|i| shares[i] * near[i][end]).sum::<f64>());
+    (low - 1e-6..=high + 1e-6).contains(&height)
 }
 
 fn near_wall(scene: &Scene, p: [f64; 2]) -> bool {
