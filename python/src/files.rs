@@ -313,8 +313,8 @@ pub(crate) fn check_space(py: Python<'_>, file: PathBuf, weighted: bool, call: C
 
 /// Returns true if a file has points or tetrahedra in space.
 #[pyfunction]
-pub(crate) fn is_of_space(file: PathBuf) -> bool {
-    run::is_of_space(&file)
+pub(crate) fn is_of_space(py: Python<'_>, file: PathBuf) -> PyResult<bool> {
+    work::short(py, || -> Result<_> { Ok(run::is_of_space(&file)) })
 }
 
 /// Returns the class of points with a name, such as "ground".

@@ -5,7 +5,8 @@ use breakline::run::{BuildReport, SurfaceProduct};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::errors::Failure;
+use crate::errors::Result;
+use crate::work;
 
 /// Returns the counts of a surface and, if it was built here, of how.
 pub(crate) fn of_surface<'py>(py: Python<'py>, product: &SurfaceProduct) -> PyResult<Bound<'py, PyDict>> {
@@ -13,7 +14,8 @@ pub(crate) fn of_surface<'py>(py: Python<'py>, product: &SurfaceProduct) -> PyRe
     if product.triangles().is_err() {
         return Ok(report);
     }
-    let SurfaceFacts { vertices, triangles, edges, extent } = product.facts().map_err(Failure)?;
+    let facts = work::short(py, || -> Result<_> { Ok(product.facts()?) })?;
+    let SurfaceFacts { vertices, triangles, edges, extent } = facts;
     report.set_item("vertices", vertices)?;
     report.set_item("triangles", triangles)?;
     let kinds = PyDict::new(py);

@@ -66,7 +66,7 @@ impl Surface {
     /// Reads a mesh or a raster, or opens a TIN; `None` if the file has points.
     #[staticmethod]
     fn open(py: Python<'_>, file: PathBuf, systems: SystemArguments, call: Call) -> PyResult<Option<Self>> {
-        let source = Source::of_files(&[file]).map_err(Failure)?;
+        let source = work::short(py, || -> Result<_> { Ok(Source::of_files(&[file])?) })?;
         if matches!(source, Source::Points(_)) {
             return Ok(None);
         }
@@ -375,7 +375,7 @@ pub(crate) fn write_contours(
 /// with the positions that it concerns.
 #[pyfunction]
 pub(crate) fn check_file(py: Python<'_>, file: PathBuf, call: Call) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
-    let source = Source::of_files(&[file]).map_err(Failure)?;
+    let source = work::short(py, || -> Result<_> { Ok(Source::of_files(&[file])?) })?;
     let request = SurfaceRequest { source, ..SurfaceRequest::default() };
     let checked = work::run(py, &call, |context| -> Result<_> { Ok(run::check(&request, context)?) })?;
     Ok(checked.flaws.into_iter().map(|flaw| (flaw.flaw.to_string(), flaw.at)).collect())

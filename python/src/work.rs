@@ -1,6 +1,5 @@
 //! Long calls: on threads of our own, without the interpreter's lock, and canceled by Ctrl-C.
 
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -23,15 +22,18 @@ pub(crate) const POLL: Duration = Duration::from_millis(50);
 #[derive(FromPyObject)]
 pub(crate) struct Call(Option<usize>, Option<Py<PyAny>>);
 
-/// The pools of this process, by their numbers of threads.
+/// So many pools are kept, those used last; the threads of others end with their last call.
+const KEPT: usize = 4;
+
+/// The pools of this process with their numbers of threads, that used last at the end.
 struct Pools {
     process: u32,
-    by_size: BTreeMap<usize, Arc<ThreadPool>>,
+    kept: Vec<(usize, Arc<ThreadPool>)>,
 }
 
 /// Locked only while the interpreter's lock is held, so that no other thread has it when the
 /// process forks.
-static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, by_size: BTreeMap::new() });
+static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, kept: Vec::new() });
 
 /// Returns the pool with this number of threads; it is started when it is first used in a process.
 fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
@@ -43,17 +45,24 @@ fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let mut pools = locked(&POOLS);
     if pools.process != std::process::id() {
         // After a fork the threads are gone, and waiting for them would never end.
-        std::mem::forget(std::mem::take(&mut pools.by_size));
+        std::mem::forget(std::mem::take(&mut pools.kept));
         pools.process = std::process::id();
     }
-    if let Some(pool) = pools.by_size.get(&size) {
-        return Ok(Arc::clone(pool));
+    let pool = match pools.kept.iter().position(|(of, _)| *of == size) {
+        Some(known) => pools.kept.remove(known).1,
+        None => started(size)?,
+    };
+    if pools.kept.len() == KEPT {
+        pools.kept.remove(0);
     }
+    pools.kept.push((size, Arc::clone(&pool)));
+    Ok(pool)
+}
+
+fn started(size: usize) -> PyResult<Arc<ThreadPool>> {
     let name = |i: usize| format!("breakline-{i}");
     let pool = ThreadPoolBuilder::new().num_threads(size).thread_name(name).build();
-    let pool = Arc::new(pool.map_err(|e| errors::limit(&format!("{size} threads cannot be started: {e}")))?);
-    pools.by_size.insert(size, Arc::clone(&pool));
-    Ok(pool)
+    Ok(Arc::new(pool.map_err(|e| errors::limit(&format!("{size} threads cannot be started: {e}")))?))
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -26,7 +26,8 @@ impl Levels {
     /// If the interval is not positive and finite, or the base is not finite.
     pub fn every(interval: f64, base: f64) -> Result<Self> {
         if !(interval > 0.0 && interval.is_finite()) {
-            return Err(Error::usage(format!("contour interval is {interval}, expected a positive number")));
+            return Err(Error::usage(format!("contour interval is {interval}, expected a positive number"))
+                .cure("use a number above zero"));
         }
         if !base.is_finite() {
             return Err(Error::usage(format!("contour base is {base}, expected a finite number")));

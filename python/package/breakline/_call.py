@@ -12,6 +12,10 @@ from ._errors import ArgumentTypeError, usage
 Progress = Union[bool, Callable[[str, int, Optional[int]], Any], None]
 
 
+#: More threads than any machine has cores only take memory.
+_MOST_THREADS = 1024
+
+
 class _Bar:
     """A bar of tqdm for the stage in progress."""
 
@@ -39,8 +43,8 @@ def call(threads: Optional[int], progress: Progress) -> "Iterator[tuple[Optional
         if isinstance(threads, bool) or not hasattr(threads, "__index__"):
             raise usage("threads is not a whole number", threads, "pass 1 or more, or None", ArgumentTypeError)
         threads = threads.__index__()
-        if threads < 1:
-            raise usage("threads is less than 1", threads, "pass 1 or more, or None for one per core")
+        if not 1 <= threads <= _MOST_THREADS:
+            raise usage(f"threads is {threads}", threads, f"pass 1 to {_MOST_THREADS}, or None for one per core")
     bar: Optional[_Bar] = None
     if progress is True:
         try:

@@ -59,6 +59,45 @@ def path(value: Any, parameter: str) -> str:
     return os.fsdecode(value)
 
 
+def number(value: Any, parameter: str) -> float:
+    """Return a number as float."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise usage(f"{parameter} is not a number", value, "pass a number", ArgumentTypeError) from None
+
+
+def optional_number(value: Any, parameter: str) -> Optional[float]:
+    """Return a number as float, or None."""
+    return None if value is None else number(value, parameter)
+
+
+def number_or_name(value: Any, parameter: str) -> "float | str | None":
+    """Return a number as float, a name as it is, or None."""
+    return value if isinstance(value, str) else optional_number(value, parameter)
+
+
+def name(value: Any, parameter: str) -> str:
+    """Return a name of one of several choices; the library knows which there are."""
+    if not isinstance(value, str):
+        raise usage(f"{parameter} is not a name", value, "pass a text; the documentation lists them", ArgumentTypeError)
+    return value
+
+
+def whole_numbers(values: Any, parameter: str, largest: int) -> "list[int]":
+    """Return one or several whole numbers from 0 to the largest as a list."""
+    cure = f"pass whole numbers from 0 to {largest}"
+    try:
+        several = np.atleast_1d(np.asarray(values if np.isscalar(values) else list(values)))
+        found = [int(value) for value in several.ravel()]
+    except (TypeError, ValueError, OverflowError):
+        raise usage(f"{parameter} has something that is not a whole number", values, cure, ArgumentTypeError) from None
+    for whole, value in zip(found, several.ravel()):
+        if whole != value or not 0 <= whole <= largest:
+            raise usage(f"{parameter} has {value}", value, cure)
+    return found
+
+
 def _floats(values: Any, what: str) -> np.ndarray:
     """Return numbers as float64; a view if they are already."""
     try:
@@ -110,24 +149,19 @@ def classes(values: Any) -> "Optional[list[int]]":
     if values is None:
         return None
     several = values.split(",") if isinstance(values, str) else values
-    if isinstance(several, (int, np.integer)):
-        several = [several]
-    numbers = []
-    for value in several:
-        number = _breakline.class_number(value) if isinstance(value, str) else int(value)
-        if number != value and not isinstance(value, str):
-            raise usage("classes are whole numbers", value, "use a number, or a name such as 'ground'")
-        if not 0 <= number <= 255:
-            raise usage("classes are numbers from 0 to 255", value, "use a number, or a name such as 'ground'")
-        numbers.append(number)
-    return numbers
+    if isinstance(several, (list, tuple, set)):
+        several = [_breakline.class_number(value) if isinstance(value, str) else value for value in several]
+    return whole_numbers(several, "classes", 255)
 
 
 def bounds(values: Any, parameter: str = "bounds") -> "Optional[list[float]]":
     """Return a box in plan as west, south, east, north."""
     if values is None:
         return None
-    corners = [float(value) for value in values]
+    try:
+        corners = [float(value) for value in values]
+    except (TypeError, ValueError):
+        corners = []
     if len(corners) != 4 or not all(np.isfinite(corners)) or corners[0] >= corners[2] or corners[1] >= corners[3]:
         raise usage(f"{parameter} is not a box", values, "pass (xmin, ymin, xmax, ymax) with xmin < xmax, ymin < ymax")
     return corners

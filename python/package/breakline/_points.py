@@ -50,7 +50,7 @@ class Points:
 
 def _read(columns: Any, partial: bool) -> "dict[str, Any]":
     if columns is not None and not isinstance(columns, str):
-        columns = ",".join(str(int(number)) for number in columns)
+        columns = ",".join(map(str, _inputs.whole_numbers(columns, "columns", 255)))
     return {"columns": columns, "partial": bool(partial)}
 
 
@@ -59,7 +59,7 @@ def _selection(
 ) -> "dict[str, Any]":
     return {
         "classes": _inputs.classes(classes),
-        "returns": None if returns is None else [int(number) for number in returns],
+        "returns": None if returns is None else _inputs.whole_numbers(returns, "returns", 255),
         "drop_withheld": bool(drop_withheld),
         "bounds": _inputs.bounds(bounds),
         "boundary": [] if boundary is None else _inputs.files(boundary, "boundary"),

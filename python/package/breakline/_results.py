@@ -162,8 +162,16 @@ class Raster:
         """Shade the heights; see :meth:`breakline.Tin.hillshade`."""
         frame = {"resolution": None, "bounds": None, "align_to": None}
         with call(threads, progress) as request:
-            light = (float(azimuth), float(altitude), z_factor)
-            return of_cells(self._surface().hillshade(frame, "linear", light, request))
+            return of_cells(self._surface().hillshade(frame, "linear", light(azimuth, altitude, z_factor), request))
+
+
+def light(azimuth: Any, altitude: Any, z_factor: Any) -> "tuple[float, float, Optional[float]]":
+    """Return where light comes from, and the factor of heights, as the library takes them."""
+    return (
+        _inputs.number(azimuth, "azimuth"),
+        _inputs.number(altitude, "altitude"),
+        _inputs.optional_number(z_factor, "z_factor"),
+    )
 
 
 def of_cells(found: "tuple[Any, Any, Any]") -> Raster:
@@ -293,9 +301,9 @@ class Contours:
 
 def draw(surface: Any, crs: Any, interval: Any, base: Any, levels: Any, threads: Any, progress: Any) -> Contours:
     """Draw the contours of a surface of the library."""
-    levels = [float(level) for level in np.atleast_1d(np.asarray(levels, dtype=float))]
+    levels = [_inputs.number(level, "levels") for level in np.atleast_1d(np.asarray(levels)).ravel()]
     if interval is not None and levels:
         raise usage("interval and levels are given", None, "use one of them")
-    interval = None if interval is None else float(interval)
+    interval, base = _inputs.optional_number(interval, "interval"), _inputs.number(base, "base")
     with call(threads, progress) as request:
-        return Contours(*surface.contours(interval, float(base), levels, request), crs=crs)
+        return Contours(*surface.contours(interval, base, levels, request), crs=crs)

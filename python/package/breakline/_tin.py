@@ -11,7 +11,7 @@ from . import _breakline, _inputs
 from ._call import Progress, call
 from ._errors import ArgumentTypeError, in_python, usage
 from ._points import _read, _systems
-from ._results import Contours, Raster, draw, missing, of_cells
+from ._results import Contours, Raster, draw, light, missing, of_cells
 
 #: The name of each kind of edges, by its number in ``Tin.edge_kinds``.
 EDGE_KINDS: "tuple[str, ...]" = tuple(_breakline.edge_kinds())
@@ -33,14 +33,10 @@ class Notice(NamedTuple):
 
 def _frame(resolution: Any, bounds: Any, align_to: Any) -> "dict[str, Any]":
     return {
-        "resolution": None if resolution is None else float(resolution),
+        "resolution": _inputs.optional_number(resolution, "resolution"),
         "bounds": _inputs.bounds(bounds),
         "align_to": None if align_to is None else _inputs.path(align_to, "align_to"),
     }
-
-
-def _number_or_name(value: Any) -> Any:
-    return value if value is None or isinstance(value, str) else float(value)
 
 
 class Tin:
@@ -187,7 +183,7 @@ class Tin:
             array = array.reshape(*array.shape[:-1], 0, 2)
         flat = _inputs.positions(array.reshape(-1, 2))
         with call(threads, progress) as request:
-            heights = self._surface.elevations(flat, method, request)
+            heights = self._surface.elevations(flat, _inputs.name(method, "method"), request)
         return heights.reshape(array.shape[:-1])[()]
 
     def dem(
@@ -221,7 +217,8 @@ class Tin:
             float32, nan where there is no surface.
         """
         with call(threads, progress) as request:
-            return of_cells(self._surface.dem(_frame(resolution, bounds, align_to), method, request))
+            frame = _frame(resolution, bounds, align_to)
+            return of_cells(self._surface.dem(frame, _inputs.name(method, "method"), request))
 
     def hillshade(
         self,
@@ -254,9 +251,10 @@ class Tin:
         Raster
             uint8.
         """
-        light = (float(azimuth), float(altitude), None if z_factor is None else float(z_factor))
+        sun = light(azimuth, altitude, z_factor)
         with call(threads, progress) as request:
-            return of_cells(self._surface.hillshade(_frame(resolution, bounds, align_to), method, light, request))
+            frame = _frame(resolution, bounds, align_to)
+            return of_cells(self._surface.hillshade(frame, _inputs.name(method, "method"), sun, request))
 
     def contours(
         self,
@@ -472,23 +470,12 @@ def tin(
         arguments = {
             **lines,
             "bounds": _inputs.bounds(bounds),
-            "max_edge": "none" if max_edge == np.inf else _number_or_name(max_edge),
-            "max_edge_inside": max_edge_inside,
+            **{name: _inputs.number_or_name(options[name], name) for name in _NUMBERS_OR_NAMES},
+            **{name: _inputs.optional_number(options[name], name) for name in _NUMBERS},
+            **{name: _inputs.name(options[name], name) for name in _NAMES},
             "classes": _inputs.classes(classes),
-            "duplicates": duplicates,
-            "on_crossing": on_crossing,
-            "crossing_z": crossing_z,
-            "crossing_tolerance": crossing_tolerance,
-            "wall_bottom": _number_or_name(wall_bottom),
-            "wall_drop": _number_or_name(wall_drop),
-            "wall_width": wall_width,
-            "wall_high": wall_high,
-            "flat_height": _number_or_name(flat_height),
-            "flat_tolerance": flat_tolerance,
-            "flat_buffer": float(flat_buffer),
+            "flat_buffer": _inputs.number(flat_buffer, "flat_buffer"),
             "flat_points": bool(flat_points),
-            "river_width": _number_or_name(river_width),
-            "densify": densify,
         }
         return Tin(_breakline.Surface.build(found, _read(columns, partial), systems, arguments, request))
 
@@ -496,6 +483,10 @@ def tin(
 #: Parameters that take lines or areas, and those of them whose arrays are rings.
 _LINES = {"breaklines", "boundary", "soft_lines", "draped_lines", "walls", "holes", "flat", "rivers"}
 _AREAS = {"boundary", "holes", "flat"}
+#: Parameters that take numbers, names of choices, or both.
+_NUMBERS = {"max_edge_inside", "crossing_tolerance", "wall_width", "flat_tolerance", "densify"}
+_NAMES = {"duplicates", "on_crossing", "crossing_z", "wall_high"}
+_NUMBERS_OR_NAMES = {"max_edge", "wall_bottom", "wall_drop", "flat_height", "river_width"}
 #: Parameters that mean something for a surface that exists already.
 _FOR_ANY = {"points", "crs", "force_degrees", "threads", "progress"}
 _DEFAULTS = {name: parameter.default for name, parameter in inspect.signature(tin).parameters.items()}

@@ -11,25 +11,31 @@ import numpy as np
 
 from . import _breakline, _inputs
 from ._call import Progress, call
-from ._errors import usage
+from ._errors import ArgumentTypeError, usage
 from ._points import _read, _systems
-from ._results import Contours, Raster, draw, of_cells
-from ._tin import Flaw, Tin, _frame, tin
+from ._results import Contours, Raster, draw, light, of_cells
+from ._tin import _FOR_ANY, Flaw, Tin, _frame, tin
 
 
 def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any) -> Any:
     """Return the surface of the library for a Tin, a raster, or what ``tin`` takes."""
     if isinstance(points, (Tin, Raster)):
-        if surface:
-            raise usage(f"{next(iter(surface))} is for building a TIN, but this is a surface already")
+        _refuse(surface, "this")
         return points._surface if isinstance(points, Tin) else points._surface()
     if _inputs.is_path(points) and os.path.isfile(points):
         systems = _systems(surface.get("crs"), surface.get("to_crs"), surface.get("force_degrees", False))
         with call(threads, progress) as request:
             opened = _breakline.Surface.open(os.fspath(points), systems, request)
         if opened is not None and opened.kind == "raster":
+            _refuse({name: surface[name] for name in surface if name not in _FOR_ANY}, os.fspath(points))
             return opened
     return tin(points, threads=threads, progress=progress, **surface)._surface
+
+
+def _refuse(surface: "dict[str, Any]", what: str) -> None:
+    """Refuse options of building a surface where there is one."""
+    for name, value in surface.items():
+        raise usage(f"{name} is for building a TIN, but {what} is a surface already", value, f"leave {name} out")
 
 
 def dem(
@@ -58,7 +64,7 @@ def dem(
     """
     found = _surface(points, surface, threads, progress)
     with call(threads, progress) as request:
-        return of_cells(found.dem(_frame(resolution, extent, align_to), method, request))
+        return of_cells(found.dem(_frame(resolution, extent, align_to), _inputs.name(method, "method"), request))
 
 
 def hillshade(
@@ -89,9 +95,9 @@ def hillshade(
         Parameters of :func:`tin`.
     """
     found = _surface(points, surface, threads, progress)
-    light = (float(azimuth), float(altitude), None if z_factor is None else float(z_factor))
+    sun, method = light(azimuth, altitude, z_factor), _inputs.name(method, "method")
     with call(threads, progress) as request:
-        return of_cells(found.hillshade(_frame(resolution, extent, align_to), method, light, request))
+        return of_cells(found.hillshade(_frame(resolution, extent, align_to), method, sun, request))
 
 
 def contour(
@@ -142,6 +148,8 @@ def check(
         Parameters of :func:`tin`.
     """
     is_file = _inputs.is_path(points) and os.path.isfile(points)
+    if isinstance(points, Raster):
+        raise usage("a raster has no triangles to check", None, "pass a Tin, a mesh or points", ArgumentTypeError)
     with call(threads, progress) as request:
         if is_file and _breakline.is_of_space(os.fspath(points)):
             found = _breakline.check_space(os.fspath(points), bool(weighted), request)
@@ -151,9 +159,10 @@ def check(
         if is_file and not surface:
             flaws = _breakline.check_file(os.fspath(points), request)
             return [Flaw(text, np.array(at, dtype=float).reshape(-1, 2)) for text, at in flaws]
-    return (points if isinstance(points, Tin) else tin(points, threads=threads, progress=progress, **surface)).check(
-        threads=threads, progress=progress
-    )
+    if isinstance(points, Tin):
+        _refuse(surface, "this")
+        return points.check(threads=threads, progress=progress)
+    return tin(points, threads=threads, progress=progress, **surface).check(threads=threads, progress=progress)
 
 
 def info(
@@ -294,15 +303,19 @@ def triangulate(
             for name, is_given in of_plane.items():
                 if is_given:
                     raise usage(f"{name} is for the plane only", None, f"leave {name} out")
-            alpha = alpha if alpha is None or isinstance(alpha, str) else float(alpha)
+            alpha = _inputs.number_or_name(alpha, "alpha")
+            kernel = _inputs.name(kernel, "kernel")
             found = _breakline.triangulate_space(file, bool(weighted), alpha, kernel, outputs, bool(overwrite), request)
             lists = [found.pop(name) for name in ("vertices", "tetrahedra")]
             return SpaceTriangulation(*lists, found.pop("solid", None), found)
         if weighted or alpha is not None:
             raise usage(f"{'weighted' if weighted else 'alpha'} is for points in space", None, "add in_space=True")
         options = {
-            "convex": bool(convex), "on_crossing": on_crossing, "min_angle": min_angle, "max_area": max_area,
-            "region_areas": bool(region_areas), "max_added": max_added, "kernel": kernel,
+            "convex": bool(convex), "on_crossing": _inputs.name(on_crossing, "on_crossing"),
+            "min_angle": _inputs.optional_number(min_angle, "min_angle"),
+            "max_area": _inputs.optional_number(max_area, "max_area"), "region_areas": bool(region_areas),
+            "max_added": None if max_added is None else _inputs.whole_numbers([max_added], "max_added", 2**32 - 1)[0],
+            "kernel": _inputs.name(kernel, "kernel"),
         }  # fmt: skip
         found = _breakline.triangulate(file, options, outputs, bool(overwrite), request)
     lists = [found.pop(name) for name in ("vertices", "vertex_markers", "triangles", "segments")]

@@ -375,12 +375,6 @@ class _Interpolator:
         self.values = np.ascontiguousarray(values, dtype=dtype).reshape(len(values), columns)
         self.fill_value = complex(fill_value) if self.is_complex else float(fill_value)
 
-    def _check_count(self) -> None:
-        """Raise if points were added to the triangulation."""
-        count = len(self._points())
-        if len(self.values) != count:
-            raise usage(f"different number of values and points: {len(self.values)} values, {count} points")
-
     def _rescaled(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         self.offset = points.mean(axis=0)
         points = points - self.offset
@@ -422,7 +416,6 @@ class _SmoothInterpolator(_Interpolator):
         self._prepare()
 
     def _prepare(self) -> None:
-        self._check_count()
         columns = self.values.shape[1]
         fill = self.fill_value
         outside = ([fill.real, fill.imag] if self.is_complex else [fill]) * columns
@@ -448,7 +441,6 @@ class _SmoothInterpolator(_Interpolator):
         ndarray of float64 or complex128, shape (...) + values.shape[1:]
             ``fill_value`` outside of the convex hull.
         """
-        self._check_count()
         xi = self._positions(args)
         flat = _rows(xi, self.points.shape[1])
         values = self._evaluate(flat, (self.threads, None))
@@ -604,11 +596,10 @@ class NearestNDInterpolator(_Interpolator):
         ndarray of float64 or complex128, shape (...) + values.shape[1:]
         """
         bound, threads = self._options(query_options)
-        self._check_count()
         xi = self._positions(args)
         flat = _rows(xi, self.points.shape[1])
         core = self.tri._core if isinstance(self.tri, Delaunay) else self.tri
-        nearest = core.nearest(flat, (threads, None))
+        nearest = core.nearest(flat, len(self.values), (threads, None))
         wrong = nearest < 0
         if wrong.any():
             row = int(np.argmax(wrong))

@@ -228,20 +228,20 @@ impl Tessellation {
         Ok(column(py, found))
     }
 
-    /// The point nearest to each position of shape (q, d): an array of shape (q,).
+    /// The point nearest to each position of shape (q, d): an array of shape (q,). There must be
+    /// `values` points.
     fn nearest<'py>(
         &self,
         py: Python<'py>,
         positions: PyReadonlyArray2<'py, f64>,
+        values: usize,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let nearest = self.answer(
-            py,
-            &call,
-            &positions,
-            |any, positions, cancel| at_positions!(any, positions, (mesh, at) => mesh.nearest(at, cancel)),
-        )?;
-        Ok(column(py, nearest))
+        let nearest = self.answer(py, &call, &positions, |any, positions, cancel| {
+            one_for_each_point(any, values)?;
+            Result::Ok(at_positions!(any, positions, (mesh, at) => mesh.nearest(at, cancel)))
+        })?;
+        Ok(column(py, nearest?))
     }
 }
 
@@ -250,6 +250,8 @@ impl Tessellation {
 pub(crate) struct Values {
     tessellation: Py<Tessellation>,
     field: Field,
+    /// The number of rows of values.
+    count: usize,
     /// The values outside of the hull.
     outside: Vec<f64>,
     tolerance: f64,
@@ -269,9 +271,12 @@ impl Values {
         call: Call,
     ) -> PyResult<Self> {
         let values = values.as_array().to_owned();
-        let field =
-            tessellation.get().compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.field(values.view())))?;
-        Ok(Values { tessellation, field, outside, tolerance })
+        let count = values.nrows();
+        let field = tessellation.get().compute(py, &call, |any, _| {
+            one_for_each_point(any, count)?;
+            Result::Ok(of_dimension!(any, mesh => mesh.field(values.view())))
+        })?;
+        Ok(Values { tessellation, field: field?, count, outside, tolerance })
     }
 
     /// Values that are linear on each simplex, at positions of shape (q, d): an array of shape
@@ -283,11 +288,12 @@ impl Values {
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let values = self.tessellation.get().answer(py, &call, &positions, |any, positions, cancel| {
-            at_positions!(any, positions, (mesh, at) => {
+            one_for_each_point(any, self.count)?;
+            Result::Ok(at_positions!(any, positions, (mesh, at) => {
                 mesh.linear(at, &self.field, &self.outside, self.tolerance, cancel)
-            })
+            }))
         })?;
-        Ok(column(py, values))
+        Ok(column(py, values?))
     }
 
     /// Values by natural neighbors, at positions of shape (q, d): an array of shape (q * k,).
@@ -298,12 +304,26 @@ impl Values {
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let values = self.tessellation.get().answer(py, &call, &positions, |any, positions, cancel| {
-            at_positions!(any, positions, (mesh, at) => {
+            one_for_each_point(any, self.count)?;
+            Result::Ok(at_positions!(any, positions, (mesh, at) => {
                 mesh.natural(at, &self.field, &self.outside, self.tolerance, cancel)
-            })
+            }))
         })?;
-        Ok(column(py, values))
+        Ok(column(py, values?))
     }
+}
+
+/// Points may have been added since the values were given.
+///
+/// # Errors
+/// If there are more or fewer values than points.
+fn one_for_each_point(any: &Any, values: usize) -> Result<()> {
+    let points = of_dimension!(any, mesh => mesh.point_count());
+    if values == points {
+        return Ok(());
+    }
+    let error = Error::usage(format!("different number of values and points: {values} values, {points} points"));
+    Err(error.cure("give one value for each point; after `add_points`, make a new interpolator").into())
 }
 
 /// Returns the error of points that were refused; it names the first of them.
