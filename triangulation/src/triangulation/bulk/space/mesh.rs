@@ -123,7 +123,7 @@ fn four<T>(list: &mut [T], from: usize) -> Option<&mut [T; 4]> {
 
 impl<'a> Mesh<'a> {
     /// Returns the mesh of a positive cell and the infinite cells around it. The vertices are
-    /// points, by their ranks.
+    /// points, by their ranks, ascending: so what is close in space is close in memory.
     pub(super) fn new(source: Source<'a>, extent: Extent, ranks: &'a [u32], first: [u32; 4]) -> Self {
         let count = ranks.len();
         let mut corners: Vec<Corner> = Vec::with_capacity(count + 1);
@@ -166,9 +166,9 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Returns the cells, those of them that are not in use, and the points of the vertices.
-    pub(super) fn into_cells(self) -> (Vec<Cell>, Vec<u32>, &'a [u32]) {
-        (self.cells, self.unused, self.predicates.ranks)
+    /// Returns the cells, and those of them that are not in use.
+    pub(super) fn into_cells(self) -> (Vec<Cell>, Vec<u32>) {
+        (self.cells, self.unused)
     }
 
     /// Returns the cells that a point outside of the block may be in conflict with, if all vertices

@@ -127,8 +127,8 @@ fn triangulate(source: Source, grain: Grain) -> Option<Built> {
 
 /// Triangulates all points as one block.
 fn whole(source: Source, extent: Extent, grain: Grain) -> Option<Built> {
-    let mut ranks: Vec<u32> = (0..source.count as u32).collect();
-    let (cells, unused, _) = meshed(source, extent, &mut ranks, grain)?.into_cells();
+    let ranks: Vec<u32> = (0..source.count as u32).collect();
+    let (cells, unused) = meshed(source, extent, &ranks, grain)?.into_cells();
     merge::joined(source.count, vec![Part::of(cells, unused, &[], &ranks)])
 }
 
@@ -139,10 +139,10 @@ fn divided(source: Source, extent: Extent, grain: Grain) -> Option<Blocks> {
     if levels == 0 {
         return None;
     }
-    let mut ranks = order::sample(source.count);
+    let ranks = order::sample(source.count);
     let mut sites: Vec<[f64; 3]> = ranks.iter().map(|&rank| source.position(rank)).collect();
     let blocks = Blocks::of(&mut sites, levels, extent.frame)?;
-    let mesh = meshed(source, extent, &mut ranks, grain)?;
+    let mesh = meshed(source, extent, &ranks, grain)?;
     blocks.are_worth_it(source.count, mesh.spheres()).then_some(blocks)
 }
 
@@ -154,13 +154,13 @@ fn by_blocks(source: Source, extent: Extent, blocks: &Blocks, grain: Grain) -> O
         ranks[blocks.index_of(source.position(rank))].push(rank);
     }
     let parts: Vec<Option<Part>> = ranks
-        .par_iter_mut()
+        .par_iter()
         .zip(blocks.each().par_iter())
         .map(|(ranks, block)| by_block(source, extent, ranks, block, grain))
         .collect();
     let mut parts = parts.into_iter().collect::<Option<Vec<Part>>>()?;
-    let mut residual = merge::residual(&parts);
-    let (cells, unused, _) = meshed(source, extent, &mut residual, grain)?.into_cells();
+    let residual = merge::residual(&parts);
+    let (cells, unused) = meshed(source, extent, &residual, grain)?.into_cells();
     let covered = merge::covered(&parts, &cells, &residual)?;
     parts.push(Part::of(cells, unused, &covered, &residual));
     merge::joined(source.count, parts)
@@ -168,27 +168,20 @@ fn by_blocks(source: Source, extent: Extent, blocks: &Blocks, grain: Grain) -> O
 
 /// Triangulates the points of a block, and leaves out the cells that other points may be in
 /// conflict with.
-fn by_block<'a>(
-    source: Source<'a>,
-    extent: Extent,
-    ranks: &'a mut [u32],
-    block: &Block,
-    grain: Grain,
-) -> Option<Part<'a>> {
+fn by_block<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], block: &Block, grain: Grain) -> Option<Part<'a>> {
     let mesh = meshed(source, extent, ranks, grain)?;
     let open = mesh.open_cells(block);
-    let (cells, unused, ranks) = mesh.into_cells();
+    let (cells, unused) = mesh.into_cells();
     Some(Part::of(cells, unused, &open, ranks))
 }
 
-/// Returns the mesh of points; their ranks are given ascending, and brought into the order of
-/// insertion.
-fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a mut [u32], grain: Grain) -> Option<Mesh<'a>> {
-    order::into_rounds(ranks);
-    let first = first_cell(source, ranks)?;
+/// Returns the mesh of points, whose ranks are ascending. Its vertices are numbered like them.
+fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], grain: Grain) -> Option<Mesh<'a>> {
+    let mut order = order::rounds(ranks);
+    let first = first_cell(source, ranks, &mut order)?;
     let mut mesh = Mesh::new(source, extent, ranks, first);
-    for vertex in 4..ranks.len() as u32 {
-        if vertex % POLL == 0 && grain.stops() {
+    for (done, &vertex) in (4u32..).zip(&order[4..]) {
+        if done % POLL == 0 && grain.stops() {
             return None;
         }
         mesh.insert(vertex).ok()?;
@@ -196,12 +189,19 @@ fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a mut [u32], grain: G
     Some(mesh)
 }
 
-/// Moves the first four points that span the space to the front; returns them as a positive cell.
-fn first_cell(source: Source, ranks: &mut [u32]) -> Option<[u32; 4]> {
-    let third = (2..ranks.len()).find(|&i| (source.turn)([ranks[0], ranks[1], ranks[i]]) != Sign::Zero)?;
-    ranks.swap(2, third);
-    let orientation = |ranks: &[u32], i: usize| (source.orientation)([ranks[0], ranks[1], ranks[2], ranks[i]]);
-    let fourth = (3..ranks.len()).find(|&i| orientation(ranks, i) != Sign::Zero)?;
-    ranks.swap(3, fourth);
-    Some(if orientation(ranks, 3) == Sign::Positive { [0, 1, 2, 3] } else { [1, 0, 2, 3] })
+/// Moves the first four vertices that span the space to the front; returns them as a positive cell.
+fn first_cell(source: Source, ranks: &[u32], order: &mut [u32]) -> Option<[u32; 4]> {
+    let points =
+        |order: &[u32], i: usize| [order[0], order[1], order[2], order[i]].map(|vertex| ranks[vertex as usize]);
+    let turn = |order: &[u32], i: usize| {
+        let [a, b, _, c] = points(order, i);
+        (source.turn)([a, b, c])
+    };
+    let third = (2..order.len()).find(|&i| turn(order, i) != Sign::Zero)?;
+    order.swap(2, third);
+    let fourth = (3..order.len()).find(|&i| (source.orientation)(points(order, i)) != Sign::Zero)?;
+    order.swap(3, fourth);
+    let [a, b, c, d] = [order[0], order[1], order[2], order[3]];
+    let is_positive = (source.orientation)(points(order, 3)) == Sign::Positive;
+    Some(if is_positive { [a, b, c, d] } else { [b, a, c, d] })
 }

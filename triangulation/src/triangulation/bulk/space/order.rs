@@ -14,8 +14,8 @@ const FEW: usize = 1000;
 /// The number of points in a sample.
 const SAMPLE: usize = 2000;
 
-/// Brings ascending ranks into the order of insertion.
-pub(super) fn into_rounds(ranks: &mut [u32]) {
+/// Returns the order in which points are inserted whose ranks are ascending: their indices.
+pub(super) fn rounds(ranks: &[u32]) -> Vec<u32> {
     let last = (0..).find(|round| ranks.len() >> (RATIO * round) <= FEW).unwrap_or(0);
     let round = |rank: u32| (last - (mixed(rank).trailing_zeros() / RATIO).min(last)) as usize;
     let mut starts = vec![0; last as usize + 2];
@@ -25,13 +25,13 @@ pub(super) fn into_rounds(ranks: &mut [u32]) {
     }
     let mut order = vec![0; ranks.len()];
     let mut next = starts.clone();
-    for &rank in &*ranks {
+    for (index, &rank) in (0u32..).zip(ranks) {
         let next = &mut next[round(rank)];
-        order[*next] = rank;
+        order[*next] = index;
         *next += 1;
     }
     starts.windows(2).skip(1).step_by(2).for_each(|ends| order[ends[0]..ends[1]].reverse());
-    ranks.copy_from_slice(&order);
+    order
 }
 
 /// Returns some of the numbers `0..count`, ascending.
