@@ -22,25 +22,39 @@ pub(crate) const POLL: Duration = Duration::from_millis(50);
 #[derive(FromPyObject)]
 pub(crate) struct Call(Option<usize>, Option<Py<PyAny>>);
 
-/// So many pools are kept, those used last; the threads of others end with their last call.
-const KEPT: usize = 4;
-
-/// The pools of this process with their numbers of threads, that used last at the end.
+/// The pools of this process, that used last at the end.
 struct Pools {
     process: u32,
-    kept: Vec<(usize, Arc<ThreadPool>)>,
+    kept: Vec<Pool>,
+}
+
+struct Pool {
+    threads: usize,
+    /// Calls have it, too.
+    pool: Arc<ThreadPool>,
+}
+
+impl Pool {
+    /// The number of calls that use it.
+    fn calls(&self) -> usize {
+        Arc::strong_count(&self.pool) - 1
+    }
 }
 
 /// Locked only while the interpreter's lock is held, so that no other thread has it when the
 /// process forks.
 static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, kept: Vec::new() });
 
-/// Returns the pool with this number of threads; it is started when it is first used in a process.
+/// Returns a pool with this number of threads.
+///
+/// Calls at the same time have pools of their own as long as there are cores for all their threads;
+/// further ones share. Pools without calls are kept, the threads of others end with the last call.
 fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
-    let size = match threads {
+    let cores = available_parallelism().map_or(1, usize::from);
+    let threads = match threads {
         Some(0) => return Err(errors::usage("threads is 0", "0", "use 1 or more, or None for one per core")),
-        Some(size) => size,
-        None => available_parallelism().map_or(1, usize::from),
+        Some(threads) => threads,
+        None => cores,
     };
     let mut pools = locked(&POOLS);
     if pools.process != std::process::id() {
@@ -48,21 +62,27 @@ fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
         std::mem::forget(std::mem::take(&mut pools.kept));
         pools.process = std::process::id();
     }
-    let pool = match pools.kept.iter().position(|(of, _)| *of == size) {
-        Some(known) => pools.kept.remove(known).1,
-        None => started(size)?,
+    let busy: usize = pools.kept.iter().filter(|kept| kept.calls() > 0).map(|kept| kept.threads).sum();
+    let of_size = pools.kept.iter().enumerate().filter(|(_, kept)| kept.threads == threads);
+    let least_used = of_size.min_by_key(|(_, kept)| kept.calls()).map(|(i, kept)| (i, kept.calls()));
+    let chosen = match least_used {
+        Some((known, calls)) if calls == 0 || busy + threads > cores => pools.kept.remove(known),
+        _ => started(threads)?,
     };
-    if pools.kept.len() == KEPT {
-        pools.kept.remove(0);
+    while pools.kept.iter().filter(|kept| kept.calls() == 0).map(|kept| kept.threads).sum::<usize>() > 2 * cores {
+        let idle = pools.kept.iter().position(|kept| kept.calls() == 0);
+        idle.map(|idle| pools.kept.remove(idle));
     }
-    pools.kept.push((size, Arc::clone(&pool)));
+    let pool = Arc::clone(&chosen.pool);
+    pools.kept.push(chosen);
     Ok(pool)
 }
 
-fn started(size: usize) -> PyResult<Arc<ThreadPool>> {
+fn started(threads: usize) -> PyResult<Pool> {
     let name = |i: usize| format!("breakline-{i}");
-    let pool = ThreadPoolBuilder::new().num_threads(size).thread_name(name).build();
-    Ok(Arc::new(pool.map_err(|e| errors::limit(&format!("{size} threads cannot be started: {e}")))?))
+    let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(name).build();
+    let pool = pool.map_err(|e| errors::limit(&format!("{threads} threads cannot be started: {e}")))?;
+    Ok(Pool { threads, pool: Arc::new(pool) })
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

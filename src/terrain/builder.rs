@@ -88,6 +88,9 @@ pub struct TinBuilder {
     boundaries: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
+/// The number of vertices that are merged between two looks at the flag that cancels the work.
+const POLL: usize = 1 << 16;
+
 /// Replaces -0 by 0: sites are compared bit by bit when sorted, and neither zero is the lower one.
 fn positive_zero([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, y, z].map(unsigned_zero)
@@ -248,7 +251,7 @@ impl TinBuilder {
         report.points_replaced = self.replaced_count;
         let walls = self.walls();
         // One vertex per site, in spatial order.
-        let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report)?;
+        let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report, &go_on)?;
         go_on()?;
         let lines = lines_of(&line_vertices, &self.line_ends);
         let (mut triangulation, renumbered) =
@@ -352,12 +355,16 @@ impl TinBuilder {
     }
 
     /// Merges the points and vertices that share a site, by the rules. Leaves `self.points` empty.
-    fn merge(&mut self, report: &mut TinReport) -> Result<Sites> {
+    ///
+    /// # Errors
+    /// If there is no memory for the vertices, and that of `go_on`, which is asked now and then.
+    fn merge(&mut self, report: &mut TinReport, go_on: &dyn Fn() -> Result<()>) -> Result<Sites> {
         let mut all = std::mem::take(&mut self.points);
         let lines_from = all.len();
         all.reserve_exact(self.line_points.len());
         all.append(&mut self.line_points);
         let order = spatial_order(all.len(), |i| [all[i][0], all[i][1]]).map_err(|e| Error::limit(e.to_string()))?;
+        go_on()?;
         let site = |i: u32| [all[i as usize][0], all[i as usize][1]];
         let mut vertices = Vec::new();
         if vertices.try_reserve_exact(all.len()).is_err() {
@@ -367,6 +374,9 @@ impl TinBuilder {
         let mut disputed = Vec::new();
         let (mut heights, mut first_lines) = (Vec::new(), Vec::new());
         for group in order.chunk_by(|&i, &j| site(i) == site(j)) {
+            if vertices.len() % POLL == 0 {
+                go_on()?;
+            }
             if let &[only] = group
                 && (only as usize) < lines_from
             {
