@@ -11,6 +11,7 @@
 //! | a DEM | contours | [`GridSurface`], a surface over its cells |
 //! | a DEM | shaded relief | [`Hillshade`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
+//! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | any surface | a check that it is sound | [`surface_flaws`], [`shape_flaws`]; for a TIN also [`Tin::check`] |
 //!
 //! A surface is anything that implements [`Surface`](crate::data::Surface): a [`Tin`], a
@@ -54,6 +55,7 @@ mod rasterize;
 mod regions;
 mod selection;
 mod soundness;
+pub mod tiles;
 mod tin;
 mod tin_report;
 mod window;

@@ -1,0 +1,129 @@
+//! A closed disk that contains the circumscribed one of a triangle, whatever rounding does.
+
+use super::Tile;
+
+/// The unit roundoff of an `f64`.
+const U: f64 = f64::EPSILON / 2.0;
+
+/// Twice the area of a triangle, below which nothing is concluded. Coordinates are zero or at least
+/// [`RANGE.min`](crate::triangulation::kernel::RANGE), so that differences are zero or above
+/// 2^-214, and nothing that is computed above this limit underflows.
+const LEAST_AREA: f64 = 1e-120;
+
+/// A closed disk.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Disk {
+    center: [f64; 2],
+    radius: f64,
+}
+
+impl Disk {
+    /// Returns a disk that contains the closed circumscribed disk of a triangle, whose corners are
+    /// counter-clockwise. `None` if rounding leaves its size in doubt: the triangle is a sliver.
+    ///
+    /// Let `b` and `c` be the vectors from the first corner to the others. The center lies at `n /
+    /// 2d` from it, where `d = b x c` and `n = (|b|^2 c - |c|^2 b)` turned by a right angle.
+    ///
+    /// *Errors.* A difference of coordinates has one rounding. On the path of each product of `d`
+    /// there are 3, and one of their difference; of each product of `n` 6, and one. Hence the
+    /// errors of both are below `16 U` times the sum of the absolute products (Higham 2002, lemma
+    /// 3.1), which covers the roundings of the bound, too. With `D` the true value of `d` and `E`
+    /// the error of `n`,
+    ///
+    /// ```text
+    ///   |n / 2d - N / 2D|  <=  (E + 2 |n / 2d| |d - D|) / 2D
+    /// ```
+    ///
+    /// The radius is the length of the vector to the center. Both errors of the center are added to
+    /// it twice: once for that length, once because the disk lies around the rounded center.
+    pub(super) fn around([a, b, c]: [[f64; 2]; 3]) -> Option<Self> {
+        let [b, c] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+        let products = [b[0] * c[1], b[1] * c[0]];
+        let area = products[0] - products[1];
+        let doubt = 16.0 * U * (products[0].abs() + products[1].abs());
+        let least = area - doubt;
+        // Not a number is in doubt, too.
+        if least.is_nan() || least <= LEAST_AREA {
+            return None;
+        }
+        let [b2, c2] = [b, c].map(|[x, y]| x * x + y * y);
+        // Along x and along y.
+        let vector = [[b2 * c[1], c2 * b[1]], [c2 * b[0], b2 * c[0]]];
+        let offset = vector.map(|[p, q]| (p - q) / (2.0 * area));
+        let mut error = 0.0;
+        for (offset, [p, q]) in offset.iter().zip(vector) {
+            let of_quotient = (16.0 * U * (p.abs() + q.abs()) + 2.0 * offset.abs() * doubt) / (2.0 * least);
+            error += of_quotient * (1.0 + 8.0 * U) + 8.0 * U * offset.abs();
+        }
+        let center = [a[0] + offset[0], a[1] + offset[1]];
+        let rounded = 2.0 * U * (center[0].abs() + center[1].abs());
+        let length = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+        let radius = (length * (1.0 + 8.0 * U) + 2.0 * error + rounded) * (1.0 + 8.0 * U);
+        radius.is_finite().then_some(Disk { center, radius })
+    }
+
+    /// Returns true if no point outside of a tile is in the disk.
+    pub(super) fn is_within(&self, tile: &Tile) -> bool {
+        (0..2).all(|axis| {
+            let [low, high] = [self.center[axis] - self.radius, self.center[axis] + self.radius];
+            tile.min[axis] <= low.next_down() && high.next_up() < tile.max[axis]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::triangulation::kernel::{Adaptive, InCircle, Kernel, Orientation2};
+    use crate::triangulation::num::Sign;
+    use testkit::random::Random;
+
+    /// Points of the circle, rounded, to both sides of it, and slivers: what is in the circle, by
+    /// exact arithmetic, is in the disk.
+    #[test]
+    fn what_is_in_the_circle_is_in_the_disk() {
+        let mut random = Random(5);
+        let (mut slivers, mut tight) = (0, 0);
+        for _ in 0..5_000 {
+            let away = [0.0, 1e3, 1e7][random.index(3)];
+            let flat = [1.0, 1e-3, 1e-9, 1e-15][random.index(4)];
+            // Near a slanted line.
+            let mut corner = || {
+                let along = random.unit();
+                [away + along, away + 0.3 * along + flat * random.unit()]
+            };
+            let corners = [corner(), corner(), corner()];
+            if Adaptive::sign(&Orientation2(corners)) != Sign::Positive {
+                continue;
+            }
+            let Some(disk) = Disk::around(corners) else {
+                slivers += 1;
+                continue;
+            };
+            for k in 0..16 {
+                let angle = f64::from(k) * 0.4;
+                let on = |stretch: f64| {
+                    let (sin, cos) = angle.sin_cos();
+                    [disk.center[0] + stretch * disk.radius * cos, disk.center[1] + stretch * disk.radius * sin]
+                };
+                for stretch in [0.5, 0.999, 1.0, 1.0 + 1e-12, 1.001] {
+                    let p = on(stretch);
+                    let [a, b, c] = corners;
+                    if Adaptive::sign(&InCircle([a, b, c, p])) == Sign::Negative {
+                        continue;
+                    }
+                    tight += usize::from(stretch > 0.9);
+                    // Tiles that lack the point by one step.
+                    let beside = [0, 1].map(|axis| {
+                        let (mut left, mut right) = (Tile::PLANE, Tile::PLANE);
+                        left.max[axis] = p[axis];
+                        right.min[axis] = p[axis].next_up();
+                        [left, right]
+                    });
+                    assert!(beside.iter().flatten().all(|tile| !disk.is_within(tile)), "{corners:?} {p:?}");
+                }
+            }
+        }
+        assert!(slivers > 25 && tight > 10_000, "{slivers} {tight}");
+    }
+}

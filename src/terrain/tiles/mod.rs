@@ -1,0 +1,60 @@
+//! The triangulation of more points than fit into memory, from tiles, triangle for triangle.
+//!
+//! The triangulation is a function of the points alone. So it can be computed in parts: a map over
+//! tiles and a reduction over a tree of them, in which every point is read once and no tile needs
+//! the points around it.
+//!
+//! 1. A [`leaf`] triangulates the points of a tile. A triangle whose closed circumscribed disk
+//!    lies within the tile is *final*: no point of another tile can be in it.
+//! 2. What may still change is the [`Residual`]: the vertices with a triangle that is not final,
+//!    and the *walls*, the edges between triangles that are final and others.
+//! 3. A [`merge`] triangulates the vertices of several residuals, takes away what lies on the final
+//!    side of their walls, and goes on as a leaf does, with the union of the tiles.
+//! 4. At the root all points are known, and every triangle is final.
+//!
+//! *Why.* A triangle is in the triangulation of all points if and only if no other point is in
+//! conflict with it, and a point in conflict lies in the closed disk, ties included. A vertex is
+//! left out only if its whole star is final: no missing triangle uses it. So each missing triangle
+//! is one of the triangulation of the residual vertices, and so are the walls; of that
+//! triangulation, exactly what no wall closes off is missing. No triangle is found twice.
+//!
+//! Tasks are pure functions: they may run anywhere, in any order, and be repeated. The disks are
+//! computed with bounds of their errors; where these leave a doubt, a triangle goes up.
+//!
+//! Sources: Isenburg, Liu, Shewchuk and Snoeyink, *Streaming computation of Delaunay
+//! triangulations* (2006); Caraffa, Memari, Yirci and Bredif, *Tile & merge* (2019).
+
+mod disk;
+mod node;
+#[cfg(test)]
+mod tests;
+
+pub use node::{Residual, TileVertex, leaf, merge};
+
+/// A rectangle in plan that owns the points in it: each axis includes its lowest coordinate and
+/// excludes its highest.
+///
+/// Tiles at the rim of the data should be infinite toward the outside: else all triangles at the
+/// rim wait for points beyond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tile {
+    /// The lowest coordinates, included.
+    pub min: [f64; 2],
+    /// The highest coordinates, excluded.
+    pub max: [f64; 2],
+}
+
+impl Tile {
+    /// All positions: the tile of the root.
+    pub const PLANE: Self = Tile { min: [f64::NEG_INFINITY; 2], max: [f64::INFINITY; 2] };
+
+    /// Returns true if a position is in the tile.
+    pub fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        self.min[0] <= x && x < self.max[0] && self.min[1] <= y && y < self.max[1]
+    }
+
+    /// Returns true if every position is in the tile.
+    pub fn is_plane(&self) -> bool {
+        *self == Tile::PLANE
+    }
+}

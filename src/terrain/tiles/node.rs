@@ -1,0 +1,176 @@
+//! One task: points or residuals in, final triangles and a residual out.
+
+use super::Tile;
+use super::disk::Disk;
+use crate::error::{Error, Result};
+use crate::triangulation::geometry::Plane;
+use crate::triangulation::tds::{CellId, VertexId};
+use crate::triangulation::{Delaunay2, InputError};
+
+/// A vertex, with numbers that stand for it everywhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TileVertex {
+    /// The number of its tile.
+    pub tile: u32,
+    /// The index of its point among those of the tile.
+    pub number: u32,
+    /// Its position, with its height.
+    pub position: [f64; 3],
+}
+
+/// What may still change of a part of the triangulation: see [the module](super).
+///
+/// A tile of `n` evenly spread points has about `5.6 sqrt(n)` vertices here.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Residual {
+    /// The vertices of triangles that are not final.
+    pub vertices: Vec<TileVertex>,
+    /// The edges, as pairs of indices of vertices, on whose left side all triangles are final.
+    pub walls: Vec<[u32; 2]>,
+}
+
+/// Triangulates the points of a tile. Calls `emit` for each final triangle, with its corners
+/// counter-clockwise, and returns what may still change.
+///
+/// Of several points at one site the first counts.
+///
+/// # Errors
+/// If a point lies outside of the tile, whose extent is then wrong, or has a
+/// coordinate that is not finite or outside of the range of the arithmetic.
+///
+/// # Complexity
+/// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points).
+pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
+    if let Some(at) = points.iter().position(|&[x, y, _]| !tile.holds([x, y])) {
+        let ([x, y, _], Tile { min, max }) = (points[at], tile);
+        return Err(Error::format(format!(
+            "point {at} of tile {number} is at {x} {y}, expected x from {} to below {}, y from {} to below {}",
+            min[0], max[0], min[1], max[1]
+        ))
+        .cure("the extent of the tile is wrong: take it from the points, not from the header"));
+    }
+    let vertex = |(at, &position): (usize, &[f64; 3])| TileVertex { tile: number, number: at as u32, position };
+    let vertices = points.iter().enumerate().map(vertex).collect();
+    reduce(tile, Residual { vertices, walls: Vec::new() }, emit)
+}
+
+/// Merges the residuals of parts of a tile. Calls `emit` for each triangle that is final now, with
+/// its corners counter-clockwise, and returns what may still change.
+///
+/// The tile is the union of those of the parts; with [`Tile::PLANE`] all triangles are final, and
+/// nothing is left.
+///
+/// # Errors
+/// If the residuals contradict each other: they are not those of parts of one triangulation.
+///
+/// # Complexity That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points) for
+/// the vertices of the residuals.
+pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
+    let mut all = Residual::default();
+    for part in parts {
+        let first = all.vertices.len() as u32;
+        all.vertices.extend_from_slice(&part.vertices);
+        all.walls.extend(part.walls.iter().map(|wall| wall.map(|end| end + first)));
+    }
+    reduce(tile, all, emit)
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    Open,
+    /// Its triangle, or others in its place, were final before.
+    Covered,
+    Final,
+}
+
+fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
+    let sites: Vec<[f64; 2]> = input.vertices.iter().map(|vertex| [vertex.position[0], vertex.position[1]]).collect();
+    let (t, ids) = Delaunay2::from_points(Plane::default(), &sites).map_err(|error| refused(error, &input))?;
+    if t.dimension() < 2 {
+        // Nothing is final before there is a triangle.
+        return Ok(if tile.is_plane() { Residual::default() } else { input });
+    }
+    let mut input_of = vec![u32::MAX; t.tds().vertex_slots()];
+    for (at, id) in (0..).zip(&ids) {
+        let first = &mut input_of[id.index()];
+        *first = (*first).min(at);
+    }
+    let vertex = |id: VertexId| input.vertices[input_of[id.index()] as usize];
+
+    let mut states = covered(&t, &ids, &input)?;
+    for cell in t.finite_cells() {
+        if states[cell.index()] == State::Open {
+            let corners = t.tds().corners(cell).map(vertex);
+            let sites = corners.map(|corner| [corner.position[0], corner.position[1]]);
+            if tile.is_plane() || Disk::around(sites).is_some_and(|disk| disk.is_within(tile)) {
+                states[cell.index()] = State::Final;
+                emit(corners);
+            }
+        }
+    }
+    Ok(if tile.is_plane() { Residual::default() } else { rest(&t, &states, &input, &input_of) })
+}
+
+/// Marks the cells on the final sides of walls, by a flood that walls stop.
+fn covered(t: &Delaunay2, ids: &[VertexId], input: &Residual) -> Result<Vec<State>> {
+    let mut states = vec![State::Open; t.tds().cell_slots()];
+    let mut is_wall = vec![[false; 3]; if input.walls.is_empty() { 0 } else { states.len() }];
+    let mut flood: Vec<CellId> = Vec::new();
+    for wall in &input.walls {
+        let [from, to] = wall.map(|end| ids[end as usize]);
+        let Some((cell, i)) = t.tds().edge(from, to) else {
+            let [a, b] = wall.map(|end| input.vertices[end as usize].position);
+            return Err(Error::format(format!("no edge joins {a:?} and {b:?}, as a part of the triangulation has it"))
+                .cure("the parts are of different points, or a tile's extent is wrong"));
+        };
+        let beyond = t.tds().neighbor(cell, i);
+        is_wall[cell.index()][i] = true;
+        is_wall[beyond.index()][t.tds().index_of_neighbor(beyond, cell)] = true;
+        flood.push(cell);
+    }
+    while let Some(cell) = flood.pop() {
+        if std::mem::replace(&mut states[cell.index()], State::Covered) == State::Covered {
+            continue;
+        }
+        let open = (0..3).filter(|&i| !is_wall[cell.index()][i]).map(|i| t.tds().neighbor(cell, i));
+        flood.extend(open);
+    }
+    if let Some(cell) = t.tds().cells().find(|&cell| t.tds().is_infinite(cell) && states[cell.index()] != State::Open) {
+        let at = t.tds().corners(cell).iter().find(|&&v| v != VertexId::INFINITE).map(|&v| *t.point(v));
+        return Err(Error::format(format!("the walls around final triangles do not close, at {at:?}"))
+            .cure("the parts are of different points, or a tile's extent is wrong"));
+    }
+    Ok(states)
+}
+
+/// Returns the vertices of open cells, and the edges between them and cells that are final.
+fn rest(t: &Delaunay2, states: &[State], input: &Residual, input_of: &[u32]) -> Residual {
+    let mut number_of = vec![u32::MAX; t.tds().vertex_slots()];
+    let mut rest = Residual::default();
+    let is_open = |cell: CellId| states[cell.index()] == State::Open;
+    for cell in t.tds().cells().filter(|&cell| is_open(cell)) {
+        for &id in t.tds().corners(cell).iter().filter(|&&id| id != VertexId::INFINITE) {
+            if number_of[id.index()] == u32::MAX {
+                number_of[id.index()] = rest.vertices.len() as u32;
+                rest.vertices.push(input.vertices[input_of[id.index()] as usize]);
+            }
+        }
+        for i in (0..3).filter(|&i| !is_open(t.tds().neighbor(cell, i))) {
+            // Seen from beyond, in the other direction.
+            let [to, from] = t.tds().edge_ends(cell, i).map(|id| number_of[id.index()]);
+            rest.walls.push([from, to]);
+        }
+    }
+    rest
+}
+
+#[cold]
+fn refused(error: InputError, input: &Residual) -> Error {
+    match error {
+        InputError::Coordinate(at) => {
+            super::super::admitted::refused(input.vertices[at].position).at(format!("point {at}"))
+        }
+        error => Error::limit(error.to_string()),
+    }
+}
