@@ -6,6 +6,8 @@ use crate::data::Surface;
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::ops::Range;
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// The number of faces of a stretch.
 const STRETCH: u32 = 1 << 15;
@@ -53,26 +55,55 @@ pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec
     counts
 }
 
-/// Returns the arcs of some levels, each with its level, in the order of the faces.
-pub(super) fn arcs<S: Surface + ?Sized>(
+/// The arcs of each stretch, with their levels, in the order of the faces.
+pub(super) type Found = Vec<Vec<(usize, ContourArc)>>;
+
+/// Returns the arcs of some levels.
+pub(super) fn arcs<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, band: Range<usize>) -> Found {
+    let of_stretch = |numbers: Range<u32>| arcs_of_stretch(surface, index, band.clone(), numbers, |_| true);
+    stretches(surface).into_par_iter().map(of_stretch).collect()
+}
+
+/// Returns the arcs of all levels. `None` if there may be more than `most`.
+pub(super) fn few_arcs<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, most: usize) -> Option<Found> {
+    let total = AtomicUsize::new(0);
+    let of_stretch = |numbers: Range<u32>| {
+        let fits = |more: usize| total.fetch_add(more, Relaxed) + more <= most;
+        arcs_of_stretch(surface, index, 0..index.levels().len(), numbers, fits)
+    };
+    let mut found = Vec::new();
+    for some in stretches(surface).chunks(WAITING) {
+        found.par_extend(some.par_iter().cloned().map(of_stretch));
+        if total.load(Relaxed) > most {
+            return None;
+        }
+    }
+    Some(found)
+}
+
+/// Returns the arcs of a stretch, except for those of faces whose largest number of arcs does not
+/// fit.
+fn arcs_of_stretch<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
     band: Range<usize>,
-) -> Vec<Vec<(usize, ContourArc)>> {
-    let of_stretch = |numbers: Range<u32>| {
-        let mut arcs = Vec::new();
-        faces_at(surface, index, band.clone(), numbers, |face, heights, levels| {
-            let Crossed { across, along } = Crossed::of(heights, levels, index);
-            let highest = across.end;
-            arcs.extend(across.map(|level| (level, ContourArc::Across(face))));
-            if along {
-                let cut = Cut { surface, level: index.levels()[highest] };
-                arcs.extend(cut.shore(face).map(|arc| (highest, arc)));
-            }
-        });
-        arcs
-    };
-    stretches(surface).into_par_iter().map(of_stretch).collect()
+    numbers: Range<u32>,
+    fits: impl Fn(usize) -> bool,
+) -> Vec<(usize, ContourArc)> {
+    let mut arcs = Vec::new();
+    faces_at(surface, index, band, numbers, |face, heights, levels| {
+        let Crossed { across, along } = Crossed::of(heights, levels, index);
+        if !fits(across.len() + usize::from(along)) {
+            return;
+        }
+        let highest = across.end;
+        arcs.extend(across.map(|level| (level, ContourArc::Across(face))));
+        if along {
+            let cut = Cut { surface, level: index.levels()[highest] };
+            arcs.extend(cut.shore(face).map(|arc| (highest, arc)));
+        }
+    });
+    arcs
 }
 
 /// The levels that have an arc at a face.

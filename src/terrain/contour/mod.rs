@@ -85,6 +85,7 @@ use super::Levels;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
 use cut::{ContourArc, Cut};
+use find::Found;
 use index::LevelIndex;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -99,18 +100,25 @@ use trace::{Done, Traces};
 /// # Errors
 /// If more than [`MAX_LEVELS`](super::MAX_LEVELS) levels lie within the heights of the surface.
 ///
-/// # Complexity
-/// Linear in faces and arcs, except for sorting the lines. There are two passes over the faces at
-/// first, and one more for every two million arcs (or for one level with more), which are drawn
-/// together when the iterator needs them. A face that no level meets costs a comparison; in a
-/// raster, a quarter of one. Memory: 24 bytes per arc and 16 bytes per point, of those drawn
-/// together; 24 bytes per level; one bit per face for each thread. Faces are scanned in parallel,
-/// and levels are drawn in parallel.
+/// # Complexity Linear in faces and arcs, except for sorting the lines. There are two passes over
+/// the faces at first. If there are more than two million arcs, there is a third, and one more for
+/// every two million (or for one level with more), which are drawn together when the iterator needs
+/// them. A face that no level meets costs a comparison; in a raster, a quarter of one. Memory: 24
+/// bytes per arc and 16 bytes per point, of those drawn together; 24 bytes per level; one bit per
+/// face for each thread. Faces are scanned in parallel, and levels are drawn in parallel.
 pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Result<Contours<'a, S>> {
     let [low, high] = find::height_range(surface);
     let index = LevelIndex::new(levels.within(low, high)?);
-    let counts = find::count(surface, &index);
-    Ok(Contours { surface, index, counts, next_level: 0, ready: Vec::new().into_iter() })
+    let found = find::few_arcs(surface, &index, BAND);
+    let counts = match &found {
+        Some(found) => {
+            let mut counts = vec![0; index.levels().len()];
+            found.iter().flatten().for_each(|&(level, _)| counts[level] += 1);
+            counts
+        }
+        None => find::count(surface, &index),
+    };
+    Ok(Contours { surface, index, counts, found, next_level: 0, ready: Vec::new().into_iter() })
 }
 
 /// An iterator over the contours of a surface, returned by [`contours`].
@@ -120,6 +128,8 @@ pub struct Contours<'a, S: ?Sized> {
     index: LevelIndex,
     /// The number of arcs of each level.
     counts: Vec<usize>,
+    /// All arcs, if they are few, until they are drawn.
+    found: Option<Found>,
     next_level: usize,
     ready: std::vec::IntoIter<ContourLine>,
 }
@@ -163,7 +173,7 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
         let band = first..first + self.counts[first..].iter().take_while(fits).count();
         self.next_level = band.end;
         // A counting sort of the arcs by level.
-        let found = find::arcs(self.surface, &self.index, band.clone());
+        let found = self.found.take().unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
         let mut starts = vec![0; band.len() + 1];
         found.iter().flatten().for_each(|(level, _)| starts[level - first + 1] += 1);
         for i in 1..starts.len() {
