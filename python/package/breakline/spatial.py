@@ -179,8 +179,7 @@ class Delaunay:
         if len(points) == 0:
             raise usage("no points given", cure="pass at least one more point than there are dimensions")
         core = Tessellation(points, (self.threads, None))
-        _, simplices = core.counts()
-        if simplices == 0:
+        if core.has_no_simplices():
             flat = "line" if points.shape[1] == 2 else "plane"
             raise usage(
                 f"all {len(points)} points lie on one {flat}: there are no simplices",
@@ -224,7 +223,7 @@ class Delaunay:
 
     @property
     def nsimplex(self) -> int:
-        return self._core.counts()[1]
+        return self._core.simplex_count()
 
     @property
     def min_bound(self) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 //! given, simplices without infinite ones.
 
 use std::convert::Infallible;
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
 use breakline::triangulation::geometry::{Coordinates, Metric};
@@ -27,6 +28,14 @@ pub(super) trait Dimension<const N: usize, const D: usize>:
     fn inverse(rows: [[f64; D]; D]) -> Option<[[f64; D]; D]>;
 }
 
+/// The numbers of simplices.
+struct Numbers {
+    /// The cell of each simplex.
+    cells: Vec<CellId>,
+    /// The simplex of each cell; [`NONE`] for an infinite one.
+    simplex_of: Vec<i32>,
+}
+
 /// A Delaunay triangulation of input points. Each vertex is named by the first point at its site.
 pub(super) struct Mesh<G: Dimension<N, D>, const N: usize, const D: usize> {
     pub(super) t: Delaunay<G, N>,
@@ -36,10 +45,8 @@ pub(super) struct Mesh<G: Dimension<N, D>, const N: usize, const D: usize> {
     pub(super) point_of: Vec<i32>,
     /// The other points at vertices, in order.
     repeated: Vec<(i32, VertexId)>,
-    /// The cell of each simplex.
-    cells: Vec<CellId>,
-    /// The simplex of each cell; [`NONE`] for an infinite one.
-    simplex_of: Vec<i32>,
+    /// Made when first asked for: not all users ask.
+    numbers: OnceLock<Numbers>,
     /// The bounding box of the points: the smallest coordinates, then the largest.
     pub(super) bounds: [[f64; D]; 2],
 }
@@ -54,7 +61,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         let (t, vertices) = Delaunay::from_points_unless(G::default(), points, cancel)?;
         let bounds = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
         let (point_of, repeated) = (Vec::new(), Vec::new());
-        let mut mesh = Mesh { t, count: 0, point_of, repeated, cells: Vec::new(), simplex_of: Vec::new(), bounds };
+        let mut mesh = Mesh { t, count: 0, point_of, repeated, numbers: OnceLock::new(), bounds };
         mesh.adopt(points, &vertices);
         Ok(mesh)
     }
@@ -70,7 +77,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         Ok(())
     }
 
-    /// Numbers new points, whose vertices are given, and all simplices.
+    /// Numbers new points, whose vertices are given.
     fn adopt(&mut self, points: &[[f64; D]], vertices: &[VertexId]) {
         let before = self.count as i32;
         self.count += points.len();
@@ -90,15 +97,24 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 high[axis] = high[axis].max(p[axis]);
             }
         }
-        self.cells.clear();
-        if self.t.dimension() == D as i32 {
-            self.cells.extend(self.t.finite_cells());
-        }
-        self.simplex_of.clear();
-        self.simplex_of.resize(self.t.tds().cell_slots(), NONE);
-        for (simplex, cell) in (0..).zip(&self.cells) {
-            self.simplex_of[cell.index()] = simplex;
-        }
+        self.numbers = OnceLock::new();
+    }
+
+    /// Waits for nothing while it makes them, so that threads of a pool may ask.
+    fn numbers(&self) -> &Numbers {
+        self.numbers.get_or_init(|| {
+            let cells: Vec<CellId> = if self.has_no_simplices() { Vec::new() } else { self.t.finite_cells().collect() };
+            let mut simplex_of = vec![NONE; self.t.tds().cell_slots()];
+            for (simplex, cell) in (0..).zip(&cells) {
+                simplex_of[cell.index()] = simplex;
+            }
+            Numbers { cells, simplex_of }
+        })
+    }
+
+    /// Returns true if the points do not span the plane or the space.
+    pub(super) fn has_no_simplices(&self) -> bool {
+        self.t.dimension() < D as i32
     }
 
     /// The number of input points.
@@ -108,12 +124,12 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
 
     /// The number of simplices; 0 if the points do not span the plane or the space.
     pub(super) fn simplex_count(&self) -> usize {
-        self.cells.len()
+        self.numbers().cells.len()
     }
 
     /// Returns the simplex of a finite cell.
     pub(super) fn simplex(&self, cell: CellId) -> i32 {
-        self.simplex_of[cell.index()]
+        self.numbers().simplex_of[cell.index()]
     }
 
     /// Returns the corners of all simplices, as points.
@@ -144,14 +160,14 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     }
 
     fn of_cells<T: Send>(&self, value: impl Fn(CellId) -> T + Sync) -> Vec<T> {
-        self.cells.par_iter().with_min_len(CHUNK).map(|&cell| value(cell)).collect()
+        self.numbers().cells.par_iter().with_min_len(CHUNK).map(|&cell| value(cell)).collect()
     }
 
     /// Returns the facets of the convex hull, as points: the corners of a simplex without one of
     /// them, in their order.
     pub(super) fn hull(&self) -> Vec<[i32; D]> {
         let mut facets = Vec::new();
-        for &cell in &self.cells {
+        for &cell in &self.numbers().cells {
             for k in 0..N {
                 if self.simplex(self.t.tds().neighbor(cell, k)) == NONE {
                     let corner = |j: usize| self.t.tds().vertex(cell, if j < k { j } else { j + 1 });
@@ -184,7 +200,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
 
     fn simplices_at(&self) -> Vec<i32> {
         let mut at = vec![NONE; self.point_count()];
-        for (simplex, &cell) in self.cells.iter().enumerate().rev() {
+        for (simplex, &cell) in self.numbers().cells.iter().enumerate().rev() {
             for v in self.t.tds().corners(cell) {
                 at[self.point_of[v.index()] as usize] = simplex as i32;
             }

@@ -152,11 +152,14 @@ impl Tessellation {
         })
     }
 
-    /// The numbers of points and of simplices; there are none of these if the points do not span
-    /// the plane or the space.
-    fn counts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
-        let counts = || of_dimension!(&*self.read(), mesh => (mesh.point_count(), mesh.simplex_count()));
-        work::short(py, || Result::Ok(counts()))
+    /// The number of simplices; 0 if the points do not span the plane or the space.
+    fn simplex_count(&self, py: Python<'_>) -> PyResult<usize> {
+        work::short(py, || Result::Ok(of_dimension!(&*self.read(), mesh => mesh.simplex_count())))
+    }
+
+    /// True if the points do not span the plane or the space.
+    fn has_no_simplices(&self, py: Python<'_>) -> PyResult<bool> {
+        work::short(py, || Result::Ok(of_dimension!(&*self.read(), mesh => mesh.has_no_simplices())))
     }
 
     /// The corners of simplices and their neighbors: two arrays of shape (m, d + 1).
