@@ -113,6 +113,22 @@ fn comments_are_no_wider_than_a_hundred() {
     assert!(faults.is_empty(), "comments wider than {WIDTH}:\n{}", faults.join("\n"));
 }
 
+/// A heading in a comment that goes on in the same line is no heading of the page.
+#[test]
+fn headings_of_comments_stand_alone() {
+    let names = ["Errors", "Complexity", "Panics"];
+    let goes_on = |line: &str| {
+        let heading = line.trim_start().trim_start_matches(['/', '!']).trim_start().strip_prefix("# ");
+        heading.is_some_and(|text| names.iter().any(|name| text.starts_with(name) && text.trim_end() != *name))
+    };
+    assert!(goes_on("/// # Errors If it fails.") && !goes_on("    //! # Errors"));
+    let faults = each_source(|path, text| {
+        let lines = (1..).zip(text.lines()).filter(|(_, line)| goes_on(line));
+        lines.map(|(number, _)| format!("{}:{number}", path.display())).collect()
+    });
+    assert!(faults.is_empty(), "headings that go on in the same line:\n{}", faults.join("\n"));
+}
+
 #[test]
 fn the_rules_can_fail() {
     assert_eq!(words_of("is_wallUp2"), ["is", "wall", "up"]);

@@ -100,12 +100,13 @@ use trace::{Done, Traces};
 /// # Errors
 /// If more than [`MAX_LEVELS`](super::MAX_LEVELS) levels lie within the heights of the surface.
 ///
-/// # Complexity Linear in faces and arcs, except for sorting the lines. There are two passes over
-/// the faces at first. If there are more than two million arcs, there is a third, and one more for
-/// every two million (or for one level with more), which are drawn together when the iterator needs
-/// them. A face that no level meets costs a comparison; in a raster, a quarter of one. Memory: 24
-/// bytes per arc and 16 bytes per point, of those drawn together; 24 bytes per level; one bit per
-/// face for each thread. Faces are scanned in parallel, and levels are drawn in parallel.
+/// # Complexity
+/// Linear in faces and arcs, except for sorting the lines. Up to two million arcs take two passes
+/// over the faces. More take three, and one more for every two million (or for one level with
+/// more), which are drawn together when the iterator needs them. A face that no level meets costs a
+/// comparison; in a raster, a quarter of one. Memory: 24 bytes per arc and 16 bytes per point, of
+/// those drawn together; 24 bytes per level; one bit per face for each thread. Faces are scanned in
+/// parallel, and levels are drawn in parallel.
 pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Result<Contours<'a, S>> {
     let [low, high] = find::height_range(surface);
     let index = LevelIndex::new(levels.within(low, high)?);

@@ -101,8 +101,9 @@ impl Wall {
 
     /// Returns a wall from both of its edges, which may be drawn in opposite directions.
     ///
-    /// # Errors If an edge has fewer than two distinct vertices, the edges are the same in plan, or
-    /// the lower one is higher on average.
+    /// # Errors
+    /// If an edge has fewer than two distinct vertices, the edges are the same in plan, or the
+    /// lower one is higher on average.
     pub fn between(upper: &[[f64; 3]], lower: &[[f64; 3]]) -> Result<Self> {
         let [upper, mut lower] = [upper, lower].map(|edge| {
             let mut edge = edge.to_vec();

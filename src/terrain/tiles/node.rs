@@ -63,8 +63,9 @@ pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(
 /// # Errors
 /// If the residuals contradict each other: they are not those of parts of one triangulation.
 ///
-/// # Complexity That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points) for
-/// the vertices of the residuals.
+/// # Complexity
+/// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points) for the vertices
+/// of the residuals.
 pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
     let mut all = Residual::default();
     for part in parts {
