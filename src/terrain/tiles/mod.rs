@@ -7,16 +7,16 @@
 //! 1. A [`leaf`] triangulates the points of a tile. A triangle whose closed circumscribed disk
 //!    lies within the tile is *final*: no point of another tile can be in it.
 //! 2. What may still change is the [`Residual`]: the vertices with a triangle that is not final,
-//!    and the *walls*, the edges between triangles that are final and others.
+//!    and the *seams*, the edges between triangles that are final and others.
 //! 3. A [`merge`] triangulates the vertices of several residuals, takes away what lies on the final
-//!    side of their walls, and goes on as a leaf does, with the union of the tiles.
+//!    side of their seams, and goes on as a leaf does, with the union of the tiles.
 //! 4. At the root all points are known, and every triangle is final.
 //!
 //! *Why.* A triangle is in the triangulation of all points if and only if no other point is in
 //! conflict with it, and a point in conflict lies in the closed disk, ties included. A vertex is
 //! left out only if its whole star is final: no missing triangle uses it. So each missing triangle
-//! is one of the triangulation of the residual vertices, and so are the walls; of that
-//! triangulation, exactly what no wall closes off is missing. No triangle is found twice.
+//! is one of the triangulation of the residual vertices, and so are the seams; of that
+//! triangulation, exactly what no seam closes off is missing. No triangle is found twice.
 //!
 //! Tasks are pure functions: they may run anywhere, in any order, and be repeated. The disks are
 //! computed with bounds of their errors; where these leave a doubt, a triangle goes up.

@@ -14,29 +14,36 @@ pub struct TileVertex {
     pub tile: u32,
     /// The index of its point among those of the tile.
     pub number: u32,
-    /// Its position, with its height.
+    /// Its position and its height, in the units of the data.
     pub position: [f64; 3],
+}
+
+impl TileVertex {
+    fn site(&self) -> [f64; 2] {
+        [self.position[0], self.position[1]]
+    }
 }
 
 /// What may still change of a part of the triangulation: see [the module](super).
 ///
-/// A tile of `n` evenly spread points has about `5.6 sqrt(n)` vertices here.
+/// A tile of `n` evenly spread points, with tiles all around it, has about `5.6 sqrt(n)` vertices
+/// here.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Residual {
     /// The vertices of triangles that are not final.
     pub vertices: Vec<TileVertex>,
     /// The edges, as pairs of indices of vertices, on whose left side all triangles are final.
-    pub walls: Vec<[u32; 2]>,
+    pub seams: Vec<[u32; 2]>,
 }
 
 /// Triangulates the points of a tile. Calls `emit` for each final triangle, with its corners
 /// counter-clockwise, and returns what may still change.
 ///
-/// Of several points at one site the first counts.
+/// Where points share a site, the first of them is used.
 ///
 /// # Errors
-/// If a point lies outside of the tile, whose extent is then wrong, or has a
-/// coordinate that is not finite or outside of the range of the arithmetic.
+/// If a point lies outside of the tile, whose extent is then wrong, or has a coordinate that is not
+/// finite or outside of the range of the arithmetic.
 ///
 /// # Complexity
 /// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points).
@@ -51,7 +58,7 @@ pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(
     }
     let vertex = |(at, &position): (usize, &[f64; 3])| TileVertex { tile: number, number: at as u32, position };
     let vertices = points.iter().enumerate().map(vertex).collect();
-    reduce(tile, Residual { vertices, walls: Vec::new() }, emit)
+    reduce(tile, Residual { vertices, seams: Vec::new() }, emit)
 }
 
 /// Merges the residuals of parts of a tile. Calls `emit` for each triangle that is final now, with
@@ -71,22 +78,13 @@ pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut([TileVertex; 
     for part in parts {
         let first = all.vertices.len() as u32;
         all.vertices.extend_from_slice(&part.vertices);
-        all.walls.extend(part.walls.iter().map(|wall| wall.map(|end| end + first)));
+        all.seams.extend(part.seams.iter().map(|seam| seam.map(|end| end + first)));
     }
     reduce(tile, all, emit)
 }
 
-/// What is known of a cell.
-#[derive(Clone, Copy, PartialEq)]
-enum State {
-    Open,
-    /// Its triangle, or others in its place, were final before.
-    Covered,
-    Final,
-}
-
 fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
-    let sites: Vec<[f64; 2]> = input.vertices.iter().map(|vertex| [vertex.position[0], vertex.position[1]]).collect();
+    let sites: Vec<[f64; 2]> = input.vertices.iter().map(TileVertex::site).collect();
     let (t, ids) = Delaunay2::from_points(Plane::default(), &sites).map_err(|error| refused(error, &input))?;
     if t.dimension() < 2 {
         // Nothing is final before there is a triangle.
@@ -99,57 +97,58 @@ fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut([TileVertex; 3])) -
     }
     let vertex = |id: VertexId| input.vertices[input_of[id.index()] as usize];
 
-    let mut states = covered(&t, &ids, &input)?;
+    let mut is_final = covered(&t, &ids, &input)?;
     for cell in t.finite_cells() {
-        if states[cell.index()] == State::Open {
+        if !is_final[cell.index()] {
             let corners = t.tds().corners(cell).map(vertex);
-            let sites = corners.map(|corner| [corner.position[0], corner.position[1]]);
+            let sites = corners.map(|corner| corner.site());
             if tile.is_plane() || Disk::around(sites).is_some_and(|disk| disk.is_within(tile)) {
-                states[cell.index()] = State::Final;
+                is_final[cell.index()] = true;
                 emit(corners);
             }
         }
     }
-    Ok(if tile.is_plane() { Residual::default() } else { rest(&t, &states, &input, &input_of) })
+    Ok(if tile.is_plane() { Residual::default() } else { rest(&t, &is_final, &input, &input_of) })
 }
 
-/// Marks the cells on the final sides of walls, by a flood that walls stop.
-fn covered(t: &Delaunay2, ids: &[VertexId], input: &Residual) -> Result<Vec<State>> {
-    let mut states = vec![State::Open; t.tds().cell_slots()];
-    let mut is_wall = vec![[false; 3]; if input.walls.is_empty() { 0 } else { states.len() }];
+/// Returns, for each cell, true if triangles in its place were final before: if it is on the final
+/// side of seams. Found by a flood that seams stop.
+fn covered(t: &Delaunay2, ids: &[VertexId], input: &Residual) -> Result<Vec<bool>> {
+    let mut is_covered = vec![false; t.tds().cell_slots()];
+    let mut is_seam = vec![[false; 3]; if input.seams.is_empty() { 0 } else { is_covered.len() }];
     let mut flood: Vec<CellId> = Vec::new();
-    for wall in &input.walls {
-        let [from, to] = wall.map(|end| ids[end as usize]);
+    for seam in &input.seams {
+        let [from, to] = seam.map(|end| ids[end as usize]);
         let Some((cell, i)) = t.tds().edge(from, to) else {
-            let [a, b] = wall.map(|end| input.vertices[end as usize].position);
+            let [a, b] = seam.map(|end| input.vertices[end as usize].position);
             return Err(Error::format(format!("no edge joins {a:?} and {b:?}, as a part of the triangulation has it"))
                 .cure("the parts are of different points, or a tile's extent is wrong"));
         };
         let beyond = t.tds().neighbor(cell, i);
-        is_wall[cell.index()][i] = true;
-        is_wall[beyond.index()][t.tds().index_of_neighbor(beyond, cell)] = true;
+        is_seam[cell.index()][i] = true;
+        is_seam[beyond.index()][t.tds().index_of_neighbor(beyond, cell)] = true;
         flood.push(cell);
     }
     while let Some(cell) = flood.pop() {
-        if std::mem::replace(&mut states[cell.index()], State::Covered) == State::Covered {
+        if std::mem::replace(&mut is_covered[cell.index()], true) {
             continue;
         }
-        let open = (0..3).filter(|&i| !is_wall[cell.index()][i]).map(|i| t.tds().neighbor(cell, i));
+        let open = (0..3).filter(|&i| !is_seam[cell.index()][i]).map(|i| t.tds().neighbor(cell, i));
         flood.extend(open);
     }
-    if let Some(cell) = t.tds().cells().find(|&cell| t.tds().is_infinite(cell) && states[cell.index()] != State::Open) {
+    if let Some(cell) = t.tds().cells().find(|&cell| t.tds().is_infinite(cell) && is_covered[cell.index()]) {
         let at = t.tds().corners(cell).iter().find(|&&v| v != VertexId::INFINITE).map(|&v| *t.point(v));
-        return Err(Error::format(format!("the walls around final triangles do not close, at {at:?}"))
+        return Err(Error::format(format!("the seams around final triangles do not close, at {at:?}"))
             .cure("the parts are of different points, or a tile's extent is wrong"));
     }
-    Ok(states)
+    Ok(is_covered)
 }
 
-/// Returns the vertices of open cells, and the edges between them and cells that are final.
-fn rest(t: &Delaunay2, states: &[State], input: &Residual, input_of: &[u32]) -> Residual {
+/// Returns the vertices of cells that are not final, and the edges between these and final ones.
+fn rest(t: &Delaunay2, is_final: &[bool], input: &Residual, input_of: &[u32]) -> Residual {
     let mut number_of = vec![u32::MAX; t.tds().vertex_slots()];
     let mut rest = Residual::default();
-    let is_open = |cell: CellId| states[cell.index()] == State::Open;
+    let is_open = |cell: CellId| !is_final[cell.index()];
     for cell in t.tds().cells().filter(|&cell| is_open(cell)) {
         for &id in t.tds().corners(cell).iter().filter(|&&id| id != VertexId::INFINITE) {
             if number_of[id.index()] == u32::MAX {
@@ -160,7 +159,7 @@ fn rest(t: &Delaunay2, states: &[State], input: &Residual, input_of: &[u32]) -> 
         for i in (0..3).filter(|&i| !is_open(t.tds().neighbor(cell, i))) {
             // Seen from beyond, in the other direction.
             let [to, from] = t.tds().edge_ends(cell, i).map(|id| number_of[id.index()]);
-            rest.walls.push([from, to]);
+            rest.seams.push([from, to]);
         }
     }
     rest

@@ -33,8 +33,8 @@ fn parts(cuts: &[f64]) -> Vec<[f64; 2]> {
     bounds.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// The same from tiles: leaves, then merges of `fan` by `fan` tiles until one is left. Returns the
-/// triangles and the number of vertices that leaves hand up.
+/// Returns the triangles that tiles find, and the number of vertices that leaves hand up. Each
+/// merge joins `fan` by `fan` tiles, until one is left.
 fn tiled(points: &[[f64; 3]], cuts: [&[f64]; 2], fan: usize) -> (Vec<Triangle>, usize) {
     let mut triangles = Vec::new();
     let mut emit = |corners: [TileVertex; 3]| {
@@ -69,7 +69,7 @@ fn tiled(points: &[[f64; 3]], cuts: [&[f64]; 2], fan: usize) -> (Vec<Triangle>, 
         rows = rows.chunks(fan).map(joined).collect();
         level = above;
     }
-    assert!(level.iter().all(|rest| rest.vertices.is_empty() && rest.walls.is_empty()));
+    assert!(level.iter().all(|rest| rest.vertices.is_empty() && rest.seams.is_empty()));
     triangles.sort_unstable();
     (triangles, handed_up)
 }
@@ -132,19 +132,19 @@ fn a_point_outside_of_its_tile_is_named() {
     assert!(error.starts_with("point 1 of tile 7 is at 4 1, expected x from 0 to below 4"), "{error}");
 }
 
-/// Residuals of different points, and a wall that is turned around.
+/// Residuals of different points, and a seam that is turned around.
 #[test]
 fn residuals_that_contradict_each_other_are_refused() {
     let mut random = Random(9);
     let mut points = || (0..60).map(|_| [8.0 * random.unit(), 8.0 * random.unit(), 0.0]).collect::<Vec<_>>();
     let tile = Tile { min: [0.0, 0.0], max: [8.0, 8.0] };
     let rest = leaf(&tile, 0, &points(), &mut |_| ()).unwrap();
-    assert!(!rest.walls.is_empty());
+    assert!(!rest.seams.is_empty());
     let other = leaf(&tile, 1, &points(), &mut |_| ()).unwrap();
     let error = merge(&Tile::PLANE, &[rest.clone(), other], &mut |_| ()).unwrap_err().to_string();
     assert!(error.contains("no edge joins") || error.contains("do not close"), "{error}");
     let mut turned = rest;
-    turned.walls.iter_mut().for_each(|wall| wall.reverse());
+    turned.seams.iter_mut().for_each(|seam| seam.reverse());
     let error = merge(&Tile::PLANE, &[turned], &mut |_| ()).unwrap_err().to_string();
     assert!(error.contains("do not close"), "{error}");
 }
