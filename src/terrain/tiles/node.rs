@@ -68,14 +68,22 @@ pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(
 /// nothing is left.
 ///
 /// # Errors
-/// If the residuals contradict each other: they are not those of parts of one triangulation.
+/// If a seam names a vertex that does not exist, or the residuals contradict each other: they are
+/// not those of parts of one triangulation.
 ///
 /// # Complexity
 /// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points) for the vertices
 /// of the residuals.
 pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
     let mut all = Residual::default();
-    for part in parts {
+    for (number, part) in parts.iter().enumerate() {
+        let count = part.vertices.len();
+        if let Some(end) = part.seams.iter().flatten().find(|&&end| end as usize >= count) {
+            return Err(Error::format(format!(
+                "a seam of part {number} ends at vertex {end}, expected less than {count}"
+            ))
+            .cure("the part is damaged: compute it again"));
+        }
         let first = all.vertices.len() as u32;
         all.vertices.extend_from_slice(&part.vertices);
         all.seams.extend(part.seams.iter().map(|seam| seam.map(|end| end + first)));
@@ -84,6 +92,9 @@ pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut([TileVertex; 
 }
 
 fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
+    if let Some(at) = input.vertices.iter().position(|vertex| !vertex.position[2].is_finite()) {
+        return Err(refused(InputError::Coordinate(at), &input));
+    }
     let sites: Vec<[f64; 2]> = input.vertices.iter().map(TileVertex::site).collect();
     let (t, ids) = Delaunay2::from_points(Plane::default(), &sites).map_err(|error| refused(error, &input))?;
     if t.dimension() < 2 {
@@ -136,8 +147,9 @@ fn covered(t: &Delaunay2, ids: &[VertexId], input: &Residual) -> Result<Vec<bool
         let open = (0..3).filter(|&i| !is_seam[cell.index()][i]).map(|i| t.tds().neighbor(cell, i));
         flood.extend(open);
     }
-    if let Some(cell) = t.tds().cells().find(|&cell| t.tds().is_infinite(cell) && is_covered[cell.index()]) {
-        let at = t.tds().corners(cell).iter().find(|&&v| v != VertexId::INFINITE).map(|&v| *t.point(v));
+    let outside = t.tds().cells().filter(|&cell| t.tds().is_infinite(cell) && is_covered[cell.index()]);
+    let mut ends = outside.flat_map(|cell| t.tds().corners(cell).iter().copied());
+    if let Some(at) = ends.find(|&end| end != VertexId::INFINITE).map(|end| t.point(end)) {
         return Err(Error::format(format!("the seams around final triangles do not close, at {at:?}"))
             .cure("the parts are of different points, or a tile's extent is wrong"));
     }

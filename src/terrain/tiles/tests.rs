@@ -132,6 +132,16 @@ fn a_point_outside_of_its_tile_is_named() {
     assert!(error.starts_with("point 1 of tile 7 is at 4 1, expected x from 0 to below 4"), "{error}");
 }
 
+#[test]
+fn heights_and_seams_that_make_no_sense_are_refused() {
+    let error = leaf(&Tile::PLANE, 0, &[[1.0, 2.0, f64::NAN]], &mut |_| ()).unwrap_err().to_string();
+    assert_eq!(error, "point 0: [1.0, 2.0, NaN] is not a finite point");
+    let vertex = TileVertex { tile: 0, number: 0, position: [0.0; 3] };
+    let damaged = Residual { vertices: vec![vertex], seams: vec![[0, 1]] };
+    let error = merge(&Tile::PLANE, &[damaged], &mut |_| ()).unwrap_err().to_string();
+    assert_eq!(error, "a seam of part 0 ends at vertex 1, expected less than 1");
+}
+
 /// Residuals of different points, and a seam that is turned around.
 #[test]
 fn residuals_that_contradict_each_other_are_refused() {
