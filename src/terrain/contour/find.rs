@@ -81,8 +81,8 @@ pub(super) fn few_arcs<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, mos
     Some(found)
 }
 
-/// Returns the arcs of a stretch, except for those of faces whose largest number of arcs does not
-/// fit.
+/// Returns the arcs of a stretch, without those of faces for whose number of arcs, or one more,
+/// `fits` is false.
 fn arcs_of_stretch<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,

@@ -175,11 +175,11 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
         self.next_level = band.end;
         // A counting sort of the arcs by level.
         let found = self.found.take().unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
-        let mut starts = vec![0; band.len() + 1];
-        found.iter().flatten().for_each(|(level, _)| starts[level - first + 1] += 1);
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
-        }
+        let mut starts = vec![0];
+        starts.extend(self.counts[band.clone()].iter().scan(0, |end, count| {
+            *end += count;
+            Some(*end)
+        }));
         let mut sorted = vec![ContourArc::Across(0); starts[band.len()]];
         let mut free = starts.clone();
         for (level, arc) in found.into_iter().flatten() {
