@@ -11,6 +11,8 @@ use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{Basic, Delaunay, Locate, Regular, SpacePassage, StraightLine, Triangulation};
 use testkit::random::Random;
 
+use crate::TINY;
+
 type Whole = [i128; 3];
 
 /// The points of a simplex in units of half a step of the grid.
@@ -210,9 +212,8 @@ fn segments_meet_what_they_meet_in_order() {
     let mut random = Random(61);
     let mut kinds = [[0; 6]; 4];
     for round in 0..1500 {
-        // The arithmetic of `Wide` is exact at any scale. 2^-1070 by its bits: `powi` may
-        // take it for 0.
-        let scale = [1.0, f64::from_bits(1 << 4), 2f64.powi(1010)][round % 7 % 3];
+        // The arithmetic of `Wide` is exact at any scale.
+        let scale = [1.0, TINY, 2f64.powi(1010)][round % 7 % 3];
         let point = |site: [i64; 3]| site.map(|x| x as f64 * 0.5 * scale);
         let whole = |p: &[f64; 3]| p.map(|x| (x / scale * 2.0) as i128);
         let count = if round % 11 == 0 { 1 } else { random.index(16) };

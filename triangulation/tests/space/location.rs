@@ -15,6 +15,8 @@ use breakline_triangulation::{
 };
 use testkit::random::Random;
 
+use crate::TINY;
+
 type Point = [f64; 3];
 
 /// A location independent of the cell that expresses it.
@@ -91,7 +93,7 @@ fn small_grids_that_grow_and_shrink() {
     let mut seen = [0; 6];
     for round in 0..60 {
         let sizes = [[3, 3, 3], [4, 4, 1], [6, 1, 1], [4, 3, 2], [2, 2, 2]][round % 5];
-        let scale = [1.0, f64::from_bits(1 << 4), 2f64.powi(1010)][round % 3];
+        let scale = [1.0, TINY, 2f64.powi(1010)][round % 3];
         let mut t = Delaunay::<Space<Wide>, 4>::new(Space::default());
         let mut basic = Basic::<Space<Wide>, 4>::new(Space::default());
         let mut buckets = Buckets::over([[0.0; 3], sizes.map(|size| size as f64 * scale)], 1 + round % 9);

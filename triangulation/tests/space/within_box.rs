@@ -11,6 +11,8 @@ use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{Basic, Delaunay, Regular, Triangulation};
 use testkit::random::Random;
 
+use crate::TINY;
+
 fn judge<G: Coordinates<4>, V, C: Copy + Default>(t: &Triangulation<G, 4, V, C>, corners: [&G::Point; 2]) {
     let site = |p: &G::Point| -> [f64; 3] { t.geometry().coordinates(p).as_ref().try_into().unwrap() };
     let [p, q] = corners.map(site);
@@ -27,7 +29,7 @@ fn boxes() {
     let mut random = Random(71);
     for round in 0..1500 {
         let sizes = [[4, 4, 4], [6, 3, 2], [5, 5, 1], [7, 1, 1], [2, 2, 2]][round % 5];
-        let scale = [1.0, f64::from_bits(1 << 4), 2f64.powi(1000)][round % 3];
+        let scale = [1.0, TINY, 2f64.powi(1000)][round % 3];
         let count = random.index(40);
         let mut draw = |margin: u64| {
             sizes.map(|size| {

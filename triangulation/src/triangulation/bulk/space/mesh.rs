@@ -122,8 +122,8 @@ fn four<T>(list: &mut [T], from: usize) -> Option<&mut [T; 4]> {
 }
 
 impl<'a> Mesh<'a> {
-    /// Returns the mesh of a positive cell and the infinite cells around it. The vertices are
-    /// points, by their ranks, ascending: so what is close in space is close in memory.
+    /// Returns the mesh of a positive cell and the infinite cells around it. Vertex `i` is the
+    /// point of rank `ranks[i]`. Ranks ascend, so that vertices close in space are close in memory.
     pub(super) fn new(source: Source<'a>, extent: Extent, ranks: &'a [u32], first: [u32; 4]) -> Self {
         let count = ranks.len();
         let mut corners: Vec<Corner> = Vec::with_capacity(count + 1);

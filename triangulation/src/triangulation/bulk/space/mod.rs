@@ -175,7 +175,8 @@ fn by_block<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], block: &Bl
     Some(Part::of(cells, unused, &open, ranks))
 }
 
-/// Returns the mesh of points, whose ranks are ascending. Its vertices are numbered like them.
+/// Returns the mesh of points, given by ascending ranks. Vertex `i` is the point of rank
+/// `ranks[i]`.
 fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], grain: Grain) -> Option<Mesh<'a>> {
     let mut order = order::rounds(ranks);
     let first = first_cell(source, ranks, &mut order)?;
@@ -191,17 +192,13 @@ fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], grain: Grain
 
 /// Moves the first four vertices that span the space to the front; returns them as a positive cell.
 fn first_cell(source: Source, ranks: &[u32], order: &mut [u32]) -> Option<[u32; 4]> {
-    let points =
-        |order: &[u32], i: usize| [order[0], order[1], order[2], order[i]].map(|vertex| ranks[vertex as usize]);
-    let turn = |order: &[u32], i: usize| {
-        let [a, b, _, c] = points(order, i);
-        (source.turn)([a, b, c])
-    };
+    let rank = |vertex: u32| ranks[vertex as usize];
+    let turn = |order: &[u32], i: usize| (source.turn)([order[0], order[1], order[i]].map(rank));
     let third = (2..order.len()).find(|&i| turn(order, i) != Sign::Zero)?;
     order.swap(2, third);
-    let fourth = (3..order.len()).find(|&i| (source.orientation)(points(order, i)) != Sign::Zero)?;
+    let side = |order: &[u32], i: usize| (source.orientation)([order[0], order[1], order[2], order[i]].map(rank));
+    let fourth = (3..order.len()).find(|&i| side(order, i) != Sign::Zero)?;
     order.swap(3, fourth);
-    let [a, b, c, d] = [order[0], order[1], order[2], order[3]];
-    let is_positive = (source.orientation)(points(order, 3)) == Sign::Positive;
-    Some(if is_positive { [a, b, c, d] } else { [b, a, c, d] })
+    let [a, b, c, d] = *order.first_chunk()?;
+    Some(if side(order, 3) == Sign::Positive { [a, b, c, d] } else { [b, a, c, d] })
 }

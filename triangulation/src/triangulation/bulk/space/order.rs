@@ -14,7 +14,7 @@ const FEW: usize = 1000;
 /// The number of points in a sample.
 const SAMPLE: usize = 2000;
 
-/// Returns the order in which points are inserted whose ranks are ascending: their indices.
+/// Returns the indices of points, given by ascending ranks, in the order of insertion.
 pub(super) fn rounds(ranks: &[u32]) -> Vec<u32> {
     let last = (0..).find(|round| ranks.len() >> (RATIO * round) <= FEW).unwrap_or(0);
     let round = |rank: u32| (last - (mixed(rank).trailing_zeros() / RATIO).min(last)) as usize;
