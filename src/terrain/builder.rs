@@ -357,7 +357,8 @@ impl TinBuilder {
     /// Merges the points and vertices that share a site, by the rules. Leaves `self.points` empty.
     ///
     /// # Errors
-    /// If there is no memory for the vertices, and that of `go_on`, which is asked now and then.
+    /// If there is not enough memory for the vertices, or if `go_on`, which is called now and then,
+    /// returns an error.
     fn merge(&mut self, report: &mut TinReport, go_on: &dyn Fn() -> Result<()>) -> Result<Sites> {
         let mut all = std::mem::take(&mut self.points);
         let lines_from = all.len();

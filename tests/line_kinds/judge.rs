@@ -271,8 +271,8 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
     Ok(true)
 }
 
-/// Returns true if a height is between those that the triangle at a position has with the heights
-/// of other vertices next to its corners: a cut that moves lines may exchange such vertices.
+/// Returns true if the triangle at a position may have a height there once a cut has exchanged
+/// corners for vertices at most [`MOVED`] away.
 fn may_be_exchanged(tin: &Tin, p: [f64; 2], height: f64) -> bool {
     let triangulation = tin.triangulation();
     let Location::Cell { cell, .. } = triangulation.locate(&[p[0], p[1], 0.0], None) else { return false };
