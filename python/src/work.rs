@@ -18,7 +18,7 @@ use crate::notices;
 pub(crate) const POLL: Duration = Duration::from_millis(50);
 
 /// What every long call takes: the number of threads, all cores if it is `None`, and the function
-/// that progress is reported to. In Python, a tuple of both.
+/// that progress is reported to. In Python, a tuple of both, which `_call.py` has checked.
 #[derive(FromPyObject)]
 pub(crate) struct Call(Option<usize>, Option<Py<PyAny>>);
 
@@ -45,34 +45,46 @@ impl Pool {
 /// process forks.
 static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, kept: Vec::new() });
 
-/// Returns a pool with this number of threads.
+impl Pools {
+    /// Takes out the pool with this number of threads that has the fewest calls, if another one
+    /// is not to be started: if it has none, or there are no cores for more threads.
+    fn take(&mut self, threads: usize, cores: usize) -> Option<Pool> {
+        let of_size = self.kept.iter().enumerate().filter(|(_, kept)| kept.threads == threads);
+        let (known, calls) = of_size.map(|(i, kept)| (i, kept.calls())).min_by_key(|&(_, calls)| calls)?;
+        let busy: usize = self.kept.iter().filter(|kept| kept.calls() > 0).map(|kept| kept.threads).sum();
+        (calls == 0 || busy + threads > cores).then(|| self.kept.remove(known))
+    }
+
+    /// Ends pools without calls, those used longest ago first, until the others have at most so
+    /// many threads.
+    fn end_idle(&mut self, most: usize) {
+        let mut idle: usize = self.kept.iter().filter(|kept| kept.calls() == 0).map(|kept| kept.threads).sum();
+        self.kept.retain(|kept| {
+            let ends = kept.calls() == 0 && idle > most;
+            idle -= if ends { kept.threads } else { 0 };
+            !ends
+        });
+    }
+}
+
+/// Returns a pool with this number of threads, one per core if it is `None`.
 ///
-/// Calls at the same time have pools of their own as long as there are cores for all their threads;
-/// further ones share. Pools without calls are kept, the threads of others end with the last call.
+/// Calls at the same time have pools of their own while there are cores for all their threads;
+/// beyond that they share. Pools without calls are kept, up to two threads per core.
 fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let cores = available_parallelism().map_or(1, usize::from);
-    let threads = match threads {
-        Some(0) => return Err(errors::usage("threads is 0", "0", "use 1 or more, or None for one per core")),
-        Some(threads) => threads,
-        None => cores,
-    };
+    let threads = threads.unwrap_or(cores);
     let mut pools = locked(&POOLS);
     if pools.process != std::process::id() {
         // After a fork the threads are gone, and waiting for them would never end.
         std::mem::forget(std::mem::take(&mut pools.kept));
         pools.process = std::process::id();
     }
-    let busy: usize = pools.kept.iter().filter(|kept| kept.calls() > 0).map(|kept| kept.threads).sum();
-    let of_size = pools.kept.iter().enumerate().filter(|(_, kept)| kept.threads == threads);
-    let least_used = of_size.min_by_key(|(_, kept)| kept.calls()).map(|(i, kept)| (i, kept.calls()));
-    let chosen = match least_used {
-        Some((known, calls)) if calls == 0 || busy + threads > cores => pools.kept.remove(known),
-        _ => started(threads)?,
+    let chosen = match pools.take(threads, cores) {
+        Some(known) => known,
+        None => started(threads)?,
     };
-    while pools.kept.iter().filter(|kept| kept.calls() == 0).map(|kept| kept.threads).sum::<usize>() > 2 * cores {
-        let idle = pools.kept.iter().position(|kept| kept.calls() == 0);
-        idle.map(|idle| pools.kept.remove(idle));
-    }
+    pools.end_idle(2 * cores);
     let pool = Arc::clone(&chosen.pool);
     pools.kept.push(chosen);
     Ok(pool)

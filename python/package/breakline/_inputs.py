@@ -78,23 +78,32 @@ def number_or_name(value: Any, parameter: str) -> "float | str | None":
 
 
 def name(value: Any, parameter: str) -> str:
-    """Return a name of one of several choices; the library knows which there are."""
+    """Return a text that names a choice; the library refuses unknown names."""
     if not isinstance(value, str):
-        raise usage(f"{parameter} is not a name", value, "pass a text; the documentation lists them", ArgumentTypeError)
+        raise usage(f"{parameter} is not a name", value, "pass one of the names in the documentation", ArgumentTypeError)
     return value
+
+
+def _listed(values: Any, parameter: str) -> "list[Any]":
+    """Return one or several values as a list."""
+    try:
+        return [values] if np.isscalar(values) else list(values)
+    except TypeError:
+        raise usage(f"{parameter} is not a list", values, "pass one value, or a list", ArgumentTypeError) from None
 
 
 def whole_numbers(values: Any, parameter: str, largest: int) -> "list[int]":
     """Return one or several whole numbers from 0 to the largest as a list."""
     cure = f"pass whole numbers from 0 to {largest}"
-    try:
-        several = np.atleast_1d(np.asarray(values if np.isscalar(values) else list(values)))
-        found = [int(value) for value in several.ravel()]
-    except (TypeError, ValueError, OverflowError):
-        raise usage(f"{parameter} has something that is not a whole number", values, cure, ArgumentTypeError) from None
-    for whole, value in zip(found, several.ravel()):
+    found = []
+    for value in _listed(values, parameter):
+        try:
+            whole = int(value)
+        except (TypeError, ValueError, OverflowError):
+            raise usage(f"{parameter} has {value!r}", value, cure, ArgumentTypeError) from None
         if whole != value or not 0 <= whole <= largest:
             raise usage(f"{parameter} has {value}", value, cure)
+        found.append(whole)
     return found
 
 
@@ -148,10 +157,9 @@ def classes(values: Any) -> "Optional[list[int]]":
     """Return classes of points by number; names as in LAS 1.4 are understood."""
     if values is None:
         return None
-    several = values.split(",") if isinstance(values, str) else values
-    if isinstance(several, (list, tuple, set)):
-        several = [_breakline.class_number(value) if isinstance(value, str) else value for value in several]
-    return whole_numbers(several, "classes", 255)
+    several = _listed(values.split(",") if isinstance(values, str) else values, "classes")
+    numbers = [_breakline.class_number(value) if isinstance(value, str) else value for value in several]
+    return whole_numbers(numbers, "classes", 255)
 
 
 def bounds(values: Any, parameter: str = "bounds") -> "Optional[list[float]]":
