@@ -29,7 +29,7 @@ mod node;
 #[cfg(test)]
 mod tests;
 
-pub use node::{Residual, TileVertex, leaf, merge};
+pub use node::{Residual, TileTriangle, TileVertex, leaf, merge};
 
 /// A rectangle in plan that owns the points in it: each axis includes its lowest coordinate and
 /// excludes its highest.

@@ -2,6 +2,7 @@
 
 use super::Tile;
 use super::disk::Disk;
+use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::Plane;
 use crate::triangulation::tds::{CellId, VertexId};
@@ -24,6 +25,15 @@ impl TileVertex {
     }
 }
 
+/// A triangle that is final.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TileTriangle {
+    /// The corners, counter-clockwise.
+    pub corners: [TileVertex; 3],
+    /// The kind of the edge opposite each corner.
+    pub edges: [EdgeKind; 3],
+}
+
 /// What may still change of a part of the triangulation: see [the module](super).
 ///
 /// A tile of `n` evenly spread points, with tiles all around it, has about `5.6 sqrt(n)` vertices
@@ -36,8 +46,8 @@ pub struct Residual {
     pub seams: Vec<[u32; 2]>,
 }
 
-/// Triangulates the points of a tile. Calls `emit` for each final triangle, with its corners
-/// counter-clockwise, and returns what may still change.
+/// Triangulates the points of a tile. Calls `emit` for each final triangle, and returns what
+/// may still change.
 ///
 /// Where points share a site, the first of them is used.
 ///
@@ -47,7 +57,7 @@ pub struct Residual {
 ///
 /// # Complexity
 /// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points).
-pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
+pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
     if let Some(at) = points.iter().position(|&[x, y, _]| !tile.holds([x, y])) {
         let ([x, y, _], Tile { min, max }) = (points[at], tile);
         return Err(Error::format(format!(
@@ -61,8 +71,8 @@ pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(
     reduce(tile, Residual { vertices, seams: Vec::new() }, emit)
 }
 
-/// Merges the residuals of parts of a tile. Calls `emit` for each triangle that is final now, with
-/// its corners counter-clockwise, and returns what may still change.
+/// Merges the residuals of parts of a tile. Calls `emit` for each triangle that is final now, and
+/// returns what may still change.
 ///
 /// The tile is the union of those of the parts; with [`Tile::PLANE`] all triangles are final, and
 /// nothing is left.
@@ -74,7 +84,7 @@ pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(
 /// # Complexity
 /// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points) for the vertices
 /// of the residuals.
-pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
+pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
     let mut all = Residual::default();
     for (number, part) in parts.iter().enumerate() {
         let count = part.vertices.len();
@@ -91,7 +101,7 @@ pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut([TileVertex; 
     reduce(tile, all, emit)
 }
 
-fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut([TileVertex; 3])) -> Result<Residual> {
+fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
     if let Some(at) = input.vertices.iter().position(|vertex| !vertex.position[2].is_finite()) {
         return Err(refused(InputError::Coordinate(at), &input));
     }
@@ -115,7 +125,7 @@ fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut([TileVertex; 3])) -
             let sites = corners.map(|corner| corner.site());
             if tile.is_plane() || Disk::around(sites).is_some_and(|disk| disk.is_within(tile)) {
                 is_final[cell.index()] = true;
-                emit(corners);
+                emit(TileTriangle { corners, edges: [EdgeKind::Plain; 3] });
             }
         }
     }

@@ -37,8 +37,8 @@ fn parts(cuts: &[f64]) -> Vec<[f64; 2]> {
 /// merge joins `fan` by `fan` tiles, until one is left.
 fn tiled(points: &[[f64; 3]], cuts: [&[f64]; 2], fan: usize) -> (Vec<Triangle>, usize) {
     let mut triangles = Vec::new();
-    let mut emit = |corners: [TileVertex; 3]| {
-        triangles.push(canonical(corners.map(|corner| [corner.position[0], corner.position[1]])));
+    let mut emit = |triangle: TileTriangle| {
+        triangles.push(canonical(triangle.corners.map(|corner| [corner.position[0], corner.position[1]])));
     };
     let [mut columns, mut rows] = cuts.map(parts);
     let mut level: Vec<Residual> = Vec::new();
