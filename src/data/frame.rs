@@ -165,8 +165,30 @@ impl Frame {
     }
 
     /// Returns the center of a cell.
+    ///
+    /// If the grid lines are multiples of the cell's size, as with [`snapped`](Self::snapped), a
+    /// cell has the same center in all rasters of these lines, bit for bit.
     pub fn center(&self, column: usize, row: usize) -> [f64; 2] {
-        self.to_map(column as f64 + 0.5, row as f64 + 0.5)
+        self.centers()(column, row)
+    }
+
+    /// Returns the function from column and row to the [center](Self::center), for many cells.
+    pub(crate) fn centers(&self) -> impl Fn(usize, usize) -> [f64; 2] + use<> {
+        let frame = *self;
+        let t = frame.transform;
+        let lines = (t[2] == 0.0 && t[4] == 0.0).then(|| [GridLines::new(t[0], t[1]), GridLines::new(t[3], t[5])]);
+        move |column, row| match &lines {
+            Some([columns, rows]) => [columns.center(column), rows.center(row)],
+            None => frame.to_map(column as f64 + 0.5, row as f64 + 0.5),
+        }
+    }
+
+    /// Returns true if a cell has the same center, bit for bit, in all rasters that share grid
+    /// lines with this one.
+    pub fn has_shared_centers(&self) -> bool {
+        let t = &self.transform;
+        let are_shared = |origin, step| GridLines::new(origin, step).first.is_some();
+        t[2] == 0.0 && t[4] == 0.0 && are_shared(t[0], t[1]) && are_shared(t[3], t[5])
     }
 
     /// Returns true if rows run from north to south and columns from west to east, without
@@ -200,6 +222,38 @@ impl Frame {
         Ok(())
     }
 }
+
+/// The grid lines across an axis of a raster that is not rotated.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GridLines {
+    origin: f64,
+    step: f64,
+    /// The number of the first line, if the lines are multiples of the step.
+    first: Option<f64>,
+}
+
+impl GridLines {
+    pub(crate) fn new(origin: f64, step: f64) -> Self {
+        let first = (origin / step).round();
+        let first = (multiple(first, step) == origin && first.abs() < MOST_LINES).then_some(first);
+        GridLines { origin, step, first }
+    }
+
+    /// Returns the center between a line and the next one, counted from the first.
+    ///
+    /// A center between multiples of the step is computed from its number among all multiples. So
+    /// it does not depend on where the raster begins, which rounding would otherwise make visible.
+    #[inline]
+    pub(crate) fn center(&self, i: usize) -> f64 {
+        match self.first {
+            Some(first) => multiple(first + (i as f64 + 0.5), self.step),
+            None => self.origin + (i as f64 + 0.5) * self.step,
+        }
+    }
+}
+
+/// Numbers of lines below this are exact together with a half.
+const MOST_LINES: f64 = (1u64 << 51) as f64;
 
 /// A conversion from coordinates to pixels: the inverse of a frame's transform.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -250,7 +304,7 @@ fn whole_above(cells: f64) -> f64 {
 /// number, this divides by that number, because 10 is exact as a double and 1/10 is not.
 fn multiple(count: f64, resolution: f64) -> f64 {
     let parts = (1.0 / resolution).round();
-    if parts >= 1.0 && 1.0 / parts == resolution { count / parts } else { count * resolution }
+    if parts.abs() >= 1.0 && 1.0 / parts == resolution { count / parts } else { count * resolution }
 }
 
 fn check_bounds(bounds: &Bounds) -> Result<()> {
@@ -327,6 +381,26 @@ mod tests {
         }
         let [column, row] = rotated.inverse().apply(frame.transform[0], frame.transform[3]);
         assert!((column - column.round()).abs() < 1e-12 && (row - row.round()).abs() < 1e-12);
+    }
+
+    /// Also with steps that are not exact, and with rows that descend.
+    #[test]
+    fn a_cell_has_the_same_center_in_all_rasters_of_a_grid() {
+        for resolution in [1.0, 0.1, 0.3, 0.7, 2.5, 1.0 / 3.0] {
+            let whole = Frame::snapped(&bounds(-500.0, 5e6, 300.0, 5e6 + 900.0), resolution).unwrap();
+            let part = Frame::snapped(&bounds(17.3, 5e6 + 40.0, 44.0, 5e6 + 321.7), resolution).unwrap();
+            assert!(whole.has_shared_centers() && part.has_shared_centers());
+            let [column, row] =
+                whole.inverse().apply(part.transform[0], part.transform[3]).map(|at| at.round() as usize);
+            for k in 0..part.width.min(part.height) {
+                assert_eq!(part.center(k, k), whole.center(column + k, row + k), "{resolution}");
+                let [x, y] = part.to_map(k as f64 + 0.5, k as f64 + 0.5);
+                assert!((part.center(k, k)[0] - x).abs() < 1e-12 && (part.center(k, k)[1] - y).abs() < 1e-8);
+            }
+        }
+        assert!(!Frame::north_up(0.25, 0.25, 1.0, 4, 4).has_shared_centers());
+        let rotated = Frame { width: 4, height: 5, transform: [0.0, 0.6, -0.8, 0.0, -0.8, -0.6] };
+        assert!(!rotated.has_shared_centers());
     }
 
     #[test]

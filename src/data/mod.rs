@@ -45,6 +45,7 @@ mod triangles;
 pub use bounds::Bounds;
 pub use columns::Columns;
 pub use contour_line::ContourLine;
+pub(crate) use frame::GridLines;
 pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
 pub use grid::{BlockSource, Grid, cells};
 pub use las_head::LasHead;

@@ -71,7 +71,7 @@ pub use inside::Inside;
 pub use interpolate::{Interpolant, Method};
 pub use levels::{Levels, MAX_LEVELS};
 pub use lines::{Flat, FlatHeight, HighSide, River, RiverHeights, Wall, densified};
-pub use rasterize::Dem;
+pub use rasterize::{Canvas, CanvasBlock, Dem};
 pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use tin::Tin;

@@ -2,6 +2,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::bins::bins_of;
 use super::placement::Placement;
 use crate::data::Surface;
 
@@ -38,8 +39,6 @@ impl FaceIndex {
         let bins = (f64::from(face_count) / FACES_PER_BIN).max(1.0);
         let side = (width as f64 * height as f64 / bins).sqrt().max(SMALLEST_BIN).ceil() as usize;
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
-        let empty = FaceIndex { side, columns, rows, first: Vec::new(), faces: Vec::new() };
-
         let chunks: Vec<Vec<(u32, u32)>> = (0..face_count.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
@@ -47,7 +46,9 @@ impl FaceIndex {
                 for face in chunk * CHUNK..(chunk + 1).saturating_mul(CHUNK).min(face_count) {
                     let Some(corners) = surface.triangle(face) else { continue };
                     let corners = corners.map(|p| placement.to_plane(p));
-                    empty.bins_of(&corners, placement, |bin| found.push((bin, face)));
+                    bins_of(&corners, placement, side, |row, column| {
+                        found.push(((row * columns + column) as u32, face))
+                    });
                 }
                 found
             })
@@ -69,42 +70,7 @@ impl FaceIndex {
                 *slot += 1;
             }
         }
-        FaceIndex { first, faces, ..empty }
-    }
-
-    /// Calls `each` with the bins in which a face may contain a center: in each row of bins, those
-    /// between the leftmost and the rightmost point of the face.
-    fn bins_of(&self, corners: &[[f64; 3]; 3], placement: &Placement, mut each: impl FnMut(u32)) {
-        if corners.as_flattened().iter().any(|c| !c.is_finite()) {
-            // Vertices near the end of the range of doubles overflow in a rotated raster.
-            return;
-        }
-        let [a, b, c] = corners;
-        let rows = placement.rows.cells(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
-        let columns = placement.columns.cells(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
-        if rows.is_empty() || columns.is_empty() {
-            return;
-        }
-        let bins = |cells: &Range<usize>| cells.start / self.side..=(cells.end - 1) / self.side;
-        let number = |row: usize, column: usize| (row * self.columns + column) as u32;
-        let (bin_rows, bin_columns) = (bins(&rows), bins(&columns));
-        if bin_rows.start() == bin_rows.end() || bin_columns.start() == bin_columns.end() {
-            for row in bin_rows {
-                bin_columns.clone().for_each(|column| each(number(row, column)));
-            }
-            return;
-        }
-        for row in bin_rows {
-            // One more cell on both sides, to allow for rounding.
-            let below = placement.rows.center((row * self.side).max(1) - 1);
-            let above = placement.rows.center((row + 1) * self.side);
-            let Some((left, right)) = extent_between(corners, below, above) else { continue };
-            let step = placement.columns.center(1) - placement.columns.center(0);
-            let cells = placement.columns.cells(left - step, right + step);
-            if !cells.is_empty() {
-                bins(&cells).for_each(|column| each(number(row, column)));
-            }
-        }
+        FaceIndex { side, columns, rows, first, faces }
     }
 
     /// The faces of each bin that meets a window, and the intersection of bin and window, as rows
@@ -128,25 +94,4 @@ impl FaceIndex {
             })
         })
     }
-}
-
-/// The smallest and the largest x of a triangle in the band `low..=high` of y.
-fn extent_between(corners: &[[f64; 3]; 3], low: f64, high: f64) -> Option<(f64, f64)> {
-    let mut extent: Option<(f64, f64)> = None;
-    let mut add = |x: f64| {
-        let (left, right) = extent.unwrap_or((x, x));
-        extent = Some((left.min(x), right.max(x)));
-    };
-    for i in 0..3 {
-        let (p, q) = (&corners[i], &corners[(i + 1) % 3]);
-        if (low..=high).contains(&p[1]) {
-            add(p[0]);
-        }
-        for y in [low, high] {
-            if (p[1] < y) != (q[1] < y) {
-                add(p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]));
-            }
-        }
-    }
-    extent
 }

@@ -1,7 +1,10 @@
+mod bins;
+mod canvas;
 mod face_index;
 mod placement;
 mod scan;
 
+pub use canvas::{Canvas, CanvasBlock};
 use face_index::FaceIndex;
 use placement::{Centers, Placement};
 use scan::{Heights, Ink, Number, Scan};
@@ -85,9 +88,10 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
         let mut faces = vec![NO_FACE; out.len()];
         self.draw(window, &mut faces, Number);
         let mut scratch = Scratch::default();
+        let center = self.frame.centers();
         let cells = out.iter_mut().zip(faces).enumerate().filter(|(_, (_, face))| *face != NO_FACE);
         for (i, (height, face)) in cells {
-            let q = self.frame.center(window.column + i % window.width, window.row + i / window.width);
+            let q = center(window.column + i % window.width, window.row + i / window.width);
             *height = interpolant.height_in(face, q, &mut scratch) as f32;
         }
     }

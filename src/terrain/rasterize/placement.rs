@@ -1,4 +1,4 @@
-use crate::data::{Frame, ToPixels};
+use crate::data::{Frame, GridLines, ToPixels};
 
 /// The plane in which faces are scanned: columns and rows of cell centers ascend along its axes.
 ///
@@ -22,7 +22,7 @@ enum Mapping {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis {
     origin: f64,
-    step: f64,
+    lines: GridLines,
     per_step: f64,
     /// The number of columns or rows.
     pub(super) count: usize,
@@ -76,13 +76,13 @@ fn to_center(value: f64, rounding: f64) -> f64 {
 
 impl Axis {
     fn new(origin: f64, step: f64, count: usize) -> Self {
-        Axis { origin, step, per_step: 1.0 / step, count }
+        Axis { origin, lines: GridLines::new(origin, step), per_step: 1.0 / step, count }
     }
 
     /// The center of one cell, bit for bit that of [`Frame::center`] except for its sign.
     #[inline]
     pub(super) fn center(&self, i: usize) -> f64 {
-        self.origin + (i as f64 + 0.5) * self.step
+        self.lines.center(i)
     }
 
     /// The cells whose centers lie in `low..=high`, or beyond it by less than a rounding error.

@@ -1,0 +1,166 @@
+//! Heights of triangles that come one by one, in blocks of cells.
+
+use rustc_hash::FxHashMap;
+
+use super::bins::bins_of;
+use super::placement::{Centers, Placement};
+use super::scan::{Heights, Scan};
+use crate::data::{Frame, Window};
+use crate::error::Result;
+
+/// Heights at the centers of the cells of a frame, drawn triangle by triangle.
+///
+/// A cell has the height that [`Dem`](super::Dem) gives it for a surface with the triangle, bit for
+/// bit. So parts of a surface may be drawn on canvases of their own, in any order: where two have
+/// a height for a cell, it is the same. Memory is needed for blocks of cells that triangles meet,
+/// 16 kB each, whatever the size of the frame.
+#[derive(Debug)]
+pub struct Canvas {
+    frame: Frame,
+    placement: Placement,
+    blocks: Vec<Block>,
+    /// The index of each block, by its row and column.
+    index: FxHashMap<[usize; 2], usize>,
+    /// The block that was drawn into last: the next triangle is likely to meet it, too.
+    recent: usize,
+}
+
+#[derive(Debug)]
+struct Block {
+    at: [usize; 2],
+    columns: Centers,
+    rows: Centers,
+    cells: Vec<f32>,
+}
+
+/// A block of cells with heights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CanvasBlock {
+    /// Its cells in the frame.
+    pub window: Window,
+    /// The heights of the cells, row by row; NaN where no triangle was drawn.
+    pub heights: Vec<f32>,
+}
+
+impl Canvas {
+    /// The number of cells along a side of a block.
+    pub const SIDE: usize = 64;
+
+    /// Creates a canvas without heights.
+    ///
+    /// # Errors
+    /// Those of [`Frame::checked`].
+    pub fn new(frame: Frame) -> Result<Self> {
+        let frame = frame.checked()?;
+        let placement = Placement::new(&frame);
+        Ok(Canvas { frame, placement, blocks: Vec::new(), index: FxHashMap::default(), recent: 0 })
+    }
+
+    /// Returns the frame.
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// Returns the number of blocks that triangles have met.
+    pub fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Draws a triangle. Its corners may be in any order.
+    pub fn draw(&mut self, corners: [[f64; 3]; 3]) {
+        let Canvas { frame, placement, blocks, index, recent } = self;
+        let corners = corners.map(|p| placement.to_plane(p));
+        bins_of(&corners, placement, Self::SIDE, |row, column| {
+            let at = [row, column];
+            if blocks.get(*recent).is_none_or(|block| block.at != at) {
+                *recent = *index.entry(at).or_insert_with(|| {
+                    blocks.push(Block::new(at, frame, placement));
+                    blocks.len() - 1
+                });
+            }
+            let Block { columns, rows, cells, .. } = &mut blocks[*recent];
+            let (of_rows, of_columns) = (0..rows.values().len(), 0..columns.values().len());
+            Scan { columns, rows, cells }.draw(corners, &of_rows, &of_columns, &Heights);
+        });
+    }
+
+    /// Removes the blocks that have a height, by rows and then by columns; the canvas is empty
+    /// afterwards.
+    pub fn take_blocks(&mut self) -> Vec<CanvasBlock> {
+        self.index.clear();
+        let mut blocks = std::mem::take(&mut self.blocks);
+        blocks.sort_unstable_by_key(|block| block.at);
+        let has_height = |block: &Block| block.cells.iter().any(|height| !height.is_nan());
+        let window_of = |at| window(at, &self.frame);
+        let taken = blocks.into_iter().filter(has_height);
+        taken.map(|block| CanvasBlock { window: window_of(block.at), heights: block.cells }).collect()
+    }
+}
+
+impl Block {
+    fn new(at: [usize; 2], frame: &Frame, placement: &Placement) -> Self {
+        let Window { column, row, width, height } = window(at, frame);
+        Block {
+            at,
+            columns: Centers::new(placement.columns, column, width),
+            rows: Centers::new(placement.rows, row, height),
+            cells: vec![f32::NAN; width * height],
+        }
+    }
+}
+
+fn window([row, column]: [usize; 2], frame: &Frame) -> Window {
+    let (column, row) = (column * Canvas::SIDE, row * Canvas::SIDE);
+    let (width, height) = (Canvas::SIDE.min(frame.width - column), Canvas::SIDE.min(frame.height - row));
+    Window { column, row, width, height }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{BlockSource, Surface};
+    use crate::terrain::{Dem, TinBuilder};
+    use testkit::random::Random;
+
+    /// Points on centers of cells and beside them, frames of all directions, triangles larger and
+    /// smaller than blocks, on two canvases.
+    #[test]
+    fn triangles_one_by_one_give_the_cells_of_the_whole() {
+        let mut random = Random(17);
+        for round in 0..40 {
+            let size = [12.0, 150.0, 400.0][round % 3];
+            let mut builder = TinBuilder::default();
+            let points: Vec<[f64; 3]> =
+                (0..20 + 10 * round).map(|_| [0, 1, 2].map(|_| (random.unit() * size * 4.0).round() / 4.0)).collect();
+            builder.add_owned_points(points);
+            let tin = builder.build().unwrap();
+            let side = size as usize;
+            let transform = [
+                [-1.0, 1.0, 0.0, size + 1.0, 0.0, -1.0],
+                [size, -0.7, 0.0, 3.0, 0.0, 0.7],
+                [size / 2.0, 0.6, -0.8, 0.0, 0.8, 0.6],
+            ][round / 3 % 3];
+            let frame = Frame { width: side + 5, height: side, transform };
+            let mut expected = vec![0.0; frame.width * frame.height];
+            Dem::new(&tin, frame).unwrap().fill(frame.window(), &mut expected).unwrap();
+
+            let mut found = vec![f32::NAN; expected.len()];
+            let mut canvases = [0, 1].map(|_| Canvas::new(frame).unwrap());
+            for face in 0..tin.face_count() as u32 {
+                if let Some(corners) = tin.triangle(face) {
+                    canvases[random.index(2)].draw(corners);
+                }
+            }
+            for block in canvases.iter_mut().flat_map(Canvas::take_blocks) {
+                let Window { column, row, width, .. } = block.window;
+                for (i, &height) in block.heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
+                    let cell = &mut found[(row + i / width) * frame.width + column + i % width];
+                    assert!(cell.is_nan() || cell.to_bits() == height.to_bits());
+                    *cell = height;
+                }
+            }
+            assert_eq!(canvases[0].block_count(), 0);
+            assert!(found.iter().map(|z| z.to_bits()).eq(expected.iter().map(|z| z.to_bits())), "round {round}");
+        }
+    }
+}
