@@ -30,6 +30,11 @@ fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     if is_before { height_along(from, middle, q) } else { height_along(middle, to, q) }
 }
 
+/// The distance of two points in plan.
+pub(super) fn plan_distance(p: [f64; 3], q: [f64; 3]) -> f64 {
+    (p[0] - q[0]).hypot(p[1] - q[1])
+}
+
 /// The square of a distance in plan.
 fn square(p: [f64; 3], q: [f64; 3]) -> f64 {
     (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)

@@ -10,7 +10,7 @@ use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
 use super::cut::Cut;
-use super::linear::linear;
+use super::linear::{linear, plan_distance};
 use super::lines::kinds::LineKinds;
 use super::{TinReport, compact};
 
@@ -121,10 +121,9 @@ impl Tin {
         let mut exposed: Vec<(CellId, CellId)> = at_hull.collect();
         while let Some((cell, from)) = exposed.pop() {
             let i = tds.index_of_neighbor(cell, from);
-            let ends = [ccw(i), cw(i)].map(|k| self.triangulation.point(tds.vertex(cell, k)));
-            let length = (ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]);
+            let [a, b] = [ccw(i), cw(i)].map(|k| *self.triangulation.point(tds.vertex(cell, k)));
             let open = self.inside[cell.index()] && !self.triangulation.is_constrained(cell, i);
-            if !open || length <= limit {
+            if !open || plan_distance(a, b) <= limit {
                 continue;
             }
             self.inside[cell.index()] = false;
@@ -145,7 +144,7 @@ impl Tin {
             }
             let cell = CellId::new(index);
             let corners = self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
-            let length = |i: usize| (0..2).map(|k| corners[ccw(i)][k] - corners[cw(i)][k]).fold(0.0, f64::hypot);
+            let length = |i: usize| plan_distance(corners[ccw(i)], corners[cw(i)]);
             if (0..3).any(|i| length(i) > limit && !self.triangulation.is_constrained(cell, i)) {
                 self.inside[index] = false;
                 left_out += 1;

@@ -25,10 +25,14 @@
 //! triangulations* (2006); Caraffa, Memari, Yirci and Bredif, *Tile & merge* (2019).
 
 mod disk;
+mod layout;
+mod long_edges;
 mod node;
 #[cfg(test)]
 mod tests;
 
+pub use layout::{Layout, Node, Spread, Step, Work};
+pub use long_edges::{EdgeKey, Gate, LongEdges, Rim, Waiting, has_long_edge};
 pub use node::{Residual, TileTriangle, TileVertex, leaf, merge};
 
 /// A rectangle in plan that owns the points in it: each axis includes its lowest coordinate and
