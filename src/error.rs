@@ -111,6 +111,18 @@ impl Error {
         self
     }
 
+    /// Adds the larger part that the location is in, such as a tile, in front of it.
+    #[must_use]
+    pub fn within(mut self, part: impl fmt::Display) -> Self {
+        if self.inner.kind != Kind::Canceled {
+            self.inner.location = Some(match self.inner.location {
+                Some(location) => format!("{part}, {location}"),
+                None => part.to_string(),
+            });
+        }
+        self
+    }
+
     /// Adds what the user can do about it.
     #[must_use]
     pub fn cure(mut self, cure: impl Into<String>) -> Self {

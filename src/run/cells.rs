@@ -102,9 +102,8 @@ pub fn hillshade<'a>(
             (heights(product, surface, &heights_by, &journal)?, Some(surface))
         }
     };
-    let light = light(&options.light, product.crs(), &journal);
-    let source = Box::new(Hillshade::new(source, light)?);
-    Ok(CellProduct { source, surface, cells: CellFormat::Shades, notices: journal.take() })
+    let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
+    Ok(CellProduct { surface, ..shades })
 }
 
 fn heights<'a>(
@@ -144,6 +143,22 @@ fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light 
 }
 
 impl<'a> CellProduct<'a> {
+    /// Heights that were drawn already.
+    pub(super) fn heights_of(source: Box<dyn BlockSource + 'a>, notices: Vec<Notice>) -> Self {
+        CellProduct { source, surface: None, cells: CellFormat::Heights, notices }
+    }
+
+    /// The hillshade of heights that were drawn already.
+    pub(super) fn shades_of(
+        source: Box<dyn BlockSource + 'a>,
+        options: &LightOptions,
+        crs: Option<&Crs>,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let source = Box::new(Hillshade::new(source, light(options, crs, journal))?);
+        Ok(CellProduct { source, surface: None, cells: CellFormat::Shades, notices: journal.take() })
+    }
+
     /// Returns the cells of a grid that is in memory, to be written as `cells`.
     pub fn of_grid(grid: &'a Grid, cells: CellFormat) -> Self {
         CellProduct { source: Box::new(grid), surface: None, cells, notices: Vec::new() }

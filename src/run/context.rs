@@ -94,6 +94,8 @@ pub enum Stage {
     Writing,
     /// Heights are computed, counted in positions.
     ComputingHeights,
+    /// The tasks of a job run, counted in tasks.
+    RunningTasks,
 }
 
 impl Stage {
@@ -115,6 +117,7 @@ impl Stage {
             Stage::DrawingContours => "drawing contours",
             Stage::Writing => "writing",
             Stage::ComputingHeights => "computing heights",
+            Stage::RunningTasks => "running tasks",
         }
     }
 }

@@ -45,14 +45,25 @@ pub(super) fn choose(
     journal: &Journal,
 ) -> Result<Frame> {
     let frame = placed(options, extent, surface.crs(), journal)?;
+    require_filled(options, &frame, &extent, || area(surface))?;
+    Ok(frame)
+}
+
+/// Returns an error if the raster would be large and nearly empty and no extent is given.
+pub(super) fn require_filled(
+    options: &FrameOptions,
+    frame: &Frame,
+    extent: &Bounds,
+    area: impl FnOnce() -> f64,
+) -> Result<()> {
     let cells = frame.width as f64 * frame.height as f64;
     if options.extent.is_none() && cells > MANY_CELLS {
-        let share = cells_on(surface, &frame) / cells;
+        let share = area() / cell_area(frame) / cells;
         if share < MOSTLY_EMPTY {
-            return Err(mostly_empty(&frame, share, &extent));
+            return Err(mostly_empty(frame, share, extent));
         }
     }
-    Ok(frame)
+    Ok(())
 }
 
 #[cold]
@@ -71,15 +82,29 @@ fn mostly_empty(frame: &Frame, share: f64, extent: &Bounds) -> Error {
 
 /// Returns about how many cells the surface covers, including those outside of the frame.
 pub(super) fn cells_on(surface: &dyn Surface, frame: &Frame) -> f64 {
-    let doubled = data::corners(surface).map(|(_, corners)| {
-        let [[ax, ay, _], [bx, by, _], [cx, cy, _]] = corners.map(|vertex| surface.position(vertex));
-        (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-    });
-    let t = &frame.transform;
-    doubled.sum::<f64>() / 2.0 / (t[1] * t[5] - t[2] * t[4]).abs()
+    area(surface) / cell_area(frame)
 }
 
-fn placed(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, journal: &Journal) -> Result<Frame> {
+/// Returns the area of a surface in plan.
+fn area(surface: &dyn Surface) -> f64 {
+    data::corners(surface).map(|(_, corners)| area_of(corners.map(|vertex| surface.position(vertex)))).sum()
+}
+
+/// Returns the area of a triangle in plan.
+pub(super) fn area_of([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+}
+
+fn cell_area(frame: &Frame) -> f64 {
+    let t = &frame.transform;
+    (t[1] * t[5] - t[2] * t[4]).abs()
+}
+
+/// Chooses the frame of a raster over an extent, whatever part of it has a value.
+///
+/// # Errors
+/// Those of [`choose`], except for the last.
+pub(super) fn placed(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, journal: &Journal) -> Result<Frame> {
     let units = Units::of(crs);
     if extent.is_empty() {
         return Err(Error::format("the surface has no triangle, so there is no raster of it"));

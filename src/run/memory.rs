@@ -82,9 +82,19 @@ pub(super) fn require_for_mesh(path: &Path) -> Result<()> {
 
 /// Returns a notice if this many points, all used, would need more than the free memory.
 pub(super) fn excess_of(points: u64) -> Option<Notice> {
-    let need = points.saturating_mul(BYTES_A_POINT_READ);
+    let need = need_of(points);
     let left = left().filter(|left| need > LITTLE && need > left.bytes)?;
     Some(Notice::LittleMemory { need, left: left.bytes, limit: left.of })
+}
+
+/// Returns half of the free memory; a gigabyte if the system does not say how much is free.
+pub(super) fn half_of_free() -> u64 {
+    left().map_or(1 << 30, |left| left.bytes / 2)
+}
+
+/// Returns about how much memory a surface of this many points needs, with the points.
+pub(super) fn need_of(points: u64) -> u64 {
+    points.saturating_mul(BYTES_A_POINT_READ)
 }
 
 fn require(need: u64, what: &str) -> Result<()> {

@@ -75,6 +75,7 @@ mod extents;
 mod facts;
 mod frame;
 mod input;
+mod job;
 mod lattice;
 mod layers;
 mod line_inputs;
@@ -107,6 +108,9 @@ pub use elevation::elevations;
 pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
 pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
+pub use job::{
+    BadFiles, Division, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct, needs_tiles, remove_job,
+};
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
 pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity};

@@ -27,6 +27,7 @@ struct PointFile {
     stated: Stated,
     source: Option<Box<dyn PointSource + Send>>,
     count: Option<u64>,
+    bounds: Option<Bounds>,
     has_classes: bool,
     columns: Option<Columns>,
 }
@@ -73,11 +74,11 @@ impl PointFiles {
                 journal.add(Notice::WithoutClasses(path.to_path_buf()));
             }
             let stated = Stated { path: path.to_path_buf(), crs: info.crs.clone(), role: Role::Ground };
-            let (count, columns) = (info.count, info.columns);
+            let (count, bounds, columns) = (info.count, info.bounds, info.columns);
             let keep = inputs.len() <= FILES_KEPT_OPEN || input.is_read_once();
             let has_classes = info.has_classes;
             let (input, source) = (input.clone(), Some(source).filter(|_| keep));
-            files.push(PointFile { input, stated, count, has_classes, columns, source });
+            files.push(PointFile { input, stated, count, bounds, has_classes, columns, source });
         }
         if options.columns.is_some() && files.iter().all(|file| file.columns.is_none()) {
             return Err(Error::usage("--columns and --parse name columns of text, but no input is text"));
@@ -125,6 +126,29 @@ impl PointFiles {
             stated = self.files.iter().map(|file| Some(file.stated.clone())).collect();
         }
         Ok(stated)
+    }
+
+    /// Returns the number of points and the box around them that each file states, as far as it does.
+    pub(super) fn stated_extents(&self) -> impl Iterator<Item = (Option<u64>, Option<Bounds>)> + '_ {
+        self.files.iter().map(|file| (file.count, file.bounds))
+    }
+
+    /// Returns the classes that are used, without a default that depends on the points: for
+    /// [`Classes::GroundOrAll`], files are read until a ground point is found.
+    ///
+    /// # Errors
+    /// If a file cannot be read.
+    pub(super) fn used_classes(&self, classes: &Classes, journal: &Journal) -> Result<Vec<u8>> {
+        if let Classes::Only(classes) = classes {
+            return Ok(classes.clone());
+        }
+        let ground = Classes::Only(vec![GROUND]);
+        for file in self.files.iter().filter(|file| file.has_classes) {
+            if file.has_any(self.options, &ground, journal)? {
+                return Ok(vec![GROUND]);
+            }
+        }
+        Ok((0..=u8::MAX).collect())
     }
 
     /// Returns the columns used of text files, each with the number of files.

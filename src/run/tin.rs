@@ -135,6 +135,27 @@ pub enum EdgeLimit {
     Length(f64),
 }
 
+impl EdgeLimit {
+    /// Returns the length, in the units of the coordinate system; `None` if there is no limit, or
+    /// if it follows from the points.
+    pub(super) fn length(self, units: &Units) -> Option<f64> {
+        match self {
+            EdgeLimit::Unlimited | EdgeLimit::Auto => None,
+            EdgeLimit::Length(length) => Some(length),
+            EdgeLimit::Standard => Some(units.of_metres(DEFAULT_MAX_EDGE_METRES)),
+        }
+    }
+
+    /// Returns the notice about the limit.
+    pub(super) fn notice(self, units: &Units) -> Notice {
+        note_of_limit(self.length(units), units)
+    }
+}
+
+fn note_of_limit(limit: Option<f64>, units: &Units) -> Notice {
+    limit.map_or(Notice::NoEdgeLimit, |length| Notice::EdgeLimit(units.length(length)))
+}
+
 /// The report of a TIN that was built: its input and what was done with it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -304,12 +325,7 @@ struct Rim {
 impl Rim {
     fn new(request: &TinRequest, units: &Units, journal: &Journal) -> Self {
         let default = units.of_metres(DEFAULT_MAX_EDGE_METRES);
-        let max_edge = match request.max_edge {
-            EdgeLimit::Unlimited => None,
-            EdgeLimit::Length(length) => Some(length),
-            EdgeLimit::Standard => Some(default),
-            EdgeLimit::Auto => None, // not yet known
-        };
+        let max_edge = request.max_edge.length(units);
         let rim = Rim { limit: request.max_edge, max_edge, buffer: max_edge.unwrap_or(default), spacing: None };
         if rim.limit != EdgeLimit::Auto {
             rim.note_limit(units, journal);
@@ -318,7 +334,7 @@ impl Rim {
     }
 
     fn note_limit(&self, units: &Units, journal: &Journal) {
-        journal.add(self.max_edge.map_or(Notice::NoEdgeLimit, |length| Notice::EdgeLimit(units.length(length))));
+        journal.add(note_of_limit(self.max_edge, units));
     }
 
     /// Finds the mean distance between points, and the limit that follows from it.

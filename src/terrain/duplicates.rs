@@ -1,3 +1,7 @@
+use crate::error::{Error, Result};
+use crate::triangulation::num::unsigned_zero;
+use crate::triangulation::spatial_order;
+
 /// Which height is used where several points share a site in plan.
 ///
 /// With [`Lowest`](Self::Lowest), [`Highest`](Self::Highest) and [`Mean`](Self::Mean) the result
@@ -34,4 +38,25 @@ impl DuplicateRule {
             }
         }
     }
+}
+
+/// Returns one point for each site, in spatial order, with the height of a rule.
+///
+/// # Errors
+/// If there are more points than 32-bit numbers can count.
+///
+/// # Complexity
+/// O(n log n).
+pub(crate) fn one_per_site(points: &[[f64; 3]], rule: DuplicateRule) -> Result<Vec<[f64; 3]>> {
+    // Neither zero is the lower one.
+    let site = |i: u32| [0, 1].map(|k| unsigned_zero(points[i as usize][k]));
+    let order = spatial_order(points.len(), |i| site(i as u32)).map_err(|e| Error::limit(e.to_string()))?;
+    let mut heights = Vec::new();
+    let of_site = |group: &[u32]| {
+        heights.clear();
+        heights.extend(group.iter().map(|&i| unsigned_zero(points[i as usize][2])));
+        let [x, y] = site(group[0]);
+        [x, y, rule.choose(&mut heights)]
+    };
+    Ok(order.chunk_by(|&i, &j| site(i) == site(j)).map(of_site).collect())
 }

@@ -65,6 +65,7 @@ pub use compact::CompactTin;
 pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};
 pub use duplicates::DuplicateRule;
+pub(crate) use duplicates::one_per_site;
 pub use grid_surface::GridSurface;
 pub use hillshade::{Hillshade, Light};
 pub use inside::Inside;

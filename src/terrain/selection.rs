@@ -151,6 +151,13 @@ impl Selection {
         sources.filter(|(_, classes)| is_unused(classes)).map(|(source, _)| source).collect()
     }
 
+    /// Removes and returns the points kept so far, which must be [certain](Self::certain), so that
+    /// more can be read than fit into memory.
+    pub(crate) fn take_points(&mut self) -> Vec<[f64; 3]> {
+        debug_assert!(self.spare.is_empty(), "a ground point may still drop these");
+        std::mem::take(&mut self.kept)
+    }
+
     /// Returns the number of points that later ones cannot drop: all that are kept, without those
     /// of other classes while there is no ground point.
     pub fn certain(&self) -> usize {

@@ -1,38 +1,65 @@
 use crate::cli::Exit;
 use crate::cli::input::args::DemArgs;
-use crate::cli::input::outputs;
+use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
+use crate::cli::verbs::tiled::{self, Tiled};
+use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::formats::Product;
+use crate::io::geotiff::RasterSummary;
 use crate::run::units::Units;
-use crate::run::{self, DemOptions};
+use crate::run::{self, CellProduct, DemOptions, TiledProduct};
 
 /// Writes the heights of a TIN as a raster.
 pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     let frame = plan.add_frame(&args.frame)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), &plan)?;
+    let options = DemOptions { frame, method: args.method.into() };
+    let tiled = TiledProduct::Heights(options.clone());
+    match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
+        Tiled::Whole => {}
+        Tiled::Planned => return Ok(Exit::Done),
+        Tiled::Ran(job, report) => {
+            let cells = job.cells(&report, &console.context())?;
+            outputs.announce(&cells, |()| 4, console)?;
+            let written = write(&cells, &outputs, console)?;
+            tiled::print(&report, console);
+            print_heights(written, report.crs.as_ref(), console);
+            outputs.commit(console)?;
+            tiled::clean(&args.tiles, &job)?;
+            return Ok(Exit::Done);
+        }
+    }
     let product = run::triangles(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
-    let options = DemOptions { frame, method: args.method.into() };
     let cells = run::dem(&product, &options, &console.context())?;
     outputs.announce(&cells, |()| 4, console)?;
+    let written = write(&cells, &outputs, console)?;
+    print_surface(&product, console);
+    print_heights(written, product.crs(), console);
+    outputs.commit(console)?;
+    Ok(Exit::Done)
+}
+
+fn write(cells: &CellProduct, outputs: &Outputs<()>, console: &Console) -> Result<Option<RasterSummary>> {
     let mut written = None;
     for target in &outputs.targets {
         written = Some(cells.write(target.within(&outputs.set), &console.context())?);
     }
-    print_surface(&product, console);
+    Ok(written)
+}
+
+fn print_heights(written: Option<RasterSummary>, crs: Option<&Crs>, console: &Console) {
     match written {
         Some(cells) if cells.valid > 0 => {
-            let units = Units::of(product.crs());
+            let units = Units::of(crs);
             let (low, high) = (units.height(cells.min), units.height(cells.max));
             console.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
         }
         Some(_) => console.warning("no cell has a height"),
         None => {}
     }
-    outputs.commit(console)?;
-    Ok(Exit::Done)
 }

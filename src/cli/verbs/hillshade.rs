@@ -1,12 +1,13 @@
 use crate::cli::Exit;
 use crate::cli::input::args::HillshadeArgs;
-use crate::cli::input::outputs;
+use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::{print_extent, print_surface};
+use crate::cli::verbs::tiled::{self, Tiled};
 use crate::error::Result;
 use crate::io::formats::{Content, Product};
-use crate::run::{self, HillshadeOptions, LightOptions, Model};
+use crate::run::{self, CellProduct, HillshadeOptions, LightOptions, Model, TiledProduct};
 
 /// The file formats of a hillshade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,18 +26,26 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
         _ => ShadeFormat::GeoTiff,
     });
     let outputs = outputs::resolve_with_report(&args.output, &formats, &plan)?;
-    let product = run::surface(&plan.request, &console.context())?;
-    outputs.add_report(&plan, &product)?;
     let options = HillshadeOptions { frame, method: args.method.into(), light };
-    let cells = run::hillshade(&product, &options, &console.context())?;
-    outputs.announce(&cells, cell_bytes, console)?;
-    for target in &outputs.targets {
-        let destination = target.within(&outputs.set);
-        match target.kind {
-            ShadeFormat::GeoTiff => cells.write(destination, &console.context()).map(drop)?,
-            ShadeFormat::Png => cells.write_picture(destination, &console.context())?,
+    let tiled = TiledProduct::Shades(options.clone());
+    match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
+        Tiled::Whole => {}
+        Tiled::Planned => return Ok(Exit::Done),
+        Tiled::Ran(job, report) => {
+            let cells = job.cells(&report, &console.context())?;
+            outputs.announce(&cells, cell_bytes, console)?;
+            write(&cells, &outputs, console)?;
+            tiled::print(&report, console);
+            outputs.commit(console)?;
+            tiled::clean(&args.tiles, &job)?;
+            return Ok(Exit::Done);
         }
     }
+    let product = run::surface(&plan.request, &console.context())?;
+    outputs.add_report(&plan, &product)?;
+    let cells = run::hillshade(&product, &options, &console.context())?;
+    outputs.announce(&cells, cell_bytes, console)?;
+    write(&cells, &outputs, console)?;
     match &product.model {
         // The size of the raster is printed already.
         Model::Raster(grid) => print_extent(grid.extent(), grid.crs.as_ref(), console),
@@ -44,6 +53,17 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
     }
     outputs.commit(console)?;
     Ok(Exit::Done)
+}
+
+fn write(cells: &CellProduct, outputs: &Outputs<ShadeFormat>, console: &Console) -> Result<()> {
+    for target in &outputs.targets {
+        let destination = target.within(&outputs.set);
+        match target.kind {
+            ShadeFormat::GeoTiff => cells.write(destination, &console.context()).map(drop)?,
+            ShadeFormat::Png => cells.write_picture(destination, &console.context())?,
+        }
+    }
+    Ok(())
 }
 
 /// Returns the bytes of a cell before compression.

@@ -8,6 +8,7 @@ pub(super) mod describe;
 pub(super) mod hillshade;
 pub(super) mod info;
 pub(super) mod points;
+mod tiled;
 pub(super) mod tin;
 pub(super) mod triangulate;
 mod triangulate_space;

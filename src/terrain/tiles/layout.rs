@@ -87,7 +87,7 @@ impl Layout {
     }
 
     /// Returns one tile for each box, numbered like the boxes; `None` if no cuts separate them.
-    /// Boxes that touch are not separate: both may have points there.
+    /// Boxes that touch are not separate: both may have points there. Cuts are in the middle of gaps.
     pub fn of_boxes(boxes: &[Spread]) -> Option<Self> {
         let mut layout = Layout { nodes: Vec::new() };
         let mut all: Vec<u32> = (0..boxes.len() as u32).collect();
@@ -109,8 +109,9 @@ impl Layout {
                 reach = reach.max(boxes[of[i - 1] as usize].max[axis]);
                 let next = boxes[of[i] as usize].min[axis];
                 let off = |i: usize| i.abs_diff(of.len() / 2);
-                if reach < next && best.is_none_or(|(_, known, _)| off(i) < off(known)) {
-                    best = Some((axis, i, next));
+                let middle = f64::midpoint(reach, next);
+                if reach < middle && best.is_none_or(|(_, known, _)| off(i) < off(known)) {
+                    best = Some((axis, i, middle));
                 }
             }
         }

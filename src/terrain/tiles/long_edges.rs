@@ -19,7 +19,7 @@ pub type EdgeKey = [u64; 2];
 #[derive(Debug, Clone, Default)]
 pub struct LongEdges {
     limit: f64,
-    triangles: Vec<[[f64; 3]; 3]>,
+    triangles: Vec<TileTriangle>,
     /// The triangle on one side of each long edge whose other side was not seen yet.
     open: FxHashMap<EdgeKey, u32>,
     /// A union-find structure over the triangles.
@@ -33,8 +33,8 @@ struct Groups(Vec<u32>);
 /// The triangles of a task that wait for a decision.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Waiting {
-    /// The corners of each triangle.
-    pub triangles: Vec<[[f64; 3]; 3]>,
+    /// The triangles.
+    pub triangles: Vec<TileTriangle>,
     /// The number of the group of each triangle.
     pub group_of: Vec<u32>,
     /// The edges at which groups continue in other tasks, or end at the hull.
@@ -76,7 +76,7 @@ impl LongEdges {
         let mut number = None;
         for i in (0..3).filter(|&i| is_long(triangle, &corners, i, self.limit)) {
             let number = *number.get_or_insert_with(|| {
-                self.triangles.push(corners);
+                self.triangles.push(*triangle);
                 self.groups.add()
             });
             let key = edge_key(triangle.corners[ccw(i)], triangle.corners[cw(i)]);

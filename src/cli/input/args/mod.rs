@@ -7,6 +7,7 @@ mod reading;
 mod surface;
 mod switches;
 mod systems;
+mod tiles;
 mod verbs;
 
 use std::num::NonZeroUsize;
@@ -21,6 +22,7 @@ pub(in crate::cli) use parse::{EdgeLength, finite};
 pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(in crate::cli) use switches::expand_switches;
 pub(in crate::cli) use systems::SystemArgs;
+pub(in crate::cli) use tiles::TileArgs;
 pub(in crate::cli) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs,
     PointsArgs, TinArgs, TriangulateArgs,

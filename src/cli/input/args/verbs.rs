@@ -6,6 +6,7 @@ use super::parse::{Corners, altitude, finite, positive, smallest_angle};
 use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
+use super::tiles::TileArgs;
 use crate::data::classes;
 use crate::run::{Alpha, Arithmetic};
 use crate::terrain::Method;
@@ -303,9 +304,9 @@ impl From<KernelArg> for Arithmetic {
 /// Write a DEM: heights of the TIN at the centers of cells
 ///
 /// Heights are linear on each triangle, or by another --method, and nodata (-9999) where there is
-/// none. The output is a
-/// tiled GeoTIFF of 32-bit floats, compressed with DEFLATE. It is computed block by block on all
-/// cores and may be larger than memory.
+/// none. The output is a tiled GeoTIFF of 32-bit floats, compressed with DEFLATE. It is computed
+/// block by block on all cores and may be larger than memory. So may the points: then the work is
+/// done in tiles (--tiles, --memory).
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -328,6 +329,9 @@ pub(in crate::cli) struct DemArgs {
     /// overshoot.
     #[arg(long, value_enum, value_name = "METHOD", default_value_t, help_heading = "Raster")]
     pub(in crate::cli) method: MethodArg,
+
+    #[command(flatten)]
+    pub(in crate::cli) tiles: TileArgs,
 }
 
 /// How heights between the vertices are computed.
@@ -440,6 +444,9 @@ pub(in crate::cli) struct HillshadeArgs {
     /// By default, heights in feet over coordinates in metres are multiplied by 0.3048.
     #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Light")]
     pub(in crate::cli) z_factor: Option<f64>,
+
+    #[command(flatten)]
+    pub(in crate::cli) tiles: TileArgs,
 }
 
 /// Prove a TIN correct, or list its flaws

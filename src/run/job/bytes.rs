@@ -1,0 +1,126 @@
+//! Numbers in the sections of a task's file, little-endian.
+
+use crate::data::EdgeKind;
+use crate::terrain::tiles::{Gate, Residual, TileTriangle, TileVertex, Waiting};
+
+pub(super) fn put_u32(to: &mut Vec<u8>, value: u32) {
+    to.extend_from_slice(&value.to_le_bytes());
+}
+
+pub(super) fn put_u64(to: &mut Vec<u8>, value: u64) {
+    to.extend_from_slice(&value.to_le_bytes());
+}
+
+fn put_vertex(to: &mut Vec<u8>, vertex: &TileVertex) {
+    put_u32(to, vertex.tile);
+    put_u32(to, vertex.number);
+    vertex.position.iter().for_each(|c| to.extend_from_slice(&c.to_le_bytes()));
+}
+
+/// Takes numbers from bytes; `None` where they end.
+pub(super) struct Reader<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Reader { rest: bytes }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.rest.is_empty()
+    }
+
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (first, rest) = self.rest.split_first_chunk()?;
+        self.rest = rest;
+        Some(*first)
+    }
+
+    pub(super) fn u32(&mut self) -> Option<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn u64(&mut self) -> Option<u64> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    pub(super) fn f64(&mut self) -> Option<f64> {
+        self.take().map(f64::from_le_bytes)
+    }
+
+    pub(super) fn point(&mut self) -> Option<[f64; 3]> {
+        Some([self.f64()?, self.f64()?, self.f64()?])
+    }
+
+    fn vertex(&mut self) -> Option<TileVertex> {
+        Some(TileVertex { tile: self.u32()?, number: self.u32()?, position: self.point()? })
+    }
+
+    fn kind(&mut self) -> Option<EdgeKind> {
+        let [number] = self.take()?;
+        EdgeKind::ALL.get(usize::from(number)).copied()
+    }
+}
+
+/// Returns the bytes of points.
+pub(super) fn of_points(points: &[[f64; 3]]) -> Vec<u8> {
+    points.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect()
+}
+
+/// Returns the bytes of a residual.
+pub(super) fn of_residual(residual: &Residual) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(8 + 32 * residual.vertices.len() + 8 * residual.seams.len());
+    put_u64(&mut bytes, residual.vertices.len() as u64);
+    residual.vertices.iter().for_each(|vertex| put_vertex(&mut bytes, vertex));
+    residual.seams.as_flattened().iter().for_each(|&end| put_u32(&mut bytes, end));
+    bytes
+}
+
+/// Returns the residual with these bytes; `None` if they are not those of one.
+pub(super) fn to_residual(bytes: &[u8]) -> Option<Residual> {
+    let mut reader = Reader::new(bytes);
+    let count = usize::try_from(reader.u64()?).ok().filter(|&count| count <= bytes.len() / 32)?;
+    let vertices = (0..count).map(|_| reader.vertex()).collect::<Option<_>>()?;
+    let mut seams = Vec::new();
+    while !reader.is_empty() {
+        seams.push([reader.u32()?, reader.u32()?]);
+    }
+    Some(Residual { vertices, seams })
+}
+
+/// Returns the bytes of the gates of what waits, and of its triangles.
+pub(super) fn of_waiting(waiting: &Waiting) -> [Vec<u8>; 2] {
+    let (mut gates, mut triangles) = (Vec::new(), Vec::new());
+    for Gate { edge, group } in &waiting.gates {
+        edge.iter().for_each(|&end| put_u64(&mut gates, end));
+        put_u32(&mut gates, *group);
+    }
+    for (triangle, group) in waiting.triangles.iter().zip(&waiting.group_of) {
+        triangle.corners.iter().for_each(|corner| put_vertex(&mut triangles, corner));
+        triangles.extend(triangle.edges.map(EdgeKind::number));
+        put_u32(&mut triangles, *group);
+    }
+    [gates, triangles]
+}
+
+/// Returns the gates with these bytes; `None` if they are not those of gates.
+pub(super) fn to_gates(bytes: &[u8]) -> Option<Vec<Gate>> {
+    let mut reader = Reader::new(bytes);
+    let mut gates = Vec::with_capacity(bytes.len() / 20);
+    while !reader.is_empty() {
+        gates.push(Gate { edge: [reader.u64()?, reader.u64()?], group: reader.u32()? });
+    }
+    Some(gates)
+}
+
+/// The bytes of a triangle that waits.
+pub(super) const WAITING_BYTES: usize = 3 * 32 + 3 + 4;
+
+/// Returns the triangle with these bytes and its group; `None` if they are not those of one.
+pub(super) fn to_waiting(bytes: &[u8]) -> Option<(TileTriangle, u32)> {
+    let mut reader = Reader::new(bytes);
+    let corners = [reader.vertex()?, reader.vertex()?, reader.vertex()?];
+    let edges = [reader.kind()?, reader.kind()?, reader.kind()?];
+    Some((TileTriangle { corners, edges }, reader.u32()?))
+}

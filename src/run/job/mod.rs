@@ -1,0 +1,540 @@
+//! Surfaces larger than memory: a job of tasks, each of which reads files and writes one.
+//!
+//! A job lives in a folder: the plan, and a file for each task that is done. So it can be
+//! interrupted at any moment and go on, and its tasks can run anywhere that sees the folder.
+//!
+//! 1. If the files are no tiles, each is *divided* among the tiles.
+//! 2. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
+//!    are final; see [`tiles`](crate::terrain::tiles).
+//! 3. The *rim* is decided: triangles with edges over the limit wait until all others are known.
+//! 4. The cells that all tasks have drawn are the product.
+
+mod bytes;
+mod plan;
+mod raster;
+mod schedule;
+mod task_file;
+mod tasks;
+
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use self::plan::{Plan, PlannedFile, crs_of, fingerprint};
+use self::raster::DrawnCells;
+use self::task_file::{TaskFile, UNFINISHED};
+use super::cells::{CellProduct, DemOptions, HillshadeOptions};
+use super::context::{Context, Journal};
+use super::frame::{self, FrameOptions};
+use super::notice::Notice;
+use super::point_files::PointFiles;
+use super::surface::{Source, SurfaceRequest};
+use super::systems::SystemOptions;
+use super::tin::TinRequest;
+use crate::crs::Crs;
+use crate::data::Bounds;
+use crate::error::{Error, Result};
+use crate::terrain::Method;
+use crate::terrain::tiles::{Step, Work};
+
+/// The file of the plan in the folder of a job.
+const PLAN: &str = "plan.json";
+
+/// The file that is locked while a process works on the job.
+const LOCK: &str = "lock";
+
+/// How a surface is divided into tiles.
+#[derive(Debug, Clone)]
+pub struct TileOptions {
+    /// The tiles.
+    pub division: Division,
+    /// The memory to use, in bytes; half of the free memory if it is `None`.
+    pub memory: Option<u64>,
+    /// The folder of the job, in which its tasks write.
+    pub folder: PathBuf,
+    /// What becomes of files that cannot be read.
+    pub bad: BadFiles,
+}
+
+/// Which tiles there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Division {
+    /// The files, if they are separate and small enough; else tiles with about as many points each
+    /// as fit into memory.
+    #[default]
+    Auto,
+    /// This many columns and rows of tiles.
+    Grid([usize; 2]),
+}
+
+/// What becomes of files that cannot be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BadFiles {
+    /// They are an error.
+    #[default]
+    Refuse,
+    /// They leave a hole, and are reported.
+    Skip,
+}
+
+/// What a job makes of the surface.
+#[derive(Debug, Clone)]
+pub enum TiledProduct {
+    /// A DEM.
+    Heights(DemOptions),
+    /// A hillshade.
+    Shades(HillshadeOptions),
+}
+
+impl TiledProduct {
+    fn frame(&self) -> &FrameOptions {
+        match self {
+            TiledProduct::Heights(options) => &options.frame,
+            TiledProduct::Shades(options) => &options.frame,
+        }
+    }
+
+    fn method(&self) -> Method {
+        match self {
+            TiledProduct::Heights(options) => options.method,
+            TiledProduct::Shades(options) => options.method,
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            TiledProduct::Heights(_) => "dem",
+            TiledProduct::Shades(_) => "hillshade",
+        }
+    }
+}
+
+/// A task of a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Task {
+    /// Divides a file among the tiles.
+    Divide(usize),
+    /// A step of the triangulation.
+    Triangulate(usize),
+    /// Decides about the triangles at the rim.
+    Rim,
+}
+
+/// A surface in tiles, and what is made of it.
+#[derive(Debug)]
+pub struct Job<'a> {
+    request: &'a TinRequest,
+    systems: &'a SystemOptions,
+    product: &'a TiledProduct,
+    bad: BadFiles,
+    folder: PathBuf,
+    plan: Plan,
+    steps: Vec<Step>,
+    /// What was assumed and what looks wrong, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// A job that a process works on.
+#[derive(Debug)]
+pub struct JobLock {
+    _file: File,
+}
+
+/// What a plan consists of.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct JobSize {
+    /// The number of files of points.
+    pub files: usize,
+    /// The number of points that they state.
+    pub points: u64,
+    /// The number of tiles.
+    pub tiles: usize,
+    /// True if the files are divided among the tiles first: their points are written and read once
+    /// more.
+    pub divides: bool,
+    /// The number of merges.
+    pub merges: usize,
+    /// The number of all tasks.
+    pub tasks: usize,
+    /// About how many bytes the tasks write.
+    pub disk: u64,
+    /// About how much memory each task may need, in bytes.
+    pub task_memory: u64,
+}
+
+/// Counts of a job that is done.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct JobReport {
+    /// Points read.
+    pub read: u64,
+    /// Points used.
+    pub used: u64,
+    /// Points at the position of another.
+    pub duplicates: u64,
+    /// Triangles of the surface.
+    pub triangles: u64,
+    /// Triangles that were left out at the rim.
+    pub beyond_max_edge: u64,
+    /// Triangles that waited for the decision about the rim.
+    pub waited: u64,
+    /// Vertices that were handed up in all.
+    pub handed_up: u64,
+    /// The box around the surface.
+    pub extent: Bounds,
+    /// The files that were skipped, with the reasons.
+    pub skipped: Vec<String>,
+    /// The coordinate system.
+    pub crs: Option<Crs>,
+}
+
+impl<'a> Job<'a> {
+    /// Plans a job. Nothing is written.
+    ///
+    /// # Errors
+    /// If the request has lines, bounds or a method that tiles do not have, a file cannot be
+    /// opened, or those of building a surface.
+    pub fn plan(
+        request: &'a SurfaceRequest,
+        product: &'a TiledProduct,
+        options: &TileOptions,
+        context: &Context,
+    ) -> Result<Self> {
+        let (request, systems) = tiled(request, product)?;
+        let journal = Journal::new(context);
+        let plan = Plan::new(request, systems, product, options, &journal)?;
+        Ok(Self::of_plan(request, systems, product, options, plan, journal.take()))
+    }
+
+    fn of_plan(
+        request: &'a TinRequest,
+        systems: &'a SystemOptions,
+        product: &'a TiledProduct,
+        options: &TileOptions,
+        plan: Plan,
+        notices: Vec<Notice>,
+    ) -> Self {
+        let steps = plan.layout.steps();
+        Job { request, systems, product, bad: options.bad, folder: options.folder.clone(), plan, steps, notices }
+    }
+
+    /// Creates the folder of the job, with the plan.
+    ///
+    /// # Errors
+    /// If the folder has a job already, or cannot be written.
+    pub fn create(&self) -> Result<()> {
+        let path = self.folder.join(PLAN);
+        if path.exists() {
+            return Err(Error::usage("there is a job in this folder already")
+                .in_file(&self.folder)
+                .cure("go on with it (--resume), or name another folder (--job)"));
+        }
+        let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
+        std::fs::create_dir_all(self.folder.join("tasks")).map_err(named)?;
+        let unfinished = self.folder.join(format!("{PLAN}{UNFINISHED}"));
+        std::fs::write(&unfinished, self.plan.to_json().to_string()).map_err(named)?;
+        std::fs::rename(&unfinished, &path).map_err(named)
+    }
+
+    /// Opens the job of a request in its folder; `None` if there is none.
+    ///
+    /// # Errors
+    /// If the job is that of another request, or damaged.
+    pub fn open(request: &'a SurfaceRequest, product: &'a TiledProduct, options: &TileOptions) -> Result<Option<Self>> {
+        let (request, systems) = tiled(request, product)?;
+        let path = options.folder.join(PLAN);
+        let text = match std::fs::read(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(Error::from(error).in_file(path)),
+        };
+        let value: Option<Value> = serde_json::from_slice(&text).ok();
+        let plan = value.as_ref().and_then(Plan::from_json).ok_or_else(|| {
+            Error::format("the plan of the job is damaged, or that of another version")
+                .in_file(&path)
+                .cure("remove the folder, and begin anew")
+        })?;
+        if plan.request != fingerprint(request, systems, product, options) {
+            return Err(Error::usage("the job in this folder is that of another command")
+                .in_file(&options.folder)
+                .cure("repeat that command, or name another folder (--job)"));
+        }
+        Ok(Some(Self::of_plan(request, systems, product, options, plan, Vec::new())))
+    }
+
+    /// Returns the numbers of the plan.
+    pub fn size(&self) -> JobSize {
+        let plan = &self.plan;
+        let frame = &plan.frame;
+        // Cells at borders are drawn twice, in part.
+        let cells = frame.width as u64 * frame.height as u64 * 5;
+        let points = plan.point_count();
+        JobSize {
+            files: plan.files.len(),
+            points,
+            tiles: plan.layout.tile_count(),
+            divides: plan.divides,
+            merges: plan.merge_count(),
+            tasks: self.task_count(),
+            disk: cells + if plan.divides { 24 * points } else { 0 },
+            task_memory: plan.task_memory,
+        }
+    }
+
+    /// Returns the number of tasks.
+    pub fn task_count(&self) -> usize {
+        self.divided() + self.steps.len() + usize::from(self.plan.max_edge.is_some())
+    }
+
+    /// The number of files that are divided.
+    fn divided(&self) -> usize {
+        if self.plan.divides { self.plan.files.len() } else { 0 }
+    }
+
+    fn task(&self, number: usize) -> Task {
+        match number.checked_sub(self.divided()) {
+            None => Task::Divide(number),
+            Some(step) if step < self.steps.len() => Task::Triangulate(step),
+            Some(_) => Task::Rim,
+        }
+    }
+
+    fn task_of_step(&self, step: usize) -> usize {
+        self.divided() + step
+    }
+
+    /// Returns the tasks that must be done before a task.
+    pub fn needs(&self, task: usize) -> Vec<usize> {
+        match self.task(task) {
+            Task::Divide(_) => Vec::new(),
+            Task::Triangulate(step) => match &self.steps[step].work {
+                Work::Leaf(_) if self.plan.divides => self.files_of(step).collect(),
+                Work::Leaf(_) => Vec::new(),
+                Work::Merge(parts) => parts.iter().map(|&part| self.task_of_step(part)).collect(),
+            },
+            Task::Rim => (0..self.steps.len()).map(|step| self.task_of_step(step)).collect(),
+        }
+    }
+
+    /// Returns the files that may have points of the tile of a step.
+    fn files_of(&self, step: usize) -> impl Iterator<Item = usize> + '_ {
+        let tile = self.steps[step].tile;
+        let meets = move |file: &PlannedFile| {
+            file.count > 0 && (0..2).all(|k| file.max[k] >= tile.min[k] && tile.max[k] >= file.min[k])
+        };
+        self.plan.files.iter().enumerate().filter(move |(_, file)| meets(file)).map(|(number, _)| number)
+    }
+
+    /// Returns what a task does, such as "tile 17".
+    pub fn task_name(&self, task: usize) -> String {
+        match self.task(task) {
+            Task::Divide(file) => format!("divide {}", self.plan.files[file].path.display()),
+            Task::Triangulate(step) => match &self.steps[step].work {
+                Work::Leaf(tile) if self.plan.divides => format!("tile {tile}"),
+                Work::Leaf(tile) => format!("tile {tile}, {}", self.plan.files[*tile as usize].path.display()),
+                Work::Merge(parts) => format!("merge of {}", parts.len()),
+            },
+            Task::Rim => "rim".to_owned(),
+        }
+    }
+
+    fn task_path(&self, number: usize) -> PathBuf {
+        self.folder.join("tasks").join(format!("{number:06}.task"))
+    }
+
+    /// Returns true if a task is done: its file is there and complete.
+    pub fn is_done(&self, task: usize) -> bool {
+        matches!(TaskFile::open(&self.task_path(task)), Ok(Some(_)))
+    }
+
+    /// Takes the whole job for this process, as long as the result lives.
+    ///
+    /// # Errors
+    /// If another process works on it.
+    pub fn lock(&self) -> Result<JobLock> {
+        self.locked(File::try_lock)
+    }
+
+    /// Takes part in the job, together with other processes that do single tasks.
+    fn lock_shared(&self) -> Result<JobLock> {
+        self.locked(File::try_lock_shared)
+    }
+
+    fn locked(&self, lock: impl Fn(&File) -> std::result::Result<(), TryLockError>) -> Result<JobLock> {
+        let path = self.folder.join(LOCK);
+        let file = File::create(&path).map_err(|e| Error::from(e).in_file(&path))?;
+        match lock(&file) {
+            Err(TryLockError::WouldBlock) => Err(Error::usage("another process works on this job")
+                .in_file(&self.folder)
+                .cure("wait for it, or name another folder (--job)")),
+            // Some shared file systems have no locks.
+            Ok(()) | Err(TryLockError::Error(_)) => Ok(JobLock { _file: file }),
+        }
+    }
+
+    /// Removes files that a run left when it was killed, and files of tasks that are damaged.
+    /// Returns the number of tasks that are done. The job must be [locked](Self::lock).
+    ///
+    /// # Errors
+    /// If a file cannot be removed.
+    pub fn clear_up(&self, _lock: &JobLock) -> Result<usize> {
+        let folder = self.folder.join("tasks");
+        let named = |e: std::io::Error| Error::from(e).in_file(&folder);
+        for entry in std::fs::read_dir(&folder).map_err(named)? {
+            let path = entry.map_err(named)?.path();
+            if path.to_string_lossy().ends_with(UNFINISHED) {
+                std::fs::remove_file(&path).map_err(|e| Error::from(e).in_file(&path))?;
+            }
+        }
+        let mut done = 0;
+        for task in 0..self.task_count() {
+            let path = self.task_path(task);
+            let checked = TaskFile::open(&path).and_then(|file| file.map(|mut file| file.verify()).transpose());
+            match checked {
+                Ok(found) => done += usize::from(found.is_some()),
+                Err(_) => std::fs::remove_file(&path).map_err(|e| Error::from(e).in_file(&path))?,
+            }
+        }
+        Ok(done)
+    }
+
+    /// Does one task, unless it is done. Needs the files of the tasks before it.
+    ///
+    /// # Errors
+    /// If the input cannot be read, a task before it is not done, or the run is canceled.
+    pub fn run_task(&self, task: usize, context: &Context) -> Result<()> {
+        if task >= self.task_count() {
+            return Err(Error::usage(format!("there is no task {task}: the last is {}", self.task_count() - 1)));
+        }
+        let _lock = self.lock_shared()?;
+        if self.is_done(task) { Ok(()) } else { self.do_task(task, context) }
+    }
+
+    /// Returns what became of the tasks, all of which must be done.
+    ///
+    /// # Errors
+    /// If a task is not done.
+    pub fn report(&self) -> Result<JobReport> {
+        let mut report = JobReport::default();
+        for task in 0..self.task_count() {
+            let file = self.open_task(task)?;
+            report.read += file.count("read");
+            report.used += file.count("used");
+            report.duplicates += file.count("duplicates");
+            report.triangles += file.count("triangles");
+            report.beyond_max_edge += file.count("removed");
+            report.waited += file.count("waiting");
+            report.handed_up += file.count("residual");
+            if let Some(text) = file.facts.get("skipped").and_then(Value::as_str) {
+                report.skipped.push(text.to_owned());
+            }
+            for corner in file.facts.get("extent").and_then(Value::as_array).into_iter().flatten() {
+                let coordinate = |k: usize| corner[k].as_f64().unwrap_or(f64::NAN);
+                report.extent.add([coordinate(0), coordinate(1), coordinate(2)]);
+            }
+        }
+        report.crs = self.crs()?;
+        Ok(report)
+    }
+
+    /// Returns the coordinate system of the result, from the headers of all files.
+    fn crs(&self) -> Result<Option<Crs>> {
+        let context = Context::default();
+        let journal = Journal::new(&context);
+        let points = PointFiles::open(&self.request.points, self.request.read, &journal)?;
+        crs_of(&points, self.request, self.systems, &journal)
+    }
+
+    /// Returns the cells of the product, once all tasks are done.
+    ///
+    /// # Errors
+    /// If a task is not done, no triangle is left, or those of [`dem`](super::dem).
+    pub fn cells(&self, report: &JobReport, context: &Context) -> Result<CellProduct<'static>> {
+        let journal = Journal::new(context);
+        let options = self.product.frame();
+        if report.triangles == 0 {
+            return Err(Error::format(format!(
+                "no triangle is left of {} points: {} have edges over the limit at the rim",
+                report.used, report.beyond_max_edge
+            ))
+            .cure("allow longer edges with --max-edge LENGTH or --max-edge none"));
+        }
+        // Notices about the frame came with the plan.
+        let quiet = Context::default();
+        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(&quiet))?;
+        frame::require_filled(options, &frame, &report.extent, || self.area())?;
+        let paths = (self.divided()..self.task_count()).map(|task| self.task_path(task)).collect();
+        let drawn = DrawnCells::open(paths, self.plan.frame, frame, report.crs.clone())?;
+        Ok(match self.product {
+            TiledProduct::Heights(_) => CellProduct::heights_of(Box::new(drawn), journal.take()),
+            TiledProduct::Shades(HillshadeOptions { light, .. }) => {
+                CellProduct::shades_of(Box::new(drawn), light, report.crs.as_ref(), &journal)?
+            }
+        })
+    }
+
+    fn area(&self) -> f64 {
+        let of_task = |task| self.open_task(task).ok()?.facts.get("area")?.as_f64();
+        (0..self.task_count()).filter_map(of_task).sum()
+    }
+
+    /// Removes the folder of the job.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub fn remove(&self) -> Result<()> {
+        remove_job(&self.folder)
+    }
+}
+
+/// Removes the files of a job and its folder, if nothing else is in it.
+///
+/// # Errors
+/// If there is no job in the folder, or it cannot be removed.
+pub fn remove_job(folder: &Path) -> Result<()> {
+    let plan = folder.join(PLAN);
+    let named = |e: std::io::Error| Error::from(e).in_file(folder);
+    if !plan.is_file() {
+        return Err(Error::usage("there is no job in this folder").in_file(folder));
+    }
+    // The plan first: what is left without it is no job.
+    std::fs::remove_file(&plan).map_err(named)?;
+    std::fs::remove_dir_all(folder.join("tasks")).map_err(named)?;
+    let _ = std::fs::remove_file(folder.join(LOCK));
+    let is_empty = std::fs::read_dir(folder).map_err(named)?.next().is_none();
+    if is_empty { std::fs::remove_dir(folder).map_err(named) } else { Ok(()) }
+}
+
+/// Returns true if a request would need more memory than there is, and can be done in tiles.
+///
+/// # Errors
+/// If a file cannot be opened.
+pub fn needs_tiles(
+    request: &SurfaceRequest,
+    product: &TiledProduct,
+    memory: Option<u64>,
+    context: &Context,
+) -> Result<bool> {
+    let Ok((points, systems)) = tiled(request, product) else { return Ok(false) };
+    if plan::require_tiled(points, systems).is_err() {
+        return Ok(false);
+    }
+    let quiet = Context { monitor: Context::default().monitor, cancel: context.cancel };
+    let files = PointFiles::open(&points.points, points.read, &Journal::new(&quiet))?;
+    let count: u64 = files.stated_extents().filter_map(|(count, _)| count).sum();
+    Ok(super::memory::need_of(count) > memory.unwrap_or_else(super::memory::half_of_free))
+}
+
+/// Returns the request of the points of a surface.
+fn tiled<'a>(request: &'a SurfaceRequest, product: &TiledProduct) -> Result<(&'a TinRequest, &'a SystemOptions)> {
+    let Source::Points(points) = &request.source else {
+        return Err(Error::usage("tiles are made of points, but the input is a surface already")
+            .cure("leave out the options of tiles"));
+    };
+    if product.method() != Method::Linear {
+        return Err(Error::unsupported("tiles have linear heights only").cure("leave out --method, or --tiles"));
+    }
+    Ok((points, &request.systems))
+}

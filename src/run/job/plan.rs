@@ -1,0 +1,329 @@
+//! The plan of a job: which tiles there are, and what all tasks must agree on.
+
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use serde_json::{Value, json};
+
+use super::{Division, TileOptions, TiledProduct};
+use crate::crs::Crs;
+use crate::data::{Bounds, Frame, PointBatch};
+use crate::error::{Error, Result};
+use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::frame;
+use crate::run::input::{Input, MemoryPoints};
+use crate::run::memory;
+use crate::run::notice::Notice;
+use crate::run::open;
+use crate::run::point_files::PointFiles;
+use crate::run::systems::{self, SystemOptions, Systems};
+use crate::run::tin::{EdgeLimit, TinRequest};
+use crate::run::units::Units;
+use crate::terrain::Classes;
+use crate::terrain::tiles::{Layout, Node, Spread, Work};
+
+/// Bytes per point of a tile while it is triangulated and drawn; measured.
+pub(super) const BYTES_A_POINT: u64 = 220;
+
+/// Tiles with more points than this gain nothing.
+const MOST_POINTS: u64 = 1_000_000;
+
+/// Tiles with fewer points than this hand up much of what they have.
+const LEAST_POINTS: u64 = 10_000;
+
+/// The share of the most points that a tile has on average: files may be denser in one place.
+const AVERAGE: f64 = 0.5;
+
+/// The rounding of the coordinates that headers state, in units of the last place.
+const HEADER_ROUNDING: f64 = 8.0;
+
+/// A file of points as the plan knows it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PlannedFile {
+    pub(super) path: PathBuf,
+    /// Length in bytes and time of the last change in nanoseconds: a file that changes later is
+    /// refused.
+    pub(super) size: u64,
+    pub(super) modified: u64,
+    /// The number of its points.
+    pub(super) count: u64,
+    /// The box around its points in plan, enlarged by the rounding of a header.
+    pub(super) min: [f64; 2],
+    pub(super) max: [f64; 2],
+}
+
+/// What all tasks of a job must agree on.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Plan {
+    /// A description of the request, so that another one does not go on with this job.
+    pub(super) request: String,
+    pub(super) files: Vec<PlannedFile>,
+    /// True if the files are no tiles: they are divided among tiles first.
+    pub(super) divides: bool,
+    pub(super) layout: Layout,
+    /// The classes that are used.
+    pub(super) classes: Vec<u8>,
+    /// The longest edge at the rim.
+    pub(super) max_edge: Option<f64>,
+    /// The frame that triangles are drawn in: it covers all points, or is that of the result.
+    pub(super) frame: Frame,
+    /// The memory of one task.
+    pub(super) task_memory: u64,
+}
+
+/// Returns an error if the request has something that tiles do not have yet.
+pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Result<()> {
+    let lines = request.lines.inputs();
+    let first_lines = lines.into_iter().find(|(_, inputs)| !inputs.is_empty()).map(|(role, _)| role.option());
+    let refused = [
+        (!request.breaklines.is_empty(), "--breaklines"),
+        (!request.boundary.is_empty(), "--boundary"),
+        (request.bounds.is_some(), "--bounds"),
+        (request.max_edge == EdgeLimit::Auto, "--max-edge auto"),
+        (systems.target.is_some(), "--t-srs"),
+    ];
+    let first = refused.iter().find(|(is_given, _)| *is_given).map(|(_, name)| *name).or(first_lines);
+    if let Some(option) = first {
+        return Err(Error::unsupported(format!("{option} does not work with tiles yet"))
+            .cure("leave one of them out: without --tiles the whole surface is built in memory"));
+    }
+    if let Some(input) = request.points.iter().find(|input| !matches!(input, Input::File(_)) || input.is_read_once()) {
+        return Err(Error::usage("tiles are made of files, which can be read again after an interruption")
+            .in_file(input.path())
+            .cure("write the points to a file first"));
+    }
+    Ok(())
+}
+
+impl Plan {
+    /// Chooses the tiles for the files of a request, by what their headers state; files that do not
+    /// state it are read once.
+    pub(super) fn new(
+        request: &TinRequest,
+        systems: &SystemOptions,
+        product: &TiledProduct,
+        options: &TileOptions,
+        journal: &Journal,
+    ) -> Result<Self> {
+        require_tiled(request, systems)?;
+        let points = PointFiles::open(&request.points, request.read, journal)?;
+        let crs = crs_of(&points, request, systems, journal)?;
+        let classes = points.used_classes(&request.classes, journal)?;
+        if request.classes == Classes::GroundOrAll {
+            journal.add(if classes.len() == 1 { Notice::GroundUsed } else { Notice::AllClassesUsed });
+        }
+        let mut files = Vec::new();
+        for (input, stated) in request.points.iter().zip(points.stated_extents()) {
+            files.push(planned(input, request, stated, &journal.context)?);
+        }
+        drop(points);
+
+        let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).filter(|spread| spread.count > 0.0).collect();
+        if spreads.is_empty() {
+            return Err(Error::format("no points in the input").cure("pass files that contain points"));
+        }
+        let mut extent = Bounds::default();
+        for Spread { min, max, .. } in &spreads {
+            [min, max].into_iter().for_each(|&[x, y]| extent.add([x, y, 0.0]));
+        }
+        let workers = rayon::current_num_threads() as u64;
+        let task_memory = options.memory.unwrap_or_else(memory::half_of_free) / workers;
+        let most = (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS);
+        let are_small = spreads.len() == files.len() && files.iter().all(|file| file.count <= most);
+        let (layout, divides) = match options.division {
+            Division::Grid(counts) => {
+                let [min, max] = [extent.min, extent.max].map(|[x, y, _]| [x, y]);
+                (Layout::grid(min, max, counts), true)
+            }
+            Division::Auto => match Layout::of_boxes(&spreads).filter(|_| are_small) {
+                Some(layout) => (layout, false),
+                None => (Layout::balanced(&spreads, most as f64 * AVERAGE), true),
+            },
+        };
+        let options_of_frame = product.frame();
+        let frame = frame::placed(options_of_frame, extent, crs.as_ref(), journal)?;
+        if options_of_frame.extent.is_none() && !frame.has_shared_centers() {
+            return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
+                .cure("state the extent of the result with --te"));
+        }
+        let units = Units::of(crs.as_ref());
+        let max_edge = request.max_edge.length(&units);
+        journal.add(request.max_edge.notice(&units));
+        let request = fingerprint(request, systems, product, options);
+        Ok(Plan { request, files, divides, layout, classes, max_edge, frame, task_memory })
+    }
+
+    /// Returns the number of points that the files state.
+    pub(super) fn point_count(&self) -> u64 {
+        self.files.iter().map(|file| file.count).sum()
+    }
+
+    /// Returns the number of merges.
+    pub(super) fn merge_count(&self) -> usize {
+        self.layout.steps().iter().filter(|step| matches!(step.work, Work::Merge(_))).count()
+    }
+
+    /// Returns an error if a file has changed since the plan was made.
+    pub(super) fn require_unchanged(&self, number: usize) -> Result<()> {
+        let file = &self.files[number];
+        let (size, modified) = state_of(&file.path)?;
+        if (size, modified) == (file.size, file.modified) {
+            return Ok(());
+        }
+        Err(Error::usage("the file has changed since the job was planned")
+            .in_file(&file.path)
+            .cure("plan the job again, in another folder"))
+    }
+
+    pub(super) fn to_json(&self) -> Value {
+        let file = |file: &PlannedFile| {
+            json!([file.path, file.size, file.modified, file.count, file.min[0], file.min[1], file.max[0], file.max[1]])
+        };
+        let node = |node: &Node| match node {
+            Node::Tile(number) => json!(number),
+            Node::Cut { axis, at, parts } => json!([axis, at, parts[0], parts[1]]),
+        };
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "request": self.request,
+            "files": self.files.iter().map(file).collect::<Vec<_>>(),
+            "divides": self.divides,
+            "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
+            "classes": self.classes,
+            "max_edge": self.max_edge,
+            "frame": [self.frame.width, self.frame.height],
+            "transform": self.frame.transform,
+            "task_memory": self.task_memory,
+        })
+    }
+
+    /// Returns the plan that a value states; `None` if it does not.
+    pub(super) fn from_json(value: &Value) -> Option<Self> {
+        let whole = |value: &Value| usize::try_from(value.as_u64()?).ok();
+        let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
+        let file = |value: &Value| {
+            Some(PlannedFile {
+                path: serde_json::from_value(value[0].clone()).ok()?,
+                size: value[1].as_u64()?,
+                modified: value[2].as_u64()?,
+                count: value[3].as_u64()?,
+                min: [value[4].as_f64()?, value[5].as_f64()?],
+                max: [value[6].as_f64()?, value[7].as_f64()?],
+            })
+        };
+        let node = |value: &Value| match value {
+            Value::Array(parts) if parts.len() == 4 => Some(Node::Cut {
+                axis: whole(&parts[0])?,
+                at: parts[1].as_f64()?,
+                parts: [number(&parts[2])?, number(&parts[3])?],
+            }),
+            value => number(value).map(Node::Tile),
+        };
+        let nodes = value["layout"].as_array()?.iter().map(node).collect::<Option<_>>()?;
+        let transform = value["transform"].as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?;
+        let class = |value: &Value| u8::try_from(value.as_u64()?).ok();
+        let (width, height) = (whole(&value["frame"][0])?, whole(&value["frame"][1])?);
+        Some(Plan {
+            request: value["request"].as_str()?.to_owned(),
+            files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
+            divides: value["divides"].as_bool()?,
+            layout: Layout::from_nodes(nodes)?,
+            classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
+            max_edge: value["max_edge"].as_f64(),
+            frame: Frame { width, height, transform: transform.try_into().ok()? }.checked().ok()?,
+            task_memory: value["task_memory"].as_u64()?,
+        })
+        .filter(|plan| plan.divides || plan.files.len() == plan.layout.tile_count())
+    }
+}
+
+impl PlannedFile {
+    fn spread(&self) -> Spread {
+        Spread { min: self.min, max: self.max, count: self.count as f64 }
+    }
+
+    /// Returns true if a position is in the box that was planned with.
+    pub(super) fn holds(&self, [x, y, _]: [f64; 3]) -> bool {
+        self.min[0] <= x && x <= self.max[0] && self.min[1] <= y && y <= self.max[1]
+    }
+}
+
+/// Returns the coordinate system of the result.
+pub(super) fn crs_of(
+    points: &PointFiles,
+    request: &TinRequest,
+    systems: &SystemOptions,
+    journal: &Journal,
+) -> Result<Option<Crs>> {
+    let Systems { crs, .. } = systems::reconcile_some(&points.stated(&request.classes, journal)?, systems, journal)?;
+    Ok(crs)
+}
+
+/// Returns a description of everything that the files of the tasks depend on.
+pub(super) fn fingerprint(
+    request: &TinRequest,
+    systems: &SystemOptions,
+    product: &TiledProduct,
+    options: &TileOptions,
+) -> String {
+    let mut sum = flate2::Crc::new();
+    sum.update(format!("{request:?} {systems:?} {product:?} {:?} {:?}", options.division, options.memory).as_bytes());
+    format!("{} {:08x}", product.name(), sum.sum())
+}
+
+fn planned(
+    input: &Input<MemoryPoints>,
+    request: &TinRequest,
+    stated: (Option<u64>, Option<Bounds>),
+    context: &Context,
+) -> Result<PlannedFile> {
+    let path = input.path();
+    let (size, modified) = state_of(path)?;
+    let (count, bounds) = match stated {
+        (Some(count), Some(bounds)) => (count, bounds),
+        (Some(0), None) => (0, Bounds::default()),
+        _ => measured(input, request, context).map_err(|e| e.in_file(path))?,
+    };
+    let rounding = |k: usize| HEADER_ROUNDING * f64::EPSILON * bounds.min[k].abs().max(bounds.max[k].abs());
+    let is_finite = (0..2).all(|k| bounds.min[k].is_finite() && bounds.max[k].is_finite());
+    if count > 0 && !is_finite {
+        return Err(Error::format("the header states an extent that is not finite")
+            .in_file(path)
+            .cure("`breakline points` writes a file with a true header"));
+    }
+    let [min, max] = if count == 0 {
+        [[0.0; 2]; 2]
+    } else {
+        [[0, 1].map(|k| bounds.min[k] - rounding(k)), [0, 1].map(|k| bounds.max[k] + rounding(k))]
+    };
+    Ok(PlannedFile { path: path.to_path_buf(), size, modified, count, min, max })
+}
+
+/// Counts the points of a file that does not state their number or extent.
+fn measured(input: &Input<MemoryPoints>, request: &TinRequest, context: &Context) -> Result<(u64, Bounds)> {
+    let mut source = open::points(input, request.read, context)?;
+    let work = context.start(Stage::ReadingPoints, Size::Unknown)?;
+    let (mut count, mut bounds) = (0, Bounds::default());
+    let mut batch = PointBatch::default();
+    loop {
+        source.read(&mut batch)?;
+        if batch.is_empty() {
+            return Ok((count, bounds));
+        }
+        count += batch.len() as u64;
+        (0..batch.len()).for_each(|i| bounds.add([batch.x[i], batch.y[i], batch.z[i]]));
+        work.add(batch.len() as u64)?;
+    }
+}
+
+/// Returns the length of a file and the time of its last change; zeros for a layer in a file, which
+/// has a name of its own.
+fn state_of(path: &Path) -> Result<(u64, u64)> {
+    let about = match std::fs::metadata(path) {
+        Ok(about) => about,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok((0, 0)),
+        Err(error) => return Err(Error::from(error).in_file(path)),
+    };
+    let modified = about.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+    Ok((about.len(), modified.map_or(0, |time| time.as_nanos() as u64)))
+}

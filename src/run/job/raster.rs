@@ -1,0 +1,183 @@
+//! The cells that tasks have drawn: as they are written, and as one raster.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rustc_hash::FxHashMap;
+
+use super::bytes::{Reader, put_u64};
+use super::task_file::{TaskFile, TaskWriter};
+use crate::crs::Crs;
+use crate::data::{BlockSource, Frame, Window};
+use crate::error::{Error, Result};
+use crate::terrain::Canvas;
+
+/// Files that are kept open.
+const MOST_OPEN: usize = 64;
+
+/// A canvas whose blocks go to the file of a task when they become many.
+pub(super) struct Drawing {
+    canvas: Canvas,
+    /// Column, row and position in the file of each block.
+    table: Vec<[u64; 3]>,
+}
+
+/// Blocks on a canvas before they are written: 32 MB.
+const MOST_BLOCKS: usize = 2048;
+
+impl Drawing {
+    /// Begins the section of cells.
+    pub(super) fn new(frame: Frame, writer: &mut TaskWriter) -> Result<Self> {
+        writer.begin("cells");
+        Ok(Drawing { canvas: Canvas::new(frame)?, table: Vec::new() })
+    }
+
+    pub(super) fn draw(&mut self, corners: [[f64; 3]; 3], writer: &mut TaskWriter) -> Result<()> {
+        self.canvas.draw(corners);
+        if self.canvas.block_count() > MOST_BLOCKS { self.write_blocks(writer) } else { Ok(()) }
+    }
+
+    fn write_blocks(&mut self, writer: &mut TaskWriter) -> Result<()> {
+        let mut bytes = Vec::new();
+        for block in self.canvas.take_blocks() {
+            self.table.push([block.window.column as u64, block.window.row as u64, writer.position()]);
+            bytes.clear();
+            block.heights.iter().for_each(|height| bytes.extend_from_slice(&height.to_le_bytes()));
+            writer.write(&bytes)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the remaining blocks and their table.
+    pub(super) fn finish(mut self, writer: &mut TaskWriter) -> Result<()> {
+        self.write_blocks(writer)?;
+        writer.begin("table");
+        let mut bytes = Vec::new();
+        self.table.iter().flatten().for_each(|&number| put_u64(&mut bytes, number));
+        writer.write(&bytes)
+    }
+}
+
+/// The heights that all tasks have drawn, as one raster.
+///
+/// Of the tasks that have a height for a cell, any may be asked: they agree.
+pub(super) struct DrawnCells {
+    /// The frame of the result.
+    frame: Frame,
+    /// The frame that was drawn in, and the column and row in it of the first cell of the result.
+    drawn: Frame,
+    first: [i64; 2],
+    crs: Option<Crs>,
+    paths: Vec<PathBuf>,
+    /// For each block, by its column and row: the files that have it, and where.
+    blocks: FxHashMap<[u32; 2], Vec<(u32, u64)>>,
+    open: Mutex<FxHashMap<u32, Arc<Mutex<TaskFile>>>>,
+}
+
+impl DrawnCells {
+    /// Opens the cells of the tasks with these files.
+    ///
+    /// # Errors
+    /// If a file is missing or damaged.
+    pub(super) fn open(paths: Vec<PathBuf>, drawn: Frame, frame: Frame, crs: Option<Crs>) -> Result<Self> {
+        let mut blocks: FxHashMap<[u32; 2], Vec<(u32, u64)>> = FxHashMap::default();
+        for (number, path) in (0..).zip(&paths) {
+            let mut file = TaskFile::open(path)?.ok_or_else(|| missing().in_file(path))?;
+            let table = file.section("table")?;
+            let (from, length) = file.range("cells");
+            let mut reader = Reader::new(&table);
+            while !reader.is_empty() {
+                let [Some(column), Some(row), Some(at)] = [(); 3].map(|()| reader.u64()) else {
+                    return Err(file.damaged());
+                };
+                let side = Canvas::SIDE as u64;
+                let is_block = column < drawn.width as u64 && row < drawn.height as u64;
+                if !is_block || at < from || at >= from + length || column % side + row % side != 0 {
+                    return Err(file.damaged());
+                }
+                blocks.entry([column, row].map(|at| (at / side) as u32)).or_default().push((number, at));
+            }
+        }
+        let [column, row] = drawn.inverse().apply(frame.transform[0], frame.transform[3]);
+        let first = [column.round() as i64, row.round() as i64];
+        Ok(DrawnCells { frame, drawn, first, crs, paths, blocks, open: Mutex::default() })
+    }
+
+    fn file(&self, number: u32) -> Result<Arc<Mutex<TaskFile>>> {
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(file) = open.get(&number) {
+            return Ok(Arc::clone(file));
+        }
+        let path = &self.paths[number as usize];
+        let file = TaskFile::open(path)?.ok_or_else(|| missing().in_file(path))?;
+        if open.len() >= MOST_OPEN {
+            open.clear();
+        }
+        let file = Arc::new(Mutex::new(file));
+        open.insert(number, Arc::clone(&file));
+        Ok(file)
+    }
+
+    /// Returns the heights of a block in one of the files.
+    fn heights(&self, number: u32, at: u64, bytes: &mut [u8]) -> Result<()> {
+        let file = self.file(number)?;
+        file.lock().unwrap_or_else(PoisonError::into_inner).read(at, bytes)
+    }
+}
+
+impl BlockSource for DrawnCells {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.crs.as_ref()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.frame.check_window(window, out.len())?;
+        out.fill(f32::NAN);
+        let side = Canvas::SIDE as i64;
+        // In the frame that was drawn in; beyond it there is no height.
+        let from = [window.column as i64 + self.first[0], window.row as i64 + self.first[1]];
+        let size = [window.width as i64, window.height as i64];
+        let limits = [self.drawn.width as i64, self.drawn.height as i64];
+        let range = |k: usize| from[k].max(0)..(from[k] + size[k]).min(limits[k]);
+        let (columns, rows) = (range(0), range(1));
+        if columns.is_empty() || rows.is_empty() {
+            return Ok(());
+        }
+        let mut bytes = Vec::new();
+        for block_row in rows.start / side..=(rows.end - 1) / side {
+            for block_column in columns.start / side..=(columns.end - 1) / side {
+                let Some(parts) = self.blocks.get(&[block_column as u32, block_row as u32]) else { continue };
+                let [width, height] =
+                    [limits[0] - block_column * side, limits[1] - block_row * side].map(|n| n.min(side));
+                bytes.resize((width * height) as usize * 4, 0);
+                for &(number, at) in parts {
+                    self.heights(number, at, &mut bytes)?;
+                    for row in rows.start.max(block_row * side)..rows.end.min(block_row * side + height) {
+                        let first = columns.start.max(block_column * side);
+                        let end = columns.end.min(block_column * side + width);
+                        let line = ((row - block_row * side) * width + first - block_column * side) as usize;
+                        let to = ((row - from[1]) * size[0] + first - from[0]) as usize;
+                        let count = (end - first) as usize;
+                        let heights = bytes[4 * line..4 * (line + count)].chunks_exact(4);
+                        for (cell, height) in out[to..to + count].iter_mut().zip(heights) {
+                            let height = f32::from_le_bytes(std::array::from_fn(|i| height[i]));
+                            if !height.is_nan() {
+                                *cell = height;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cold]
+pub(super) fn missing() -> Error {
+    Error::format("the file of a task is missing").cure("run the job again with --resume")
+}

@@ -1,0 +1,110 @@
+//! Doing all tasks of a job on this machine.
+
+use std::sync::{Condvar, Mutex, PoisonError};
+
+use super::Job;
+use crate::error::{Error, Result};
+use crate::run::context::{Context, Size, Stage};
+
+/// The state of a task.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// Waits for so many others.
+    Waits(usize),
+    Runs,
+    Done,
+}
+
+struct Board {
+    states: Vec<State>,
+    /// The tasks that wait for each task.
+    after: Vec<Vec<usize>>,
+    left: usize,
+    /// No task below this one waits for nothing.
+    first: usize,
+    failed: Option<Error>,
+}
+
+impl Job<'_> {
+    /// Does all tasks that are not done, on as many threads as there are, and one thread each.
+    ///
+    /// Merges come soon after what they merge. After an error the tasks that run are finished, and
+    /// no other one begins.
+    ///
+    /// # Errors
+    /// The first error of a task, or that the run is canceled.
+    pub fn run(&self, context: &Context) -> Result<()> {
+        let board = Mutex::new(self.board());
+        let changed = Condvar::new();
+        let lock = || board.lock().unwrap_or_else(PoisonError::into_inner);
+        let progress = context.start(Stage::RunningTasks, Size::Items(lock().left as u64))?;
+        std::thread::scope(|scope| {
+            for _ in 0..rayon::current_num_threads() {
+                scope.spawn(|| {
+                    // A task has one thread: other tasks have the others.
+                    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
+                    let mut now = lock();
+                    loop {
+                        if now.left == 0 || now.failed.is_some() {
+                            break;
+                        }
+                        let Some(task) = now.next() else {
+                            now = changed.wait(now).unwrap_or_else(PoisonError::into_inner);
+                            continue;
+                        };
+                        drop(now);
+                        let done = pool.install(|| self.do_task(task, context)).and_then(|()| progress.add(1));
+                        now = lock();
+                        match done {
+                            Ok(()) => now.finish(task),
+                            Err(error) => _ = now.failed.get_or_insert(error),
+                        }
+                        changed.notify_all();
+                    }
+                });
+            }
+        });
+        let mut board = board.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match board.failed.take() {
+            Some(error) => Err(error),
+            None => progress.end(),
+        }
+    }
+
+    fn board(&self) -> Board {
+        let count = self.task_count();
+        let mut after = vec![Vec::new(); count];
+        let mut states = vec![State::Done; count];
+        let is_done: Vec<bool> = (0..count).map(|task| self.is_done(task)).collect();
+        for task in (0..count).filter(|&task| !is_done[task]) {
+            let needed: Vec<usize> = self.needs(task).into_iter().filter(|&before| !is_done[before]).collect();
+            needed.iter().for_each(|&before| after[before].push(task));
+            states[task] = State::Waits(needed.len());
+        }
+        let left = is_done.iter().filter(|is_done| !**is_done).count();
+        Board { states, after, left, first: 0, failed: None }
+    }
+}
+
+impl Board {
+    /// Returns the first task that waits for nothing, which runs from now on.
+    fn next(&mut self) -> Option<usize> {
+        let task = (self.first..self.states.len()).find(|&task| self.states[task] == State::Waits(0))?;
+        self.states[task] = State::Runs;
+        self.first = task;
+        Some(task)
+    }
+
+    fn finish(&mut self, task: usize) {
+        self.states[task] = State::Done;
+        self.left -= 1;
+        for next in std::mem::take(&mut self.after[task]) {
+            if let State::Waits(count) = &mut self.states[next] {
+                *count -= 1;
+                if *count == 0 {
+                    self.first = self.first.min(next);
+                }
+            }
+        }
+    }
+}

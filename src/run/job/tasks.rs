@@ -1,0 +1,321 @@
+//! What each task does: files in, one file out.
+
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use super::bytes::{self, Reader, put_u32, put_u64};
+use super::raster::Drawing;
+use super::task_file::{TaskFile, TaskWriter};
+use super::{BadFiles, Job, Task};
+use crate::data::{Bounds, PointBatch};
+use crate::error::{Error, Kind, Result};
+use crate::run::context::Context;
+use crate::run::{frame, open};
+use crate::terrain::tiles::{self, LongEdges, Rim, TileTriangle, Work, has_long_edge};
+use crate::terrain::{Classes, Selection, SelectionReport, one_per_site};
+
+/// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
+/// they are sorted.
+const DIVIDED_AT_ONCE: usize = 1 << 20;
+
+/// Bytes of an entry in the table of a divided file.
+const ENTRY: usize = 4 + 8 + 8;
+
+impl Job<'_> {
+    /// Does a task and writes its file.
+    pub(super) fn do_task(&self, number: usize, context: &Context) -> Result<()> {
+        let mut writer = TaskWriter::create(&self.task_path(number))?;
+        let facts = match self.task(number) {
+            Task::Divide(file) => self.divide(file, &mut writer, context)?,
+            Task::Triangulate(step) => match &self.steps[step].work {
+                Work::Leaf(tile) => self.leaf(step, *tile, &mut writer, context)?,
+                Work::Merge(parts) => self.merge(step, parts, &mut writer)?,
+            },
+            Task::Rim => self.rim(&mut writer, context)?,
+        };
+        context.check()?;
+        writer.finish(facts)
+    }
+
+    /// Divides the points of a file among the tiles.
+    fn divide(&self, file: usize, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+        let mut table = Vec::new();
+        writer.begin("points");
+        let mut waiting: Vec<[f64; 3]> = Vec::new();
+        let layout = &self.plan.layout;
+        let mut write_run = |points: &mut Vec<[f64; 3]>| -> Result<()> {
+            let mut tiles: Vec<(u32, u32)> =
+                (0..).zip(points.iter()).map(|(i, &[x, y, _])| (layout.tile_of([x, y]), i)).collect();
+            // By tiles, and within each in the order of the file.
+            tiles.sort_unstable();
+            for of_tile in tiles.chunk_by(|a, b| a.0 == b.0) {
+                put_u32(&mut table, of_tile[0].0);
+                put_u64(&mut table, writer.position());
+                put_u64(&mut table, of_tile.len() as u64);
+                let own: Vec<[f64; 3]> = of_tile.iter().map(|(_, i)| points[*i as usize]).collect();
+                writer.write(&bytes::of_points(&own))?;
+            }
+            points.clear();
+            Ok(())
+        };
+        let read = self.read_file(file, context, &mut |mut points| {
+            if waiting.is_empty() {
+                waiting = points
+            } else {
+                waiting.append(&mut points)
+            }
+            if waiting.len() >= DIVIDED_AT_ONCE { write_run(&mut waiting) } else { Ok(()) }
+        });
+        let read = read.and_then(|read| write_run(&mut waiting).map(|()| read));
+        // Of a bad file, nothing counts.
+        let facts = self.facts_of_file(file, read.map(|report| facts_of(&report)))?;
+        if facts.contains_key("skipped") {
+            table.clear();
+        }
+        writer.begin("table");
+        writer.write(&table)?;
+        Ok(facts)
+    }
+
+    /// Returns the facts of a file that was read; of one that is bad, why it is skipped.
+    fn facts_of_file(&self, file: usize, read: Result<Map<String, Value>>) -> Result<Map<String, Value>> {
+        let path = &self.plan.files[file].path;
+        match read {
+            Err(error) if self.bad == BadFiles::Skip && error.kind() != Kind::Canceled => {
+                let error = error.in_file(path);
+                Ok(Map::from_iter([("skipped".to_owned(), json!(error.to_string()))]))
+            }
+            read => read.map_err(|e| e.in_file(path)),
+        }
+    }
+
+    /// Reads the points of a file that are used, some at a time.
+    fn read_file(
+        &self,
+        number: usize,
+        context: &Context,
+        take: &mut dyn FnMut(Vec<[f64; 3]>) -> Result<()>,
+    ) -> Result<SelectionReport> {
+        self.plan.require_unchanged(number)?;
+        let file = &self.plan.files[number];
+        let mut source = open::points(&self.request.points[number], self.request.read, context)?;
+        let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
+        let mut batch = PointBatch::default();
+        loop {
+            source.read(&mut batch)?;
+            if batch.is_empty() {
+                return Ok(selection.finish().1);
+            }
+            selection.add(&batch)?;
+            let points = selection.take_points();
+            if let Some(&[x, y, _]) = points.iter().find(|point| !file.holds(**point)) {
+                let ([x0, y0], [x1, y1]) = (file.min, file.max);
+                return Err(Error::format(format!(
+                    "there is a point at {x} {y}, but the header states an extent from {x0} {y0} to {x1} {y1}"
+                ))
+                .cure("`breakline points` writes a file with a true header"));
+            }
+            take(points)?;
+            context.check()?;
+        }
+    }
+
+    /// Triangulates the points of a tile.
+    fn leaf(&self, step: usize, tile: u32, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+        let (points, mut facts) = if self.plan.divides {
+            (self.divided_points(step, tile)?, Map::new())
+        } else {
+            let file = tile as usize;
+            let mut all: Vec<[f64; 3]> = Vec::new();
+            let read = self.read_file(file, context, &mut |mut points| {
+                if all.is_empty() {
+                    all = points
+                } else {
+                    all.append(&mut points)
+                }
+                Ok(())
+            });
+            let facts = self.facts_of_file(file, read.map(|report| facts_of(&report)));
+            let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
+            if facts.contains_key("skipped") {
+                all.clear();
+            }
+            (all, facts)
+        };
+        let count = points.len();
+        let points = one_per_site(&points, self.request.duplicates)?;
+        facts.insert("duplicates".to_owned(), json!(count - points.len()));
+        let rectangle = &self.steps[step].tile;
+        self.emitting(writer, facts, |emit| tiles::leaf(rectangle, tile, &points, emit)).map_err(|error| {
+            let error = error.within(format_args!("tile {tile}"));
+            if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
+        })
+    }
+
+    /// Returns the points of a tile from the divided files, in the order of the files.
+    fn divided_points(&self, step: usize, tile: u32) -> Result<Vec<[f64; 3]>> {
+        let mut all = Vec::new();
+        for number in self.files_of(step) {
+            let mut divided = self.open_task(number)?;
+            let table = divided.section("table")?;
+            let (from, length) = divided.range("points");
+            for entry in table.chunks(ENTRY) {
+                let mut reader = Reader::new(entry);
+                let (Some(of_tile), Some(at), Some(count)) = (reader.u32(), reader.u64(), reader.u64()) else {
+                    return Err(divided.damaged());
+                };
+                if of_tile != tile {
+                    continue;
+                }
+                if at < from || count.checked_mul(24).is_none_or(|bytes| at - from + bytes > length) {
+                    return Err(divided.damaged());
+                }
+                let mut bytes = vec![0; count as usize * 24];
+                divided.read(at, &mut bytes)?;
+                let mut reader = Reader::new(&bytes);
+                all.extend((0..count).filter_map(|_| reader.point()));
+            }
+        }
+        Ok(all)
+    }
+
+    fn merge(&self, step: usize, parts: &[usize], writer: &mut TaskWriter) -> Result<Map<String, Value>> {
+        let mut residuals = Vec::new();
+        for &part in parts {
+            let mut file = self.open_task(self.task_of_step(part))?;
+            let bytes = file.section("residual")?;
+            residuals.push(bytes::to_residual(&bytes).ok_or_else(|| file.damaged())?);
+        }
+        self.emitting(writer, Map::new(), |emit| tiles::merge(&self.steps[step].tile, &residuals, emit))
+            .map_err(|e| e.within(format_args!("merge {step}")))
+    }
+
+    /// Runs a step and writes what becomes of its triangles: cells of those that are certain to
+    /// stay, and the triangles that wait for the decision about the rim.
+    fn emitting(
+        &self,
+        writer: &mut TaskWriter,
+        mut facts: Map<String, Value>,
+        run: impl FnOnce(&mut dyn FnMut(TileTriangle)) -> Result<tiles::Residual>,
+    ) -> Result<Map<String, Value>> {
+        let mut kept = Kept::new(self, writer)?;
+        let mut long = self.plan.max_edge.map(LongEdges::new);
+        let mut failed = Ok(());
+        let residual = run(&mut |triangle| {
+            if failed.is_ok() && !long.as_mut().is_some_and(|long| long.take(&triangle)) {
+                failed = kept.add(&triangle, writer);
+            }
+        })?;
+        failed?;
+        kept.finish(writer, &mut facts)?;
+        writer.begin("residual");
+        writer.write(&bytes::of_residual(&residual))?;
+        facts.insert("residual".to_owned(), json!(residual.vertices.len()));
+        if let Some(long) = long {
+            let waiting = long.finish();
+            let [gates, triangles] = bytes::of_waiting(&waiting);
+            writer.begin("gates");
+            writer.write(&gates)?;
+            writer.begin("waiting");
+            writer.write(&triangles)?;
+            facts.insert("groups".to_owned(), json!(waiting.groups));
+            facts.insert("waiting".to_owned(), json!(waiting.triangles.len()));
+        }
+        Ok(facts)
+    }
+
+    /// Decides which of the triangles that wait are removed at the rim, and draws the others.
+    fn rim(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+        let mut rim = Rim::default();
+        for step in 0..self.steps.len() {
+            let mut file = self.open_task(self.task_of_step(step))?;
+            let bytes = file.section("gates")?;
+            let groups = file.count("groups") as u32;
+            let gates = bytes::to_gates(&bytes).filter(|gates| gates.iter().all(|gate| gate.group < groups));
+            rim.add(groups, &gates.ok_or_else(|| file.damaged())?);
+        }
+        let mut facts = Map::new();
+        let mut removed = 0_u64;
+        let mut kept = Kept::new(self, writer)?;
+        for (step, is_removed) in rim.removed().into_iter().enumerate() {
+            let mut file = self.open_task(self.task_of_step(step))?;
+            for bytes in file.section("waiting")?.chunks(bytes::WAITING_BYTES) {
+                let waiting = bytes::to_waiting(bytes);
+                let (triangle, group) = waiting.ok_or_else(|| file.damaged())?;
+                match is_removed.get(group as usize) {
+                    Some(true) => removed += 1,
+                    Some(false) => kept.add(&triangle, writer)?,
+                    None => return Err(file.damaged()),
+                }
+            }
+            context.check()?;
+        }
+        kept.finish(writer, &mut facts)?;
+        facts.insert("removed".to_owned(), json!(removed));
+        Ok(facts)
+    }
+
+    /// Opens the file of a task that is done.
+    pub(super) fn open_task(&self, number: usize) -> Result<TaskFile> {
+        let path = self.task_path(number);
+        TaskFile::open(&path)?.ok_or_else(|| super::raster::missing().in_file(Path::new(&path)))
+    }
+}
+
+/// The triangles of a task that stay in the surface: drawn and counted.
+struct Kept {
+    drawing: Drawing,
+    max_edge_inside: Option<f64>,
+    triangles: u64,
+    long_inside: u64,
+    area: f64,
+    extent: Bounds,
+}
+
+impl Kept {
+    fn new(job: &Job, writer: &mut TaskWriter) -> Result<Self> {
+        Ok(Kept {
+            drawing: Drawing::new(job.plan.frame, writer)?,
+            max_edge_inside: job.request.max_edge_inside,
+            triangles: 0,
+            long_inside: 0,
+            area: 0.0,
+            extent: Bounds::default(),
+        })
+    }
+
+    fn add(&mut self, triangle: &TileTriangle, writer: &mut TaskWriter) -> Result<()> {
+        if self.max_edge_inside.is_some_and(|limit| has_long_edge(triangle, limit)) {
+            self.long_inside += 1;
+            return Ok(());
+        }
+        let corners = triangle.corners.map(|corner| corner.position);
+        self.triangles += 1;
+        self.area += frame::area_of(corners);
+        corners.into_iter().for_each(|corner| self.extent.add(corner));
+        self.drawing.draw(corners, writer)
+    }
+
+    fn finish(self, writer: &mut TaskWriter, facts: &mut Map<String, Value>) -> Result<()> {
+        self.drawing.finish(writer)?;
+        facts.insert("triangles".to_owned(), json!(self.triangles));
+        facts.insert("long_inside".to_owned(), json!(self.long_inside));
+        facts.insert("area".to_owned(), json!(self.area));
+        if !self.extent.is_empty() {
+            let Bounds { min, max } = self.extent;
+            facts.insert("extent".to_owned(), json!([min, max]));
+        }
+        Ok(())
+    }
+}
+
+fn facts_of(report: &SelectionReport) -> Map<String, Value> {
+    let counts = [
+        ("read", report.read),
+        ("used", report.used),
+        ("withheld", report.withheld),
+        ("other_class", report.other_class),
+    ];
+    counts.into_iter().map(|(name, count)| (name.to_owned(), json!(count))).collect()
+}
