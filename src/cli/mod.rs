@@ -102,6 +102,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Contour(args) => verbs::contour::run(args, console),
         Verb::Hillshade(args) => verbs::hillshade::run(args, console),
         Verb::Check(args) => verbs::check::run(args, console),
+        Verb::Job(args) => verbs::job::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console),
         Verb::Describe(args) => verbs::describe::run(args),
     }

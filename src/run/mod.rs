@@ -109,7 +109,7 @@ pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFact
 pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
 pub use job::{
-    BadFiles, Division, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct, needs_tiles, remove_job,
+    BadFiles, COMMAND, Division, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct, needs_tiles, remove_job,
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};

@@ -14,10 +14,8 @@ use crate::run::{self, CellProduct, DemOptions, TiledProduct};
 
 /// Writes the heights of a TIN as a raster.
 pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
-    let mut plan = SurfacePlan::resolve(&args.surface, console)?;
-    let frame = plan.add_frame(&args.frame)?;
+    let (plan, options) = requested(args, console)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), &plan)?;
-    let options = DemOptions { frame, method: args.method.into() };
     let tiled = TiledProduct::Heights(options.clone());
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
@@ -42,6 +40,13 @@ pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     print_heights(written, product.crs(), console);
     outputs.commit(console)?;
     Ok(Exit::Done)
+}
+
+/// Returns what the arguments ask for.
+pub(super) fn requested(args: &DemArgs, console: &Console) -> Result<(SurfacePlan, DemOptions)> {
+    let mut plan = SurfacePlan::resolve(&args.surface, console)?;
+    let frame = plan.add_frame(&args.frame)?;
+    Ok((plan, DemOptions { frame, method: args.method.into() }))
 }
 
 fn write(cells: &CellProduct, outputs: &Outputs<()>, console: &Console) -> Result<Option<RasterSummary>> {

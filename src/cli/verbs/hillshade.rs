@@ -18,15 +18,12 @@ enum ShadeFormat {
 
 /// Shades a TIN or a DEM.
 pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exit> {
-    let mut plan = SurfacePlan::resolve(&args.surface, console)?;
-    let frame = plan.add_frame(&args.frame)?;
-    let light = LightOptions { azimuth: args.azimuth, altitude: args.altitude, z_factor: args.z_factor };
+    let (plan, options) = requested(args, console)?;
     let formats = outputs::formats_of(Product::Shades, |format| match format.content {
         Content::Picture => ShadeFormat::Png,
         _ => ShadeFormat::GeoTiff,
     });
     let outputs = outputs::resolve_with_report(&args.output, &formats, &plan)?;
-    let options = HillshadeOptions { frame, method: args.method.into(), light };
     let tiled = TiledProduct::Shades(options.clone());
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
@@ -53,6 +50,14 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
     }
     outputs.commit(console)?;
     Ok(Exit::Done)
+}
+
+/// Returns what the arguments ask for.
+pub(super) fn requested(args: &HillshadeArgs, console: &Console) -> Result<(SurfacePlan, HillshadeOptions)> {
+    let mut plan = SurfacePlan::resolve(&args.surface, console)?;
+    let frame = plan.add_frame(&args.frame)?;
+    let light = LightOptions { azimuth: args.azimuth, altitude: args.altitude, z_factor: args.z_factor };
+    Ok((plan, HillshadeOptions { frame, method: args.method.into(), light }))
 }
 
 fn write(cells: &CellProduct, outputs: &Outputs<ShadeFormat>, console: &Console) -> Result<()> {

@@ -7,6 +7,7 @@ pub(super) mod demo;
 pub(super) mod describe;
 pub(super) mod hillshade;
 pub(super) mod info;
+pub(super) mod job;
 pub(super) mod points;
 mod tiled;
 pub(super) mod tin;

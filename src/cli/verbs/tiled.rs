@@ -8,7 +8,7 @@ use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_extent;
 use crate::error::Result;
 use crate::run::units::bytes;
-use crate::run::{self, BadFiles, Job, JobReport, TileOptions, TiledProduct};
+use crate::run::{self, BadFiles, Job, JobReport, JobSize, TileOptions, TiledProduct};
 
 /// What becomes of a request.
 pub(super) enum Tiled<'a> {
@@ -32,12 +32,7 @@ pub(super) fn run<'a>(
     if !args.are_asked_for() && !run::needs_tiles(&plan.request, product, args.memory, &context)? {
         return Ok(Tiled::Whole);
     }
-    let options = TileOptions {
-        division: args.tiles.map_or_else(Default::default, |tiles| tiles.0),
-        memory: args.memory,
-        folder: folder(args, target),
-        bad: if args.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
-    };
+    let options = options(args, target);
     let resumed = if args.resume { Job::open(&plan.request, product, &options)? } else { None };
     let is_new = resumed.is_none();
     let job = match resumed {
@@ -45,12 +40,9 @@ pub(super) fn run<'a>(
         None => Job::plan(&plan.request, product, &options, &context)?,
     };
     let size = job.size();
-    let files = if size.divides { format!("of {} files, divided first", size.files) } else { "the files".to_owned() };
-    console.line(format_args!("tiles       {} ({files}), {} merges, {} tasks", size.tiles, size.merges, size.tasks));
+    print_size(&size, console);
     if args.dry_run {
-        console.line(format_args!("points      {}", size.points));
-        console.line(format_args!("memory      {} a task", bytes(size.task_memory)));
-        console.line(format_args!("disk        {} in {}", bytes(size.disk), options.folder.display()));
+        console.line(format_args!("folder      {}", options.folder.display()));
         return Ok(Tiled::Planned);
     }
     if is_new {
@@ -67,6 +59,28 @@ pub(super) fn run<'a>(
     drop(lock);
     let report = job.report()?;
     Ok(Tiled::Ran(Box::new(job), report))
+}
+
+/// Prints what a plan consists of.
+pub(super) fn print_size(size: &JobSize, console: &Console) {
+    let files = if size.divides { format!("of {} files, divided first", size.files) } else { "the files".to_owned() };
+    console.line(format_args!("tiles       {} ({files}), {} merges, {} tasks", size.tiles, size.merges, size.tasks));
+    console.line(format_args!(
+        "            {} points, {} of memory a task, {} on the disk",
+        size.points,
+        bytes(size.task_memory),
+        bytes(size.disk)
+    ));
+}
+
+/// Returns the options of a job.
+pub(super) fn options(args: &TileArgs, target: &Path) -> TileOptions {
+    TileOptions {
+        division: args.tiles.map_or_else(Default::default, |tiles| tiles.0),
+        memory: args.memory,
+        folder: folder(args, target),
+        bad: if args.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
+    }
 }
 
 fn folder(args: &TileArgs, target: &Path) -> PathBuf {

@@ -44,6 +44,9 @@ const PLAN: &str = "plan.json";
 /// The file that is locked while a process works on the job.
 const LOCK: &str = "lock";
 
+/// The file that a program may keep its command in; it is removed with the job.
+pub const COMMAND: &str = "command.json";
+
 /// How a surface is divided into tiles.
 #[derive(Debug, Clone)]
 pub struct TileOptions {
@@ -318,6 +321,33 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// Returns the tasks that must be done before the output is written.
+    pub fn last_needs(&self) -> Vec<usize> {
+        (self.divided()..self.task_count()).collect()
+    }
+
+    /// Returns an error unless all tasks are done; `last` is the number of the one that writes the
+    /// output.
+    ///
+    /// # Errors
+    /// Names a task that is not done, or says that there is none with this number.
+    pub fn require_done(&self, last: usize) -> Result<()> {
+        if last > self.task_count() {
+            return Err(self.no_task(last));
+        }
+        match (0..self.task_count()).find(|&task| !self.is_done(task)) {
+            Some(task) => {
+                Err(Error::usage(format!("task {task} ({}) is not done", self.task_name(task))).cure("do it first"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    #[cold]
+    fn no_task(&self, task: usize) -> Error {
+        Error::usage(format!("there is no task {task}: the last is {}, which writes the output", self.task_count()))
+    }
+
     /// Returns the files that may have points of the tile of a step.
     fn files_of(&self, step: usize) -> impl Iterator<Item = usize> + '_ {
         let tile = self.steps[step].tile;
@@ -406,7 +436,7 @@ impl<'a> Job<'a> {
     /// If the input cannot be read, a task before it is not done, or the run is canceled.
     pub fn run_task(&self, task: usize, context: &Context) -> Result<()> {
         if task >= self.task_count() {
-            return Err(Error::usage(format!("there is no task {task}: the last is {}", self.task_count() - 1)));
+            return Err(self.no_task(task));
         }
         let _lock = self.lock_shared()?;
         if self.is_done(task) { Ok(()) } else { self.do_task(task, context) }
@@ -502,7 +532,9 @@ pub fn remove_job(folder: &Path) -> Result<()> {
     // The plan first: what is left without it is no job.
     std::fs::remove_file(&plan).map_err(named)?;
     std::fs::remove_dir_all(folder.join("tasks")).map_err(named)?;
-    let _ = std::fs::remove_file(folder.join(LOCK));
+    for name in [LOCK, COMMAND] {
+        let _ = std::fs::remove_file(folder.join(name));
+    }
     let is_empty = std::fs::read_dir(folder).map_err(named)?.next().is_none();
     if is_empty { std::fs::remove_dir(folder).map_err(named) } else { Ok(()) }
 }

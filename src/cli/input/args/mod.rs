@@ -1,6 +1,7 @@
 //! The command line as it is typed. What it means is worked out elsewhere (`super::plan`,
 //! `super::outputs`, ...).
 
+mod job;
 mod lines;
 mod parse;
 mod reading;
@@ -17,6 +18,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::cli::report::console::Level;
 use crate::io::formats;
 
+pub(in crate::cli) use job::{JobAction, JobArgs};
 pub(in crate::cli) use lines::LineArgs;
 pub(in crate::cli) use parse::{EdgeLength, finite};
 pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
@@ -99,6 +101,7 @@ pub(in crate::cli) enum Verb {
     Contour(ContourArgs),
     Hillshade(HillshadeArgs),
     Check(CheckArgs),
+    Job(JobArgs),
     Demo(DemoArgs),
     Describe(DescribeArgs),
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use crate::run::Division;
 
 /// Options of surfaces that do not fit into memory.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Tiles")]
 pub(in crate::cli) struct TileArgs {
     /// Work in tiles: `auto`, or columns and rows such as `8x8` [default: if memory does not suffice]

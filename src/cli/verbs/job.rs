@@ -1,0 +1,166 @@
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use serde_json::{Value, json};
+
+use super::tiled;
+use crate::cli::input::args::{Cli, JobAction, JobArgs, TileArgs, Verb};
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::{Exit, print};
+use crate::error::{Error, Result};
+use crate::run::{self, COMMAND, Job, TiledProduct};
+
+/// Plans a run in tiles, or does its tasks.
+pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
+    match &args.action {
+        JobAction::Plan { job, command } => plan(job, command, console),
+        JobAction::Run { job, task } => work(job, *task, console),
+        JobAction::Status { job, json } => status(job, *json, console),
+        JobAction::Clean { job } => run::remove_job(job).map(|()| Exit::Done),
+    }
+}
+
+/// A verb that works in tiles, and what it asks for.
+struct Command {
+    verb: Verb,
+    plan: SurfacePlan,
+    product: TiledProduct,
+    output: PathBuf,
+}
+
+impl Command {
+    fn parse(words: &[String], console: &Console) -> Result<Self> {
+        let name = ["breakline".to_owned()];
+        let cli = Cli::try_parse_from(name.iter().chain(words)).map_err(|e| {
+            let text = e.to_string();
+            let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+            Error::usage(format!("the command of the job: {first}")).cure("`breakline dem --help` lists its options")
+        })?;
+        let (plan, product, output) = match &cli.verb {
+            Verb::Dem(args) => {
+                let (plan, options) = super::dem::requested(args, console)?;
+                (plan, TiledProduct::Heights(options), &args.output)
+            }
+            Verb::Hillshade(args) => {
+                let (plan, options) = super::hillshade::requested(args, console)?;
+                (plan, TiledProduct::Shades(options), &args.output)
+            }
+            _ => {
+                return Err(Error::usage("a job makes a DEM or a hillshade")
+                    .cure("begin the command with `dem` or `hillshade`"));
+            }
+        };
+        let output = output.output[0].clone();
+        Ok(Command { verb: cli.verb, plan, product, output })
+    }
+
+    fn tiles(&self) -> Option<&TileArgs> {
+        match &self.verb {
+            Verb::Dem(args) => Some(&args.tiles),
+            Verb::Hillshade(args) => Some(&args.tiles),
+            _ => None,
+        }
+    }
+
+    /// Returns the options of the tiles, with the folder of a job.
+    fn tile_args(&self, job: &Path) -> TileArgs {
+        let mut tiles = self.tiles().cloned().unwrap_or_default();
+        tiles.job = Some(job.to_path_buf());
+        tiles
+    }
+
+    fn open(&self, job: &Path) -> Result<Job<'_>> {
+        let options = tiled::options(&self.tile_args(job), &self.output);
+        Job::open(&self.plan.request, &self.product, &options)?.ok_or_else(|| no_job(job))
+    }
+}
+
+fn plan(job: &Path, words: &[String], console: &Console) -> Result<Exit> {
+    let command = Command::parse(words, console)?;
+    let options = tiled::options(&command.tile_args(job), &command.output);
+    let planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
+    planned.create()?;
+    let folder = std::env::current_dir()?;
+    let stored = json!({ "command": words, "folder": folder });
+    let path = job.join(COMMAND);
+    std::fs::write(&path, stored.to_string()).map_err(|e| Error::from(e).in_file(&path))?;
+    tiled::print_size(&planned.size(), console);
+    console.line(format_args!(
+        "next        breakline job run {0}, or {0} --task 0 to {1}",
+        job.display(),
+        planned.task_count()
+    ));
+    Ok(Exit::Done)
+}
+
+/// Returns the command of a job, and goes to the folder in which it was typed.
+fn stored(job: &Path, console: &Console) -> Result<(PathBuf, Command, Vec<String>)> {
+    let path = job.join(COMMAND);
+    let text = match std::fs::read(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(no_job(job)),
+        Err(error) => return Err(Error::from(error).in_file(path)),
+    };
+    let job = std::path::absolute(job)?;
+    let value: Value = serde_json::from_slice(&text).unwrap_or_default();
+    let words = serde_json::from_value::<Vec<String>>(value["command"].clone());
+    let folder = serde_json::from_value::<PathBuf>(value["folder"].clone());
+    let (Ok(words), Ok(folder)) = (words, folder) else {
+        return Err(Error::format("the command of the job is damaged").in_file(path).cure("plan it again"));
+    };
+    std::env::set_current_dir(&folder).map_err(|e| Error::from(e).in_file(folder))?;
+    let command = Command::parse(&words, console)?;
+    Ok((job, command, words))
+}
+
+#[cold]
+fn no_job(job: &Path) -> Error {
+    Error::usage("there is no job in this folder").in_file(job).cure("create it with `breakline job plan`")
+}
+
+fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
+    let (job, mut command, _) = stored(job, console)?;
+    if let Some(task) = task {
+        let open = command.open(&job)?;
+        if task < open.task_count() {
+            open.run_task(task, &console.context())?;
+            console.line(format_args!("task {task}      {} is done", open.task_name(task)));
+            return Ok(Exit::Done);
+        }
+        open.require_done(task)?;
+    }
+    match &mut command.verb {
+        Verb::Dem(args) => {
+            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            super::dem::run(args, console)
+        }
+        Verb::Hillshade(args) => {
+            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            super::hillshade::run(args, console)
+        }
+        _ => Err(no_job(&job)),
+    }
+}
+
+fn status(job: &Path, as_json: bool, console: &Console) -> Result<Exit> {
+    let (job, command, words) = stored(job, console)?;
+    let open = command.open(&job)?;
+    let count = open.task_count();
+    let done: Vec<bool> = (0..count).map(|task| open.is_done(task)).collect();
+    let left = done.iter().filter(|is_done| !**is_done).count();
+    if as_json {
+        let mut tasks: Vec<Value> = (0..count)
+            .map(|task| json!({ "name": open.task_name(task), "needs": open.needs(task), "done": done[task] }))
+            .collect();
+        let needs = open.last_needs();
+        tasks.push(json!({ "name": "output", "needs": needs, "done": left == 0 && command.output.exists() }));
+        print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))?;
+    } else {
+        print(&format!("{} of {count} tasks are done\n", count - left))?;
+        if let Some(next) = done.iter().position(|is_done| !is_done) {
+            print(&format!("next: {next}, {}\n", open.task_name(next)))?;
+        }
+    }
+    Ok(Exit::Done)
+}
