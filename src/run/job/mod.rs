@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use self::plan::{Plan, PlannedFile, crs_of, fingerprint};
+use self::plan::{Plan, crs_of, fingerprint, opened};
 use self::raster::DrawnCells;
 use self::task_file::{TaskFile, UNFINISHED};
 use super::cells::{CellProduct, DemOptions, HillshadeOptions};
@@ -335,7 +335,11 @@ impl<'a> Job<'a> {
         if last > self.task_count() {
             return Err(self.no_task(last));
         }
-        match (0..self.task_count()).find(|&task| !self.is_done(task)) {
+        self.require_each(0..self.task_count())
+    }
+
+    fn require_each(&self, mut tasks: impl Iterator<Item = usize>) -> Result<()> {
+        match tasks.find(|&task| !self.is_done(task)) {
             Some(task) => {
                 Err(Error::usage(format!("task {task} ({}) is not done", self.task_name(task))).cure("do it first"))
             }
@@ -351,10 +355,8 @@ impl<'a> Job<'a> {
     /// Returns the files that may have points of the tile of a step.
     fn files_of(&self, step: usize) -> impl Iterator<Item = usize> + '_ {
         let tile = self.steps[step].tile;
-        let meets = move |file: &PlannedFile| {
-            file.count > 0 && (0..2).all(|k| file.max[k] >= tile.min[k] && tile.max[k] >= file.min[k])
-        };
-        self.plan.files.iter().enumerate().filter(move |(_, file)| meets(file)).map(|(number, _)| number)
+        let files = self.plan.files.iter().enumerate();
+        files.filter(move |(_, file)| file.spread().meets(&tile)).map(|(number, _)| number)
     }
 
     /// Returns what a task does, such as "tile 17".
@@ -439,6 +441,7 @@ impl<'a> Job<'a> {
             return Err(self.no_task(task));
         }
         let _lock = self.lock_shared()?;
+        self.require_each(self.needs(task).into_iter())?;
         if self.is_done(task) { Ok(()) } else { self.do_task(task, context) }
     }
 
@@ -447,7 +450,8 @@ impl<'a> Job<'a> {
     /// # Errors
     /// If a task is not done.
     pub fn report(&self) -> Result<JobReport> {
-        let mut report = JobReport::default();
+        let skipped = self.plan.skipped.iter().map(|(_, text)| text.clone()).collect();
+        let mut report = JobReport { skipped, ..JobReport::default() };
         for task in 0..self.task_count() {
             let file = self.open_task(task)?;
             report.read += file.count("read");
@@ -473,7 +477,8 @@ impl<'a> Job<'a> {
     fn crs(&self) -> Result<Option<Crs>> {
         let context = Context::default();
         let journal = Journal::new(&context);
-        let points = PointFiles::open(&self.request.points, self.request.read, &journal)?;
+        let (_, inputs) = opened(self.request, &self.plan.skipped);
+        let points = PointFiles::open(&inputs, self.request.read, &journal)?;
         crs_of(&points, self.request, self.systems, &journal)
     }
 

@@ -5,10 +5,10 @@ use std::time::UNIX_EPOCH;
 
 use serde_json::{Value, json};
 
-use super::{Division, TileOptions, TiledProduct};
+use super::{BadFiles, Division, TileOptions, TiledProduct};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointBatch};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::frame;
 use crate::run::input::{Input, MemoryPoints};
@@ -40,6 +40,8 @@ const HEADER_ROUNDING: f64 = 8.0;
 /// A file of points as the plan knows it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlannedFile {
+    /// The position of the file in the request.
+    pub(super) input: usize,
     pub(super) path: PathBuf,
     /// Length in bytes and time of the last change in nanoseconds: a file that changes later is
     /// refused.
@@ -47,7 +49,7 @@ pub(super) struct PlannedFile {
     pub(super) modified: u64,
     /// The number of its points.
     pub(super) count: u64,
-    /// The box around its points in plan, enlarged by the rounding of a header.
+    /// The box around its points in plan, as its header states it.
     pub(super) min: [f64; 2],
     pub(super) max: [f64; 2],
 }
@@ -57,7 +59,11 @@ pub(super) struct PlannedFile {
 pub(super) struct Plan {
     /// A description of the request, so that another one does not go on with this job.
     pub(super) request: String,
+    /// The files that have points.
     pub(super) files: Vec<PlannedFile>,
+    /// The files that are skipped because they cannot be opened: their positions in the request, and
+    /// why.
+    pub(super) skipped: Vec<(usize, String)>,
     /// True if the files are no tiles: they are divided among tiles first.
     pub(super) divides: bool,
     pub(super) layout: Layout,
@@ -106,19 +112,24 @@ impl Plan {
         journal: &Journal,
     ) -> Result<Self> {
         require_tiled(request, systems)?;
-        let points = PointFiles::open(&request.points, request.read, journal)?;
+        let skipped = match options.bad {
+            BadFiles::Skip => closed(request, &journal.context)?,
+            BadFiles::Refuse => Vec::new(),
+        };
+        let (numbers, inputs) = opened(request, &skipped);
+        let points = PointFiles::open(&inputs, request.read, journal)?;
         let crs = crs_of(&points, request, systems, journal)?;
         let classes = points.used_classes(&request.classes, journal)?;
         if request.classes == Classes::GroundOrAll {
             journal.add(if classes.len() == 1 { Notice::GroundUsed } else { Notice::AllClassesUsed });
         }
         let mut files = Vec::new();
-        for (input, stated) in request.points.iter().zip(points.stated_extents()) {
-            files.push(planned(input, request, stated, &journal.context)?);
+        for ((number, input), stated) in numbers.into_iter().zip(&inputs).zip(points.stated_extents()) {
+            files.extend(planned(number, input, request, stated, &journal.context)?);
         }
         drop(points);
 
-        let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).filter(|spread| spread.count > 0.0).collect();
+        let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
         if spreads.is_empty() {
             return Err(Error::format("no points in the input").cure("pass files that contain points"));
         }
@@ -129,7 +140,7 @@ impl Plan {
         let workers = rayon::current_num_threads() as u64;
         let task_memory = options.memory.unwrap_or_else(memory::half_of_free) / workers;
         let most = (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS);
-        let are_small = spreads.len() == files.len() && files.iter().all(|file| file.count <= most);
+        let are_small = files.iter().all(|file| file.count <= most);
         let (layout, divides) = match options.division {
             Division::Grid(counts) => {
                 let [min, max] = [extent.min, extent.max].map(|[x, y, _]| [x, y]);
@@ -150,7 +161,7 @@ impl Plan {
         let max_edge = request.max_edge.length(&units);
         journal.add(request.max_edge.notice(&units));
         let request = fingerprint(request, systems, product, options);
-        Ok(Plan { request, files, divides, layout, classes, max_edge, frame, task_memory })
+        Ok(Plan { request, files, skipped, divides, layout, classes, max_edge, frame, task_memory })
     }
 
     /// Returns the number of points that the files state.
@@ -177,7 +188,10 @@ impl Plan {
 
     pub(super) fn to_json(&self) -> Value {
         let file = |file: &PlannedFile| {
-            json!([file.path, file.size, file.modified, file.count, file.min[0], file.min[1], file.max[0], file.max[1]])
+            json!({
+                "path": file.path, "input": file.input, "size": file.size, "modified": file.modified,
+                "count": file.count, "min": file.min, "max": file.max,
+            })
         };
         let node = |node: &Node| match node {
             Node::Tile(number) => json!(number),
@@ -187,6 +201,7 @@ impl Plan {
             "version": env!("CARGO_PKG_VERSION"),
             "request": self.request,
             "files": self.files.iter().map(file).collect::<Vec<_>>(),
+            "skipped": self.skipped,
             "divides": self.divides,
             "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
             "classes": self.classes,
@@ -203,12 +218,13 @@ impl Plan {
         let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
         let file = |value: &Value| {
             Some(PlannedFile {
-                path: serde_json::from_value(value[0].clone()).ok()?,
-                size: value[1].as_u64()?,
-                modified: value[2].as_u64()?,
-                count: value[3].as_u64()?,
-                min: [value[4].as_f64()?, value[5].as_f64()?],
-                max: [value[6].as_f64()?, value[7].as_f64()?],
+                path: serde_json::from_value(value["path"].clone()).ok()?,
+                input: whole(&value["input"])?,
+                size: value["size"].as_u64()?,
+                modified: value["modified"].as_u64()?,
+                count: value["count"].as_u64()?,
+                min: serde_json::from_value(value["min"].clone()).ok()?,
+                max: serde_json::from_value(value["max"].clone()).ok()?,
             })
         };
         let node = |value: &Value| match value {
@@ -226,6 +242,7 @@ impl Plan {
         Some(Plan {
             request: value["request"].as_str()?.to_owned(),
             files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
+            skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
             divides: value["divides"].as_bool()?,
             layout: Layout::from_nodes(nodes)?,
             classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
@@ -238,13 +255,12 @@ impl Plan {
 }
 
 impl PlannedFile {
-    fn spread(&self) -> Spread {
-        Spread { min: self.min, max: self.max, count: self.count as f64 }
-    }
-
-    /// Returns true if a position is in the box that was planned with.
-    pub(super) fn holds(&self, [x, y, _]: [f64; 3]) -> bool {
-        self.min[0] <= x && x <= self.max[0] && self.min[1] <= y && y <= self.max[1]
+    /// Returns the box around its points, with what rounding may add to a header.
+    pub(super) fn spread(&self) -> Spread {
+        let PlannedFile { min, max, .. } = *self;
+        let rounding = [0, 1].map(|k: usize| HEADER_ROUNDING * f64::EPSILON * min[k].abs().max(max[k].abs()));
+        let (low, high) = ([0, 1].map(|k| min[k] - rounding[k]), [0, 1].map(|k| max[k] + rounding[k]));
+        Spread { min: low, max: high, count: self.count as f64 }
     }
 }
 
@@ -271,12 +287,34 @@ pub(super) fn fingerprint(
     format!("{} {:08x}", product.name(), sum.sum())
 }
 
+/// Returns the files that cannot be opened, and why.
+fn closed(request: &TinRequest, context: &Context) -> Result<Vec<(usize, String)>> {
+    let mut closed = Vec::new();
+    for (number, input) in request.points.iter().enumerate() {
+        match open::points(input, request.read, context) {
+            Ok(_) => {}
+            Err(error) if error.kind() == Kind::Canceled => return Err(error),
+            Err(error) => closed.push((number, error.in_file(input.path()).to_string())),
+        }
+    }
+    Ok(closed)
+}
+
+/// Returns the files that are not skipped, and their positions in the request.
+pub(super) fn opened(request: &TinRequest, skipped: &[(usize, String)]) -> (Vec<usize>, Vec<Input<MemoryPoints>>) {
+    let is_skipped = |number: &usize| skipped.iter().any(|(skipped, _)| skipped == number);
+    let inputs = request.points.iter().cloned().enumerate();
+    inputs.filter(|(number, _)| !is_skipped(number)).unzip()
+}
+
+/// Returns what the plan has to know of a file; `None` if it has no points.
 fn planned(
+    number: usize,
     input: &Input<MemoryPoints>,
     request: &TinRequest,
     stated: (Option<u64>, Option<Bounds>),
     context: &Context,
-) -> Result<PlannedFile> {
+) -> Result<Option<PlannedFile>> {
     let path = input.path();
     let (size, modified) = state_of(path)?;
     let (count, bounds) = match stated {
@@ -284,19 +322,17 @@ fn planned(
         (Some(0), None) => (0, Bounds::default()),
         _ => measured(input, request, context).map_err(|e| e.in_file(path))?,
     };
-    let rounding = |k: usize| HEADER_ROUNDING * f64::EPSILON * bounds.min[k].abs().max(bounds.max[k].abs());
+    if count == 0 {
+        return Ok(None);
+    }
     let is_finite = (0..2).all(|k| bounds.min[k].is_finite() && bounds.max[k].is_finite());
-    if count > 0 && !is_finite {
+    if !is_finite {
         return Err(Error::format("the header states an extent that is not finite")
             .in_file(path)
             .cure("`breakline points` writes a file with a true header"));
     }
-    let [min, max] = if count == 0 {
-        [[0.0; 2]; 2]
-    } else {
-        [[0, 1].map(|k| bounds.min[k] - rounding(k)), [0, 1].map(|k| bounds.max[k] + rounding(k))]
-    };
-    Ok(PlannedFile { path: path.to_path_buf(), size, modified, count, min, max })
+    let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
+    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), size, modified, count, min, max }))
 }
 
 /// Counts the points of a file that does not state their number or extent.

@@ -11,6 +11,7 @@ use super::{BadFiles, Job, Task};
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Error, Kind, Result};
 use crate::run::context::Context;
+use crate::run::units::neat;
 use crate::run::{frame, open};
 use crate::terrain::tiles::{self, LongEdges, Rim, TileTriangle, Work, has_long_edge};
 use crate::terrain::{Classes, Selection, SelectionReport, one_per_site};
@@ -99,8 +100,9 @@ impl Job<'_> {
     ) -> Result<SelectionReport> {
         self.plan.require_unchanged(number)?;
         let file = &self.plan.files[number];
-        let mut source = open::points(&self.request.points[number], self.request.read, context)?;
+        let mut source = open::points(&self.request.points[file.input], self.request.read, context)?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
+        let spread = file.spread();
         let mut batch = PointBatch::default();
         loop {
             source.read(&mut batch)?;
@@ -109,8 +111,9 @@ impl Job<'_> {
             }
             selection.add(&batch)?;
             let points = selection.take_points();
-            if let Some(&[x, y, _]) = points.iter().find(|point| !file.holds(**point)) {
-                let ([x0, y0], [x1, y1]) = (file.min, file.max);
+            if let Some(&[x, y, _]) = points.iter().find(|point| !spread.holds([point[0], point[1]])) {
+                let ([x0, y0], [x1, y1]) = (file.min.map(neat), file.max.map(neat));
+                let [x, y] = [x, y].map(neat);
                 return Err(Error::format(format!(
                     "there is a point at {x} {y}, but the header states an extent from {x0} {y0} to {x1} {y1}"
                 ))

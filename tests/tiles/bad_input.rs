@@ -1,0 +1,71 @@
+//! A file that is damaged, or lies about its extent, among others.
+
+use tempfile::TempDir;
+
+use super::{bytes, landscape, lidar, output_of, program};
+use program::{files_of, run_in};
+
+/// A landscape in 4 by 4 files, of which one is cut off.
+fn folder_with_a_bad_file() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    landscape::write(&folder.path().join("in"), 16_000, 4).unwrap();
+    let path = folder.path().join("in/002_001.laz");
+    let whole = bytes(&path);
+    std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    folder
+}
+
+#[test]
+fn a_bad_file_is_named() {
+    let folder = folder_with_a_bad_file();
+    let words = ["dem", "in/*.laz", "--tiles", "auto", "-o", "dem.tif"];
+    run_in(&folder, &words).fails(1, &["error: in/002_001.laz: byte"]);
+    assert_eq!(files_of(folder.path()), ["in"]);
+}
+
+#[test]
+fn a_bad_file_may_leave_a_hole() {
+    let folder = folder_with_a_bad_file();
+    let (_, said) = output_of(&folder, "dem in/*.laz --tiles auto --skip-bad", "tiled.tif");
+    assert!(said.contains("skipped: in/002_001.laz: byte") && said.contains("tiles       15 (the files)"), "{said}");
+    std::fs::remove_file(folder.path().join("in/002_001.laz")).unwrap();
+    let (tiled, _) = output_of(&folder, "dem in/*.laz --tiles 3x5", "others.tif");
+    assert!(tiled == bytes(folder.path().join("tiled.tif")));
+}
+
+/// Also a file whose points are damaged: coordinates that leave the extent are how that shows.
+#[test]
+fn a_header_that_lies_is_an_error_that_names_tile_and_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut names = Vec::new();
+    for i in 0..9 {
+        let name = format!("{i}.las");
+        let corner = [f64::from(i % 3) * 10.0, f64::from(i / 3) * 10.0];
+        std::fs::write(folder.path().join(&name), lidar::las(&lidar::tile(corner, 2), Some(25832))).unwrap();
+        names.push(name);
+    }
+    let files = names.join(" ");
+    let (whole, _) = output_of(&folder, &format!("dem {files}"), "whole.tif");
+    // The largest x of the file at 10 0, which is 13 in truth.
+    let good = bytes(folder.path().join("1.las"));
+    let mut lying = good.clone();
+    lying[179..187].copy_from_slice(&12.5f64.to_le_bytes());
+    std::fs::write(folder.path().join("1.las"), lying).unwrap();
+    let said = "there is a point at 13 0, but the header states an extent from 10 0 to 12.5 3";
+    for (tiles, place, kept) in [("auto", "1.las: tile 1: ", 8), ("2x1", "1.las: ", 8)] {
+        let words = format!("dem {files} --tiles {tiles} -o dem.tif --job {tiles} --threads 1");
+        let words: Vec<&str> = words.split(' ').collect();
+        run_in(&folder, &words).fails(1, &[&format!("error: {place}{said}"), "are kept", "go on with --resume"]);
+        assert!(!folder.path().join("dem.tif").exists());
+        let tasks = files_of(&folder.path().join(tiles).join("tasks"));
+        assert!(tasks.len() < kept && tasks.iter().all(|name| name.ends_with(".task")), "{tasks:?}");
+
+        let words = format!("dem {files} --tiles {tiles} --job {tiles} --resume --skip-bad");
+        let (_, said_then) = output_of(&folder, &words, "hole.tif");
+        assert!(said_then.contains(&format!("skipped: 1.las: {said}")), "{said_then}");
+    }
+    std::fs::remove_dir_all(folder.path().join("auto")).unwrap();
+    std::fs::write(folder.path().join("1.las"), good).unwrap();
+    let (tiled, _) = output_of(&folder, &format!("dem {files} --tiles auto"), "dem.tif");
+    assert!(tiled == whole);
+}

@@ -1,0 +1,131 @@
+//! The same bytes as in one piece.
+
+use testkit::random::Random;
+
+use super::{landscape, lidar, output_of, program, valley};
+use program::{files_of, run_in};
+
+/// Fails unless the verb with these words gives the same file with and without each of the options
+/// of tiles.
+#[track_caller]
+fn assert_same(folder: &tempfile::TempDir, words: &str, tilings: &[&str]) -> Vec<u8> {
+    let (whole, _) = output_of(folder, words, "whole.tif");
+    for tiling in tilings {
+        let (tiled, said) = output_of(folder, &format!("{words} {tiling}"), "tiled.tif");
+        assert!(tiled == whole, "{words} {tiling}: {said}");
+        assert!(said.contains("tiles       "), "{said}");
+    }
+    assert!(!files_of(folder.path()).iter().any(|name| name.ends_with(".job")), "a job is left");
+    whole
+}
+
+#[test]
+fn the_valley_in_tiles_is_the_valley() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let all = ["--tiles 1x1", "--tiles 4x4", "--tiles 1x30", "--tiles 11x7", "--memory 16MB --tiles auto"];
+    assert_same(&folder, &format!("dem {valley}"), &all);
+    let few = ["--tiles 5x3"];
+    // Triangles that wait for the rim: few, many, all; and none.
+    for max_edge in ["20", "3", "0.5", "none"] {
+        let words = format!("dem {valley} --max-edge {max_edge} --resolution 0.7");
+        assert_same(&folder, &words, &few);
+    }
+    assert_same(&folder, &format!("dem {valley} --max-edge-inside 4 --max-edge 9"), &few);
+    assert_same(&folder, &format!("dem {valley} --class 2,5 --duplicates highest --resolution 0.3"), &few);
+    let part = "--te 688100.3,5261050,688300,5261222.2 --resolution 0.9";
+    assert_same(&folder, &format!("dem {valley} {part}"), &few);
+    assert_same(&folder, &format!("hillshade {valley} --azimuth 200"), &few);
+    output_of(&folder, &format!("dem {valley} --resolution 2.5"), "grid.tif");
+    assert_same(&folder, &format!("dem {valley} --align-to grid.tif"), &few);
+}
+
+/// Integer coordinates, where ties are the rule: many points share a site, files overlap, tiles are
+/// one point thick or empty, cuts pass through points.
+#[test]
+fn grids_in_overlapping_files_are_the_same_in_any_tiles() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut random = Random(31);
+    for round in 0..12 {
+        let side = [4, 9, 30][round % 3];
+        let mut names = Vec::new();
+        for file in 0..1 + round % 4 {
+            let count = 3 + random.below(side * side);
+            let mut point = || [random.below(side) as f64, random.below(side) as f64, random.below(5) as f64];
+            let points: Vec<([f64; 3], u8)> = (0..count).map(|_| (point(), 2)).collect();
+            let name = format!("{file}.las");
+            std::fs::write(folder.path().join(&name), lidar::las(&points, Some(25832))).unwrap();
+            names.push(name);
+        }
+        let rule = ["lowest", "highest", "mean", "first", "last"][round % 5];
+        let edge = ["none", "2", "1.5"][round % 3];
+        let words = format!("dem {} --duplicates {rule} --resolution 0.25 --max-edge {edge}", names.join(" "));
+        let [columns, rows] = [1 + random.below(side + 2), 1 + random.below(side + 2)];
+        if run_in(&folder, &words.split(' ').chain(["-o", "try.tif", "--overwrite"]).collect::<Vec<_>>()).code == 0 {
+            assert_same(&folder, &words, &[&format!("--tiles {columns}x{rows}")]);
+        }
+    }
+}
+
+#[test]
+fn files_that_are_tiles_are_not_divided() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let mut names = Vec::new();
+    for (name, bounds) in [
+        ("a.laz", "688000,5261000,688199.999,5261149.999"),
+        ("b.laz", "688200,5261000,688500,5261149.999"),
+        ("c.laz", "688000,5261150,688500,5261400"),
+    ] {
+        output_of(&folder, &format!("points {valley} --bounds {bounds}"), name);
+        names.push(name);
+    }
+    let files = names.join(" ");
+    let (whole, _) = output_of(&folder, &format!("dem {valley}"), "whole.tif");
+    let (tiled, said) = output_of(&folder, &format!("dem {files} --tiles auto"), "tiled.tif");
+    assert!(tiled == whole && said.contains("tiles       3 (the files)"), "{said}");
+    // Files that touch may both have points there.
+    output_of(&folder, &format!("points {valley} --bounds 688000,5261000,688200,5261150"), "a.laz");
+    output_of(&folder, &format!("points {valley} --bounds 688100,5261000,688500,5261150"), "b.laz");
+    let (tiled, said) = output_of(&folder, &format!("dem {files} --tiles auto"), "tiled.tif");
+    assert!(tiled == whole && said.contains("divided first"), "{said}");
+    // Text states neither number nor extent.
+    output_of(&folder, &format!("points {valley} --class 2"), "ground.xyz");
+    let (tiled, _) = output_of(&folder, "dem ground.xyz --a-srs EPSG:25832 --tiles 3x3", "tiled.tif");
+    let (whole, _) = output_of(&folder, "dem ground.xyz --a-srs EPSG:25832", "whole.tif");
+    assert!(tiled == whole);
+}
+
+/// Two million points in little memory.
+#[test]
+fn two_million_points_take_the_memory_that_is_allowed() {
+    let folder = tempfile::tempdir().unwrap();
+    landscape::write(&folder.path().join("in"), 2_000_000, 8).unwrap();
+    let (tiled, said) = output_of(&folder, "dem in/*.laz --memory 64MB", "tiled.tif");
+    assert!(said.contains("tiles       64 (the files)"), "{said}");
+    let peak = said.split("peak memory ").nth(1).and_then(|text| text.split(" MB").next());
+    let peak: f64 = peak.unwrap().parse().unwrap();
+    assert!(peak < 100.0, "{said}");
+    let (whole, _) = output_of(&folder, "dem in/*.laz --memory 10GB", "whole.tif");
+    assert!(tiled == whole);
+}
+
+#[test]
+fn what_tiles_do_not_have_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let lines = valley.replace("valley.laz", "breaklines.shp");
+    for (words, said) in [
+        (format!("{valley} --breaklines {lines}"), "--breaklines does not work with tiles yet"),
+        (format!("{valley} --rivers {lines}"), "--rivers does not work with tiles yet"),
+        (format!("{valley} --bounds 0,0,1,1"), "--bounds does not work with tiles yet"),
+        (format!("{valley} --max-edge auto"), "--max-edge auto does not work with tiles yet"),
+        (format!("{valley} --method natural"), "tiles have linear heights only"),
+        ("-".to_owned(), "tiles are made of files"),
+    ] {
+        let words = format!("dem {words} --tiles 2x2 -o out.tif");
+        run_in(&folder, &words.split(' ').collect::<Vec<_>>())
+            .fails(if said.contains("made of") { 2 } else { 1 }, &[said]);
+    }
+    assert!(files_of(folder.path()).is_empty());
+}

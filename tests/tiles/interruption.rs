@@ -1,0 +1,120 @@
+//! Jobs that are interrupted, and jobs whose tasks run one by one.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, SystemTime};
+
+use super::{bytes, output_of, program, valley};
+use program::{files_of, run_in};
+
+/// The tasks that are done, with the times at which they were.
+fn done(job: &Path) -> Vec<(String, SystemTime)> {
+    let tasks = job.join("tasks");
+    let names = files_of(&tasks).into_iter().filter(|name| name.ends_with(".task"));
+    names.map(|name| (name.clone(), std::fs::metadata(tasks.join(&name)).unwrap().modified().unwrap())).collect()
+}
+
+#[test]
+fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = format!("dem {} --tiles 3x3 --job kept", valley());
+    let (whole, _) = output_of(&folder, &words, "whole.tif");
+    let tasks = folder.path().join("kept/tasks");
+    let before = done(&folder.path().join("kept"));
+    assert_eq!(before.len(), 12);
+    std::fs::remove_file(tasks.join("000004.task")).unwrap();
+    let mut damaged = bytes(tasks.join("000007.task"));
+    let middle = damaged.len() / 2;
+    damaged[middle] ^= 1;
+    std::fs::write(tasks.join("000007.task"), damaged).unwrap();
+    let cut = bytes(tasks.join("000002.task"));
+    std::fs::write(tasks.join("000002.task"), &cut[..cut.len() - 3]).unwrap();
+    std::fs::write(tasks.join(".x.unfinished"), "x").unwrap();
+
+    let run = run_in(&folder, &words.split(' ').chain(["-o", "again.tif"]).collect::<Vec<_>>());
+    run.fails(2, &["there is a job in this folder already", "--resume"]);
+    let (again, said) = output_of(&folder, &format!("{words} --resume"), "whole.tif");
+    assert!(again == whole && said.contains("9 of 12 tasks are done"), "{said}");
+    let after = done(&folder.path().join("kept"));
+    let same = before.iter().filter(|task| after.contains(task)).count();
+    assert_eq!((after.len(), same, files_of(&tasks).len()), (12, 9, 12));
+
+    // Another command, a changed input, a damaged plan.
+    let other = format!("{words} --resume --resolution 2 -o other.tif");
+    run_in(&folder, &other.split(' ').collect::<Vec<_>>()).fails(2, &["that of another command"]);
+    std::fs::write(folder.path().join("kept/plan.json"), "{}").unwrap();
+    let resumed = format!("{words} --resume -o other.tif");
+    run_in(&folder, &resumed.split(' ').collect::<Vec<_>>())
+        .fails(1, &["kept/plan.json: the plan of the job is damaged"]);
+}
+
+#[test]
+fn a_file_that_changes_after_the_plan_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(valley(), folder.path().join("a.laz")).unwrap();
+    run_in(&folder, &["job", "plan", "j", "--", "dem", "a.laz", "-o", "dem.tif", "--tiles", "2x2"]).works(&[]);
+    let mut changed = bytes(valley());
+    changed.push(0);
+    std::fs::write(folder.path().join("a.laz"), changed).unwrap();
+    run_in(&folder, &["job", "run", "j"]).fails(2, &["a.laz: the file has changed since the job was planned"]);
+}
+
+#[test]
+fn tasks_run_one_by_one_from_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
+    let planned = format!("job plan j -- dem {} -o dem.tif --tiles 2x2", valley());
+    run_in(&folder, &planned.split(' ').collect::<Vec<_>>()).works(&["job run j, or j --task 0 to 7"]);
+    run_in(&folder, &planned.split(' ').collect::<Vec<_>>()).fails(2, &["there is a job in this folder already"]);
+    let elsewhere = tempfile::tempdir().unwrap();
+    let job = folder.path().join("j").to_str().unwrap().to_owned();
+    let task = |number: &str| run_in(&elsewhere, &["job", "run", &job, "--task", number]);
+    task("2").fails(2, &["task 0 (divide", "is not done"]);
+    task("7").fails(2, &["task 0 (divide", "is not done"]);
+    task("8").fails(2, &["there is no task 8: the last is 7, which writes the output"]);
+    for number in 0..8 {
+        task(&number.to_string()).works(&[]);
+    }
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+    let status = run_in(&elsewhere, &["job", "status", &job, "--json"]);
+    let status: serde_json::Value = serde_json::from_str(&status.stdout).unwrap();
+    let tasks = status["tasks"].as_array().unwrap();
+    assert!(tasks.len() == 8 && tasks.iter().all(|task| task["done"] == true), "{status}");
+    assert_eq!(tasks[5]["needs"], serde_json::json!([1, 2, 3, 4]));
+    assert_eq!(run_in(&elsewhere, &["job", "status", &job]).stdout, "7 of 7 tasks are done\n");
+    run_in(&elsewhere, &["job", "clean", &job]).works(&[]);
+    assert_eq!(files_of(folder.path()), ["dem.tif", "whole.tif"]);
+    run_in(&elsewhere, &["job", "clean", &job]).fails(2, &["there is no job in this folder"]);
+    run_in(&elsewhere, &["job", "plan", "k", "--", "tin", "a.laz", "-o", "b.ply"]).fails(2, &["a job makes a DEM"]);
+    run_in(&elsewhere, &["job", "plan", "k", "--", "dem"]).fails(2, &["the command of the job"]);
+}
+
+/// Killed again and again, each time a little later, a job goes on; tasks that are done stay done.
+#[test]
+fn a_job_that_is_killed_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = format!("dem {} --tiles 12x12 --job kept", valley());
+    let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
+    let target = folder.path().join("dem.tif");
+    let mut known = Vec::new();
+    let mut kills = 0;
+    for wait in 1.. {
+        let mut program = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
+        let words = words.split(' ').chain(["--resume", "-q", "-o", "dem.tif"]);
+        let mut child = program.current_dir(folder.path()).args(words).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(5 * wait));
+        // SIGKILL.
+        let _ = child.kill();
+        kills += i32::from(!child.wait().unwrap().success());
+        if folder.path().join("kept/tasks").exists() {
+            let now = done(&folder.path().join("kept"));
+            assert!(known.iter().all(|task| now.contains(task)), "a task was done twice");
+            known = now;
+        }
+        if target.exists() {
+            break;
+        }
+    }
+    assert!(kills > 3, "{kills}");
+    assert!(bytes(&target) == whole);
+}

@@ -1,0 +1,39 @@
+//! Surfaces in tiles: the bytes of the surface in one piece, whatever the tiles, whatever happens to
+//! the job in between.
+
+#[path = "../cli/lidar.rs"]
+mod lidar;
+#[path = "../common/program.rs"]
+mod program;
+
+#[path = "../../examples/landscape/mod.rs"]
+mod landscape;
+
+mod bad_input;
+mod equality;
+mod interruption;
+
+use std::path::Path;
+
+use program::run_in;
+use tempfile::TempDir;
+
+/// The valley of the fixtures.
+fn valley() -> String {
+    format!("{}/fixtures/valley.laz", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs the program, which must succeed, and returns the bytes of the file `out` in the folder, and
+/// what was printed.
+#[track_caller]
+fn output_of(folder: &TempDir, words: &str, out: &str) -> (Vec<u8>, String) {
+    let words: Vec<&str> = words.split_whitespace().chain(["-o", out, "--overwrite"]).collect();
+    let run = run_in(folder, &words);
+    assert_eq!(run.code, 0, "{words:?}: {}", run.stderr);
+    (std::fs::read(folder.path().join(out)).unwrap(), run.stderr)
+}
+
+/// The bytes of a file.
+fn bytes(path: impl AsRef<Path>) -> Vec<u8> {
+    std::fs::read(path).unwrap()
+}
