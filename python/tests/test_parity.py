@@ -13,7 +13,10 @@ PROGRAM = breakline.describe()
 VERBS = {verb["name"]: verb for verb in PROGRAM["verbs"]}
 
 #: Verbs that are no functions, and why.
-NO_FUNCTIONS = {"demo": "writes files to look at and prints commands to type"}
+NO_FUNCTIONS = {
+    "demo": "writes files to look at and prints commands to type",
+    "job": "does the tasks of batch queues; breakline.dask does those of a cluster",
+}
 
 #: Options that are no parameters of any function, and what there is instead.
 ELSEWHERE = {
@@ -22,6 +25,10 @@ ELSEWHERE = {
     "json": "functions return dictionaries",
     "parse": "the letters of LAStools; columns=(1, 2, 3) says the same",
     "crossing-report": "Tin.report['crossing_heights']",
+    **dict.fromkeys(
+        ["tiles", "memory", "job", "resume", "dry-run", "skip-bad"],
+        "a Tin is in memory; breakline.dask and the program work in tiles",
+    ),
 }
 
 #: Verbs that return what has a method `write`, which takes `output` and `overwrite`.

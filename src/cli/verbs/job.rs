@@ -16,7 +16,15 @@ pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
     match &args.action {
         JobAction::Plan { job, command } => plan(job, command, console),
         JobAction::Run { job, task } => work(job, *task, console),
-        JobAction::Status { job, json } => status(job, *json, console),
+        JobAction::Status { job, json, verify } => {
+            let (job, command, words) = stored(job, console)?;
+            let open = command.open(&job)?;
+            if *verify {
+                open.remove_damaged()?;
+            }
+            let printed = if *json { print_tasks(&open, &words, &command.output) } else { print_status(&open) };
+            printed.map(|()| Exit::Done)
+        }
         JobAction::Clean { job } => run::remove_job(job).map(|()| Exit::Done),
     }
 }
@@ -143,24 +151,24 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
     }
 }
 
-fn status(job: &Path, as_json: bool, console: &Console) -> Result<Exit> {
-    let (job, command, words) = stored(job, console)?;
-    let open = command.open(&job)?;
+/// Prints which tasks are done.
+fn print_status(open: &Job) -> Result<()> {
     let count = open.task_count();
-    let done: Vec<bool> = (0..count).map(|task| open.is_done(task)).collect();
-    let left = done.iter().filter(|is_done| !**is_done).count();
-    if as_json {
-        let mut tasks: Vec<Value> = (0..count)
-            .map(|task| json!({ "name": open.task_name(task), "needs": open.needs(task), "done": done[task] }))
-            .collect();
-        let needs = open.last_needs();
-        tasks.push(json!({ "name": "output", "needs": needs, "done": left == 0 && command.output.exists() }));
-        print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))?;
-    } else {
-        print(&format!("{} of {count} tasks are done\n", count - left))?;
-        if let Some(next) = done.iter().position(|is_done| !is_done) {
-            print(&format!("next: {next}, {}\n", open.task_name(next)))?;
-        }
+    let left: Vec<usize> = (0..count).filter(|&task| !open.is_done(task)).collect();
+    print(&format!("{} of {count} tasks are done\n", count - left.len()))?;
+    match left.first() {
+        Some(&next) => print(&format!("next: {next}, {}\n", open.task_name(next))),
+        None => Ok(()),
     }
-    Ok(Exit::Done)
+}
+
+/// Prints all tasks as a JSON object; the last one writes the output.
+fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
+    let count = open.task_count();
+    let of_task =
+        |task: usize| json!({ "name": open.task_name(task), "needs": open.needs(task), "done": open.is_done(task) });
+    let mut tasks: Vec<Value> = (0..count).map(of_task).collect();
+    let is_written = tasks.iter().all(|task| task["done"] == true) && open.is_older_than(output);
+    tasks.push(json!({ "name": "output", "needs": open.last_needs(), "done": is_written }));
+    print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))
 }

@@ -406,6 +406,13 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// Returns true if a file exists that was written after all tasks.
+    pub fn is_older_than(&self, output: &Path) -> bool {
+        let time = |path: &Path| std::fs::metadata(path).and_then(|about| about.modified()).ok();
+        let written = time(output);
+        written.is_some() && (0..self.task_count()).all(|task| time(&self.task_path(task)) <= written)
+    }
+
     /// Removes files that a run left when it was killed, and files of tasks that are damaged.
     /// Returns the number of tasks that are done. The job must be [locked](Self::lock).
     ///
@@ -420,6 +427,15 @@ impl<'a> Job<'a> {
                 std::fs::remove_file(&path).map_err(|e| Error::from(e).in_file(&path))?;
             }
         }
+        self.remove_damaged()
+    }
+
+    /// Removes the files of tasks that are damaged, by their checksums. Returns the number of tasks
+    /// that are done.
+    ///
+    /// # Errors
+    /// If a file cannot be removed.
+    pub fn remove_damaged(&self) -> Result<usize> {
         let mut done = 0;
         for task in 0..self.task_count() {
             let path = self.task_path(task);

@@ -49,6 +49,9 @@ pub(in crate::cli) enum JobAction {
         /// Print a JSON object, with what each task needs
         #[arg(long)]
         json: bool,
+        /// Read the files of the tasks, and remove those that are damaged
+        #[arg(long)]
+        verify: bool,
     },
     /// Remove the files of the tasks
     Clean {

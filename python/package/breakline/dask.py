@@ -1,0 +1,157 @@
+"""Rasters of points that do not fit into memory, made by the workers of a Dask cluster.
+
+>>> import breakline.dask
+>>> breakline.dask.dem("tiles/*.laz", "dem.tif", resolution=1, client=client)  # doctest: +SKIP
+PosixPath('dem.tif')
+
+The work is the job that ``breakline job plan`` makes: a folder with a file for each task that is done. Inputs, output and
+that folder must have the same paths on all workers. The result is the same, byte for byte, as on one machine: tasks
+may be repeated, and a task that was done before is not done again.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Union
+
+from ._errors import RENAMED, BreaklineError, usage
+
+__all__ = ["dem", "hillshade"]
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+#: Parameters here, and the options of the program that they stand for.
+_OPTIONS = {parameter: option for option, parameter in RENAMED.items()}
+_OPTIONS["extent"] = "te"
+
+
+def dem(
+    inputs: "Union[PathLike, Sequence[PathLike]]",
+    output: PathLike,
+    *,
+    client: Any,
+    job: "Union[PathLike, None]" = None,
+    retries: int = 3,
+    **options: Any,
+) -> Path:
+    """Write a DEM of points, with the workers of a Dask cluster.
+
+    Parameters
+    ----------
+    inputs : path or list of paths
+        Files of points; globs are understood.
+    output : path
+        The GeoTIFF to write.
+    client : dask.distributed.Client
+        The cluster.
+    job : path, optional
+        The folder for the files of the tasks; by default the output's name with ``.job``. If it has the job of the same
+        call already, that goes on.
+    retries : int
+        How often a task that fails is repeated.
+    **options
+        The other options of ``breakline dem`` by their names, such as ``resolution=0.5``, ``tiles="8x8"``,
+        ``max_edge=50``.
+
+    Returns
+    -------
+    pathlib.Path
+        The output. ``rioxarray.open_rasterio(path, chunks=True)`` opens it as a Dask array.
+
+    Raises
+    ------
+    BreaklineError
+        If the job cannot be planned, or a task fails more often than it is repeated.
+    """
+    return _run("dem", inputs, output, client, job, retries, options)
+
+
+def hillshade(
+    inputs: "Union[PathLike, Sequence[PathLike]]",
+    output: PathLike,
+    *,
+    client: Any,
+    job: "Union[PathLike, None]" = None,
+    retries: int = 3,
+    **options: Any,
+) -> Path:
+    """Write a hillshade of points, with the workers of a Dask cluster; see :func:`dem`."""
+    return _run("hillshade", inputs, output, client, job, retries, options)
+
+
+def _run(
+    verb: str,
+    inputs: "Union[PathLike, Sequence[PathLike]]",
+    output: PathLike,
+    client: Any,
+    job: "Union[PathLike, None]",
+    retries: int,
+    options: "dict[str, Any]",
+) -> Path:
+    if not hasattr(client, "submit"):
+        raise usage("client is no client of dask.distributed", client, "pass dask.distributed.Client()")
+    files = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
+    command = [verb, *map(_path, files), "-o", _path(output), *_words(options)]
+    folder = _path(f"{os.fspath(output)}.job" if job is None else job)
+    if not os.path.exists(os.path.join(folder, "plan.json")):
+        _program("job", "plan", folder, "--", *command)
+    # What is there is verified: a task that is done is not repeated.
+    status = json.loads(_program("job", "status", folder, "--json", "--verify"))
+    if status["command"] != command:
+        raise usage(f"the job in {folder} is that of another call", folder, "pass another job, or remove the folder")
+    name = f"{verb}-{abs(hash(folder)):x}"
+    futures: "dict[int, Any]" = {}
+    for number, task in enumerate(status["tasks"]):
+        if task["done"]:
+            continue
+        needs = [futures[needed] for needed in task["needs"] if needed in futures]
+        # "tile 17, a.laz" becomes "tile-17-...": the dashboard groups tasks by the first word.
+        title = "-".join(task["name"].split(",")[0].split(" ")[:2]).replace(os.sep, "_")
+        # Later tasks first: merges come soon after what they merge.
+        futures[number] = client.submit(
+            _task, folder, number, needs, key=f"{title}-{name}-{number}", priority=number, retries=retries, pure=False
+        )
+    if futures:
+        futures[max(futures)].result()
+    if job is None:
+        _program("job", "clean", folder)
+    return Path(output)
+
+
+def _task(folder: str, number: int, needs: "list[int]") -> int:
+    """Do a task on a worker."""
+    _program("job", "run", folder, "--task", str(number), "--threads", "1")
+    return number
+
+
+def _program(*words: str) -> str:
+    """Run the program and return what it prints."""
+    ran = subprocess.run([sys.executable, "-m", "breakline", *words], capture_output=True, text=True)
+    if ran.returncode != 0:
+        said = [line for line in ran.stderr.splitlines() if line.startswith(("error: ", "hint: "))]
+        raise BreaklineError("\n".join(said).removeprefix("error: ") if said else ran.stderr)
+    return ran.stdout
+
+
+def _path(path: PathLike) -> str:
+    return os.path.abspath(os.fspath(path))
+
+
+def _words(options: "dict[str, Any]") -> "list[str]":
+    words: "list[str]" = []
+    for parameter, value in options.items():
+        option = "--" + _OPTIONS.get(parameter, parameter).replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(option)
+        elif isinstance(value, (list, tuple)):
+            words.append(f"{option}={','.join(map(str, value))}")
+        else:
+            words.append(f"{option}={value}")
+    return words
