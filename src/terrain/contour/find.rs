@@ -30,7 +30,7 @@ pub(super) fn height_range<S: Surface + ?Sized>(surface: &S) -> [f64; 2] {
     stretches(surface).into_par_iter().map(of_stretch).reduce(|| [f64::INFINITY, f64::NEG_INFINITY], joined)
 }
 
-fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+pub(super) fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 

@@ -79,6 +79,7 @@ mod find;
 mod index;
 mod join;
 mod line;
+pub mod parts;
 mod trace;
 
 use super::Levels;

@@ -1,0 +1,182 @@
+//! Contours of a surface that is larger than memory, from the tasks that find its triangles.
+//!
+//! Each task of [`tiles`](crate::terrain::tiles) emits some triangles of the whole. A
+//! [`ContourCollector`] in the task turns them into [`ContourParts`]: lines, as far as the triangles
+//! of the task decide them, and what is needed to go on. [`join_level`] joins the parts of one level
+//! from all tasks. **The lines are those of [`contours`](super::contours) for the whole surface, bit
+//! for bit.** Any split of the triangles into tasks gives the same.
+//!
+//! ```
+//! use breakline::terrain::contour::parts::{ContourCollector, StoredParts, join_level};
+//! use breakline::terrain::{Levels, tiles};
+//!
+//! # fn main() -> breakline::Result<()> {
+//! let levels = Levels::every(1.0, 0.0)?;
+//! // A task: its parts go to a file.
+//! let mut collector = ContourCollector::new(&levels);
+//! let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 2.0], [0.0, 4.0, 0.0]];
+//! tiles::leaf(&tiles::Tile::PLANE, 0, &points, &mut |triangle| collector.add(&triangle))?;
+//! let mut file = Vec::new();
+//! collector.finish()?.write(&mut file)?;
+//!
+//! // When all tasks are done: one level at a time.
+//! let tasks = [StoredParts::new(&file)?];
+//! let low = tasks.iter().map(|task| task.heights()[0]).fold(f64::INFINITY, f64::min);
+//! let high = tasks.iter().map(|task| task.heights()[1]).fold(f64::NEG_INFINITY, f64::max);
+//! let mut lines = Vec::new();
+//! for level in levels.within(low, high)? {
+//!     let mut parts = Vec::new();
+//!     for task in &tasks {
+//!         parts.extend(task.level(level)?);
+//!     }
+//!     lines.extend(join_level(level, parts)?);
+//! }
+//! assert_eq!(lines.len(), 1);
+//! assert_eq!(lines[0].points, [[2.0, 0.0], [2.0, 2.0]]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Why the lines are the same
+//!
+//! [`contours`](super::contours) decides in three steps. Each gives the same from parts:
+//!
+//! 1. *Which arcs there are.* An arc across a face depends on this face alone. An arc along an edge
+//!    on the level depends on the two faces of the edge: a task that has one of them hands on the
+//!    side of the edge that it knows, and two sides that meet are an arc or not. A side that meets
+//!    no other is at the edge of the data. Crossings are computed from the smaller end of an edge,
+//!    so that tasks agree in every bit.
+//! 2. *Which arcs follow each other.* At the crossing of an edge only two arcs meet. At a vertex, a
+//!    task joins an arriving arc with the first leaving one counter-clockwise if it has all faces in
+//!    between. They are next to each other in the circle around the vertex, and the turn rule pairs
+//!    such neighbors first, whatever else is in the circle. The other ends go on with the vertex and
+//!    a direction, which is that of a vertex and therefore exact. The same pairs of brackets are
+//!    left over of the whole circle, and `join_level` applies the same rule to it.
+//! 3. *Whether rounding shows.* `contours` joins again by coordinates where a crossing was rounded
+//!    to an end of its edge, or a line falls together. The first is a property of arcs, and the
+//!    tasks report it; the second is one of whole lines, which are there by then. What follows
+//!    depends on the set of arcs alone.
+//!
+//! Ends are matched by the numbers of vertices, never by their coordinates. Coordinates would give
+//! other lines: two crossings of different edges may have the same bits without any sign of it in a
+//! single line, and `contours` then keeps to the links between faces.
+//!
+//! # Levels
+//!
+//! A task does not know the heights of the others. But a level is computed by itself, whatever the
+//! range, so that tasks agree in its bits. The levels of the whole are those within the lowest and
+//! the highest of the [heights](ContourParts::heights) of all tasks, as the example has them.
+
+mod bytes;
+mod collect;
+mod join;
+mod patch;
+#[cfg(test)]
+mod tests;
+
+pub use bytes::StoredParts;
+pub use collect::ContourCollector;
+pub use join::join_level;
+
+use crate::error::Result;
+
+/// What the triangles of some tasks say about the contours of the whole surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContourParts {
+    heights: [f64; 2],
+    /// Ascending.
+    levels: Vec<LevelParts>,
+}
+
+impl ContourParts {
+    /// Returns the lowest and the highest height of the triangles; without triangles, infinity and
+    /// its negative.
+    pub fn heights(&self) -> [f64; 2] {
+        self.heights
+    }
+
+    /// Returns the parts of each level that has some, by ascending levels.
+    pub fn levels(&self) -> &[LevelParts] {
+        &self.levels
+    }
+
+    /// Merges the parts of several tasks, so that less is left to join: lines are joined where they
+    /// cross an edge between two of the tasks.
+    ///
+    /// # Errors
+    /// If the parts contradict each other, as those of one task given twice do.
+    pub fn merged(parts: Vec<ContourParts>) -> Result<Self> {
+        let mut heights = NO_HEIGHTS;
+        let mut levels = Vec::new();
+        for part in parts {
+            heights = super::find::joined(heights, part.heights);
+            levels.extend(part.levels);
+        }
+        Ok(ContourParts { heights, levels: join::merge_levels(levels)? })
+    }
+}
+
+/// The heights of no triangles.
+const NO_HEIGHTS: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// The parts of one level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LevelParts {
+    level: f64,
+    /// True if the crossing of an edge was rounded to one of its ends.
+    touches_vertices: bool,
+    /// The points of lines that are complete; the last equals the first.
+    closed: Vec<Vec<[f64; 2]>>,
+    open: Vec<OpenLine>,
+    sides: Vec<LevelSide>,
+}
+
+impl LevelParts {
+    fn new(level: f64) -> Self {
+        LevelParts { level, touches_vertices: false, closed: Vec::new(), open: Vec::new(), sides: Vec::new() }
+    }
+
+    /// Returns the level.
+    pub fn level(&self) -> f64 {
+        self.level
+    }
+
+    fn is_empty(&self) -> bool {
+        self.closed.is_empty() && self.open.is_empty() && self.sides.is_empty()
+    }
+}
+
+/// A vertex, by the number of its tile and its own.
+type VertexKey = [u32; 2];
+
+/// A line that may continue in another task, with high ground on its right.
+#[derive(Debug, Clone, PartialEq)]
+struct OpenLine {
+    points: Vec<[f64; 2]>,
+    /// Where the first point is, and the last.
+    ends: [LineEnd; 2],
+}
+
+/// The end of a line in the whole surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum LineEnd {
+    /// The crossing of the edge between two vertices, the smaller first.
+    Edge([VertexKey; 2]),
+    /// A vertex.
+    Vertex {
+        vertex: VertexKey,
+        /// The position of a neighboring vertex, for the order of lines around the vertex.
+        toward: [f64; 2],
+    },
+}
+
+/// One side of an edge on the level; the face on its other side belongs to another task, or does
+/// not exist.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct LevelSide {
+    /// The ends of the edge, counter-clockwise around the face.
+    vertices: [VertexKey; 2],
+    at: [[f64; 2]; 2],
+    /// True if the third corner of the face is on the level or above.
+    is_high: bool,
+}
