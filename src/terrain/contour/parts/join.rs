@@ -37,7 +37,9 @@ pub(super) fn merge_levels(mut parts: Vec<LevelParts>) -> Result<Vec<LevelParts>
             None => groups.push(vec![part]),
         }
     }
-    groups.into_par_iter().map(|group| merged(group[0].level, group)).collect()
+    // The first error is returned, whatever the threads do.
+    let merged: Vec<Result<LevelParts>> = groups.into_par_iter().map(|group| merged(group[0].level, group)).collect();
+    merged.into_iter().collect()
 }
 
 /// Merges the parts of a level. Lines that end at a vertex stay open: other parts may have arcs

@@ -8,7 +8,7 @@ use super::*;
 use crate::crs::Crs;
 use crate::data::{ContourLine, EdgeKind, Surface};
 use crate::terrain::Levels;
-use crate::terrain::tiles::{self, Residual, Tile, TileTriangle};
+use crate::terrain::tiles::{self, Residual, Tile, TileTriangle, TileVertex};
 use std::collections::HashMap;
 use testkit::random::{Random, ulps};
 
@@ -193,7 +193,7 @@ fn bits(lines: &[ContourLine]) -> Vec<(u64, Vec<[u64; 2]>)> {
 /// The number of sets, which the environment sets:
 /// `BREAKLINE_PARTS=20000 cargo test --lib contour::parts`.
 fn count() -> usize {
-    std::env::var("BREAKLINE_PARTS").ok().and_then(|n| n.parse().ok()).unwrap_or(600)
+    std::env::var("BREAKLINE_PARTS").ok().and_then(|n| n.parse().ok()).unwrap_or(300)
 }
 
 /// How often something happened that a wrong join would get wrong.
@@ -278,5 +278,168 @@ fn parts_give_the_contours_of_the_whole() {
     }
     println!("{rounds} rounds: {seen:?}");
     let Seen { lines, arcs_between, shared_vertices, touching, ambiguous } = seen;
-    assert!([lines, arcs_between, shared_vertices, touching].into_iter().min() > Some(rounds / 4) && ambiguous > 0);
+    // The last is rare, and has a test of its own.
+    assert!([lines, arcs_between, shared_vertices, touching].into_iter().min() > Some(rounds / 4));
+    assert!(ambiguous > 0 || rounds < 300);
+}
+
+/// A spur, so narrow at its root that both of its sides have their first crossing at one position.
+/// The links between faces lead around the spur; coordinates would cut it off.
+///
+/// ```text
+///        t         q       v and m are above the level, the others below
+///        | /    /  |
+///        v -- m -- p
+///          \  s /
+/// ```
+#[test]
+fn numbers_of_vertices_decide_and_not_coordinates() {
+    let at = |x: i32, y: i32, z: f64| [FAR[0] + STEP * f64::from(x), FAR[1] + STEP * f64::from(y), z];
+    let low = 1.0 - 0.5 / 0.15;
+    let all = [at(0, 0, 1.0), at(4, 1, 3.0), at(8, 1, low), at(8, 3, low), at(4, -8, low), at(0, 8, low)];
+    let vertex = |number: u32| TileVertex { tile: 0, number, position: all[number as usize] };
+    let triangles = [[0, 2, 1], [1, 2, 3], [0, 1, 3], [0, 4, 2], [0, 3, 5]]
+        .map(|corners| TileTriangle { corners: corners.map(vertex), edges: [EdgeKind::Plain; 3] });
+    let levels = Levels::listed(&[0.5]).unwrap();
+    let expected: Vec<ContourLine> = contours(&Whole::new(&triangles), &levels).unwrap().collect();
+    assert_eq!(expected.len(), 1);
+    assert_eq!(expected[0].points[1], expected[0].points[4]);
+    let files = triangles.map(|triangle| stored(&collected(&levels, &[triangle], 1000)));
+    assert_eq!(bits(&joined(&levels, &files)), bits(&expected));
+    let line = Joined { points: expected[0].points.clone(), closed: false };
+    assert_eq!(finish_level(0.5, vec![line], true).len(), 2);
+}
+
+/// Half of all saddles around a vertex on the level, whole and with gaps, each split pseudo-randomly.
+#[test]
+fn wheels_from_parts() {
+    const RING: [[f64; 2]; 8] =
+        [[2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [-2.0, 2.0], [-2.0, 0.0], [-2.0, -2.0], [0.0, -2.0], [2.0, -2.0]];
+    let mut random = Random(4);
+    let levels = Levels::listed(&[0.0]).unwrap();
+    for number in (0..3_u32.pow(8)).step_by(2) {
+        let corner = |at: u32| {
+            let ([x, y], height) = (RING[at as usize], number / 3_u32.pow(at) % 3);
+            TileVertex { tile: at % 2, number: at, position: [x, y, f64::from(height) - 1.0] }
+        };
+        let center = TileVertex { tile: 1, number: 8, position: [0.0; 3] };
+        let [keep, tasks] = [random.bits() | random.bits(), random.bits()];
+        let all: Vec<(usize, TileTriangle)> = (0..8)
+            .filter(|at| keep >> at & 1 == 1)
+            .map(|at| {
+                let corners = [center, corner(at), corner((at + 1) % 8)];
+                ((tasks >> (2 * at) & 3) as usize, TileTriangle { corners, edges: [EdgeKind::Plain; 3] })
+            })
+            .collect();
+        let expected: Vec<ContourLine> =
+            contours(&Whole::new(all.iter().map(|(_, triangle)| triangle)), &levels).unwrap().collect();
+        let file = |task| {
+            let own: Vec<TileTriangle> = all.iter().filter(|(of, _)| *of == task).map(|(_, t)| *t).collect();
+            stored(&collected(&levels, &own, 1000))
+        };
+        assert_eq!(bits(&joined(&levels, &[0, 1, 2, 3].map(file))), bits(&expected), "{number} {keep:b} {tasks:b}");
+    }
+}
+
+/// Parts with everything that there can be.
+fn rich() -> ContourParts {
+    let mut random = Random(2);
+    let points: Vec<[f64; 3]> =
+        (0..144).map(|i| [f64::from(i % 12), f64::from(i / 12), random.below(4) as f64]).collect();
+    let mut triangles = Vec::new();
+    tiles::leaf(&Tile::PLANE, 0, &points, &mut |triangle| triangles.push(triangle)).unwrap();
+    triangles.retain(|_| random.below(10) > 0);
+    let parts = collected(&Levels::every(0.5, 0.0).unwrap(), &triangles, 1000);
+    let has_all = |parts: &LevelParts| !(parts.closed.is_empty() || parts.open.is_empty() || parts.sides.is_empty());
+    assert!(parts.levels.iter().any(has_all));
+    parts
+}
+
+#[test]
+fn damaged_bytes_are_refused_or_read() {
+    let mut random = Random(6);
+    let bytes = stored(&rich());
+    for end in 0..bytes.len() {
+        assert!(ContourParts::read(&bytes[..end]).is_err(), "{end} bytes");
+    }
+    let mut longer = bytes.clone();
+    longer.push(0);
+    assert_eq!(ContourParts::read(&longer).unwrap_err().to_string(), "parts of contours are damaged");
+    let (mut refused, mut contradicted) = (0, 0);
+    for _ in 0..1000 {
+        let mut damaged = bytes.clone();
+        for _ in 0..1 + random.below(3) {
+            let at = random.index(damaged.len());
+            let any = random.bits() as u8;
+            damaged[at] = random.pick(&[0, 1, 0x7f, 0x80, 0xf0, 0xff, any]);
+        }
+        let Ok(read) = ContourParts::read(&damaged) else {
+            refused += 1;
+            continue;
+        };
+        for parts in &read.levels {
+            contradicted += usize::from(join_level(parts.level, vec![parts.clone()]).is_err());
+        }
+        let _ = ContourParts::merged(vec![read]);
+    }
+    assert!(refused > 200 && contradicted > 10, "{refused} {contradicted}");
+}
+
+#[test]
+fn what_is_given_twice_is_refused() {
+    let parts = rich();
+    let error = ContourParts::merged(vec![parts.clone(), parts.clone()]).unwrap_err().to_string();
+    assert!(error.starts_with("the parts of level 0 contradict each other at ["), "{error}");
+    let level = parts.levels[0].clone();
+    assert!(join_level(level.level, vec![level.clone(), level.clone()]).is_err());
+    let error = join_level(17.0, vec![level]).unwrap_err().to_string();
+    assert_eq!(error, "parts of several levels are joined, expected level 17 only");
+
+    let vertex = |number, position| TileVertex { tile: 0, number, position };
+    let corners = [vertex(0, [0.0, 0.0, 0.0]), vertex(1, [1.0, 0.0, 0.0]), vertex(2, [0.0, 1.0, 2.0])];
+    let triangle = TileTriangle { corners, edges: [EdgeKind::Plain; 3] };
+    let mut collector = ContourCollector::new(&Levels::every(1.0, 0.0).unwrap());
+    collector.add(&triangle);
+    collector.add(&triangle);
+    let error = collector.finish().unwrap_err().to_string();
+    assert!(error.starts_with("two triangles are on the same side of the edge from ["), "{error}");
+}
+
+/// A slope whose heights come in ascending order, by steps below the interval.
+#[test]
+fn levels_are_found_while_heights_rise() {
+    let mut triangles = Vec::new();
+    let points: Vec<[f64; 3]> = (0..2000).map(|i| [f64::from(i % 2), f64::from(i / 2), 1e-3 * f64::from(i)]).collect();
+    tiles::leaf(&Tile::PLANE, 0, &points, &mut |triangle| triangles.push(triangle)).unwrap();
+    triangles.sort_by(|a, b| a.corners[0].position[2].total_cmp(&b.corners[0].position[2]));
+    let many: Vec<f64> = (0..3000).map(|i| 1e-3 * f64::from(i)).collect();
+    for levels in [Levels::every(1e-4, 0.0), Levels::every(0.1, 7.0), Levels::listed(&many)] {
+        let levels = levels.unwrap();
+        let expected: Vec<ContourLine> = contours(&Whole::new(&triangles), &levels).unwrap().collect();
+        for step in [1, -1] {
+            triangles.sort_by(|a, b| a.corners[0].position[2].total_cmp(&b.corners[0].position[2]));
+            if step < 0 {
+                triangles.reverse();
+            }
+            let file = stored(&collected(&levels, &triangles, 100));
+            assert_eq!(bits(&joined(&levels, &[file])), bits(&expected));
+        }
+    }
+}
+
+#[test]
+fn too_many_levels_and_invalid_heights_are_refused() {
+    let vertex = |number, position| TileVertex { tile: 0, number, position };
+    let finished = |height| {
+        let corners = [vertex(0, [0.0, 0.0, 0.0]), vertex(1, [1.0, 0.0, 0.0]), vertex(2, [0.0, 1.0, height])];
+        let mut collector = ContourCollector::new(&Levels::every(0.1, 0.0).unwrap());
+        collector.add(&TileTriangle { corners, edges: [EdgeKind::Plain; 3] });
+        collector.finish()
+    };
+    assert!(finished(1e6).unwrap_err().to_string().starts_with("contour interval 0.1 gives "));
+    assert!(finished(f64::NAN).unwrap_err().to_string().ends_with("is not a finite point"));
+    // Most of what is allowed: nothing far beyond the heights is asked for.
+    assert_eq!(finished(4e4).unwrap().levels.len(), 400_000);
+    let none = ContourCollector::new(&Levels::every(0.1, 0.0).unwrap()).finish().unwrap();
+    assert_eq!(ContourParts::read(&stored(&none)).unwrap(), none);
 }
