@@ -69,7 +69,8 @@ impl Done {
     }
 }
 
-/// Joins the arcs of each level to lines, and maps these by `finish`. Levels are traced in parallel.
+/// Joins the arcs of each level to lines, and maps these by `finish`. Levels are traced in
+/// parallel.
 pub(super) fn each_level<S: Surface + ?Sized, T: Send>(
     surface: &S,
     index: &LevelIndex,

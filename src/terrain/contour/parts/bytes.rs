@@ -53,7 +53,9 @@ impl<'a> StoredParts<'a> {
 }
 
 impl ContourParts {
-    /// Writes the parts.
+    /// Writes the parts, a few bytes at a time: `out` should have a buffer.
+    ///
+    /// A line takes 16 bytes per point, and up to 58 more.
     ///
     /// # Errors
     /// Those of `out`.

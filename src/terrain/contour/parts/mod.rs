@@ -1,10 +1,10 @@
 //! Contours of a surface that is larger than memory, from the tasks that find its triangles.
 //!
 //! Each task of [`tiles`](crate::terrain::tiles) emits some triangles of the whole. A
-//! [`ContourCollector`] in the task turns them into [`ContourParts`]: lines, as far as the triangles
-//! of the task decide them, and what is needed to go on. [`join_level`] joins the parts of one level
-//! from all tasks. **The lines are those of [`contours`](super::contours) for the whole surface, bit
-//! for bit.** Any split of the triangles into tasks gives the same.
+//! [`ContourCollector`] in the task turns them into [`ContourParts`]: lines, as far as the
+//! triangles of the task decide them, and what is needed to continue them. [`join_level`] joins the
+//! parts of one level from all tasks. **The lines are those of [`contours`](super::contours) for
+//! the whole surface, bit for bit**, however its triangles are split into tasks.
 //!
 //! ```
 //! use breakline::terrain::contour::parts::{ContourCollector, StoredParts, join_level};
@@ -39,33 +39,34 @@
 //!
 //! # Why the lines are the same
 //!
-//! [`contours`](super::contours) decides in three steps. Each gives the same from parts:
+//! [`contours`](super::contours) decides three things. Each is the same from parts:
 //!
 //! 1. *Which arcs there are.* An arc across a face depends on this face alone. An arc along an edge
-//!    on the level depends on the two faces of the edge: a task that has one of them hands on the
-//!    side of the edge that it knows, and two sides that meet are an arc or not. A side that meets
-//!    no other is at the edge of the data. Crossings are computed from the smaller end of an edge,
-//!    so that tasks agree in every bit.
-//! 2. *Which arcs follow each other.* At the crossing of an edge only two arcs meet. At a vertex, a
-//!    task joins an arriving arc with the first leaving one counter-clockwise if it has all faces in
-//!    between. They are next to each other in the circle around the vertex, and the turn rule pairs
-//!    such neighbors first, whatever else is in the circle. The other ends go on with the vertex and
-//!    a direction, which is that of a vertex and therefore exact. The same pairs of brackets are
-//!    left over of the whole circle, and `join_level` applies the same rule to it.
-//! 3. *Whether rounding shows.* `contours` joins again by coordinates where a crossing was rounded
-//!    to an end of its edge, or a line falls together. The first is a property of arcs, and the
-//!    tasks report it; the second is one of whole lines, which are there by then. What follows
+//!    on the level depends on both faces of the edge. A task that has one of them hands on the side
+//!    that it knows; where both sides are known, the rule decides. A side without another one is at
+//!    the edge of the data, where there is no arc. Crossings are computed from the smaller end of
+//!    an edge, so that tasks agree in every bit.
+//! 2. *Which arcs follow each other.* At the crossing of an edge there are two arcs at most. At a
+//!    vertex, a task joins an arriving arc with the first leaving one counter-clockwise if it has
+//!    all faces in between. These two are next to each other in the circle around the vertex, so
+//!    the turn rule pairs them, whatever else is in the circle, and without them the other pairs
+//!    stay the same. The other ends are handed on, with the vertex and a direction: a position of
+//!    another vertex, never a rounded crossing. `join_level` applies the turn rule to all of them.
+//! 3. *Whether rounding shows.* `contours` joins arcs again, by coordinates, where a crossing was
+//!    rounded to an end of its edge or a line falls together. The first is a property of arcs,
+//!    which tasks report; the second one of whole lines, which `join_level` has. The result then
 //!    depends on the set of arcs alone.
 //!
-//! Ends are matched by the numbers of vertices, never by their coordinates. Coordinates would give
-//! other lines: two crossings of different edges may have the same bits without any sign of it in a
-//! single line, and `contours` then keeps to the links between faces.
+//! Ends are matched by the numbers of vertices. By coordinates, other lines would result: crossings
+//! of different edges may have the same bits although no line falls together, and `contours` then
+//! follows the links between faces.
 //!
 //! # Levels
 //!
-//! A task does not know the heights of the others. But a level is computed by itself, whatever the
-//! range, so that tasks agree in its bits. The levels of the whole are those within the lowest and
-//! the highest of the [heights](ContourParts::heights) of all tasks, as the example has them.
+//! A task does not know the heights of the others. But each level is computed independently of the
+//! range, so that tasks agree in its bits. The levels of the whole are those within the heights of
+//! all tasks, as in the example; [`Levels::within`](crate::terrain::Levels::within) also returns
+//! the error that `contours` would.
 
 mod bytes;
 mod collect;
