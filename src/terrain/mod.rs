@@ -12,6 +12,7 @@
 //! | a DEM | shaded relief | [`Hillshade`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
+//! | triangles from tiles | the contours of the whole | [`contour::parts`] |
 //! | any surface | a check that it is sound | [`surface_flaws`], [`shape_flaws`]; for a TIN also [`Tin::check`] |
 //!
 //! A surface is anything that implements [`Surface`](crate::data::Surface): a [`Tin`], a

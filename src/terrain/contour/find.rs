@@ -30,7 +30,7 @@ pub(super) fn height_range<S: Surface + ?Sized>(surface: &S) -> [f64; 2] {
     stretches(surface).into_par_iter().map(of_stretch).reduce(|| [f64::INFINITY, f64::NEG_INFINITY], joined)
 }
 
-fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+pub(super) fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
@@ -57,6 +57,47 @@ pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec
 
 /// The arcs of each stretch, with their levels, in the order of the faces.
 pub(super) type Found = Vec<Vec<(usize, ContourArc)>>;
+
+/// The arcs of some levels, sorted by level.
+pub(super) struct LevelArcs {
+    arcs: Vec<ContourArc>,
+    /// Where the arcs of each level start, and the end.
+    starts: Vec<usize>,
+    first_level: usize,
+}
+
+impl LevelArcs {
+    /// Sorts arcs of a band of levels, of which the numbers of arcs are known.
+    pub(super) fn new(found: Found, first_level: usize, counts: &[usize]) -> Self {
+        // A counting sort.
+        let mut starts = vec![0];
+        starts.extend(counts.iter().scan(0, |end, count| {
+            *end += count;
+            Some(*end)
+        }));
+        let mut arcs = vec![ContourArc::Across(0); starts[counts.len()]];
+        let mut free = starts.clone();
+        for (level, arc) in found.into_iter().flatten() {
+            let slot = &mut free[level - first_level];
+            arcs[*slot] = arc;
+            *slot += 1;
+        }
+        LevelArcs { arcs, starts, first_level }
+    }
+
+    /// The arcs of a level of the band.
+    pub(super) fn of(&self, level: usize) -> &[ContourArc] {
+        let at = level - self.first_level;
+        &self.arcs[self.starts[at]..self.starts[at + 1]]
+    }
+}
+
+/// Returns the number of arcs of each level of a band.
+pub(super) fn counts_of(found: &Found, band: Range<usize>) -> Vec<usize> {
+    let mut counts = vec![0; band.len()];
+    found.iter().flatten().for_each(|&(level, _)| counts[level - band.start] += 1);
+    counts
+}
 
 /// Returns the arcs of some levels.
 pub(super) fn arcs<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, band: Range<usize>) -> Found {

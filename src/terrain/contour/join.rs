@@ -24,12 +24,13 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
     for trace in traces {
         match trace {
             Trace::Closed(points) => joined.push(Joined { points, closed: true }),
-            Trace::Open { points, start, end } => {
+            Trace::Open { points, ends: loose } => {
                 let line = open.len();
                 open.push(points);
-                for (loose, direction) in [(start, Direction::Forward), (end, Direction::Backward)] {
-                    let Some(LooseEnd { vertex, toward }) = loose else { continue };
-                    ends.push((vertex, End { center: plan(vertex), toward: plan(toward), direction, line }));
+                for (loose, direction) in loose.into_iter().zip([Direction::Forward, Direction::Backward]) {
+                    if let LooseEnd::Vertex { vertex, toward } = loose {
+                        ends.push((vertex, End { center: plan(vertex), toward: plan(toward), direction, line }));
+                    }
                 }
             }
         }
@@ -39,7 +40,7 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
     for group in ends.chunk_by(|a, b| a.0 == b.0) {
         pair(group.iter().map(|(_, end)| *end).collect(), &mut next);
     }
-    chain(open, &next, &mut joined);
+    chain(open, &next, |line, _| joined.push(line));
     joined
 }
 
@@ -71,23 +72,23 @@ pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
         pair(group.to_vec(), &mut next);
     }
     let mut joined = Vec::new();
-    chain(open, &next, &mut joined);
+    chain(open, &next, |line, _| joined.push(line));
     joined
 }
 
 /// An end of an open line; forward if the line begins there.
 #[derive(Clone, Copy)]
-struct End {
-    center: [f64; 2],
+pub(super) struct End {
+    pub(super) center: [f64; 2],
     /// A point in the direction of the line, seen from the center.
-    toward: [f64; 2],
-    direction: Direction,
-    line: usize,
+    pub(super) toward: [f64; 2],
+    pub(super) direction: Direction,
+    pub(super) line: usize,
 }
 
 /// Pairs each line that arrives at a point with the first leaving line counter-clockwise from it
 /// that is not taken by one arriving in between, like pairs of brackets around the vertex.
-fn pair(mut group: Vec<End>, next: &mut [Option<usize>]) {
+pub(super) fn pair(mut group: Vec<End>, next: &mut [Option<usize>]) {
     // Two ends have only one possible pairing.
     if group.len() > 2 {
         group.sort_by(|a, b| around(a.center, a.toward, b.toward));
@@ -121,8 +122,9 @@ fn around(center: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Ordering {
     })
 }
 
-/// Appends the lines that result from following `next` from line to line.
-fn chain(mut open: Vec<Vec<[f64; 2]>>, next: &[Option<usize>], joined: &mut Vec<Joined>) {
+/// Follows `next` from line to line. Calls `found` with each line that results, and with the first
+/// and the last of those that it is made of.
+pub(super) fn chain(mut open: Vec<Vec<[f64; 2]>>, next: &[Option<usize>], mut found: impl FnMut(Joined, [usize; 2])) {
     let mut has_previous = vec![false; open.len()];
     for &line in next.iter().flatten() {
         has_previous[line] = true;
@@ -140,6 +142,6 @@ fn chain(mut open: Vec<Vec<[f64; 2]>>, next: &[Option<usize>], joined: &mut Vec<
             points.append(&mut open[following]);
             line = following;
         }
-        joined.push(Joined { points, closed: next[line].is_some() });
+        found(Joined { points, closed: next[line].is_some() }, [first, line]);
     }
 }

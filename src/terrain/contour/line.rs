@@ -1,8 +1,21 @@
-use super::join::Joined;
+use super::join::{Joined, rejoin};
 use crate::data::ContourLine;
+use std::cmp::Ordering;
+
+/// Returns the finished lines of a level, sorted. Where rounding shows, the rule is applied to the
+/// rounded arcs: if the crossing of an edge was rounded to one of its ends, or a line
+/// [falls together](falls_together).
+pub(super) fn finish_level(level: f64, mut lines: Vec<Joined>, touches_vertices: bool) -> Vec<ContourLine> {
+    if touches_vertices || lines.iter().any(falls_together) {
+        lines = rejoin(&lines);
+    }
+    let mut lines: Vec<ContourLine> = lines.into_iter().map(|line| finish(level, line)).collect();
+    lines.sort_by(|a, b| a.points.partial_cmp(&b.points).unwrap_or(Ordering::Equal));
+    lines
+}
 
 /// Returns true if rounding has removed the length of an arc or the width of a line.
-pub(super) fn falls_together(line: &Joined) -> bool {
+fn falls_together(line: &Joined) -> bool {
     let points = &line.points;
     // Also around the point where a ring closes.
     let closing = if line.closed { points.get(1) } else { None };
@@ -11,7 +24,7 @@ pub(super) fn falls_together(line: &Joined) -> bool {
 }
 
 /// The finished line; the first point of a closed one depends on its shape alone.
-pub(super) fn finish(level: f64, line: Joined) -> ContourLine {
+fn finish(level: f64, line: Joined) -> ContourLine {
     let mut points = line.points;
     if line.closed {
         points.pop();
@@ -27,7 +40,7 @@ fn start_at_smallest(ring: &mut [[f64; 2]]) {
     let from = |start: usize| ring[start..].iter().chain(&ring[..start]);
     let best = (0..ring.len()).min_by(|&a, &b| {
         let by_point = ring[a].partial_cmp(&ring[b]).filter(|order| order.is_ne());
-        by_point.or_else(|| from(a).partial_cmp(from(b))).unwrap_or(std::cmp::Ordering::Equal)
+        by_point.or_else(|| from(a).partial_cmp(from(b))).unwrap_or(Ordering::Equal)
     });
     ring.rotate_left(best.unwrap_or(0));
 }

@@ -79,17 +79,15 @@ mod find;
 mod index;
 mod join;
 mod line;
+pub mod parts;
 mod trace;
 
 use super::Levels;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
-use cut::{ContourArc, Cut};
-use find::Found;
+use find::{Found, LevelArcs};
 use index::LevelIndex;
-use rayon::prelude::*;
-use std::cmp::Ordering;
-use trace::{Done, Traces};
+use trace::Traces;
 
 /// Returns the contours of a surface, sorted by level and then by their points.
 ///
@@ -112,11 +110,7 @@ pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Res
     let index = LevelIndex::new(levels.within(low, high)?);
     let found = find::few_arcs(surface, &index, BAND);
     let counts = match &found {
-        Some(found) => {
-            let mut counts = vec![0; index.levels().len()];
-            found.iter().flatten().for_each(|&(level, _)| counts[level] += 1);
-            counts
-        }
+        Some(found) => find::counts_of(found, 0..index.levels().len()),
         None => find::count(surface, &index),
     };
     Ok(Contours { surface, index, counts, found, next_level: 0, ready: Vec::new().into_iter() })
@@ -173,41 +167,12 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
         };
         let band = first..first + self.counts[first..].iter().take_while(fits).count();
         self.next_level = band.end;
-        // A counting sort of the arcs by level.
         let found = self.found.take().unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
-        let mut starts = vec![0];
-        starts.extend(self.counts[band.clone()].iter().scan(0, |end, count| {
-            *end += count;
-            Some(*end)
-        }));
-        let mut sorted = vec![ContourArc::Across(0); starts[band.len()]];
-        let mut free = starts.clone();
-        for (level, arc) in found.into_iter().flatten() {
-            let slot = &mut free[level - first];
-            sorted[*slot] = arc;
-            *slot += 1;
-        }
-        let drawn: Vec<Vec<ContourLine>> = band
-            .into_par_iter()
-            .map_init(
-                || Done::new(self.surface.face_count()),
-                |done, level| {
-                    let range = starts[level - first]..starts[level - first + 1];
-                    draw_level(self.surface, self.index.levels()[level], &sorted[range], done)
-                },
-            )
-            .collect();
+        let arcs = LevelArcs::new(found, first, &self.counts[band.clone()]);
+        let draw = |level, Traces { traces, touches_vertices }| {
+            line::finish_level(level, join::join(self.surface, traces), touches_vertices)
+        };
+        let drawn: Vec<Vec<ContourLine>> = trace::each_level(self.surface, &self.index, band, &arcs, draw);
         drawn.into_iter().flatten().collect()
     }
-}
-
-fn draw_level<S: Surface + ?Sized>(surface: &S, level: f64, arcs: &[ContourArc], done: &mut Done) -> Vec<ContourLine> {
-    let Traces { traces, touches_vertices } = trace::trace(&Cut { surface, level }, arcs, done);
-    let mut joined = join::join(surface, traces);
-    if touches_vertices || joined.iter().any(line::falls_together) {
-        joined = join::rejoin(&joined);
-    }
-    let mut lines: Vec<ContourLine> = joined.into_iter().map(|joined| line::finish(level, joined)).collect();
-    lines.sort_by(|a, b| a.points.partial_cmp(&b.points).unwrap_or(Ordering::Equal));
-    lines
 }

@@ -1,13 +1,17 @@
 use super::cut::{ContourArc, Cut, Direction, Face, Node};
+use super::find::LevelArcs;
+use super::index::LevelIndex;
 use crate::data::Surface;
+use rayon::prelude::*;
 use rustc_hash::FxHashSet;
+use std::ops::Range;
 
 /// A line of one level, joined as far as faces are linked.
 pub(super) enum Trace {
     /// The last point equals the first.
     Closed(Vec<[f64; 2]>),
     /// Begins and ends at the edge of the data.
-    Open { points: Vec<[f64; 2]>, start: Option<LooseEnd>, end: Option<LooseEnd> },
+    Open { points: Vec<[f64; 2]>, ends: [LooseEnd; 2] },
 }
 
 /// All lines of a level.
@@ -17,24 +21,30 @@ pub(super) struct Traces {
     pub(super) touches_vertices: bool,
 }
 
-/// An end of a line at a vertex. The line may continue beyond the gap in the data.
+/// The first or last node of an open line, where it meets the edge of the data.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct LooseEnd {
-    pub(super) vertex: u32,
-    /// A neighboring vertex in the same fan of faces, for the order of lines around the vertex.
-    pub(super) toward: u32,
+pub(super) enum LooseEnd {
+    /// On the edge between two vertices, which has one face only.
+    Edge([u32; 2]),
+    /// At a vertex. The line may continue beyond the gap in the data.
+    Vertex {
+        vertex: u32,
+        /// A neighboring vertex, for the order of lines around the vertex: the other end of an arc
+        /// along an edge; for an arc across a face, the corner of the face clockwise from it.
+        toward: u32,
+    },
 }
 
 /// The set of arcs that are already part of a line: one bit per face. Each thread reuses its own
 /// set, which is empty between levels.
-pub(super) struct Done {
+struct Done {
     across: Vec<u64>,
     /// A hash set, because arcs along edges are rare: they need an edge on the level.
     along: FxHashSet<(u32, u8)>,
 }
 
 impl Done {
-    pub(super) fn new(face_count: usize) -> Self {
+    fn new(face_count: usize) -> Self {
         Done { across: vec![0; face_count.div_ceil(64)], along: FxHashSet::default() }
     }
 
@@ -59,8 +69,24 @@ impl Done {
     }
 }
 
+/// Joins the arcs of each level to lines, and maps these by `finish`. Levels are traced in
+/// parallel.
+pub(super) fn each_level<S: Surface + ?Sized, T: Send>(
+    surface: &S,
+    index: &LevelIndex,
+    band: Range<usize>,
+    arcs: &LevelArcs,
+    finish: impl Fn(f64, Traces) -> T + Sync,
+) -> Vec<T> {
+    let traced = |done: &mut Done, at: usize| {
+        let level = index.levels()[at];
+        finish(level, trace(&Cut { surface, level }, arcs.of(at), done))
+    };
+    band.into_par_iter().map_init(|| Done::new(surface.face_count()), traced).collect()
+}
+
 /// Joins the arcs of a level to lines. Each arc must be given once.
-pub(super) fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, arcs: &[ContourArc], done: &mut Done) -> Traces {
+fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, arcs: &[ContourArc], done: &mut Done) -> Traces {
     let mut tracer = Tracer { cut, done, touches_vertices: false };
     let traces = arcs.iter().filter_map(|&seed| tracer.line_of(seed)).collect();
     let touches_vertices = tracer.touches_vertices;
@@ -74,13 +100,6 @@ struct Tracer<'t, 'a, S: ?Sized> {
     touches_vertices: bool,
 }
 
-enum Stop {
-    /// Back at the first arc.
-    Seed,
-    /// At the edge of the data.
-    Data(Option<LooseEnd>),
-}
-
 impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
     /// The line that contains an arc, unless it was found before.
     fn line_of(&mut self, seed: ContourArc) -> Option<Trace> {
@@ -89,27 +108,28 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
         }
         let face = self.cut.face(seed.face())?;
         let mut after = Vec::new();
-        Some(match self.follow(face, seed, Direction::Forward, &mut after) {
-            Stop::Seed => {
-                after.extend_from_within(..1);
-                Trace::Closed(after)
-            }
-            Stop::Data(end) => {
-                let mut points = Vec::new();
-                let start = match self.follow(face, seed, Direction::Backward, &mut points) {
-                    Stop::Data(start) => start,
-                    // Impossible: the forward search would have come here as well.
-                    Stop::Seed => None,
-                };
-                points.reverse();
-                points.append(&mut after);
-                Trace::Open { points, start, end }
-            }
-        })
+        let Some(end) = self.follow(face, seed, Direction::Forward, &mut after) else {
+            after.extend_from_within(..1);
+            return Some(Trace::Closed(after));
+        };
+        let mut points = Vec::new();
+        // It comes back to the seed only if the links between faces contradict each other: else the
+        // forward search would have.
+        let start = self.follow(face, seed, Direction::Backward, &mut points).unwrap_or(end);
+        points.reverse();
+        points.append(&mut after);
+        Some(Trace::Open { points, ends: [start, end] })
     }
 
-    /// Follows arcs from the seed as far as possible; adds the far node of each arc.
-    fn follow(&mut self, mut face: Face, seed: ContourArc, direction: Direction, points: &mut Vec<[f64; 2]>) -> Stop {
+    /// Follows arcs from the seed as far as possible; adds the far node of each arc. Returns where
+    /// the data ends, or `None` at the seed.
+    fn follow(
+        &mut self,
+        mut face: Face,
+        seed: ContourArc,
+        direction: Direction,
+        points: &mut Vec<[f64; 2]>,
+    ) -> Option<LooseEnd> {
         let mut arc = seed;
         loop {
             let node = face.node(arc, direction);
@@ -124,16 +144,25 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
             };
             match next {
                 Some((next, next_arc)) if self.done.insert(next_arc) => (face, arc) = (next, next_arc),
-                Some((_, next_arc)) if next_arc == seed => return Stop::Seed,
+                Some((_, next_arc)) if next_arc == seed => return None,
                 // `Some` occurs only if the links between faces contradict each other.
-                Some(_) | None => {
-                    return Stop::Data(match node {
-                        Node::Edge(_) => None,
-                        Node::Corner(i) => {
-                            Some(LooseEnd { vertex: face.vertices[i], toward: face.vertices[(i + 1) % 3] })
-                        }
-                    });
-                }
+                Some(_) | None => return Some(face.loose_end(arc, node)),
+            }
+        }
+    }
+}
+
+impl Face {
+    /// The end of an arc at a node beyond which there is no face.
+    fn loose_end(&self, arc: ContourArc, node: Node) -> LooseEnd {
+        match (node, arc) {
+            (Node::Edge(i), _) => LooseEnd::Edge([1, 2].map(|k| self.vertices[(i + k) % 3])),
+            (Node::Corner(i), arc) => {
+                let toward = match arc {
+                    ContourArc::Along(_, opposite) => 3 - i - usize::from(opposite),
+                    ContourArc::Across(_) => (i + 1) % 3,
+                };
+                LooseEnd::Vertex { vertex: self.vertices[i], toward: self.vertices[toward] }
             }
         }
     }

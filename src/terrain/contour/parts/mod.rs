@@ -1,0 +1,183 @@
+//! Contours of a surface that is larger than memory, from the tasks that find its triangles.
+//!
+//! Each task of [`tiles`](crate::terrain::tiles) emits some triangles of the whole. A
+//! [`ContourCollector`] in the task turns them into [`ContourParts`]: lines, as far as the
+//! triangles of the task decide them, and what is needed to continue them. [`join_level`] joins the
+//! parts of one level from all tasks. **The lines are those of [`contours`](super::contours) for
+//! the whole surface, bit for bit**, however its triangles are split into tasks.
+//!
+//! ```
+//! use breakline::terrain::contour::parts::{ContourCollector, StoredParts, join_level};
+//! use breakline::terrain::{Levels, tiles};
+//!
+//! # fn main() -> breakline::Result<()> {
+//! let levels = Levels::every(1.0, 0.0)?;
+//! // A task: its parts go to a file.
+//! let mut collector = ContourCollector::new(&levels);
+//! let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 2.0], [0.0, 4.0, 0.0]];
+//! tiles::leaf(&tiles::Tile::PLANE, 0, &points, &mut |triangle| collector.add(&triangle))?;
+//! let mut file = Vec::new();
+//! collector.finish()?.write(&mut file)?;
+//!
+//! // When all tasks are done: one level at a time.
+//! let tasks = [StoredParts::new(&file)?];
+//! let low = tasks.iter().map(|task| task.heights()[0]).fold(f64::INFINITY, f64::min);
+//! let high = tasks.iter().map(|task| task.heights()[1]).fold(f64::NEG_INFINITY, f64::max);
+//! let mut lines = Vec::new();
+//! for level in levels.within(low, high)? {
+//!     let mut parts = Vec::new();
+//!     for task in &tasks {
+//!         parts.extend(task.level(level)?);
+//!     }
+//!     lines.extend(join_level(level, parts)?);
+//! }
+//! assert_eq!(lines.len(), 1);
+//! assert_eq!(lines[0].points, [[2.0, 0.0], [2.0, 2.0]]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Why the lines are the same
+//!
+//! [`contours`](super::contours) decides three things. Each is the same from parts:
+//!
+//! 1. *Which arcs there are.* An arc across a face depends on this face alone. An arc along an edge
+//!    on the level depends on both faces of the edge. A task that has one of them hands on the side
+//!    that it knows; where both sides are known, the rule decides. A side without another one is at
+//!    the edge of the data, where there is no arc. Crossings are computed from the smaller end of
+//!    an edge, so that tasks agree in every bit.
+//! 2. *Which arcs follow each other.* At the crossing of an edge there are two arcs at most. At a
+//!    vertex, a task joins an arriving arc with the first leaving one counter-clockwise if it has
+//!    all faces in between. These two are next to each other in the circle around the vertex, so
+//!    the turn rule pairs them, whatever else is in the circle, and without them the other pairs
+//!    stay the same. The other ends are handed on, with the vertex and a direction: a position of
+//!    another vertex, never a rounded crossing. `join_level` applies the turn rule to all of them.
+//! 3. *Whether rounding shows.* `contours` joins arcs again, by coordinates, where a crossing was
+//!    rounded to an end of its edge or a line falls together. The first is a property of arcs,
+//!    which tasks report; the second one of whole lines, which `join_level` has. The result then
+//!    depends on the set of arcs alone.
+//!
+//! Ends are matched by the numbers of vertices. By coordinates, other lines would result: crossings
+//! of different edges may have the same bits although no line falls together, and `contours` then
+//! follows the links between faces.
+//!
+//! # Levels
+//!
+//! A task does not know the heights of the others. But each level is computed independently of the
+//! range, so that tasks agree in its bits. The levels of the whole are those within the heights of
+//! all tasks, as in the example; [`Levels::within`](crate::terrain::Levels::within) also returns
+//! the error that `contours` would.
+
+mod bytes;
+mod collect;
+mod join;
+mod patch;
+#[cfg(test)]
+mod tests;
+
+pub use bytes::StoredParts;
+pub use collect::ContourCollector;
+pub use join::join_level;
+
+use crate::error::Result;
+
+/// What the triangles of some tasks say about the contours of the whole surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContourParts {
+    heights: [f64; 2],
+    /// Ascending.
+    levels: Vec<LevelParts>,
+}
+
+impl ContourParts {
+    /// Returns the lowest and the highest height of the triangles; without triangles, infinity and
+    /// its negative.
+    pub fn heights(&self) -> [f64; 2] {
+        self.heights
+    }
+
+    /// Returns the parts of each level that has some, by ascending levels.
+    pub fn levels(&self) -> &[LevelParts] {
+        &self.levels
+    }
+
+    /// Merges the parts of several tasks, so that less is left to join: lines are joined where they
+    /// cross an edge between two of the tasks.
+    ///
+    /// # Errors
+    /// If the parts contradict each other, as those of one task given twice do.
+    pub fn merged(parts: Vec<ContourParts>) -> Result<Self> {
+        let mut heights = NO_HEIGHTS;
+        let mut levels = Vec::new();
+        for part in parts {
+            heights = super::find::joined(heights, part.heights);
+            levels.extend(part.levels);
+        }
+        Ok(ContourParts { heights, levels: join::merge_levels(levels)? })
+    }
+}
+
+/// The heights of no triangles.
+const NO_HEIGHTS: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// The parts of one level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LevelParts {
+    level: f64,
+    /// True if the crossing of an edge was rounded to one of its ends.
+    touches_vertices: bool,
+    /// The points of lines that are complete; the last equals the first.
+    closed: Vec<Vec<[f64; 2]>>,
+    open: Vec<OpenLine>,
+    sides: Vec<LevelSide>,
+}
+
+impl LevelParts {
+    fn new(level: f64) -> Self {
+        LevelParts { level, touches_vertices: false, closed: Vec::new(), open: Vec::new(), sides: Vec::new() }
+    }
+
+    /// Returns the level.
+    pub fn level(&self) -> f64 {
+        self.level
+    }
+
+    fn is_empty(&self) -> bool {
+        self.closed.is_empty() && self.open.is_empty() && self.sides.is_empty()
+    }
+}
+
+/// A vertex, by the number of its tile and its own.
+type VertexKey = [u32; 2];
+
+/// A line that may continue in another task, with high ground on its right.
+#[derive(Debug, Clone, PartialEq)]
+struct OpenLine {
+    points: Vec<[f64; 2]>,
+    /// Where the first point is, and the last.
+    ends: [LineEnd; 2],
+}
+
+/// The end of a line in the whole surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum LineEnd {
+    /// The crossing of the edge between two vertices, the smaller first.
+    Edge([VertexKey; 2]),
+    /// A vertex.
+    Vertex {
+        vertex: VertexKey,
+        /// The position of a neighboring vertex, for the order of lines around the vertex.
+        toward: [f64; 2],
+    },
+}
+
+/// One side of an edge on the level; the face on its other side belongs to another task, or does
+/// not exist.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct LevelSide {
+    /// The ends of the edge, counter-clockwise around the face.
+    vertices: [VertexKey; 2],
+    at: [[f64; 2]; 2],
+    /// True if the third corner of the face is on the level or above.
+    is_high: bool,
+}
