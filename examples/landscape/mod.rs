@@ -21,10 +21,10 @@ const CORNER: [f64; 2] = [600_000.0, 5_200_000.0];
 /// Coordinates are multiples of this, in metres.
 const STEP: f64 = 0.01;
 
-pub type Failure = Box<dyn Error + Send + Sync>;
+pub(crate) type Failure = Box<dyn Error + Send + Sync>;
 
 /// Writes `points` points into `side` by `side` files, which do not touch.
-pub fn write(folder: &Path, points: u64, side: u64) -> Result<(), Failure> {
+pub(crate) fn write(folder: &Path, points: u64, side: u64) -> Result<(), Failure> {
     std::fs::create_dir_all(folder)?;
     let per_tile = points / (side * side);
     // In whole steps, so that tiles are separate.

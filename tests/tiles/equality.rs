@@ -40,6 +40,24 @@ fn the_valley_in_tiles_is_the_valley() {
     assert_same(&folder, &format!("dem {valley} --align-to grid.tif"), &few);
 }
 
+#[test]
+fn contours_in_tiles_are_those_of_the_valley() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    for (words, tiling) in [
+        ("--interval 1", "--tiles 4x4"),
+        ("--interval 0.25 --max-edge 3", "--tiles 1x30"),
+        ("--levels 800,812.35,844 --class 2,5 --duplicates highest", "--tiles 9x9"),
+    ] {
+        let words = format!("contour {valley} {words}");
+        for extension in ["geojson", "shp"] {
+            let (whole, _) = output_of(&folder, &words, &format!("whole.{extension}"));
+            let (tiled, said) = output_of(&folder, &format!("{words} {tiling}"), &format!("tiled.{extension}"));
+            assert!(tiled == whole && said.contains("tiles       "), "{words}: {said}");
+        }
+    }
+}
+
 /// Integer coordinates, where ties are the rule: many points share a site, files overlap, tiles are
 /// one point thick or empty, cuts pass through points.
 #[test]
@@ -62,7 +80,13 @@ fn grids_in_overlapping_files_are_the_same_in_any_tiles() {
         let words = format!("dem {} --duplicates {rule} --resolution 0.25 --max-edge {edge}", names.join(" "));
         let [columns, rows] = [1 + random.below(side + 2), 1 + random.below(side + 2)];
         if run_in(&folder, &words.split(' ').chain(["-o", "try.tif", "--overwrite"]).collect::<Vec<_>>()).code == 0 {
-            assert_same(&folder, &words, &[&format!("--tiles {columns}x{rows}")]);
+            let tiles = format!("--tiles {columns}x{rows}");
+            assert_same(&folder, &words, &[&tiles]);
+            // Heights that are levels: plateaus, ridges, saddles.
+            let words = words.replace("dem ", "contour ").replace("--resolution 0.25", "--interval 1");
+            let (whole, _) = output_of(&folder, &words, "whole.geojson");
+            let (tiled, _) = output_of(&folder, &format!("{words} {tiles}"), "tiled.geojson");
+            assert!(tiled == whole, "{words} {tiles}");
         }
     }
 }

@@ -1,35 +1,64 @@
 use crate::cli::Exit;
 use crate::cli::input::args::ContourArgs;
-use crate::cli::input::outputs;
+use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::{counted, print_surface};
+use crate::cli::verbs::tiled::{self, Tiled};
 use crate::crs::Crs;
 use crate::error::Result;
+use crate::io::Destination;
 use crate::io::contours::ContourSummary;
 use crate::io::formats::Product;
 use crate::run::units::Units;
-use crate::run::{self, ContourOptions};
+use crate::run::{self, ContourOptions, TiledProduct};
 
 /// Draws contours of a TIN or of a DEM.
 pub(in crate::cli) fn run(args: &ContourArgs, console: &Console) -> Result<Exit> {
-    let plan = SurfacePlan::resolve(&args.surface, console)?;
+    let (plan, options) = requested(args, console)?;
     let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Contours, |_| ()), &plan)?;
-    let options = ContourOptions { interval: args.interval, base: args.base, levels: args.levels.clone() };
-    // Wrong levels are an error before anything is read.
-    options.to_levels()?;
+    let tiled = TiledProduct::Contours(options.clone());
+    match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
+        Tiled::Whole => {}
+        Tiled::Planned => return Ok(Exit::Done),
+        Tiled::Ran(job, report) => {
+            let drawn = write_all(&outputs, console, |target| job.write_contours(&report, target, &console.context()))?;
+            tiled::print(&report, console);
+            print_contours(&drawn, report.crs.as_ref(), console);
+            outputs.commit(console)?;
+            tiled::clean(&args.tiles, &job)?;
+            return Ok(Exit::Done);
+        }
+    }
     let product = run::surface(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
     let contours = run::contour(&product, &options, &console.context())?;
-    let mut drawn = ContourSummary::default();
-    for target in &outputs.targets {
-        drawn = contours.write(target.within(&outputs.set), &console.context())?;
-        drawn.warnings.iter().for_each(|text| console.warning(format_args!("{}: {text}", target.path.display())));
-    }
+    let drawn = write_all(&outputs, console, |target| contours.write(target, &console.context()))?;
     print_surface(&product, console);
     print_contours(&drawn, product.crs(), console);
     outputs.commit(console)?;
     Ok(Exit::Done)
+}
+
+/// Returns what the arguments ask for. Wrong levels are an error before anything is read.
+pub(super) fn requested(args: &ContourArgs, console: &Console) -> Result<(SurfacePlan, ContourOptions)> {
+    let plan = SurfacePlan::resolve(&args.surface, console)?;
+    let options = ContourOptions { interval: args.interval, base: args.base, levels: args.levels.clone() };
+    options.to_levels()?;
+    Ok((plan, options))
+}
+
+fn write_all(
+    outputs: &Outputs<()>,
+    console: &Console,
+    write: impl Fn(Destination) -> Result<ContourSummary>,
+) -> Result<ContourSummary> {
+    let mut drawn = ContourSummary::default();
+    for target in &outputs.targets {
+        drawn = write(target.within(&outputs.set))?;
+        drawn.warnings.iter().for_each(|text| console.warning(format_args!("{}: {text}", target.path.display())));
+    }
+    Ok(drawn)
 }
 
 fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) {

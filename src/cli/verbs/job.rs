@@ -50,13 +50,17 @@ impl Command {
                 let (plan, options) = super::dem::requested(args, console)?;
                 (plan, TiledProduct::Heights(options), &args.output)
             }
+            Verb::Contour(args) => {
+                let (plan, options) = super::contour::requested(args, console)?;
+                (plan, TiledProduct::Contours(options), &args.output)
+            }
             Verb::Hillshade(args) => {
                 let (plan, options) = super::hillshade::requested(args, console)?;
                 (plan, TiledProduct::Shades(options), &args.output)
             }
             _ => {
-                return Err(Error::usage("a job makes a DEM or a hillshade")
-                    .cure("begin the command with `dem` or `hillshade`"));
+                return Err(Error::usage("a job makes a DEM, contours or a hillshade")
+                    .cure("begin the command with `dem`, `contour` or `hillshade`"));
             }
         };
         let output = output.output[0].clone();
@@ -66,6 +70,7 @@ impl Command {
     fn tiles(&self) -> Option<&TileArgs> {
         match &self.verb {
             Verb::Dem(args) => Some(&args.tiles),
+            Verb::Contour(args) => Some(&args.tiles),
             Verb::Hillshade(args) => Some(&args.tiles),
             _ => None,
         }
@@ -142,6 +147,10 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
         Verb::Dem(args) => {
             (args.tiles.job, args.tiles.resume) = (Some(job), true);
             super::dem::run(args, console)
+        }
+        Verb::Contour(args) => {
+            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            super::contour::run(args, console)
         }
         Verb::Hillshade(args) => {
             (args.tiles.job, args.tiles.resume) = (Some(job), true);

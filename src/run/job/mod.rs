@@ -7,9 +7,10 @@
 //! 2. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
 //!    are final; see [`tiles`](crate::terrain::tiles).
 //! 3. The *rim* is decided: triangles with edges over the limit wait until all others are known.
-//! 4. The cells that all tasks have drawn are the product.
+//! 4. The cells that all tasks have drawn are the product, or the contours, joined.
 
 mod bytes;
+mod contours;
 mod plan;
 mod raster;
 mod schedule;
@@ -21,11 +22,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use self::contours::DrawnContours;
 use self::plan::{Plan, crs_of, fingerprint, opened};
 use self::raster::DrawnCells;
 use self::task_file::{TaskFile, UNFINISHED};
 use super::cells::{CellProduct, DemOptions, HillshadeOptions};
 use super::context::{Context, Journal};
+use super::contour::ContourOptions;
 use super::frame::{self, FrameOptions};
 use super::notice::Notice;
 use super::point_files::PointFiles;
@@ -35,6 +38,8 @@ use super::tin::TinRequest;
 use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
+use crate::io::Destination;
+use crate::io::contours::ContourSummary;
 use crate::terrain::Method;
 use crate::terrain::tiles::{Step, Work};
 
@@ -88,13 +93,17 @@ pub enum TiledProduct {
     Heights(DemOptions),
     /// A hillshade.
     Shades(HillshadeOptions),
+    /// Contours.
+    Contours(ContourOptions),
 }
 
 impl TiledProduct {
-    fn frame(&self) -> &FrameOptions {
+    /// Returns the options of the frame of a raster.
+    fn frame(&self) -> Option<&FrameOptions> {
         match self {
-            TiledProduct::Heights(options) => &options.frame,
-            TiledProduct::Shades(options) => &options.frame,
+            TiledProduct::Heights(options) => Some(&options.frame),
+            TiledProduct::Shades(options) => Some(&options.frame),
+            TiledProduct::Contours(_) => None,
         }
     }
 
@@ -102,6 +111,7 @@ impl TiledProduct {
         match self {
             TiledProduct::Heights(options) => options.method,
             TiledProduct::Shades(options) => options.method,
+            TiledProduct::Contours(_) => Method::Linear,
         }
     }
 
@@ -109,6 +119,7 @@ impl TiledProduct {
         match self {
             TiledProduct::Heights(_) => "dem",
             TiledProduct::Shades(_) => "hillshade",
+            TiledProduct::Contours(_) => "contour",
         }
     }
 }
@@ -270,9 +281,8 @@ impl<'a> Job<'a> {
     /// Returns the numbers of the plan.
     pub fn size(&self) -> JobSize {
         let plan = &self.plan;
-        let frame = &plan.frame;
         // Cells at borders are drawn twice, in part.
-        let cells = frame.width as u64 * frame.height as u64 * 5;
+        let cells = plan.frame.map_or(0, |frame| frame.width as u64 * frame.height as u64 * 5);
         let points = plan.point_count();
         JobSize {
             files: plan.files.len(),
@@ -498,32 +508,61 @@ impl<'a> Job<'a> {
         crs_of(&points, self.request, self.systems, &journal)
     }
 
-    /// Returns the cells of the product, once all tasks are done.
+    /// Returns the cells of a raster, once all tasks are done.
     ///
     /// # Errors
-    /// If a task is not done, no triangle is left, or those of [`dem`](super::dem).
+    /// If a task is not done, no triangle is left, the product is no raster, or those of
+    /// [`dem`](super::dem).
     pub fn cells(&self, report: &JobReport, context: &Context) -> Result<CellProduct<'static>> {
         let journal = Journal::new(context);
-        let options = self.product.frame();
-        if report.triangles == 0 {
-            return Err(Error::format(format!(
-                "no triangle is left of {} points: {} have edges over the limit at the rim",
-                report.used, report.beyond_max_edge
-            ))
-            .cure("allow longer edges with --max-edge LENGTH or --max-edge none"));
-        }
+        self.require_triangles(report)?;
+        let (Some(options), Some(drawn)) = (self.product.frame(), self.plan.frame) else {
+            return Err(Error::usage("the job makes contours, not a raster"));
+        };
         // Notices about the frame came with the plan.
         let quiet = Context::default();
         let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(&quiet))?;
         frame::require_filled(options, &frame, &report.extent, || self.area())?;
-        let paths = (self.divided()..self.task_count()).map(|task| self.task_path(task)).collect();
-        let drawn = DrawnCells::open(paths, self.plan.frame, frame, report.crs.clone())?;
+        let drawn = DrawnCells::open(self.step_paths(), drawn, frame, report.crs.clone())?;
         Ok(match self.product {
-            TiledProduct::Heights(_) => CellProduct::heights_of(Box::new(drawn), journal.take()),
             TiledProduct::Shades(HillshadeOptions { light, .. }) => {
                 CellProduct::shades_of(Box::new(drawn), light, report.crs.as_ref(), &journal)?
             }
+            TiledProduct::Heights(_) | TiledProduct::Contours(_) => {
+                CellProduct::heights_of(Box::new(drawn), journal.take())
+            }
         })
+    }
+
+    /// Writes the contours, once all tasks are done, in the format that the extension of `target`
+    /// names. They are drawn level by level, and not kept.
+    ///
+    /// # Errors
+    /// If a task is not done, no triangle is left, the product is a raster, or those of
+    /// [`ContourProduct::write`](super::ContourProduct::write).
+    pub fn write_contours(&self, report: &JobReport, target: Destination, context: &Context) -> Result<ContourSummary> {
+        self.require_triangles(report)?;
+        let TiledProduct::Contours(options) = self.product else {
+            return Err(Error::usage("the job makes a raster, not contours"));
+        };
+        let drawn = DrawnContours::open(self.step_paths(), &options.to_levels()?)?;
+        target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))
+    }
+
+    fn require_triangles(&self, report: &JobReport) -> Result<()> {
+        if report.triangles > 0 {
+            return Ok(());
+        }
+        Err(Error::format(format!(
+            "no triangle is left of {} points: {} have edges over the limit at the rim",
+            report.used, report.beyond_max_edge
+        ))
+        .cure("allow longer edges with --max-edge LENGTH or --max-edge none"))
+    }
+
+    /// The files of all tasks that have triangles.
+    fn step_paths(&self) -> Vec<PathBuf> {
+        (self.divided()..self.task_count()).map(|task| self.task_path(task)).collect()
     }
 
     fn area(&self) -> f64 {

@@ -10,7 +10,7 @@ use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointBatch};
 use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::run::frame;
+use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
 use crate::run::memory;
 use crate::run::notice::Notice;
@@ -71,8 +71,9 @@ pub(super) struct Plan {
     pub(super) classes: Vec<u8>,
     /// The longest edge at the rim.
     pub(super) max_edge: Option<f64>,
-    /// The frame that triangles are drawn in: it covers all points, or is that of the result.
-    pub(super) frame: Frame,
+    /// The frame that triangles are drawn in, for a raster: it covers all points, or is that of the
+    /// result.
+    pub(super) frame: Option<Frame>,
     /// The memory of one task.
     pub(super) task_memory: u64,
 }
@@ -151,12 +152,15 @@ impl Plan {
                 None => (Layout::balanced(&spreads, most as f64 * AVERAGE), true),
             },
         };
-        let options_of_frame = product.frame();
-        let frame = frame::placed(options_of_frame, extent, crs.as_ref(), journal)?;
-        if options_of_frame.extent.is_none() && !frame.has_shared_centers() {
-            return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
-                .cure("state the extent of the result with --te"));
-        }
+        let placed = |options: &FrameOptions| {
+            let frame = frame::placed(options, extent, crs.as_ref(), journal)?;
+            if options.extent.is_none() && !frame.has_shared_centers() {
+                return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
+                    .cure("state the extent of the result with --te"));
+            }
+            Ok(frame)
+        };
+        let frame = product.frame().map(placed).transpose()?;
         let units = Units::of(crs.as_ref());
         let max_edge = request.max_edge.length(&units);
         journal.add(request.max_edge.notice(&units));
@@ -206,8 +210,7 @@ impl Plan {
             "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
             "classes": self.classes,
             "max_edge": self.max_edge,
-            "frame": [self.frame.width, self.frame.height],
-            "transform": self.frame.transform,
+            "frame": self.frame.map(|frame| json!([frame.width, frame.height, frame.transform])),
             "task_memory": self.task_memory,
         })
     }
@@ -236,9 +239,11 @@ impl Plan {
             value => number(value).map(Node::Tile),
         };
         let nodes = value["layout"].as_array()?.iter().map(node).collect::<Option<_>>()?;
-        let transform = value["transform"].as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?;
         let class = |value: &Value| u8::try_from(value.as_u64()?).ok();
-        let (width, height) = (whole(&value["frame"][0])?, whole(&value["frame"][1])?);
+        let frame = |value: &Value| {
+            let transform = serde_json::from_value(value[2].clone()).ok()?;
+            Frame { width: whole(&value[0])?, height: whole(&value[1])?, transform }.checked().ok()
+        };
         Some(Plan {
             request: value["request"].as_str()?.to_owned(),
             files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
@@ -247,7 +252,10 @@ impl Plan {
             layout: Layout::from_nodes(nodes)?,
             classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
             max_edge: value["max_edge"].as_f64(),
-            frame: Frame { width, height, transform: transform.try_into().ok()? }.checked().ok()?,
+            frame: match &value["frame"] {
+                Value::Null => None,
+                value => Some(frame(value)?),
+            },
             task_memory: value["task_memory"].as_u64()?,
         })
         .filter(|plan| plan.divides || plan.files.len() == plan.layout.tile_count())

@@ -43,7 +43,7 @@ impl Drawing {
             self.table.push([block.window.column as u64, block.window.row as u64, writer.position()]);
             bytes.clear();
             block.heights.iter().for_each(|height| bytes.extend_from_slice(&height.to_le_bytes()));
-            writer.write(&bytes)?;
+            writer.put(&bytes)?;
         }
         Ok(())
     }
@@ -54,7 +54,7 @@ impl Drawing {
         writer.begin("table");
         let mut bytes = Vec::new();
         self.table.iter().flatten().for_each(|&number| put_u64(&mut bytes, number));
-        writer.write(&bytes)
+        writer.put(&bytes)
     }
 }
 

@@ -33,6 +33,20 @@ pub(super) struct TaskWriter {
     target: PathBuf,
 }
 
+/// The checksum covers what is written.
+impl Write for TaskWriter {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.out.write_all(bytes)?;
+        self.checksum.update(bytes);
+        self.at += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
 impl TaskWriter {
     pub(super) fn create(target: &Path) -> Result<Self> {
         let folder = target.parent().unwrap_or(Path::new("."));
@@ -55,10 +69,13 @@ impl TaskWriter {
         self.at
     }
 
-    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<()> {
-        self.checksum.update(bytes);
-        self.at += bytes.len() as u64;
-        self.out.write_all(bytes).map_err(|e| Error::from(e).in_file(&self.target))
+    pub(super) fn put(&mut self, bytes: &[u8]) -> Result<()> {
+        self.put_with(|out| out.write_all(bytes))
+    }
+
+    /// Writes what a function writes.
+    pub(super) fn put_with(&mut self, write: impl FnOnce(&mut Self) -> std::io::Result<()>) -> Result<()> {
+        write(self).map_err(|e| Error::from(e).in_file(&self.target))
     }
 
     /// Writes the facts and gives the file its name.
@@ -68,11 +85,11 @@ impl TaskWriter {
         let sections: Vec<Value> =
             self.sections.iter().zip(ends).map(|((name, from), to)| json!([name, from, to])).collect();
         let facts = json!({ "sections": sections, "facts": facts }).to_string();
-        self.write(facts.as_bytes())?;
-        self.write(&(facts.len() as u64).to_le_bytes())?;
+        self.put(facts.as_bytes())?;
+        self.put(&(facts.len() as u64).to_le_bytes())?;
         let checksum = self.checksum.sum();
-        self.write(&checksum.to_le_bytes())?;
-        self.write(MAGIC)?;
+        self.put(&checksum.to_le_bytes())?;
+        self.put(MAGIC)?;
         let target = self.target;
         let named = |e: std::io::Error| Error::from(e).in_file(&target);
         let file = self.out.into_inner().map_err(|e| named(e.into_error()))?;
@@ -166,6 +183,12 @@ impl TaskFile {
         read_at(&mut self.file, from, bytes).map_err(|e| e.in_file(&self.path))
     }
 
+    /// Returns a reader of the bytes from a position on.
+    pub(super) fn reader(&mut self, from: u64) -> Result<impl Read + '_> {
+        self.file.seek(SeekFrom::Start(from)).map_err(|e| Error::from(e).in_file(&self.path))?;
+        Ok(std::io::BufReader::new(&mut self.file))
+    }
+
     /// Returns a number among the facts; 0 if there is none.
     pub(super) fn count(&self, name: &str) -> u64 {
         self.facts.get(name).and_then(Value::as_u64).unwrap_or(0)
@@ -195,10 +218,10 @@ mod tests {
     fn written(path: &Path) {
         let mut writer = TaskWriter::create(path).unwrap();
         writer.begin("one");
-        writer.write(b"abc").unwrap();
+        writer.put(b"abc").unwrap();
         writer.begin("none");
         writer.begin("two");
-        writer.write(b"defgh").unwrap();
+        writer.put(b"defgh").unwrap();
         let facts = Map::from_iter([("points".to_owned(), json!(7))]);
         writer.finish(facts).unwrap();
     }

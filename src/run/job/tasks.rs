@@ -5,14 +5,16 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::bytes::{self, Reader, put_u32, put_u64};
+use super::contours;
 use super::raster::Drawing;
 use super::task_file::{TaskFile, TaskWriter};
-use super::{BadFiles, Job, Task};
+use super::{BadFiles, Job, Task, TiledProduct};
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Error, Kind, Result};
 use crate::run::context::Context;
 use crate::run::units::neat;
 use crate::run::{frame, open};
+use crate::terrain::contour::parts::{ContourCollector, LevelParts};
 use crate::terrain::tiles::{self, LongEdges, Rim, TileTriangle, Work, has_long_edge};
 use crate::terrain::{Classes, Selection, SelectionReport, one_per_site};
 
@@ -55,7 +57,7 @@ impl Job<'_> {
                 put_u64(&mut table, writer.position());
                 put_u64(&mut table, of_tile.len() as u64);
                 let own: Vec<[f64; 3]> = of_tile.iter().map(|(_, i)| points[*i as usize]).collect();
-                writer.write(&bytes::of_points(&own))?;
+                writer.put(&bytes::of_points(&own))?;
             }
             points.clear();
             Ok(())
@@ -75,7 +77,7 @@ impl Job<'_> {
             table.clear();
         }
         writer.begin("table");
-        writer.write(&table)?;
+        writer.put(&table)?;
         Ok(facts)
     }
 
@@ -213,15 +215,15 @@ impl Job<'_> {
         failed?;
         kept.finish(writer, &mut facts)?;
         writer.begin("residual");
-        writer.write(&bytes::of_residual(&residual))?;
+        writer.put(&bytes::of_residual(&residual))?;
         facts.insert("residual".to_owned(), json!(residual.vertices.len()));
         if let Some(long) = long {
             let waiting = long.finish();
             let [gates, triangles] = bytes::of_waiting(&waiting);
             writer.begin("gates");
-            writer.write(&gates)?;
+            writer.put(&gates)?;
             writer.begin("waiting");
-            writer.write(&triangles)?;
+            writer.put(&triangles)?;
             facts.insert("groups".to_owned(), json!(waiting.groups));
             facts.insert("waiting".to_owned(), json!(waiting.triangles.len()));
         }
@@ -266,9 +268,15 @@ impl Job<'_> {
     }
 }
 
+/// What triangles become.
+enum Drawn {
+    Cells(Drawing),
+    Contours(ContourCollector),
+}
+
 /// The triangles of a task that stay in the surface: drawn and counted.
 struct Kept {
-    drawing: Drawing,
+    drawn: Drawn,
     max_edge_inside: Option<f64>,
     triangles: u64,
     long_inside: u64,
@@ -278,8 +286,13 @@ struct Kept {
 
 impl Kept {
     fn new(job: &Job, writer: &mut TaskWriter) -> Result<Self> {
+        let drawn = match (job.product, job.plan.frame) {
+            (TiledProduct::Contours(options), _) => Drawn::Contours(ContourCollector::new(&options.to_levels()?)),
+            (_, Some(frame)) => Drawn::Cells(Drawing::new(frame, writer)?),
+            (_, None) => return Err(Error::format("the plan of the job lacks the frame of the raster")),
+        };
         Ok(Kept {
-            drawing: Drawing::new(job.plan.frame, writer)?,
+            drawn,
             max_edge_inside: job.request.max_edge_inside,
             triangles: 0,
             long_inside: 0,
@@ -297,11 +310,26 @@ impl Kept {
         self.triangles += 1;
         self.area += frame::area_of(corners);
         corners.into_iter().for_each(|corner| self.extent.add(corner));
-        self.drawing.draw(corners, writer)
+        match &mut self.drawn {
+            Drawn::Cells(drawing) => drawing.draw(corners, writer),
+            Drawn::Contours(collector) => {
+                collector.add(triangle);
+                Ok(())
+            }
+        }
     }
 
     fn finish(self, writer: &mut TaskWriter, facts: &mut Map<String, Value>) -> Result<()> {
-        self.drawing.finish(writer)?;
+        match self.drawn {
+            Drawn::Cells(drawing) => drawing.finish(writer)?,
+            Drawn::Contours(collector) => {
+                let parts = collector.finish()?;
+                writer.begin(contours::SECTION);
+                writer.put_with(|out| parts.write(out))?;
+                let edges: usize = parts.levels().iter().map(LevelParts::edge_count).sum();
+                facts.insert("edges".to_owned(), json!(edges));
+            }
+        }
         facts.insert("triangles".to_owned(), json!(self.triangles));
         facts.insert("long_inside".to_owned(), json!(self.long_inside));
         facts.insert("area".to_owned(), json!(self.area));

@@ -23,7 +23,7 @@ pub(in crate::cli) struct JobArgs {
 /// What is done with a job.
 #[derive(Debug, Clone, Subcommand)]
 pub(in crate::cli) enum JobAction {
-    /// Create a job for a command: `dem` or `hillshade`, with its options
+    /// Create a job for a command: `dem`, `contour` or `hillshade`, with its options
     Plan {
         /// Folder to create
         #[arg(value_name = "JOB")]

@@ -10,24 +10,41 @@
 
 use super::{ContourParts, LevelParts, LevelSide, LineEnd, NO_HEIGHTS, OpenLine};
 use crate::error::{Error, Result};
-use std::io::Write;
+use std::io::{Read, Write};
+use std::ops::Range;
 
 const MAGIC: [u8; 8] = *b"blparts1";
 
-/// Parts in bytes, from which one level is read at a time.
-pub struct StoredParts<'a> {
+/// The bytes before the table.
+const HEAD: usize = 8 + 16 + 8;
+
+/// The bytes of a level in the table.
+const ENTRY: usize = 16;
+
+/// The table of parts in bytes or in a file: the levels that there are, and where their parts are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartsTable {
     heights: [f64; 2],
-    /// Each level with the bytes of its parts, ascending.
-    levels: Vec<(f64, &'a [u8])>,
+    /// Each level with the range of its bytes, ascending.
+    levels: Vec<(f64, Range<u64>)>,
 }
 
-impl<'a> StoredParts<'a> {
-    /// Reads the table of levels.
+impl PartsTable {
+    /// Reads the table of parts that fill `length` bytes of a source, from their beginning.
     ///
     /// # Errors
-    /// If the bytes are not those that [`ContourParts::write`] wrote.
-    pub fn new(bytes: &'a [u8]) -> Result<Self> {
-        Reader(bytes).stored_parts().ok_or_else(damaged)
+    /// If the source cannot be read, or the bytes are not those that [`ContourParts::write`] wrote.
+    pub fn read(source: &mut impl Read, length: u64) -> Result<Self> {
+        let mut head = [0; HEAD];
+        let mut read = |bytes: &mut [u8]| source.read_exact(bytes).map_err(|_| damaged());
+        read(&mut head)?;
+        let count = u64::from_le_bytes(std::array::from_fn(|i| head[HEAD - 8 + i]));
+        if count > length / ENTRY as u64 {
+            return Err(damaged());
+        }
+        let mut table = vec![0; count as usize * ENTRY];
+        read(&mut table)?;
+        Reader(&head).table(&table, length).ok_or_else(damaged)
     }
 
     /// Returns the lowest and the highest height of the triangles; without triangles, infinity and
@@ -41,14 +58,47 @@ impl<'a> StoredParts<'a> {
         self.levels.iter().map(|(level, _)| *level)
     }
 
+    /// Returns where the bytes of a level are, from the beginning of the parts; `None` if it has no
+    /// parts. [`LevelParts::read`] reads them.
+    pub fn range(&self, level: f64) -> Option<Range<u64>> {
+        let at = self.levels.binary_search_by(|(own, _)| own.total_cmp(&level)).ok()?;
+        Some(self.levels[at].1.clone())
+    }
+}
+
+/// Parts in bytes, from which one level is read at a time.
+pub struct StoredParts<'a> {
+    table: PartsTable,
+    bytes: &'a [u8],
+}
+
+impl<'a> StoredParts<'a> {
+    /// Reads the table of levels.
+    ///
+    /// # Errors
+    /// If the bytes are not those that [`ContourParts::write`] wrote.
+    pub fn new(bytes: &'a [u8]) -> Result<Self> {
+        Ok(StoredParts { table: PartsTable::read(&mut &bytes[..], bytes.len() as u64)?, bytes })
+    }
+
+    /// Returns the lowest and the highest height of the triangles; without triangles, infinity and
+    /// its negative.
+    pub fn heights(&self) -> [f64; 2] {
+        self.table.heights
+    }
+
+    /// Returns the levels that have parts, ascending.
+    pub fn levels(&self) -> impl Iterator<Item = f64> {
+        self.table.levels()
+    }
+
     /// Reads the parts of a level; `None` if there are none.
     ///
     /// # Errors
     /// If the bytes are damaged.
     pub fn level(&self, level: f64) -> Result<Option<LevelParts>> {
-        let Ok(at) = self.levels.binary_search_by(|(own, _)| own.total_cmp(&level)) else { return Ok(None) };
-        let (level, bytes) = self.levels[at];
-        Reader(bytes).level_parts(level).map(Some).ok_or_else(|| damaged().at(format!("level {level}")))
+        let range = self.table.range(level);
+        range.map(|range| LevelParts::read(level, &self.bytes[range.start as usize..range.end as usize])).transpose()
     }
 }
 
@@ -79,11 +129,19 @@ impl ContourParts {
     pub fn read(bytes: &[u8]) -> Result<Self> {
         let stored = StoredParts::new(bytes)?;
         let levels: Result<_> = stored.levels().filter_map(|level| stored.level(level).transpose()).collect();
-        Ok(ContourParts { heights: stored.heights, levels: levels? })
+        Ok(ContourParts { heights: stored.heights(), levels: levels? })
     }
 }
 
 impl LevelParts {
+    /// Reads the parts of a level from the [range](PartsTable::range) of their bytes.
+    ///
+    /// # Errors
+    /// If the bytes are damaged.
+    pub fn read(level: f64, bytes: &[u8]) -> Result<Self> {
+        Reader(bytes).level_parts(level).ok_or_else(|| damaged().at(format!("level {level}")))
+    }
+
     fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
         out.write_all(&[u8::from(self.touches_vertices)])?;
         write_count(out, self.closed.len())?;
@@ -159,23 +217,25 @@ fn damaged() -> Error {
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
-    fn stored_parts(mut self) -> Option<StoredParts<'a>> {
+    /// The table, from the bytes before it and its own.
+    fn table(mut self, table: &[u8], length: u64) -> Option<PartsTable> {
         if self.array()? != MAGIC {
             return None;
         }
         let heights = [self.double()?, self.double()?];
-        let count = self.count(16)?;
-        let mut levels = Vec::with_capacity(count);
-        let mut table = Reader(self.take(16 * count)?);
-        for _ in 0..count {
-            let level = table.double()?;
-            let length = usize::try_from(u64::from_le_bytes(table.array()?)).ok()?;
-            levels.push((level, self.take(length)?));
+        let mut end = (HEAD + table.len()) as u64;
+        let mut levels = Vec::with_capacity(table.len() / ENTRY);
+        let mut entries = Reader(table);
+        while !entries.0.is_empty() {
+            let level = entries.double()?;
+            let start = end;
+            end = start.checked_add(u64::from_le_bytes(entries.array()?))?;
+            levels.push((level, start..end));
         }
         let is_ascending = levels.windows(2).all(|pair| pair[0].0 < pair[1].0);
         let is_within = levels.iter().all(|(level, _)| heights[0] <= *level && *level <= heights[1]);
         let is_range = heights.iter().all(|height| height.is_finite()) || heights == NO_HEIGHTS;
-        (self.0.is_empty() && is_ascending && is_within && is_range).then_some(StoredParts { heights, levels })
+        (end == length && is_ascending && is_within && is_range).then_some(PartsTable { heights, levels })
     }
 
     fn level_parts(mut self, level: f64) -> Option<LevelParts> {

@@ -75,7 +75,7 @@ mod patch;
 #[cfg(test)]
 mod tests;
 
-pub use bytes::StoredParts;
+pub use bytes::{PartsTable, StoredParts};
 pub use collect::ContourCollector;
 pub use join::join_level;
 
@@ -140,6 +140,12 @@ impl LevelParts {
     /// Returns the level.
     pub fn level(&self) -> f64 {
         self.level
+    }
+
+    /// Returns the number of edges of its lines.
+    pub fn edge_count(&self) -> usize {
+        let lines = self.closed.iter().chain(self.open.iter().map(|line| &line.points));
+        lines.map(|points| points.len() - 1).sum()
     }
 
     fn is_empty(&self) -> bool {
