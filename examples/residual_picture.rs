@@ -3,15 +3,14 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use breakline::data::PointBatch;
 use breakline::io::points;
 use breakline::terrain::Selection;
-use breakline::terrain::tiles::{Layout, Tile, Work, leaf};
+use breakline::terrain::tiles::{Layout, Work, leaf};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let target = std::env::args_os().nth(1).ok_or("usage: residual_picture OUT.svg")?;
     let mut selection = Selection::default();
-    let mut source = points::open("fixtures/valley.laz".as_ref())?;
+    let mut source = points::open(std::path::Path::new("fixtures/valley.laz"))?;
     selection.add_source(source.as_mut())?;
     let (mut all, _) = selection.finish();
     // Every eighth: a picture has room for no more.
@@ -25,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         2.0 * (high[0] - low[0]) + 8.0,
         2.0 * (high[1] - low[1]) + 8.0
     );
-    let mut dots = |points: &[[f64; 3]], size: f64, color: &str, svg: &mut String| {
+    let dots = |points: &[[f64; 3]], size: f64, color: &str, svg: &mut String| {
         let _ =
             write!(svg, "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{size}\" stroke-linecap=\"round\" d=\"");
         for &point in points {
@@ -37,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     dots(&all, 1.0, "#cccccc", &mut svg);
     let layout = Layout::grid(low, high, [4, 4]);
     for step in layout.steps() {
-        let (Work::Leaf(number), Tile { .. }) = (&step.work, step.tile) else { continue };
+        let Work::Leaf(number) = &step.work else { continue };
         let own: Vec<[f64; 3]> = all.iter().copied().filter(|p| step.tile.holds([p[0], p[1]])).collect();
         let rest = leaf(&step.tile, *number, &own, &mut |_| ())?;
         let vertices: Vec<[f64; 3]> = rest.vertices.iter().map(|vertex| vertex.position).collect();
@@ -51,6 +50,5 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     svg.push_str("</svg>\n");
     std::fs::write(target, svg)?;
-    drop(PointBatch::default());
     Ok(())
 }

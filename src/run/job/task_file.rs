@@ -50,11 +50,12 @@ impl Write for TaskWriter {
 impl TaskWriter {
     pub(super) fn create(target: &Path) -> Result<Self> {
         let folder = target.parent().unwrap_or(Path::new("."));
-        let file = tempfile::Builder::new()
-            .prefix(".")
-            .suffix(UNFINISHED)
-            .tempfile_in(folder)
-            .map_err(|e| Error::from(e).in_file(target))?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".").suffix(UNFINISHED);
+        // Others may go on with the job: only the umask limits who may read the file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.tempfile_in(folder).map_err(|e| Error::from(e).in_file(target))?;
         let out = BufWriter::with_capacity(1 << 18, file);
         Ok(TaskWriter { out, checksum: Crc::new(), at: 0, sections: Vec::new(), target: target.to_path_buf() })
     }
