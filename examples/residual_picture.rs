@@ -1,4 +1,5 @@
-//! Draws what tiles of the valley hand up: `cargo run --release --example residual_picture -- OUT.svg`.
+//! Draws what tiles of the valley hand up: `cargo run --release --example residual_picture --
+//! OUT.svg`.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -18,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (low, high) = all.iter().fold(([f64::MAX; 2], [f64::MIN; 2]), |(low, high), p| {
         ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])])
     });
-    let place = |p: [f64; 3]| (2.0 * (p[0] - low[0]), 2.0 * (high[1] - p[1]));
+    let on_page = |p: [f64; 3]| (2.0 * (p[0] - low[0]), 2.0 * (high[1] - p[1]));
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-4 -4 {:.0} {:.0}\">\n<rect x=\"-4\" y=\"-4\" width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
         2.0 * (high[0] - low[0]) + 8.0,
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let _ =
             write!(svg, "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{size}\" stroke-linecap=\"round\" d=\"");
         for &point in points {
-            let (x, y) = place(point);
+            let (x, y) = on_page(point);
             let _ = write!(svg, "M{x:.1} {y:.1}h0");
         }
         svg.push_str("\"/>\n");
@@ -42,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let vertices: Vec<[f64; 3]> = rest.vertices.iter().map(|vertex| vertex.position).collect();
         svg.push_str("<path fill=\"none\" stroke=\"#1f6fb2\" stroke-width=\"0.8\" d=\"");
         for seam in &rest.seams {
-            let [(x0, y0), (x1, y1)] = seam.map(|end| place(vertices[end as usize]));
+            let [(x0, y0), (x1, y1)] = seam.map(|end| on_page(vertices[end as usize]));
             let _ = write!(svg, "M{x0:.1} {y0:.1}L{x1:.1} {y1:.1}");
         }
         svg.push_str("\"/>\n");

@@ -51,9 +51,9 @@ fn write_tile(path: &Path, corner: [i64; 2], size: i64, count: u64) -> Result<()
         // To and fro, as a mirror scans, a little uneven.
         let (line, along) = (i / lines, i % lines);
         let along = if line % 2 == 0 { along } else { lines - 1 - along };
-        let mut place = |at: u64| ((at as f64 + random.unit()) / lines as f64 * size as f64) as i64;
+        let mut spread = |at: u64| ((at as f64 + random.unit()) / lines as f64 * size as f64) as i64;
         // Away from the rim, because writers round the extent in the header.
-        let steps = [corner[0] + place(along).clamp(2, size - 3), corner[1] + place(line).clamp(2, size - 3)];
+        let steps = [corner[0] + spread(along).clamp(2, size - 3), corner[1] + spread(line).clamp(2, size - 3)];
         let [x, y] = steps.map(|step| step as f64 * STEP);
         let is_ground = i % 20 != 7;
         let z = height(x, y) + 0.03 * random.unit() + if is_ground { 0.0 } else { 12.0 * random.unit() };

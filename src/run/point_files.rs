@@ -128,7 +128,8 @@ impl PointFiles {
         Ok(stated)
     }
 
-    /// Returns the number of points and the box around them that each file states, as far as it does.
+    /// Returns the number of points and the box around them that each file states, as far as it
+    /// does.
     pub(super) fn stated_extents(&self) -> impl Iterator<Item = (Option<u64>, Option<Bounds>)> + '_ {
         self.files.iter().map(|file| (file.count, file.bounds))
     }

@@ -52,10 +52,10 @@ fn a_header_that_lies_is_an_error_that_names_tile_and_file() {
     lying[179..187].copy_from_slice(&12.5f64.to_le_bytes());
     std::fs::write(folder.path().join("1.las"), lying).unwrap();
     let said = "there is a point at 13 0, but the header states an extent from 10 0 to 12.5 3";
-    for (tiles, place, kept) in [("auto", "1.las: tile 1: ", 8), ("2x1", "1.las: ", 8)] {
+    for (tiles, location, kept) in [("auto", "1.las: tile 1: ", 8), ("2x1", "1.las: ", 8)] {
         let words = format!("dem {files} --tiles {tiles} -o dem.tif --job {tiles} --threads 1");
         let words: Vec<&str> = words.split(' ').collect();
-        run_in(&folder, &words).fails(1, &[&format!("error: {place}{said}"), "are kept", "go on with --resume"]);
+        run_in(&folder, &words).fails(1, &[&format!("error: {location}{said}"), "are kept", "go on with --resume"]);
         assert!(!folder.path().join("dem.tif").exists());
         let tasks = files_of(&folder.path().join(tiles).join("tasks"));
         assert!(tasks.len() < kept && tasks.iter().all(|name| name.ends_with(".task")), "{tasks:?}");

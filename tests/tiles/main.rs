@@ -1,5 +1,5 @@
-//! Surfaces in tiles: the bytes of the surface in one piece, whatever the tiles, whatever happens to
-//! the job in between.
+//! Surfaces in tiles: the bytes of the surface in one piece, whatever the tiles, whatever happens
+//! to the job in between.
 
 #[path = "../cli/lidar.rs"]
 mod lidar;

@@ -61,8 +61,8 @@ pub(super) struct Plan {
     pub(super) request: String,
     /// The files that have points.
     pub(super) files: Vec<PlannedFile>,
-    /// The files that are skipped because they cannot be opened: their positions in the request, and
-    /// why.
+    /// The files that are skipped because they cannot be opened: their positions in the request,
+    /// and why.
     pub(super) skipped: Vec<(usize, String)>,
     /// True if the files are no tiles: they are divided among tiles first.
     pub(super) divides: bool,

@@ -87,7 +87,8 @@ impl Layout {
     }
 
     /// Returns one tile for each box, numbered like the boxes; `None` if no cuts separate them.
-    /// Boxes that touch are not separate: both may have points there. Cuts are in the middle of gaps.
+    /// Boxes that touch are not separate: both may have points there. Cuts are in the middle of
+    /// gaps.
     pub fn of_boxes(boxes: &[Spread]) -> Option<Self> {
         let mut layout = Layout { nodes: Vec::new() };
         let mut all: Vec<u32> = (0..boxes.len() as u32).collect();

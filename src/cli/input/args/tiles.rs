@@ -9,7 +9,7 @@ use crate::run::Division;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Tiles")]
 pub(in crate::cli) struct TileArgs {
-    /// Work in tiles: `auto`, or columns and rows such as `8x8` [default: if memory does not suffice]
+    /// Work in tiles: `auto`, or columns and rows such as `8x8` [default: if memory is short]
     ///
     /// The result is the same, byte for byte. `auto` takes the files as tiles if they are separate
     /// and small; else their points are divided among tiles first. For points without lines and
