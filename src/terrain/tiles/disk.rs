@@ -69,6 +69,112 @@ impl Disk {
             tile.min[axis] <= low.next_down() && high.next_up() < tile.max[axis]
         })
     }
+
+    /// Returns true if no point of a segment is in the disk. In doubt returns false.
+    ///
+    /// A direction in which both ends lie beyond the disk is a proof, however it was found. Taken is
+    /// the one from the center to the nearest point of the segment.
+    pub(super) fn misses(&self, [a, b]: [[f64; 2]; 2]) -> bool {
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let to_center = [self.center[0] - a[0], self.center[1] - a[1]];
+        let share = (dot(along, to_center) / dot(along, along)).clamp(0.0, 1.0);
+        let normal = [0, 1].map(|axis| share * along[axis] - to_center[axis]);
+        // So the direction is no shorter than the radius, as the proof of the bound needs it.
+        let is_outside = dot(normal, normal) > self.radius * self.radius;
+        is_outside && [a, b].iter().all(|&origin| self.is_below([Slope { normal, origin }, Slope::FLAT]))
+    }
+
+    /// Returns true if no point outside of a tile is both in the disk and to the right of the line
+    /// from `p` to `q`. In doubt returns false.
+    ///
+    /// ```text
+    ///       tile   |                  beyond the line p q, the disk is within the tile,
+    ///      q       |                  although it leaves the tile elsewhere
+    ///    . | ' .   |
+    ///   ' left  ' -|- .               right of p q and right of the tile's side:
+    ///    . | . '   | '                no point of the disk is in both half-planes
+    ///      p       |
+    /// ```
+    ///
+    /// For each side of the tile, no point of the disk may be beyond both the line and the side. Let
+    /// `f` and `g` be linear functions that are not negative beyond the line and beyond the side. If
+    /// `weight f + g` is negative on all of the disk, for any weight that is not negative, there is no
+    /// such point. The converse is true of the best weight, as half-planes and disks are convex. So
+    /// [`is_below`](Self::is_below) proves what a weight claims, and the weight itself may be rounded.
+    pub(super) fn is_within_beyond(&self, [p, q]: [[f64; 2]; 2], tile: &Tile) -> bool {
+        let right = [q[1] - p[1], p[0] - q[0]];
+        let length = dot(right, right).sqrt();
+        // Of the center, to the right of the line.
+        let distance = dot(right, [self.center[0] - p[0], self.center[1] - p[1]]) / length;
+        let half_chord = (self.radius * self.radius - distance * distance).sqrt();
+        let is_clear = |axis: usize, sign: f64, side: f64| {
+            if side == sign * f64::INFINITY {
+                return true;
+            }
+            let (mut normal, mut origin) = ([0.0; 2], self.center);
+            (normal[axis], origin[axis]) = (sign, side);
+            let beyond_side = Slope { normal, origin };
+            let beyond_line = |weight: f64| Slope { normal: right.map(|x| weight * x), origin: p };
+            // Below, `weight f + g` is `weight distance + g(center) + radius |weight right + normal|`,
+            // for a vector `right` of length 1; its derivative by the weight is zero at the best one.
+            if half_chord > 0.0 {
+                let [cos, sin] = [sign * right[axis] / length, right[1 - axis].abs() / length];
+                let weight = (-cos - distance * sin / half_chord).max(0.0);
+                self.is_below([beyond_line(weight / length), beyond_side])
+            } else if distance < 0.0 {
+                self.is_below([beyond_line(1.0), Slope::FLAT]) // nothing is beyond the line
+            } else {
+                self.is_below([Slope::FLAT, beyond_side]) // all of the disk is
+            }
+        };
+        (0..2).all(|axis| is_clear(axis, -1.0, tile.min[axis]) && is_clear(axis, 1.0, tile.max[axis]))
+    }
+
+    /// Returns true if the sum of two linear functions is negative on the whole disk. In doubt returns
+    /// false.
+    ///
+    /// The largest value of `n . (y - o)` for `y` in the disk is `n . (center - o) + radius |n|`.
+    ///
+    /// *Errors.* Normals may have two roundings. On the path of each of the four products there are
+    /// these, one of the difference, one of the product, and at most 4 of sums: 8. On that of `radius
+    /// |n|` there are two and one for the sum of the normals, relative to the sum of their absolute
+    /// values; 3 for the length, one for the product, and one for the last sum: 8 again. Hence the
+    /// error is below `16 U` times the sum of the absolute products and of `radius |n|` of both
+    /// normals (Higham 2002, lemma 3.1), which covers the roundings of the bound, too. The last
+    /// addition does not change the sign.
+    ///
+    /// *Underflow.* Twice the area of the triangle is above 1e-120, so the radius is above 1e-61. If
+    /// the absolute coordinates of the normals sum up to 1e-64, which callers ensure, the bound is
+    /// above 1e-140, more than all that underflows. What overflows makes the bound infinite, and the
+    /// sum infinite or not a number.
+    fn is_below(&self, slopes: [Slope; 2]) -> bool {
+        let (mut most, mut size, mut normal) = (0.0, 0.0, [0.0; 2]);
+        for slope in slopes {
+            for axis in 0..2 {
+                let product = slope.normal[axis] * (self.center[axis] - slope.origin[axis]);
+                most += product;
+                size += product.abs() + self.radius * slope.normal[axis].abs();
+                normal[axis] += slope.normal[axis];
+            }
+        }
+        most += self.radius * dot(normal, normal).sqrt();
+        most + 16.0 * U * size < 0.0
+    }
+}
+
+/// A linear function: `normal . (y - origin)`.
+#[derive(Debug, Clone, Copy)]
+struct Slope {
+    normal: [f64; 2],
+    origin: [f64; 2],
+}
+
+impl Slope {
+    const FLAT: Self = Slope { normal: [0.0; 2], origin: [0.0; 2] };
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
 }
 
 #[cfg(test)]

@@ -25,11 +25,17 @@
 //! triangulations* (2006); Caraffa, Memari, Yirci and Bredif, *Tile & merge* (2019).
 
 mod disk;
+mod lines;
+#[cfg(test)]
+mod lines_tests;
 mod node;
+mod residual;
 #[cfg(test)]
 mod tests;
 
-pub use node::{Residual, TileTriangle, TileVertex, leaf, merge};
+pub use lines::SubConstraint;
+pub use node::{TileTriangle, leaf, merge};
+pub use residual::{Residual, ResidualEdge, TileVertex};
 
 /// A rectangle in plan that owns the points in it: each axis includes its lowest coordinate and
 /// excludes its highest.
