@@ -184,12 +184,12 @@ mod tests {
     use crate::triangulation::num::Sign;
     use testkit::random::Random;
 
-    /// Points of the circle, rounded, to both sides of it, and slivers: what is in the circle, by
-    /// exact arithmetic, is in the disk.
-    #[test]
-    fn what_is_in_the_circle_is_in_the_disk() {
+    /// Calls `judge` with triangles, large and small, slanted and flat, the disks around them, and
+    /// positions that are in the closed circumscribed disk by exact arithmetic: the corners, and others
+    /// near the circle. Returns the number of triangles that are in doubt, and of positions.
+    fn each_position(mut judge: impl FnMut([[f64; 2]; 3], Disk, [f64; 2])) -> [usize; 2] {
         let mut random = Random(5);
-        let (mut slivers, mut tight) = (0, 0);
+        let [mut doubts, mut count] = [0; 2];
         for _ in 0..5_000 {
             let away = [0.0, 1e3, 1e7][random.index(3)];
             let flat = [1.0, 1e-3, 1e-9, 1e-15][random.index(4)];
@@ -203,33 +203,86 @@ mod tests {
                 continue;
             }
             let Some(disk) = Disk::around(corners) else {
-                slivers += 1;
+                doubts += 1;
                 continue;
             };
+            for corner in corners {
+                judge(corners, disk, corner);
+            }
             for k in 0..16 {
-                let angle = f64::from(k) * 0.4;
-                let on = |stretch: f64| {
-                    let (sin, cos) = angle.sin_cos();
-                    [disk.center[0] + stretch * disk.radius * cos, disk.center[1] + stretch * disk.radius * sin]
-                };
-                for stretch in [0.5, 0.999, 1.0, 1.0 + 1e-12, 1.001] {
-                    let p = on(stretch);
+                let (sin, cos) = (f64::from(k) * 0.4).sin_cos();
+                for stretch in [0.5, 0.999, 1.0 - 1e-9, 1.0 - 1e-12, 1.0 - 1e-14, 1.0, 1.001] {
+                    let radius = stretch * disk.radius;
+                    let p = [disk.center[0] + radius * cos, disk.center[1] + radius * sin];
                     let [a, b, c] = corners;
-                    if Adaptive::sign(&InCircle([a, b, c, p])) == Sign::Negative {
-                        continue;
+                    if Adaptive::sign(&InCircle([a, b, c, p])) != Sign::Negative {
+                        count += usize::from(stretch > 0.9);
+                        judge(corners, disk, p);
                     }
-                    tight += usize::from(stretch > 0.9);
-                    // Tiles that lack the point by one step.
-                    let beside = [0, 1].map(|axis| {
-                        let (mut left, mut right) = (Tile::PLANE, Tile::PLANE);
-                        left.max[axis] = p[axis];
-                        right.min[axis] = p[axis].next_up();
-                        [left, right]
-                    });
-                    assert!(beside.iter().flatten().all(|tile| !disk.is_within(tile)), "{corners:?} {p:?}");
                 }
             }
         }
-        assert!(slivers > 25 && tight > 10_000, "{slivers} {tight}");
+        [doubts, count]
+    }
+
+    /// Returns tiles that lack a position by one step.
+    fn beside(p: [f64; 2]) -> [Tile; 4] {
+        let [mut left, mut right, mut below, mut above] = [Tile::PLANE; 4];
+        (left.max[0], below.max[1]) = (p[0], p[1]);
+        (right.min[0], above.min[1]) = (p[0].next_up(), p[1].next_up());
+        [left, right, below, above]
+    }
+
+    #[test]
+    fn what_is_in_the_circle_is_in_the_disk() {
+        let [doubts, count] = each_position(|corners, disk, p| {
+            assert!(beside(p).iter().all(|tile| !disk.is_within(tile)), "{corners:?} {p:?}");
+        });
+        assert!(doubts > 25 && count > 10_000, "{doubts} {count}");
+    }
+
+    #[test]
+    fn a_segment_to_a_position_in_the_circle_is_not_missed() {
+        let mut random = Random(6);
+        let mut missed = 0;
+        each_position(|corners, disk, p| {
+            let mut other = || [0, 1].map(|k| disk.center[k] + 4.0 * disk.radius * (random.unit() - 0.5));
+            let q = other();
+            assert!(!disk.misses([p, q]) && !disk.misses([q, p]) && !disk.misses([p, p]), "{corners:?} {p:?} {q:?}");
+            // Beside the disk.
+            let [x, y] = [0, 1].map(|k| disk.center[k] + 1.01 * (p[k] - disk.center[k]));
+            let along = [p[1] - disk.center[1], disk.center[0] - p[0]];
+            missed += usize::from(disk.misses([[x - along[0], y - along[1]], [x + along[0], y + along[1]]]));
+        });
+        assert!(missed > 10_000, "{missed}");
+    }
+
+    /// Lines are the edges of the triangle, and others through it.
+    #[test]
+    fn what_is_in_the_circle_beyond_a_line_is_not_within_a_tile_beside_it() {
+        let mut random = Random(7);
+        let [mut beyond, mut hidden] = [0; 2];
+        each_position(|corners, disk, p| {
+            let [a, b, c] = corners;
+            let mut on = |from: [f64; 2], to: [f64; 2]| {
+                let share = random.unit();
+                [0, 1].map(|k| from[k] + share * (to[k] - from[k]))
+            };
+            let [through, to] = [on(a, b), on(b, c)];
+            for [from, to] in [[a, b], [b, c], [c, a], [through, to], [to, through], [through, p]] {
+                if from == to {
+                    continue;
+                }
+                // On the line is beyond it, too.
+                if Adaptive::sign(&Orientation2([from, to, p])) != Sign::Positive {
+                    beyond += 1;
+                    let is_wrong = |tile: &Tile| disk.is_within_beyond([from, to], tile);
+                    assert!(!beside(p).iter().any(is_wrong), "{corners:?} {from:?} {to:?} {p:?}");
+                    continue;
+                }
+                hidden += beside(p).iter().filter(|tile| disk.is_within_beyond([from, to], tile)).count();
+            }
+        });
+        assert!(beyond > 10_000 && hidden > 10_000, "{beyond} {hidden}");
     }
 }

@@ -174,12 +174,14 @@ pub(super) struct KnownLines<'a> {
 impl<'a> KnownLines<'a> {
     /// Returns the lines of a triangulation of dimension 2. The ids of its lines are the positions of
     /// the edges.
-    pub(super) fn new(t: &'a ConstrainedDelaunay2, residual: &'a Residual) -> Self {
+    pub(super) fn new(tile: &Tile, t: &'a ConstrainedDelaunay2, residual: &'a Residual) -> Self {
         let tds = t.tds();
         let mut entered = vec![false; tds.cell_slots()];
         for constraint in &residual.pending {
+            // From a known end, if there is one: finding the way into the hull takes longer.
             let [a, b] = &constraint.ends;
-            for passage in t.along([a, b], None) {
+            let ends = if tile.holds(*a) { [a, b] } else { [b, a] };
+            for passage in t.along(ends, None) {
                 match passage {
                     Passage::Face(cell) => entered[cell.index()] = true,
                     Passage::Along([from, to]) => {

@@ -87,7 +87,7 @@ fn reduce(tile: &Tile, mut input: Residual, emit: &mut dyn FnMut(TileTriangle)) 
         let (t, ids) = ConstrainedDelaunay2::from_lines(Plane::default(), &sites, &lines, OnCrossing::Reject)
             .map_err(|error| refused(error, &input))?;
         match t.dimension() {
-            2 => Some(Task::new(tile, &t, &ids, &input).run(&KnownLines::new(&t, &input), emit)?),
+            2 => Some(Task::new(tile, &t, &ids, &input).run(&KnownLines::new(tile, &t, &input), emit)?),
             _ => None,
         }
     } else {
