@@ -95,8 +95,8 @@ pub(super) fn of_tile(tile: &Tile, constraints: &[SubConstraint]) -> Result<Vec<
 /// Turns pending sub-constraints whose ends are both known into edges.
 ///
 /// # Errors
-/// If an end is in the tile and no vertex is there: a sub-constraint keeps the vertices on it in the
-/// residual, so its line was given without the point.
+/// If an end is in the tile and no vertex is there: a sub-constraint keeps the vertices on it in
+/// the residual, so its line was given without the point.
 pub(super) fn join_known(tile: &Tile, residual: &mut Residual) -> Result<()> {
     let pending = residual.pending.iter().map(SubConstraint::checked).collect::<Result<Vec<_>>>()?;
     let key = |site: [f64; 2]| site.map(|x| unsigned_zero(x).to_bits());
@@ -172,8 +172,8 @@ pub(super) struct KnownLines<'a> {
 }
 
 impl<'a> KnownLines<'a> {
-    /// Returns the lines of a triangulation of dimension 2. The ids of its lines are the positions of
-    /// the edges.
+    /// Returns the lines of a triangulation of dimension 2. The ids of its lines are the positions
+    /// of the edges.
     pub(super) fn new(tile: &Tile, t: &'a ConstrainedDelaunay2, residual: &'a Residual) -> Self {
         let tds = t.tds();
         let mut entered = vec![false; tds.cell_slots()];
@@ -212,10 +212,10 @@ impl Lines for KnownLines<'_> {
         self.entered[cell.index()]
     }
 
-    /// A line of sight from the cell to a position in the disk stays in the disk, and leaves triangles
-    /// by edges that are not constrained. Beyond the line through such an edge it stays, too. So where
-    /// the disk misses the edge, or is within the tile beyond its line, there is nothing to be seen.
-    /// The search ends there. It fails where it leaves the hull.
+    /// A line of sight from the cell to a position in the disk stays in the disk, and leaves
+    /// triangles by edges that are not constrained. Beyond the line through such an edge it stays,
+    /// too. So where the disk misses the edge, or is within the tile beyond its line, there is
+    /// nothing to be seen. The search ends there. It fails where it leaves the hull.
     fn hide_all_outside(&self, tile: &Tile, disk: &Disk, cell: CellId) -> bool {
         let tds = self.t.tds();
         let mut reached = vec![cell];

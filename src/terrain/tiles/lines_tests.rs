@@ -213,8 +213,8 @@ fn lines_that_make_no_sense_are_refused() {
     assert_eq!(error, "a line ends at [9.0, 9.0], where its tile has no point");
 }
 
-/// Residuals are damaged in all their parts. What comes out may be wrong, as numbers without a check
-/// sum are believed; but it comes out, or an error does.
+/// Residuals are damaged in all their parts. What comes out may be wrong, as numbers without a
+/// check sum are believed; but it comes out, or an error does.
 #[test]
 fn damaged_residuals_with_lines_do_not_panic() {
     let mut random = Random(23);

@@ -31,9 +31,9 @@ pub struct TileTriangle {
 /// Their ends must be points, too, of the tiles that these are in.
 ///
 /// # Errors
-/// If a point lies outside of the tile, whose extent is then wrong; if a point or an end of a line has
-/// a coordinate that is not finite or outside of the range of the arithmetic; if a line ends in the
-/// tile where there is no point; if a kind is not that of a line; or if lines cross.
+/// If a point lies outside of the tile, whose extent is then wrong; if a point or an end of a line
+/// has a coordinate that is not finite or outside of the range of the arithmetic; if a line ends in
+/// the tile at a site without a point; if a kind is not that of a line; or if lines cross.
 ///
 /// # Complexity
 /// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points); with lines, that
@@ -148,8 +148,8 @@ impl<'a, C: Copy + Default> Task<'a, C> {
         Ok(if is_known { Residual::default() } else { self.rest(&is_final, lines) })
     }
 
-    /// Returns, for each cell, true if triangles in its place were final before: if it is on the final
-    /// side of seams. Found by a flood that seams stop.
+    /// Returns, for each cell, true if triangles in its place were final before: if it is on the
+    /// final side of seams. Found by a flood that seams stop.
     fn covered(&self) -> Result<Vec<bool>> {
         let tds = self.t.tds();
         let mut is_covered = vec![false; tds.cell_slots()];
@@ -187,8 +187,8 @@ impl<'a, C: Copy + Default> Task<'a, C> {
         Ok(is_covered)
     }
 
-    /// Returns the vertices of cells that are not final, the edges between these and final ones, and
-    /// the constrained edges without a final side.
+    /// Returns the vertices of cells that are not final, the edges between these and final ones,
+    /// and the constrained edges without a final side.
     fn rest(&self, is_final: &[bool], lines: &impl Lines) -> Residual {
         let tds = self.t.tds();
         let mut number_of = vec![u32::MAX; tds.vertex_slots()];

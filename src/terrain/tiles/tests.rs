@@ -6,7 +6,8 @@ use crate::triangulation::Delaunay2;
 use crate::triangulation::geometry::Plane;
 use testkit::random::Random;
 
-/// A triangle by its corners in plan, from the smallest on, and the ranks of the edges opposite them.
+/// A triangle by its corners in plan, from the smallest on, and the ranks of the edges opposite
+/// them.
 pub(super) type Triangle = ([[u64; 2]; 3], [u8; 3]);
 
 pub(super) fn canonical(corners: [[f64; 2]; 3], edges: [EdgeKind; 3]) -> Triangle {
