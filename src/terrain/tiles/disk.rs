@@ -88,12 +88,15 @@ impl Disk {
     /// from `p` to `q`. In doubt returns false.
     ///
     /// ```text
-    ///       tile   |                  beyond the line p q, the disk is within the tile,
-    ///      q       |                  although it leaves the tile elsewhere
-    ///    . | ' .   |
-    ///   ' left  ' -|- .               right of p q and right of the tile's side:
-    ///    . | . '   | '                no point of the disk is in both half-planes
-    ///      p       |
+    ///         . - - .   |
+    ///      .          . |           the disk leaves the tile,
+    ///     .            .|.
+    ///     .             | .
+    ///     .            .|.
+    ///  p ---.---------.-|--- q
+    ///         ' - - '   |           but not to the right of the line from p to q
+    ///                   |
+    ///              side of the tile
     /// ```
     ///
     /// For each side of the tile, no point of the disk may be beyond both the line and the side.
@@ -138,7 +141,7 @@ impl Disk {
     /// The largest value of `n . (y - o)` for `y` in the disk is `n . (center - o) + radius |n|`.
     ///
     /// *Errors.* Normals may have two roundings. On the path of each of the four products there are
-    /// these, one of the difference, one of the product, and at most 4 of sums: 8. On that of
+    /// these two, one of the difference, one of the product, and at most 4 of sums: 8. On that of
     /// `radius |n|` there are two and one for the sum of the normals, relative to the sum of their
     /// absolute values; 3 for the length, one for the product, and one for the last sum: 8 again.
     /// Hence the error is below `16 U` times the sum of the absolute products and of `radius |n|`
@@ -152,11 +155,11 @@ impl Disk {
     fn is_below(&self, slopes: [Slope; 2]) -> bool {
         let (mut most, mut size, mut normal) = (0.0, 0.0, [0.0; 2]);
         for slope in slopes {
-            for axis in 0..2 {
+            for (axis, sum) in normal.iter_mut().enumerate() {
                 let product = slope.normal[axis] * (self.center[axis] - slope.origin[axis]);
                 most += product;
                 size += product.abs() + self.radius * slope.normal[axis].abs();
-                normal[axis] += slope.normal[axis];
+                *sum += slope.normal[axis];
             }
         }
         most += self.radius * dot(normal, normal).sqrt();

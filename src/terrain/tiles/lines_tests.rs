@@ -71,7 +71,7 @@ impl Case {
         }
         let site = |random: &mut Random| [0, 1].map(|_| at(random.below(side + 1) as f64));
         let mut sites: Vec<[f64; 2]> = (0..round % 60).map(|_| site(random)).collect();
-        if round % 10 == 0 {
+        if round.is_multiple_of(10) {
             sites.iter_mut().for_each(|site| site[1] = far); // on a line
         }
         let mut constraints: Vec<SubConstraint> = Vec::new();
