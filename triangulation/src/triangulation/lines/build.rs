@@ -68,7 +68,8 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     ///
     /// # Complexity
     /// O((n + k) log n) for k crossings, on all threads, and expected O(n log^2 n) for the
-    /// segments, on one.
+    /// segments, on one. Under [`OnCrossing::Reject`] crossings are only searched for if there are
+    /// some.
     pub fn from_lines<L: AsRef<[u32]>>(
         geometry: G,
         points: &[G::Point],
@@ -201,7 +202,7 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     }
 
     /// Triangulates sites and lines through them, without an arrangement. If lines
-    /// [cross](Self::do_lines_cross), the result is of no use except for its parts.
+    /// [cross](Self::do_lines_cross), the result is not the triangulation of an arrangement.
     fn from_unarranged_lines(
         geometry: G,
         sites: Sites<G::Point>,
@@ -210,15 +211,18 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     ) -> Result<Self, InputError> {
         let segments = segments_of(lines.iter().map(|line| &**line), |v| v);
         let mut triangulation = Self::from_sites(geometry, sites, grain)?;
+        if grain.stops() {
+            return Err(InputError::Canceled);
+        }
         triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
         triangulation.lines.missing = triangulation.constrain_all(segments, grain);
-        if grain.stops() {
+        if grain.is_stopped() {
             return Err(InputError::Canceled);
         }
         Ok(triangulation)
     }
 
-    /// Returns true if segments that were not arranged cross, be it at a vertex.
+    /// Returns true if segments that were not arranged cross, at a vertex or elsewhere.
     fn do_lines_cross(&self) -> bool {
         let mut split: FxHashMap<VertexId, [VertexId; 2]> = FxHashMap::default();
         let mut parts = self.lines.paths.splits.iter();
