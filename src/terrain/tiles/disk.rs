@@ -185,7 +185,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::triangulation::kernel::{Adaptive, InCircle, Kernel, Orientation2};
+    use crate::triangulation::kernel::{Adaptive, CompareDistance, InCircle, Kernel, Orientation2};
     use crate::triangulation::num::Sign;
     use testkit::random::Random;
 
@@ -289,5 +289,31 @@ mod tests {
             }
         });
         assert!(beyond > 10_000 && hidden > 10_000, "{beyond} {hidden}");
+    }
+
+    /// Disks whose radius is exact, and positions on the circle or one rounding inside of it: disks
+    /// around triangles have room to spare, which would cover roundings by chance.
+    #[test]
+    fn roundings_are_covered_where_a_disk_has_no_room_to_spare() {
+        let mut random = Random(9);
+        let mut count = 0;
+        for _ in 0..20_000 {
+            let (radius, center) = (1.0 + random.unit(), [0.0, 1e3 * random.unit()]);
+            let disk = Disk { center, radius };
+            let (sin, cos) = (6.3 * random.unit()).sin_cos();
+            let p = [radius * cos, center[1] + radius * sin];
+            // That is as far away as the radius, exactly.
+            let east = [radius, center[1]];
+            if Adaptive::sign(&CompareDistance([center, p, east])) == Sign::Positive {
+                continue;
+            }
+            count += 1;
+            let q = [p[0] + cos + random.unit() - 0.5, p[1] + sin + random.unit() - 0.5];
+            assert!(!disk.misses([p, q]) && !disk.misses([q, p]), "{disk:?} {p:?} {q:?}");
+            // On the line is beyond it, too.
+            let is_wrong = |line| beside(p).iter().any(|tile| disk.is_within_beyond(line, tile));
+            assert!(!is_wrong([p, q]) && !is_wrong([q, p]), "{disk:?} {p:?} {q:?}");
+        }
+        assert!(count > 5_000, "{count}");
     }
 }
