@@ -39,11 +39,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     for step in layout.steps() {
         let Work::Leaf(number) = &step.work else { continue };
         let own: Vec<[f64; 3]> = all.iter().copied().filter(|p| step.tile.holds([p[0], p[1]])).collect();
-        let rest = leaf(&step.tile, *number, &own, &mut |_| ())?;
+        let rest = leaf(&step.tile, *number, &own, &[], &mut |_| ())?;
         let vertices: Vec<[f64; 3]> = rest.vertices.iter().map(|vertex| vertex.position).collect();
         svg.push_str("<path fill=\"none\" stroke=\"#1f6fb2\" stroke-width=\"0.8\" d=\"");
-        for seam in &rest.seams {
-            let [(x0, y0), (x1, y1)] = seam.map(|end| on_page(vertices[end as usize]));
+        for edge in &rest.edges {
+            let [(x0, y0), (x1, y1)] = edge.ends.map(|end| on_page(vertices[end as usize]));
             let _ = write!(svg, "M{x0:.1} {y0:.1}L{x1:.1} {y1:.1}");
         }
         svg.push_str("\"/>\n");

@@ -190,6 +190,46 @@ fn a_crossing_is_rejected_by_name() {
     }
 }
 
+/// Without a crossing nothing is arranged; where lines cross at vertices, all are. Lines touch,
+/// overlap, pass through points and cross, at points and elsewhere; some points are collinear.
+#[test]
+fn lines_that_may_not_cross_are_triangulated_like_others() {
+    let mut random = Random(21);
+    let [mut apart, mut at_points, mut refused] = [0; 3];
+    for round in 0..2_000 {
+        let side = [3, 6, 12][round % 3];
+        let step = [1.0, 0.1][round / 3 % 2];
+        let mut point = || [0, 1].map(|_| step * random.below(side) as f64);
+        let mut points: Vec<Point> = (0..2 + round % 25).map(|_| point()).collect();
+        if round % 11 == 0 {
+            points.iter_mut().for_each(|p| p[1] = 0.0);
+        }
+        let mut lines: Vec<Vec<u32>> = (0..1 + round % 4)
+            .map(|_| (0..2 + random.index(2)).map(|_| random.index(points.len()) as u32).collect())
+            .collect();
+        if round % 5 == 0 {
+            let first = points.len() as u32;
+            points.extend([[1.0, 1.0], [0.0, 1.0], [2.0, 1.0], [1.0, 0.0], [1.0, 2.0]]);
+            lines.extend([vec![first + 1, first + 2], vec![first + 3, first + 4]]);
+        }
+        let [strict, split] = [OnCrossing::Reject, OnCrossing::Split]
+            .map(|on_crossing| Constrained::from_lines(Plane::default(), &points, &lines, on_crossing));
+        let (split, of_split) = split.unwrap();
+        let Ok((strict, of_strict)) = strict else {
+            assert!(split.rounding().is_some(), "{points:?} {lines:?}");
+            refused += 1;
+            continue;
+        };
+        assert!(strict.check(Level::Law).is_empty(), "{points:?} {lines:?}");
+        assert_eq!((strict.points(), of_strict), (split.points(), of_split), "{points:?} {lines:?}");
+        assert!(strict.constrained_edges().eq(split.constrained_edges()), "{points:?} {lines:?}");
+        assert!(strict.lines().all(|line| strict.chain(line) == split.chain(line)), "{points:?} {lines:?}");
+        assert_eq!(strict.rounding(), split.rounding(), "{points:?} {lines:?}");
+        *(if split.rounding().is_some() { &mut at_points } else { &mut apart }) += 1;
+    }
+    assert!([apart, at_points, refused].iter().all(|&count| count > 50), "{apart} {at_points} {refused}");
+}
+
 /// A zigzag next to an island in one of its bays, and one next to nothing.
 #[test]
 fn simplified_lines_cross_no_other() {

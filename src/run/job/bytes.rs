@@ -1,7 +1,7 @@
 //! Numbers in the sections of a task's file, little-endian.
 
 use crate::data::EdgeKind;
-use crate::terrain::tiles::{Gate, Residual, TileTriangle, TileVertex, Waiting};
+use crate::terrain::tiles::{Gate, Residual, ResidualEdge, SubConstraint, TileTriangle, TileVertex, Waiting};
 
 pub(super) fn put_u32(to: &mut Vec<u8>, value: u32) {
     to.extend_from_slice(&value.to_le_bytes());
@@ -57,6 +57,14 @@ impl<'a> Reader<'a> {
         Some(TileVertex { tile: self.u32()?, number: self.u32()?, position: self.point()? })
     }
 
+    fn boolean(&mut self) -> Option<bool> {
+        match self.take()? {
+            [0] => Some(false),
+            [1] => Some(true),
+            _ => None,
+        }
+    }
+
     fn kind(&mut self) -> Option<EdgeKind> {
         let [number] = self.take()?;
         EdgeKind::ALL.get(usize::from(number)).copied()
@@ -68,25 +76,59 @@ pub(super) fn of_points(points: &[[f64; 3]]) -> Vec<u8> {
     points.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect()
 }
 
+/// Returns the bytes of sub-constraints.
+pub(super) fn of_constraints(constraints: &[SubConstraint]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(CONSTRAINT_BYTES * constraints.len());
+    for SubConstraint { ends, kind } in constraints {
+        ends.as_flattened().iter().for_each(|c| bytes.extend_from_slice(&c.to_le_bytes()));
+        bytes.push(kind.number());
+    }
+    bytes
+}
+
+/// The bytes of a sub-constraint.
+pub(super) const CONSTRAINT_BYTES: usize = 4 * 8 + 1;
+
+/// Returns the sub-constraints with these bytes; `None` if they are not those of some.
+pub(super) fn to_constraints(bytes: &[u8]) -> Option<Vec<SubConstraint>> {
+    let mut reader = Reader::new(bytes);
+    let mut constraints = Vec::with_capacity(bytes.len() / CONSTRAINT_BYTES);
+    while !reader.is_empty() {
+        let ends = [[reader.f64()?, reader.f64()?], [reader.f64()?, reader.f64()?]];
+        constraints.push(SubConstraint { ends, kind: reader.kind()? });
+    }
+    Some(constraints)
+}
+
 /// Returns the bytes of a residual.
 pub(super) fn of_residual(residual: &Residual) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(8 + 32 * residual.vertices.len() + 8 * residual.seams.len());
-    put_u64(&mut bytes, residual.vertices.len() as u64);
-    residual.vertices.iter().for_each(|vertex| put_vertex(&mut bytes, vertex));
-    residual.seams.as_flattened().iter().for_each(|&end| put_u32(&mut bytes, end));
+    let Residual { vertices, edges, pending, has_lines } = residual;
+    let mut bytes = Vec::with_capacity(17 + 32 * vertices.len() + 10 * edges.len());
+    bytes.push(u8::from(*has_lines));
+    put_u64(&mut bytes, vertices.len() as u64);
+    put_u64(&mut bytes, edges.len() as u64);
+    vertices.iter().for_each(|vertex| put_vertex(&mut bytes, vertex));
+    for ResidualEdge { ends, is_seam, kind } in edges {
+        ends.iter().for_each(|&end| put_u32(&mut bytes, end));
+        bytes.extend([u8::from(*is_seam), kind.number()]);
+    }
+    bytes.append(&mut of_constraints(pending));
     bytes
 }
 
 /// Returns the residual with these bytes; `None` if they are not those of one.
 pub(super) fn to_residual(bytes: &[u8]) -> Option<Residual> {
     let mut reader = Reader::new(bytes);
-    let count = usize::try_from(reader.u64()?).ok().filter(|&count| count <= bytes.len() / 32)?;
-    let vertices = (0..count).map(|_| reader.vertex()).collect::<Option<_>>()?;
-    let mut seams = Vec::new();
-    while !reader.is_empty() {
-        seams.push([reader.u32()?, reader.u32()?]);
-    }
-    Some(Residual { vertices, seams })
+    let has_lines = reader.boolean()?;
+    let mut count = |size: usize| usize::try_from(reader.u64()?).ok().filter(|&count| count <= bytes.len() / size);
+    let (vertex_count, edge_count) = (count(32)?, count(10)?);
+    let vertices = (0..vertex_count).map(|_| reader.vertex()).collect::<Option<_>>()?;
+    let mut edge = || {
+        let ends = [reader.u32()?, reader.u32()?];
+        Some(ResidualEdge { ends, is_seam: reader.boolean()?, kind: reader.kind()? })
+    };
+    let edges = (0..edge_count).map(|_| edge()).collect::<Option<_>>()?;
+    Some(Residual { vertices, edges, pending: to_constraints(reader.rest)?, has_lines })
 }
 
 /// Returns the bytes of the gates of what waits, and of its triangles.

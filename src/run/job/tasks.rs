@@ -152,7 +152,7 @@ impl Job<'_> {
         let points = one_per_site(&points, self.request.duplicates)?;
         facts.insert("duplicates".to_owned(), json!(count - points.len()));
         let rectangle = &self.steps[step].tile;
-        self.emitting(writer, facts, |emit| tiles::leaf(rectangle, tile, &points, emit)).map_err(|error| {
+        self.emitting(writer, facts, |emit| tiles::leaf(rectangle, tile, &points, &[], emit)).map_err(|error| {
             let error = error.within(format_args!("tile {tile}"));
             if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
         })

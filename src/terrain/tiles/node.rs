@@ -2,28 +2,14 @@
 
 use super::Tile;
 use super::disk::Disk;
+use super::lines::{self, KnownLines, Lines, NoLines, SubConstraint};
+use super::residual::{Residual, ResidualEdge, TileVertex};
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
+use crate::terrain::admitted;
 use crate::triangulation::geometry::Plane;
 use crate::triangulation::tds::{CellId, VertexId};
-use crate::triangulation::{Delaunay2, InputError};
-
-/// A vertex, with numbers that stand for it everywhere.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TileVertex {
-    /// The number of its tile.
-    pub tile: u32,
-    /// The index of its point among those of the tile.
-    pub number: u32,
-    /// Its position and its height, in the units of the data.
-    pub position: [f64; 3],
-}
-
-impl TileVertex {
-    fn site(&self) -> [f64; 2] {
-        [self.position[0], self.position[1]]
-    }
-}
+use crate::triangulation::{ConstrainedDelaunay2, Delaunay2, InputError, OnCrossing, Triangulation};
 
 /// A triangle that is final.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,30 +20,31 @@ pub struct TileTriangle {
     pub edges: [EdgeKind; 3],
 }
 
-/// What may still change of a part of the triangulation: see [the module](super).
-///
-/// A tile of `n` evenly spread points, with tiles all around it, has about `5.6 sqrt(n)` vertices
-/// here.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Residual {
-    /// The vertices of triangles that are not final.
-    pub vertices: Vec<TileVertex>,
-    /// The edges, as pairs of indices of vertices, on whose left side all triangles are final.
-    pub seams: Vec<[u32; 2]>,
-}
-
-/// Triangulates the points of a tile. Calls `emit` for each final triangle, and returns what
-/// may still change.
+/// Triangulates the points of a tile, with lines. Calls `emit` for each final triangle, and returns
+/// what may still change.
 ///
 /// Where points share a site, the first of them is used.
 ///
+/// Lines come as sub-constraints. The tile needs all that meet it, wherever their ends are; others
+/// are ignored. They must not cross between their ends, in this tile or elsewhere; an
+/// [`Arrangement`](crate::triangulation::arrangement::Arrangement) of all lines makes such ones.
+/// Their ends must be points, too, of the tiles that these are in.
+///
 /// # Errors
-/// If a point lies outside of the tile, whose extent is then wrong, or has a coordinate that is not
-/// finite or outside of the range of the arithmetic.
+/// If a point lies outside of the tile, whose extent is then wrong; if a point or an end of a line
+/// has a coordinate that is not finite or outside of the range of the arithmetic; if a line ends in
+/// the tile at a site without a point; if a kind is not that of a line; or if lines cross.
 ///
 /// # Complexity
-/// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points).
-pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+/// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points); with lines, that
+/// of [`ConstrainedDelaunay::from_lines`](crate::triangulation::ConstrainedDelaunay::from_lines).
+pub fn leaf(
+    tile: &Tile,
+    number: u32,
+    points: &[[f64; 3]],
+    constraints: &[SubConstraint],
+    emit: &mut dyn FnMut(TileTriangle),
+) -> Result<Residual> {
     if let Some(at) = points.iter().position(|&[x, y, _]| !tile.holds([x, y])) {
         let ([x, y, _], Tile { min, max }) = (points[at], tile);
         return Err(Error::format(format!(
@@ -68,7 +55,9 @@ pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(
     }
     let vertex = |(at, &position): (usize, &[f64; 3])| TileVertex { tile: number, number: at as u32, position };
     let vertices = points.iter().enumerate().map(vertex).collect();
-    reduce(tile, Residual { vertices, seams: Vec::new() }, emit)
+    let pending = lines::of_tile(tile, constraints)?;
+    let has_lines = !pending.is_empty();
+    reduce(tile, Residual { vertices, edges: Vec::new(), pending, has_lines }, emit)
 }
 
 /// Merges the residuals of parts of a tile. Calls `emit` for each triangle that is final now, and
@@ -78,120 +67,166 @@ pub fn leaf(tile: &Tile, number: u32, points: &[[f64; 3]], emit: &mut dyn FnMut(
 /// nothing is left.
 ///
 /// # Errors
-/// If a seam names a vertex that does not exist, or the residuals contradict each other: they are
+/// If an edge names a vertex that does not exist, or the residuals contradict each other: they are
 /// not those of parts of one triangulation.
 ///
 /// # Complexity
-/// That of [`Delaunay::from_points`](crate::triangulation::Delaunay::from_points) for the vertices
-/// of the residuals.
+/// That of [`leaf`], for the vertices and edges of the residuals.
 pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
-    let mut all = Residual::default();
-    for (number, part) in parts.iter().enumerate() {
-        let count = part.vertices.len();
-        if let Some(end) = part.seams.iter().flatten().find(|&&end| end as usize >= count) {
-            return Err(Error::format(format!(
-                "a seam of part {number} ends at vertex {end}, expected less than {count}"
-            ))
-            .cure("the part is damaged: compute it again"));
-        }
-        let first = all.vertices.len() as u32;
-        all.vertices.extend_from_slice(&part.vertices);
-        all.seams.extend(part.seams.iter().map(|seam| seam.map(|end| end + first)));
-    }
-    reduce(tile, all, emit)
+    reduce(tile, Residual::joined(parts)?, emit)
 }
 
-fn reduce(tile: &Tile, input: Residual, emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+fn reduce(tile: &Tile, mut input: Residual, emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
     if let Some(at) = input.vertices.iter().position(|vertex| !vertex.position[2].is_finite()) {
         return Err(refused(InputError::Coordinate(at), &input));
     }
+    lines::join_known(tile, &mut input)?;
     let sites: Vec<[f64; 2]> = input.vertices.iter().map(TileVertex::site).collect();
-    let (t, ids) = Delaunay2::from_points(Plane::default(), &sites).map_err(|error| refused(error, &input))?;
-    if t.dimension() < 2 {
-        // Nothing is final before there is a triangle.
-        return Ok(if tile.is_plane() { Residual::default() } else { input });
+    let rest = if input.has_lines {
+        let lines: Vec<[u32; 2]> = input.edges.iter().map(|edge| edge.ends).collect();
+        let (t, ids) = ConstrainedDelaunay2::from_lines(Plane::default(), &sites, &lines, OnCrossing::Reject)
+            .map_err(|error| refused(error, &input))?;
+        match t.dimension() {
+            2 => Some(Task::new(tile, &t, &ids, &input).run(&KnownLines::new(tile, &t, &input), emit)?),
+            _ => None,
+        }
+    } else {
+        let (t, ids) = Delaunay2::from_points(Plane::default(), &sites).map_err(|error| refused(error, &input))?;
+        match t.dimension() {
+            2 => Some(Task::new(tile, &t, &ids, &input).run(&NoLines, emit)?),
+            _ => None,
+        }
+    };
+    if tile.is_plane() {
+        return Ok(Residual::default());
     }
-    let mut input_of = vec![u32::MAX; t.tds().vertex_slots()];
-    for (at, id) in (0..).zip(&ids) {
-        let first = &mut input_of[id.index()];
-        *first = (*first).min(at);
-    }
-    let vertex = |id: VertexId| input.vertices[input_of[id.index()] as usize];
+    // Nothing is final before there is a triangle.
+    Ok(rest.unwrap_or(input))
+}
 
-    let mut is_final = covered(&t, &ids, &input)?;
-    for cell in t.finite_cells() {
-        if !is_final[cell.index()] {
-            let corners = t.tds().corners(cell).map(vertex);
-            let sites = corners.map(|corner| corner.site());
-            if tile.is_plane() || Disk::around(sites).is_some_and(|disk| disk.is_within(tile)) {
-                is_final[cell.index()] = true;
-                emit(TileTriangle { corners, edges: [EdgeKind::Plain; 3] });
+/// A triangulation of the vertices of a residual.
+struct Task<'a, C> {
+    tile: &'a Tile,
+    t: &'a Triangulation<Plane, 3, (), C>,
+    /// The vertex of each one of the input.
+    ids: &'a [VertexId],
+    input: &'a Residual,
+    /// For each vertex, the first one of the input at its site.
+    input_of: Vec<u32>,
+}
+
+impl<'a, C: Copy + Default> Task<'a, C> {
+    fn new(tile: &'a Tile, t: &'a Triangulation<Plane, 3, (), C>, ids: &'a [VertexId], input: &'a Residual) -> Self {
+        let mut input_of = vec![u32::MAX; t.tds().vertex_slots()];
+        for (at, id) in (0..).zip(ids) {
+            let first = &mut input_of[id.index()];
+            *first = (*first).min(at);
+        }
+        Task { tile, t, ids, input, input_of }
+    }
+
+    fn vertex(&self, id: VertexId) -> TileVertex {
+        self.input.vertices[self.input_of[id.index()] as usize]
+    }
+
+    /// Emits the triangles that are final now, and returns what is left.
+    fn run(&self, lines: &impl Lines, emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+        let is_known = self.tile.is_plane();
+        let is_certain =
+            |cell: CellId, disk: Disk| disk.is_within(self.tile) || lines.hide_all_outside(self.tile, &disk, cell);
+        let mut is_final = self.covered()?;
+        for cell in self.t.finite_cells() {
+            if !is_final[cell.index()] {
+                let corners = self.t.tds().corners(cell).map(|id| self.vertex(id));
+                let disk = || Disk::around(corners.map(|corner| corner.site()));
+                if is_known || !lines.enter(cell) && disk().is_some_and(|disk| is_certain(cell, disk)) {
+                    is_final[cell.index()] = true;
+                    emit(TileTriangle { corners, edges: [0, 1, 2].map(|i| lines.kind(cell, i)) });
+                }
             }
         }
+        Ok(if is_known { Residual::default() } else { self.rest(&is_final, lines) })
     }
-    Ok(if tile.is_plane() { Residual::default() } else { rest(&t, &is_final, &input, &input_of) })
-}
 
-/// Returns, for each cell, true if triangles in its place were final before: if it is on the final
-/// side of seams. Found by a flood that seams stop.
-fn covered(t: &Delaunay2, ids: &[VertexId], input: &Residual) -> Result<Vec<bool>> {
-    let mut is_covered = vec![false; t.tds().cell_slots()];
-    let mut is_seam = vec![[false; 3]; if input.seams.is_empty() { 0 } else { is_covered.len() }];
-    let mut flood: Vec<CellId> = Vec::new();
-    for seam in &input.seams {
-        let [from, to] = seam.map(|end| ids[end as usize]);
-        let Some((cell, i)) = t.tds().edge(from, to) else {
-            let [a, b] = seam.map(|end| input.vertices[end as usize].position);
-            return Err(Error::format(format!("no edge joins {a:?} and {b:?}, as a part of the triangulation has it"))
-                .cure("the parts are of different points, or a tile's extent is wrong"));
-        };
-        let beyond = t.tds().neighbor(cell, i);
-        is_seam[cell.index()][i] = true;
-        is_seam[beyond.index()][t.tds().index_of_neighbor(beyond, cell)] = true;
-        flood.push(cell);
-    }
-    while let Some(cell) = flood.pop() {
-        if std::mem::replace(&mut is_covered[cell.index()], true) {
-            continue;
+    /// Returns, for each cell, true if triangles in its place were final before: if it is on the
+    /// final side of seams. Found by a flood that seams stop.
+    fn covered(&self) -> Result<Vec<bool>> {
+        let tds = self.t.tds();
+        let mut is_covered = vec![false; tds.cell_slots()];
+        let seams = || self.input.edges.iter().filter(|edge| edge.is_seam).map(|edge| edge.ends);
+        let mut is_seam = vec![[false; 3]; if seams().next().is_none() { 0 } else { is_covered.len() }];
+        let mut flood: Vec<CellId> = Vec::new();
+        for seam in seams() {
+            let [from, to] = seam.map(|end| self.ids[end as usize]);
+            let Some((cell, i)) = tds.edge(from, to) else {
+                let [a, b] = seam.map(|end| self.input.vertices[end as usize].position);
+                return Err(Error::format(format!(
+                    "no edge joins {a:?} and {b:?}, as a part of the triangulation has it"
+                ))
+                .cure(CONTRADICTION));
+            };
+            let beyond = tds.neighbor(cell, i);
+            is_seam[cell.index()][i] = true;
+            is_seam[beyond.index()][tds.index_of_neighbor(beyond, cell)] = true;
+            flood.push(cell);
         }
-        let open = (0..3).filter(|&i| !is_seam[cell.index()][i]).map(|i| t.tds().neighbor(cell, i));
-        flood.extend(open);
+        while let Some(cell) = flood.pop() {
+            if std::mem::replace(&mut is_covered[cell.index()], true) {
+                continue;
+            }
+            let open = (0..3).filter(|&i| !is_seam[cell.index()][i]).map(|i| tds.neighbor(cell, i));
+            flood.extend(open);
+        }
+        let outside = tds.cells().filter(|&cell| tds.is_infinite(cell) && is_covered[cell.index()]);
+        let mut ends = outside.flat_map(|cell| tds.corners(cell).iter().copied());
+        if let Some(at) = ends.find(|&end| end != VertexId::INFINITE).map(|end| self.t.point(end)) {
+            return Err(
+                Error::format(format!("the seams around final triangles do not close, at {at:?}")).cure(CONTRADICTION)
+            );
+        }
+        Ok(is_covered)
     }
-    let outside = t.tds().cells().filter(|&cell| t.tds().is_infinite(cell) && is_covered[cell.index()]);
-    let mut ends = outside.flat_map(|cell| t.tds().corners(cell).iter().copied());
-    if let Some(at) = ends.find(|&end| end != VertexId::INFINITE).map(|end| t.point(end)) {
-        return Err(Error::format(format!("the seams around final triangles do not close, at {at:?}"))
-            .cure("the parts are of different points, or a tile's extent is wrong"));
-    }
-    Ok(is_covered)
-}
 
-/// Returns the vertices of cells that are not final, and the edges between these and final ones.
-fn rest(t: &Delaunay2, is_final: &[bool], input: &Residual, input_of: &[u32]) -> Residual {
-    let mut number_of = vec![u32::MAX; t.tds().vertex_slots()];
-    let mut rest = Residual::default();
-    let is_open = |cell: CellId| !is_final[cell.index()];
-    for cell in t.tds().cells().filter(|&cell| is_open(cell)) {
-        for &id in t.tds().corners(cell).iter().filter(|&&id| id != VertexId::INFINITE) {
-            if number_of[id.index()] == u32::MAX {
-                number_of[id.index()] = rest.vertices.len() as u32;
-                rest.vertices.push(input.vertices[input_of[id.index()] as usize]);
+    /// Returns the vertices of cells that are not final, the edges between these and final ones,
+    /// and the constrained edges without a final side.
+    fn rest(&self, is_final: &[bool], lines: &impl Lines) -> Residual {
+        let tds = self.t.tds();
+        let mut number_of = vec![u32::MAX; tds.vertex_slots()];
+        let mut rest =
+            Residual { pending: self.input.pending.clone(), has_lines: self.input.has_lines, ..Residual::default() };
+        let is_open = |cell: CellId| !is_final[cell.index()];
+        for cell in tds.cells().filter(|&cell| is_open(cell)) {
+            for &id in tds.corners(cell).iter().filter(|&&id| id != VertexId::INFINITE) {
+                if number_of[id.index()] == u32::MAX {
+                    number_of[id.index()] = rest.vertices.len() as u32;
+                    rest.vertices.push(self.vertex(id));
+                }
+            }
+            for i in 0..3 {
+                let beyond = tds.neighbor(cell, i);
+                let (is_seam, kind) = (!is_open(beyond), lines.kind(cell, i));
+                // One without a final side is met twice.
+                if is_seam || kind != EdgeKind::Plain && cell < beyond {
+                    // Seen from beyond, in the other direction.
+                    let [to, from] = tds.edge_ends(cell, i).map(|id| number_of[id.index()]);
+                    rest.edges.push(ResidualEdge { ends: [from, to], is_seam, kind });
+                }
             }
         }
-        for i in (0..3).filter(|&i| !is_open(t.tds().neighbor(cell, i))) {
-            // Seen from beyond, in the other direction.
-            let [to, from] = t.tds().edge_ends(cell, i).map(|id| number_of[id.index()]);
-            rest.seams.push([from, to]);
-        }
+        rest
     }
-    rest
 }
+
+/// What may have happened if parts contradict each other.
+const CONTRADICTION: &str = "the parts are of different points or lines, or a tile's extent is wrong";
 
 #[cold]
 fn refused(error: InputError, input: &Residual) -> Error {
     match error {
-        InputError::Coordinate(at) => {
-            super::super::admitted::refused(input.vertices[at].position).at(format!("point {at}"))
+        InputError::Coordinate(at) => admitted::refused(input.vertices[at].position).at(format!("point {at}")),
+        InputError::Crossing { at: [x, y], .. } => {
+            Error::format(format!("two lines, or a line and a seam, cross near {x} {y}"))
+                .cure("pass all lines arranged, so that none cross; else the parts are of different lines")
         }
         error => Error::limit(error.to_string()),
     }

@@ -1,18 +1,23 @@
 //! Tiles of small integer grids, where ties are the rule, against the triangulation in one piece.
 
 use super::*;
+use crate::data::EdgeKind;
 use crate::triangulation::Delaunay2;
 use crate::triangulation::geometry::Plane;
 use testkit::random::Random;
 
-/// A triangle by its corners in plan, from the smallest on.
-type Triangle = [[u64; 2]; 3];
+/// A triangle by its corners in plan, from the smallest on, and the ranks of the edges opposite
+/// them.
+pub(super) type Triangle = ([[u64; 2]; 3], [u8; 3]);
 
-fn canonical(corners: [[f64; 2]; 3]) -> Triangle {
+pub(super) fn canonical(corners: [[f64; 2]; 3], edges: [EdgeKind; 3]) -> Triangle {
     let bits = corners.map(|p| p.map(f64::to_bits));
     let first = (0..3).min_by_key(|&i| bits[i]).unwrap_or(0);
-    [0, 1, 2].map(|k| bits[(first + k) % 3])
+    let order = [0, 1, 2].map(|k| (first + k) % 3);
+    (order.map(|i| bits[i]), order.map(|i| edges[i].rank()))
 }
+
+const PLAIN: [EdgeKind; 3] = [EdgeKind::Plain; 3];
 
 /// The triangulation of all points.
 fn whole(points: &[[f64; 3]]) -> Vec<Triangle> {
@@ -22,7 +27,7 @@ fn whole(points: &[[f64; 3]]) -> Vec<Triangle> {
         return Vec::new();
     }
     let mut triangles: Vec<Triangle> =
-        t.finite_cells().map(|cell| canonical(t.tds().corners(cell).map(|v| *t.point(v)))).collect();
+        t.finite_cells().map(|cell| canonical(t.tds().corners(cell).map(|v| *t.point(v)), PLAIN)).collect();
     triangles.sort_unstable();
     triangles
 }
@@ -35,10 +40,15 @@ fn parts(cuts: &[f64]) -> Vec<[f64; 2]> {
 
 /// Returns the triangles that tiles find, and the number of vertices that leaves hand up. Each
 /// merge joins `fan` by `fan` tiles, until one is left.
-fn tiled(points: &[[f64; 3]], cuts: [&[f64]; 2], fan: usize) -> (Vec<Triangle>, usize) {
+pub(super) fn tiled(
+    points: &[[f64; 3]],
+    constraints: &[SubConstraint],
+    cuts: [&[f64]; 2],
+    fan: usize,
+) -> (Vec<Triangle>, usize) {
     let mut triangles = Vec::new();
-    let mut emit = |triangle: TileTriangle| {
-        triangles.push(canonical(triangle.corners.map(|corner| [corner.position[0], corner.position[1]])));
+    let mut emit = |TileTriangle { corners, edges }| {
+        triangles.push(canonical(corners.map(|corner| [corner.position[0], corner.position[1]]), edges));
     };
     let [mut columns, mut rows] = cuts.map(parts);
     let mut level: Vec<Residual> = Vec::new();
@@ -46,7 +56,7 @@ fn tiled(points: &[[f64; 3]], cuts: [&[f64]; 2], fan: usize) -> (Vec<Triangle>, 
         for column in &columns {
             let tile = Tile { min: [column[0], row[0]], max: [column[1], row[1]] };
             let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
-            level.push(leaf(&tile, level.len() as u32, &own, &mut emit).unwrap());
+            level.push(leaf(&tile, level.len() as u32, &own, constraints, &mut emit).unwrap());
         }
     }
     let handed_up = level.iter().map(|residual| residual.vertices.len()).sum();
@@ -69,14 +79,14 @@ fn tiled(points: &[[f64; 3]], cuts: [&[f64]; 2], fan: usize) -> (Vec<Triangle>, 
         rows = rows.chunks(fan).map(joined).collect();
         level = above;
     }
-    assert!(level.iter().all(|rest| rest.vertices.is_empty() && rest.seams.is_empty()));
+    assert!(level.iter().all(|rest| *rest == Residual::default()));
     triangles.sort_unstable();
     (triangles, handed_up)
 }
 
 /// The number of sets, which the environment sets:
 /// `BREAKLINE_TILES=20000 cargo test --release --lib tiles`.
-fn count() -> usize {
+pub(super) fn count() -> usize {
     std::env::var("BREAKLINE_TILES").ok().and_then(|n| n.parse().ok()).unwrap_or(400)
 }
 
@@ -109,7 +119,7 @@ fn tiles_give_the_triangles_of_the_whole() {
         };
         let (x, y) = (cut(), cut());
         let fan = 2 + round % 3;
-        let (found, _) = tiled(&all, [&x, &y], fan);
+        let (found, _) = tiled(&all, &[], [&x, &y], fan);
         assert_eq!(found, whole(&all), "round {round}: {all:?}, cut at {x:?} and {y:?}, fan {fan}");
     }
 }
@@ -119,7 +129,7 @@ fn few_vertices_are_handed_up() {
     let mut random = Random(3);
     let points: Vec<[f64; 3]> = (0..20_000).map(|_| [random.unit(), random.unit(), 0.0]).collect();
     let cuts = [0.25, 0.5, 0.75];
-    let (found, handed_up) = tiled(&points, [&cuts, &cuts], 4);
+    let (found, handed_up) = tiled(&points, &[], [&cuts, &cuts], 4);
     assert_eq!(found, whole(&points));
     // 5.64 sqrt(n) for a tile with neighbors all around; less at the rim.
     assert!((1_000..3_300).contains(&handed_up), "{handed_up}");
@@ -128,18 +138,19 @@ fn few_vertices_are_handed_up() {
 #[test]
 fn a_point_outside_of_its_tile_is_named() {
     let tile = Tile { min: [0.0, 0.0], max: [4.0, 4.0] };
-    let error = leaf(&tile, 7, &[[1.0, 1.0, 0.0], [4.0, 1.0, 0.0]], &mut |_| ()).unwrap_err().to_string();
+    let error = leaf(&tile, 7, &[[1.0, 1.0, 0.0], [4.0, 1.0, 0.0]], &[], &mut |_| ()).unwrap_err().to_string();
     assert!(error.starts_with("point 1 of tile 7 is at 4 1, expected x from 0 to below 4"), "{error}");
 }
 
 #[test]
 fn heights_and_seams_that_make_no_sense_are_refused() {
-    let error = leaf(&Tile::PLANE, 0, &[[1.0, 2.0, f64::NAN]], &mut |_| ()).unwrap_err().to_string();
+    let error = leaf(&Tile::PLANE, 0, &[[1.0, 2.0, f64::NAN]], &[], &mut |_| ()).unwrap_err().to_string();
     assert_eq!(error, "point 0: [1.0, 2.0, NaN] is not a finite point");
     let vertex = TileVertex { tile: 0, number: 0, position: [0.0; 3] };
-    let damaged = Residual { vertices: vec![vertex], seams: vec![[0, 1]] };
+    let seam = ResidualEdge { ends: [0, 1], is_seam: true, kind: EdgeKind::Plain };
+    let damaged = Residual { vertices: vec![vertex], edges: vec![seam], ..Residual::default() };
     let error = merge(&Tile::PLANE, &[damaged], &mut |_| ()).unwrap_err().to_string();
-    assert_eq!(error, "a seam of part 0 ends at vertex 1, expected less than 1");
+    assert_eq!(error, "an edge of part 0 ends at vertex 1, expected less than 1");
 }
 
 /// Residuals of different points, and a seam that is turned around.
@@ -148,13 +159,13 @@ fn residuals_that_contradict_each_other_are_refused() {
     let mut random = Random(9);
     let mut points = || (0..60).map(|_| [8.0 * random.unit(), 8.0 * random.unit(), 0.0]).collect::<Vec<_>>();
     let tile = Tile { min: [0.0, 0.0], max: [8.0, 8.0] };
-    let rest = leaf(&tile, 0, &points(), &mut |_| ()).unwrap();
-    assert!(!rest.seams.is_empty());
-    let other = leaf(&tile, 1, &points(), &mut |_| ()).unwrap();
+    let rest = leaf(&tile, 0, &points(), &[], &mut |_| ()).unwrap();
+    assert!(!rest.edges.is_empty());
+    let other = leaf(&tile, 1, &points(), &[], &mut |_| ()).unwrap();
     let error = merge(&Tile::PLANE, &[rest.clone(), other], &mut |_| ()).unwrap_err().to_string();
     assert!(error.contains("no edge joins") || error.contains("do not close"), "{error}");
     let mut turned = rest;
-    turned.seams.iter_mut().for_each(|seam| seam.reverse());
+    turned.edges.iter_mut().for_each(|seam| seam.ends.reverse());
     let error = merge(&Tile::PLANE, &[turned], &mut |_| ()).unwrap_err().to_string();
     assert!(error.contains("do not close"), "{error}");
 }

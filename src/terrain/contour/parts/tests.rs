@@ -123,7 +123,7 @@ fn split(random: &mut Random, points: &[[f64; 3]]) -> Vec<Vec<TileTriangle>> {
         }
         split[task].push(triangle);
     };
-    tiles::leaf(&Tile::PLANE, 0, points, &mut emit).unwrap();
+    tiles::leaf(&Tile::PLANE, 0, points, &[], &mut emit).unwrap();
     split
 }
 
@@ -153,7 +153,7 @@ fn tiled(random: &mut Random, points: &[[f64; 3]]) -> Vec<Vec<TileTriangle>> {
         for column in columns.windows(2) {
             let tile = Tile { min: [column[0], row[0]], max: [column[1], row[1]] };
             let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
-            of_leaves.push(task(&mut |emit| tiles::leaf(&tile, number, &own, emit).unwrap()));
+            of_leaves.push(task(&mut |emit| tiles::leaf(&tile, number, &own, &[], emit).unwrap()));
             number += 1;
         }
         let tile = Tile { min: [f64::NEG_INFINITY, row[0]], max: [f64::INFINITY, row[1]] };
@@ -349,7 +349,7 @@ fn rich() -> ContourParts {
     let points: Vec<[f64; 3]> =
         (0..144).map(|i| [f64::from(i % 12), f64::from(i / 12), random.below(4) as f64]).collect();
     let mut triangles = Vec::new();
-    tiles::leaf(&Tile::PLANE, 0, &points, &mut |triangle| triangles.push(triangle)).unwrap();
+    tiles::leaf(&Tile::PLANE, 0, &points, &[], &mut |triangle| triangles.push(triangle)).unwrap();
     triangles.retain(|_| random.below(10) > 0);
     let parts = collected(&Levels::every(0.5, 0.0).unwrap(), &triangles, 1000);
     let has_all = |parts: &LevelParts| !(parts.closed.is_empty() || parts.open.is_empty() || parts.sides.is_empty());
@@ -412,7 +412,7 @@ fn what_is_given_twice_is_refused() {
 fn levels_are_found_while_heights_rise() {
     let mut triangles = Vec::new();
     let points: Vec<[f64; 3]> = (0..2000).map(|i| [f64::from(i % 2), f64::from(i / 2), 1e-3 * f64::from(i)]).collect();
-    tiles::leaf(&Tile::PLANE, 0, &points, &mut |triangle| triangles.push(triangle)).unwrap();
+    tiles::leaf(&Tile::PLANE, 0, &points, &[], &mut |triangle| triangles.push(triangle)).unwrap();
     triangles.sort_by(|a, b| a.corners[0].position[2].total_cmp(&b.corners[0].position[2]));
     let many: Vec<f64> = (0..3000).map(|i| 1e-3 * f64::from(i)).collect();
     for levels in [Levels::every(1e-4, 0.0), Levels::every(0.1, 7.0), Levels::listed(&many)] {

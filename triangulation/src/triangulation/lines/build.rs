@@ -6,9 +6,14 @@
 //! 3. All sites are triangulated in bulk, and the parts of the segments are inserted as
 //!    sub-constraints. On the grid they do not cross.
 //!
+//! If lines must not cross, step 2 is left out until some do: segments that do not cross are their
+//! own arrangement.
+//!
 //! Every step depends on the set of points and segments only.
 
 use std::sync::atomic::AtomicBool;
+
+use rustc_hash::FxHashMap;
 
 use crate::arrangement::Arrangement;
 use crate::geometry::{Coordinates, Crossing};
@@ -63,7 +68,8 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     ///
     /// # Complexity
     /// O((n + k) log n) for k crossings, on all threads, and expected O(n log^2 n) for the
-    /// segments, on one.
+    /// segments, on one. Under [`OnCrossing::Reject`] crossings are only searched for if there are
+    /// some.
     pub fn from_lines<L: AsRef<[u32]>>(
         geometry: G,
         points: &[G::Point],
@@ -138,12 +144,23 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     /// Triangulates sites and lines through them. If vertices had to be added, also returns the new
     /// number of each site.
     fn from_sites_and_lines(
-        geometry: G,
+        mut geometry: G,
         mut sites: Sites<G::Point>,
         mut lines: Vec<LineVertices>,
         on_crossing: OnCrossing,
         grain: Grain,
     ) -> Result<(Self, Option<Vec<VertexId>>), InputError> {
+        if on_crossing == OnCrossing::Reject {
+            let triangulation = Self::from_unarranged_lines(geometry, sites, lines, grain)?;
+            if !triangulation.do_lines_cross() {
+                return Ok((triangulation, None));
+            }
+            // The arrangement finds the first crossing, or that all are at vertices.
+            let ConstrainedDelaunay { inner, lines: crossing } = triangulation;
+            lines = crossing.paths.given.into_iter().flatten().collect();
+            geometry = inner.geometry;
+            sites = Sites::sorted(&geometry, inner.points)?;
+        }
         let index = |v: VertexId| v.index() as u32;
         let segments = segments_of(lines.iter().map(|line| &**line), index);
         let arrangement = {
@@ -172,7 +189,8 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
         triangulation.lines.added = added.into_iter().collect();
         let parts = triangulation.lines.paths.record(&arrangement, &segments, vertex);
-        let crossing = triangulation.constrain_all(parts, &arrangement, grain);
+        triangulation.lines.rounding = Rounding::of(&arrangement);
+        let crossing = triangulation.constrain_all(parts, grain);
         if grain.is_stopped() {
             return Err(InputError::Canceled);
         }
@@ -181,6 +199,46 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
             triangulation.lines.rearrangements = 0;
         }
         Ok((triangulation, renumbered))
+    }
+
+    /// Triangulates sites and lines through them, without an arrangement. If lines
+    /// [cross](Self::do_lines_cross), the result is not the triangulation of an arrangement.
+    fn from_unarranged_lines(
+        geometry: G,
+        sites: Sites<G::Point>,
+        lines: Vec<LineVertices>,
+        grain: Grain,
+    ) -> Result<Self, InputError> {
+        let segments = segments_of(lines.iter().map(|line| &**line), |v| v);
+        let mut triangulation = Self::from_sites(geometry, sites, grain)?;
+        if grain.stops() {
+            return Err(InputError::Canceled);
+        }
+        triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
+        triangulation.lines.missing = triangulation.constrain_all(segments, grain);
+        if grain.is_stopped() {
+            return Err(InputError::Canceled);
+        }
+        Ok(triangulation)
+    }
+
+    /// Returns true if segments that were not arranged cross, at a vertex or elsewhere.
+    fn do_lines_cross(&self) -> bool {
+        let mut split: FxHashMap<VertexId, [VertexId; 2]> = FxHashMap::default();
+        let mut parts = self.lines.paths.splits.iter();
+        let is_crossing = |(&part, &at): (&[VertexId; 2], &VertexId)| {
+            let [a, b] = *split.entry(at).or_insert(part);
+            self.inner.turn(a, b, part[0]) != Sign::Zero
+        };
+        !self.lines.missing.is_empty() || parts.any(is_crossing)
+    }
+}
+
+impl Rounding {
+    /// Returns how an arrangement rounded crossings; `None` without any.
+    pub(in super::super) fn of(arrangement: &Arrangement) -> Option<Self> {
+        let has_crossings = !arrangement.crossings().is_empty();
+        has_crossings.then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() })
     }
 }
 
@@ -198,16 +256,13 @@ fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Inpu
 }
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Inserts the sub-constraints of an arrangement. Returns those that cross others; they are
-    /// present up to the first crossing only. Ends early if the flag of `grain` is set.
+    /// Inserts sub-constraints. Returns those that cross others; they are present up to the first
+    /// crossing only. Ends early if the flag of `grain` is set.
     pub(in super::super) fn constrain_all(
         &mut self,
         mut parts: Vec<[VertexId; 2]>,
-        arrangement: &Arrangement,
         grain: Grain,
     ) -> Vec<[VertexId; 2]> {
-        self.lines.rounding = (!arrangement.crossings().is_empty())
-            .then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() });
         if self.dimension() < 2 {
             self.lines.waiting = parts;
             // The vertices that split them, when there were triangles, may be removed.

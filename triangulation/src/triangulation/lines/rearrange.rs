@@ -17,7 +17,7 @@ use crate::tds::VertexId;
 use super::super::ConstrainedDelaunay;
 use super::super::bulk::{Grain, spatial_order};
 use super::super::locate::Dice;
-use super::build::points_added;
+use super::build::{Rounding, points_added};
 use super::paths::{segments_of, undirected};
 
 /// What the lines demand: segments between given vertices.
@@ -153,7 +153,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         }
         let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all are known now
         let parts = self.lines.paths.record(arrangement, segments, |site| sites[site as usize]);
-        let crossing = self.constrain_all(parts, arrangement, Grain::default());
+        self.lines.rounding = Rounding::of(arrangement);
+        let crossing = self.constrain_all(parts, Grain::default());
         self.lines.paths.drop_stray_splits();
         self.lines.touch();
         crossing

@@ -1,0 +1,242 @@
+//! Lines in a task: which sub-constraints are known whole, and what they hide.
+
+use rustc_hash::FxHashMap;
+
+use super::Tile;
+use super::disk::Disk;
+use super::residual::{Residual, ResidualEdge};
+use crate::data::EdgeKind;
+use crate::error::{Error, Result};
+use crate::terrain::admitted;
+use crate::triangulation::geometry::{Geometry, Plane};
+use crate::triangulation::kernel::{Kernel, Orientation2, Wide};
+use crate::triangulation::num::{Sign, unsigned_zero};
+use crate::triangulation::tds::CellId;
+use crate::triangulation::{ConstrainedDelaunay2, Passage};
+
+/// How many triangles the search for what a triangle sees may reach; then the triangle waits. So a
+/// task takes linear time, whatever the lines.
+const MOST_REACHED: usize = 256;
+
+/// A part of a line that crosses no other one between its ends.
+///
+/// Points may lie on it; they split it. Others may end on it or overlap it; where they overlap, the
+/// kind that counts most in a surface counts (shores before banks, walls, breaklines, soft lines,
+/// draped lines and clip lines).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SubConstraint {
+    /// The positions of its ends.
+    pub ends: [[f64; 2]; 2],
+    /// What its edges are part of.
+    pub kind: EdgeKind,
+}
+
+impl SubConstraint {
+    /// Returns it with the ends in order, or an error if it cannot be part of a line.
+    fn checked(&self) -> Result<Self> {
+        let mut ends = self.ends.map(|end| end.map(unsigned_zero));
+        if let Some(&[x, y]) = ends.iter().find(|end| !Plane::new().admits(end)) {
+            return Err(admitted::refused([x, y, 0.0]).at("an end of a line"));
+        }
+        if !self.kind.is_constrained() {
+            let ([a, b], kind) = (ends, self.kind);
+            return Err(Error::format(format!("the line from {a:?} to {b:?} has the kind {kind:?}"))
+                .cure("pass the kind of a line, such as Breakline"));
+        }
+        ends.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        Ok(SubConstraint { ends, kind: self.kind })
+    }
+
+    /// Returns true if it has a point in a tile. Exact.
+    ///
+    /// Cut to the box of the segment, the tile has four corners, some of them excluded. The line
+    /// meets it if there are corners on both sides, or if a corner on the line is included.
+    fn meets(&self, tile: &Tile) -> bool {
+        let [a, b] = self.ends;
+        let mut bounds = [[(0.0, false); 2]; 2];
+        for axis in 0..2 {
+            let [low, high] = [a[axis].min(b[axis]), a[axis].max(b[axis])];
+            if high < tile.min[axis] || low >= tile.max[axis] {
+                return false;
+            }
+            // The box includes its sides, and so does the tile its lower ones.
+            bounds[axis] = [(low.max(tile.min[axis]), true), (high.min(tile.max[axis]), high < tile.max[axis])];
+        }
+        let [x, y] = bounds;
+        let corners = x.iter().flat_map(|x| y.iter().map(move |y| ([x.0, y.0], x.1 && y.1)));
+        let mut sides = [false; 2];
+        for (corner, is_included) in corners {
+            match Wide::sign(&Orientation2([a, b, corner])) {
+                Sign::Positive => sides[0] = true,
+                Sign::Negative => sides[1] = true,
+                Sign::Zero if is_included => return true,
+                Sign::Zero => {}
+            }
+        }
+        sides == [true; 2]
+    }
+}
+
+/// Returns those sub-constraints that have a point in a tile, with their ends in order.
+///
+/// # Errors
+/// If one cannot be part of a line.
+pub(super) fn of_tile(tile: &Tile, constraints: &[SubConstraint]) -> Result<Vec<SubConstraint>> {
+    let mut own = Vec::new();
+    for constraint in constraints {
+        let constraint = constraint.checked()?;
+        if constraint.ends[0] != constraint.ends[1] && constraint.meets(tile) {
+            own.push(constraint);
+        }
+    }
+    Ok(own)
+}
+
+/// Turns pending sub-constraints whose ends are both known into edges.
+///
+/// # Errors
+/// If an end is in the tile and no vertex is there: a sub-constraint keeps the vertices on it in
+/// the residual, so its line was given without the point.
+pub(super) fn join_known(tile: &Tile, residual: &mut Residual) -> Result<()> {
+    let pending = residual.pending.iter().map(SubConstraint::checked).collect::<Result<Vec<_>>>()?;
+    let key = |site: [f64; 2]| site.map(|x| unsigned_zero(x).to_bits());
+    let mut vertex_at: FxHashMap<[u64; 2], Option<u32>> =
+        pending.iter().flat_map(|constraint| constraint.ends).map(|end| (key(end), None)).collect();
+    if vertex_at.is_empty() {
+        return Ok(());
+    }
+    for (number, vertex) in (0..).zip(&residual.vertices) {
+        if let Some(at @ None) = vertex_at.get_mut(&key(vertex.site())) {
+            *at = Some(number);
+        }
+    }
+    residual.pending.clear();
+    for constraint in pending {
+        let ends = constraint.ends.map(|end| vertex_at.get(&key(end)).copied().flatten());
+        for (&end, vertex) in constraint.ends.iter().zip(ends) {
+            if vertex.is_none() && tile.holds(end) {
+                return Err(Error::format(format!("a line ends at {end:?}, where its tile has no point"))
+                    .cure("pass the vertices of lines as points, too, to the tile that they are in"));
+            }
+        }
+        match ends {
+            [Some(a), Some(b)] => {
+                residual.edges.push(ResidualEdge { ends: [a, b], is_seam: false, kind: constraint.kind });
+            }
+            _ => residual.pending.push(constraint),
+        }
+    }
+    // Each part that it meets brings it.
+    let order = |constraint: &SubConstraint| (constraint.ends.map(key), constraint.kind.number());
+    residual.pending.sort_unstable_by_key(order);
+    residual.pending.dedup();
+    Ok(())
+}
+
+/// What lines mean for the triangles of a task.
+pub(super) trait Lines {
+    /// Returns the kind of the edge opposite corner `i` of a cell.
+    fn kind(&self, cell: CellId, i: usize) -> EdgeKind;
+
+    /// Returns true if a pending sub-constraint enters a cell or runs along one of its edges.
+    fn enter(&self, cell: CellId) -> bool;
+
+    /// Returns true if constraints hide from a cell all that is in its disk outside of the tile. In
+    /// doubt returns false.
+    fn hide_all_outside(&self, tile: &Tile, disk: &Disk, cell: CellId) -> bool;
+}
+
+/// No lines.
+pub(super) struct NoLines;
+
+impl Lines for NoLines {
+    fn kind(&self, _: CellId, _: usize) -> EdgeKind {
+        EdgeKind::Plain
+    }
+
+    fn enter(&self, _: CellId) -> bool {
+        false
+    }
+
+    fn hide_all_outside(&self, _: &Tile, _: &Disk, _: CellId) -> bool {
+        false
+    }
+}
+
+/// The lines of a triangulation whose constraints are the edges of a residual.
+pub(super) struct KnownLines<'a> {
+    t: &'a ConstrainedDelaunay2,
+    edges: &'a [ResidualEdge],
+    /// For each cell, true if a pending sub-constraint enters it or runs along one of its edges.
+    entered: Vec<bool>,
+}
+
+impl<'a> KnownLines<'a> {
+    /// Returns the lines of a triangulation of dimension 2. The ids of its lines are the positions
+    /// of the edges.
+    pub(super) fn new(tile: &Tile, t: &'a ConstrainedDelaunay2, residual: &'a Residual) -> Self {
+        let tds = t.tds();
+        let mut entered = vec![false; tds.cell_slots()];
+        for constraint in &residual.pending {
+            // From a known end, if there is one: finding the way into the hull takes longer.
+            let [a, b] = &constraint.ends;
+            let ends = if tile.holds(*a) { [a, b] } else { [b, a] };
+            for passage in t.along(ends, None) {
+                match passage {
+                    Passage::Face(cell) => entered[cell.index()] = true,
+                    Passage::Along([from, to]) => {
+                        for (cell, _) in [tds.edge(from, to), tds.edge(to, from)].into_iter().flatten() {
+                            entered[cell.index()] = true;
+                        }
+                    }
+                    // It touches these, or enters the faces beside them.
+                    Passage::Edge(..) | Passage::Vertex(_) => {}
+                }
+            }
+        }
+        KnownLines { t, edges: &residual.edges, entered }
+    }
+}
+
+impl Lines for KnownLines<'_> {
+    fn kind(&self, cell: CellId, i: usize) -> EdgeKind {
+        if !self.t.is_constrained(cell, i) {
+            return EdgeKind::Plain;
+        }
+        let [a, b] = self.t.tds().edge_ends(cell, i);
+        let kinds = self.t.lines_through(a, b).map(|line| self.edges[line.index()].kind);
+        kinds.min_by_key(|kind| kind.rank()).unwrap_or_default()
+    }
+
+    fn enter(&self, cell: CellId) -> bool {
+        self.entered[cell.index()]
+    }
+
+    /// A line of sight from the cell to a position in the disk stays in the disk, and leaves
+    /// triangles by edges that are not constrained. Beyond the line through such an edge it stays,
+    /// too. So where the disk misses the edge, or is within the tile beyond its line, there is
+    /// nothing to be seen. The search ends there. It fails where it leaves the hull.
+    fn hide_all_outside(&self, tile: &Tile, disk: &Disk, cell: CellId) -> bool {
+        let tds = self.t.tds();
+        let mut reached = vec![cell];
+        let mut next = 0;
+        while let Some(&from) = reached.get(next) {
+            next += 1;
+            for i in (0..3).filter(|&i| !self.t.is_constrained(from, i)) {
+                let beyond = tds.neighbor(from, i);
+                if reached.contains(&beyond) {
+                    continue;
+                }
+                let edge = tds.edge_ends(from, i).map(|end| *self.t.point(end));
+                if disk.misses(edge) || disk.is_within_beyond(edge, tile) {
+                    continue;
+                }
+                if tds.is_infinite(beyond) || reached.len() == MOST_REACHED {
+                    return false;
+                }
+                reached.push(beyond);
+            }
+        }
+        true
+    }
+}
