@@ -19,6 +19,7 @@ use super::point_files::PointFiles;
 use super::systems::{self, SystemOptions, Systems};
 use super::transforms::Transforms;
 use super::units::Units;
+use crate::crs::Crs;
 use crate::data::{Bounds, Columns, Layer};
 use crate::error::{Error, Result};
 use crate::io::points;
@@ -208,16 +209,8 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     let (of_points, of_layers) = transforms.by_file.split_at(files.len());
 
     let units = Units::of(crs.as_ref());
-    let mut builder = TinBuilder::default();
+    let mut builder = builder_of(request, &units, crs);
     let mut rim = Rim::new(request, &units, journal);
-    let default_tolerance = units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES);
-    builder.duplicates = request.duplicates;
-    builder.on_crossing = request.on_crossing;
-    builder.crossing_heights = request.crossing_heights;
-    builder.crossing_tolerance = request.crossing_tolerance.unwrap_or(default_tolerance);
-    builder.max_edge_inside = request.max_edge_inside;
-    builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
-    builder.crs = crs;
 
     // Lines first: they are few, and their errors are known before the points are read.
     let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven, overlaps } =
@@ -244,7 +237,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         rim.find_limit(&report, &extents);
         let rings = std::mem::take(&mut level_rings);
         let rings = if request.lines.flats.is_empty() { rings } else { Vec::new() };
-        line_notes::note_level_rings(&rings, &points, &names, default_tolerance, &units, journal);
+        line_notes::note_level_rings(&rings, &points, &names, default_tolerance(&units), &units, journal);
         let mut builder = builder.clone();
         builder.max_edge = rim.max_edge;
         builder.window = reach.window().map(|read| Window { read, all: report.extent });
@@ -297,6 +290,23 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         line_names: names,
     };
     Ok((tin, report))
+}
+
+/// Returns a builder with the options of a request, without points and lines.
+pub(super) fn builder_of(request: &TinRequest, units: &Units, crs: Option<Crs>) -> TinBuilder {
+    let mut builder = TinBuilder::default();
+    builder.duplicates = request.duplicates;
+    builder.on_crossing = request.on_crossing;
+    builder.crossing_heights = request.crossing_heights;
+    builder.crossing_tolerance = request.crossing_tolerance.unwrap_or_else(|| default_tolerance(units));
+    builder.max_edge_inside = request.max_edge_inside;
+    builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
+    builder.crs = crs;
+    builder
+}
+
+fn default_tolerance(units: &Units) -> f64 {
+    units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES)
 }
 
 /// Returns a box enlarged by a length on all sides in plan, and unbounded in z.

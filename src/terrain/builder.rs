@@ -192,6 +192,20 @@ impl TinBuilder {
         points
     }
 
+    /// Removes the points that this builder's water and walls replace from a list.
+    pub(crate) fn take_replaced(&self, points: &mut Vec<[f64; 3]>) {
+        if !self.replaced.is_empty() {
+            self.replaced.split_off(points);
+        }
+    }
+
+    /// Returns the lines of all kinds in plan.
+    pub(crate) fn lines_in_plan(&self) -> Vec<Vec<[f64; 2]>> {
+        let starts = std::iter::once(&0).chain(&self.line_ends);
+        let lines = starts.zip(&self.line_ends).map(|(&start, &end)| &self.line_points[start..end]);
+        lines.map(|line| line.iter().map(|p| [p[0], p[1]]).collect()).collect()
+    }
+
     fn add_line(&mut self, line: &[[f64; 3]], kind: EdgeKind) {
         self.line_points.extend(line.iter().copied().map(positive_zero));
         self.line_ends.push(self.line_points.len());

@@ -92,6 +92,96 @@ fn grids_in_overlapping_files_are_the_same_in_any_tiles() {
 }
 
 #[test]
+fn breaklines_in_tiles_are_those_of_the_valley() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let lines = valley.replace("valley.laz", "breaklines.shp");
+    let tilings = ["--tiles 1x1", "--tiles 4x4", "--tiles 17x9", "--tiles auto --memory 16MB"];
+    assert_same(&folder, &format!("dem {valley} --breaklines {lines} --resolution 0.7"), &tilings);
+    let words = format!("dem {valley} --soft-lines {lines} --max-edge 2.5 --max-edge-inside 2");
+    assert_same(&folder, &words, &["--tiles 6x6"]);
+    let words = format!("contour {valley} --breaklines {lines} --interval 0.5");
+    let (whole, _) = output_of(&folder, &words, "whole.geojson");
+    let (tiled, said) = output_of(&folder, &format!("{words} --tiles 5x8"), "tiled.geojson");
+    assert!(tiled == whole && said.contains("lines       "), "{said}");
+}
+
+/// A layer of lines of one kind.
+fn layer(lines: &[Vec<[f64; 3]>], kind: &str) -> String {
+    let features: Vec<String> = lines
+        .iter()
+        .map(|line| {
+            let points: Vec<String> = line.iter().map(|[x, y, z]| format!("[{x},{y},{z}]")).collect();
+            let (open, close) = if kind == "Polygon" { ("[[", "]]") } else { ("[", "]") };
+            let coordinates = format!("{open}{}{close}", points.join(","));
+            format!(
+                r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}"#
+            )
+        })
+        .collect();
+    format!(
+        r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::25832"}}}},"features":[{}]}}"#,
+        features.join(",")
+    )
+}
+
+/// Lines of all kinds on grids: they cross, overlap, touch points and run along cuts; water replaces
+/// points, and levels lines.
+#[test]
+fn lines_of_all_kinds_are_the_same_in_any_tiles() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut random = Random(37);
+    let mut built = 0;
+    for round in 0..rounds() {
+        let side = [6, 12, 30][round % 3];
+        let mut point = || [0, 1, 2].map(|_| random.below(side) as f64);
+        let points: Vec<([f64; 3], u8)> = (0..10 + 7 * (round % 9)).map(|_| (point(), 2)).collect();
+        std::fs::write(folder.path().join("points.las"), lidar::las(&points, Some(25832))).unwrap();
+        let mut words = "dem points.las --resolution 0.25".to_owned();
+        for (kind, count) in
+            [("breaklines", 1 + round % 5), ("soft-lines", round % 3), ("walls", usize::from(round % 7 == 0))]
+        {
+            let lines: Vec<Vec<[f64; 3]>> = (0..count)
+                .map(|_| (0..2 + random.index(3)).map(|_| [0, 1, 2].map(|_| random.below(side) as f64)).collect())
+                .collect();
+            if count > 0 {
+                std::fs::write(folder.path().join(format!("{kind}.geojson")), layer(&lines, "LineString")).unwrap();
+                words += &format!(" --{kind} {kind}.geojson");
+            }
+        }
+        if words.contains("--walls") {
+            words += " --wall-drop 2";
+        }
+        if round % 4 == 1 {
+            let [x, y, z] = [0, 1, 2].map(|_| random.below(side) as f64);
+            let lake = vec![[x, y, z], [x + 3.0, y, z], [x + 4.0, y + 3.0, z], [x, y + 2.0, z], [x, y, z]];
+            std::fs::write(folder.path().join("lake.geojson"), layer(&[lake], "Polygon")).unwrap();
+            words += " --flat lake.geojson";
+        }
+        words += [" --max-edge none", " --max-edge 2.5", ""][round % 3];
+        let words: Vec<&str> = words.split(' ').collect();
+        let whole = run_in(&folder, &[&words[..], &["-o", "whole.tif", "--overwrite"]].concat());
+        if whole.code != 0 {
+            continue;
+        }
+        built += 1;
+        let tiles = format!("{}x{}", 1 + random.below(side), 1 + random.below(side));
+        let tiled = run_in(&folder, &[&words[..], &["--tiles", &tiles, "-o", "tiled.tif", "--overwrite"]].concat());
+        assert_eq!(tiled.code, 0, "round {round}: {words:?} {tiles}: {}", tiled.stderr);
+        let same = std::fs::read(folder.path().join("whole.tif")).unwrap()
+            == std::fs::read(folder.path().join("tiled.tif")).unwrap();
+        assert!(same, "round {round}: {words:?} {tiles}");
+    }
+    assert!(built * 2 > rounds(), "{built}");
+}
+
+/// The number of sets of lines, which the environment sets: `BREAKLINE_JOBS=2000 cargo test --release
+/// --test tiles`.
+fn rounds() -> usize {
+    std::env::var("BREAKLINE_JOBS").ok().and_then(|n| n.parse().ok()).unwrap_or(30)
+}
+
+#[test]
 fn files_that_are_tiles_are_not_divided() {
     let folder = tempfile::tempdir().unwrap();
     let valley = valley();
@@ -140,8 +230,8 @@ fn what_tiles_do_not_have_is_refused() {
     let valley = valley();
     let lines = valley.replace("valley.laz", "breaklines.shp");
     for (words, said) in [
-        (format!("{valley} --breaklines {lines}"), "--breaklines does not work with tiles yet"),
-        (format!("{valley} --rivers {lines}"), "--rivers does not work with tiles yet"),
+        (format!("{valley} --draped-lines {lines}"), "--draped-lines does not work with tiles yet"),
+        (format!("{valley} --boundary {lines}"), "--boundary does not work with tiles yet"),
         (format!("{valley} --bounds 0,0,1,1"), "--bounds does not work with tiles yet"),
         (format!("{valley} --max-edge auto"), "--max-edge auto does not work with tiles yet"),
         (format!("{valley} --method natural"), "tiles have linear heights only"),

@@ -97,6 +97,9 @@ pub(super) fn print(report: &JobReport, console: &Console) {
     if report.duplicates > 0 {
         console.line(format_args!("            {} at the position of another point", report.duplicates));
     }
+    if report.line_edges > 0 {
+        console.line(format_args!("lines       {} edges", report.line_edges));
+    }
     let rim = match report.beyond_max_edge {
         0 => String::new(),
         count => format!(" ({count} left out at the rim; {} waited for that)", report.waited),

@@ -3,14 +3,16 @@
 //! A job lives in a folder: the plan, and a file for each task that is done. So it can be
 //! interrupted at any moment and go on, and its tasks can run anywhere that sees the folder.
 //!
-//! 1. If the files are no tiles, each is *divided* among the tiles.
-//! 2. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
+//! 1. If the files are no tiles, or there are lines, each is *divided* among the tiles.
+//! 2. If there are *lines*, one task arranges them, with the points next to them.
+//! 3. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
 //!    are final; see [`tiles`](crate::terrain::tiles).
-//! 3. The *rim* is decided: triangles with edges over the limit wait until all others are known.
-//! 4. The cells that all tasks have drawn are the product, or the contours, joined.
+//! 4. The *rim* is decided: triangles with edges over the limit wait until all others are known.
+//! 5. The cells that all tasks have drawn are the product, or the contours, joined.
 
 mod bytes;
 mod contours;
+mod lines;
 mod plan;
 mod raster;
 mod schedule;
@@ -19,10 +21,12 @@ mod tasks;
 
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use serde_json::Value;
 
 use self::contours::DrawnContours;
+use self::lines::JobLines;
 use self::plan::{Plan, crs_of, fingerprint, opened};
 use self::raster::DrawnCells;
 use self::task_file::{TaskFile, UNFINISHED};
@@ -129,6 +133,8 @@ impl TiledProduct {
 enum Task {
     /// Divides a file among the tiles.
     Divide(usize),
+    /// Arranges all lines.
+    Lines,
     /// A step of the triangulation.
     Triangulate(usize),
     /// Decides about the triangles at the rim.
@@ -145,6 +151,8 @@ pub struct Job<'a> {
     folder: PathBuf,
     plan: Plan,
     steps: Vec<Step>,
+    /// The lines, read by the first task that needs them, and the coordinate system.
+    lines: OnceLock<Option<JobLines>>,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
@@ -188,6 +196,8 @@ pub struct JobReport {
     pub used: u64,
     /// Points at the position of another.
     pub duplicates: u64,
+    /// Edges on lines.
+    pub line_edges: u64,
     /// Triangles of the surface.
     pub triangles: u64,
     /// Triangles that were left out at the rim.
@@ -231,7 +241,17 @@ impl<'a> Job<'a> {
         notices: Vec<Notice>,
     ) -> Self {
         let steps = plan.layout.steps();
-        Job { request, systems, product, bad: options.bad, folder: options.folder.clone(), plan, steps, notices }
+        Job {
+            request,
+            systems,
+            product,
+            bad: options.bad,
+            folder: options.folder.clone(),
+            plan,
+            steps,
+            lines: OnceLock::new(),
+            notices,
+        }
     }
 
     /// Creates the folder of the job, with the plan.
@@ -298,7 +318,12 @@ impl<'a> Job<'a> {
 
     /// Returns the number of tasks.
     pub fn task_count(&self) -> usize {
-        self.divided() + self.steps.len() + usize::from(self.plan.max_edge.is_some())
+        self.first_step() + self.steps.len() + usize::from(self.plan.max_edge.is_some())
+    }
+
+    /// The number of the task of the first step.
+    fn first_step(&self) -> usize {
+        self.divided() + usize::from(self.plan.has_lines)
     }
 
     /// The number of files that are divided.
@@ -307,23 +332,43 @@ impl<'a> Job<'a> {
     }
 
     fn task(&self, number: usize) -> Task {
-        match number.checked_sub(self.divided()) {
-            None => Task::Divide(number),
+        match number.checked_sub(self.first_step()) {
+            None if number < self.divided() => Task::Divide(number),
+            None => Task::Lines,
             Some(step) if step < self.steps.len() => Task::Triangulate(step),
             Some(_) => Task::Rim,
         }
     }
 
     fn task_of_step(&self, step: usize) -> usize {
-        self.divided() + step
+        self.first_step() + step
+    }
+
+    /// The task that arranges the lines, if there are any.
+    fn lines_task(&self) -> Option<usize> {
+        self.plan.has_lines.then_some(self.divided())
+    }
+
+    /// Returns the lines; `None` if there are none.
+    fn lines(&self, journal: &Journal) -> Result<Option<&JobLines>> {
+        if !self.plan.has_lines {
+            return Ok(None);
+        }
+        if let Some(lines) = self.lines.get() {
+            return Ok(lines.as_ref());
+        }
+        let crs = self.crs()?;
+        let read = JobLines::read(self.request, crs.as_ref(), journal)?;
+        Ok(self.lines.get_or_init(|| read).as_ref())
     }
 
     /// Returns the tasks that must be done before a task.
     pub fn needs(&self, task: usize) -> Vec<usize> {
         match self.task(task) {
             Task::Divide(_) => Vec::new(),
+            Task::Lines => (0..self.divided()).collect(),
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(_) if self.plan.divides => self.files_of(step).collect(),
+                Work::Leaf(_) if self.plan.divides => self.files_of(step).chain(self.lines_task()).collect(),
                 Work::Leaf(_) => Vec::new(),
                 Work::Merge(parts) => parts.iter().map(|&part| self.task_of_step(part)).collect(),
             },
@@ -333,7 +378,7 @@ impl<'a> Job<'a> {
 
     /// Returns the tasks that must be done before the output is written.
     pub fn last_needs(&self) -> Vec<usize> {
-        (self.divided()..self.task_count()).collect()
+        (self.first_step()..self.task_count()).collect()
     }
 
     /// Returns an error unless all tasks are done; `last` is the number of the one that writes the
@@ -373,6 +418,7 @@ impl<'a> Job<'a> {
     pub fn task_name(&self, task: usize) -> String {
         match self.task(task) {
             Task::Divide(file) => format!("divide {}", self.plan.files[file].path.display()),
+            Task::Lines => "lines".to_owned(),
             Task::Triangulate(step) => match &self.steps[step].work {
                 Work::Leaf(tile) if self.plan.divides => format!("tile {tile}"),
                 Work::Leaf(tile) => format!("tile {tile}, {}", self.plan.files[*tile as usize].path.display()),
@@ -483,6 +529,7 @@ impl<'a> Job<'a> {
             report.read += file.count("read");
             report.used += file.count("used");
             report.duplicates += file.count("duplicates");
+            report.line_edges += file.count("line_edges");
             report.triangles += file.count("triangles");
             report.beyond_max_edge += file.count("removed");
             report.waited += file.count("waiting");
@@ -562,7 +609,7 @@ impl<'a> Job<'a> {
 
     /// The files of all tasks that have triangles.
     fn step_paths(&self) -> Vec<PathBuf> {
-        (self.divided()..self.task_count()).map(|task| self.task_path(task)).collect()
+        (self.first_step()..self.task_count()).map(|task| self.task_path(task)).collect()
     }
 
     fn area(&self) -> f64 {

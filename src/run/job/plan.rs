@@ -5,6 +5,7 @@ use std::time::UNIX_EPOCH;
 
 use serde_json::{Value, json};
 
+use super::lines::{self, JobLines};
 use super::{BadFiles, Division, TileOptions, TiledProduct};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointBatch};
@@ -12,6 +13,7 @@ use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
+use crate::run::line_inputs::LineLayers;
 use crate::run::memory;
 use crate::run::notice::Notice;
 use crate::run::open;
@@ -64,8 +66,11 @@ pub(super) struct Plan {
     /// The files that are skipped because they cannot be opened: their positions in the request,
     /// and why.
     pub(super) skipped: Vec<(usize, String)>,
-    /// True if the files are no tiles: they are divided among tiles first.
+    /// True if the files are divided among tiles first, because they are no tiles or there are
+    /// lines.
     pub(super) divides: bool,
+    /// True if there are lines, which one task arranges.
+    pub(super) has_lines: bool,
     pub(super) layout: Layout,
     /// The classes that are used.
     pub(super) classes: Vec<u8>,
@@ -80,20 +85,17 @@ pub(super) struct Plan {
 
 /// Returns an error if the request has something that tiles do not have yet.
 pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Result<()> {
-    let lines = request.lines.inputs();
-    let first_lines = lines.into_iter().find(|(_, inputs)| !inputs.is_empty()).map(|(role, _)| role.option());
     let refused = [
-        (!request.breaklines.is_empty(), "--breaklines"),
         (!request.boundary.is_empty(), "--boundary"),
         (request.bounds.is_some(), "--bounds"),
         (request.max_edge == EdgeLimit::Auto, "--max-edge auto"),
         (systems.target.is_some(), "--t-srs"),
     ];
-    let first = refused.iter().find(|(is_given, _)| *is_given).map(|(_, name)| *name).or(first_lines);
-    if let Some(option) = first {
+    if let Some((_, option)) = refused.iter().find(|(is_given, _)| *is_given) {
         return Err(Error::unsupported(format!("{option} does not work with tiles yet"))
             .cure("leave one of them out: without --tiles the whole surface is built in memory"));
     }
+    lines::require_tiled(request)?;
     if let Some(input) = request.points.iter().find(|input| !matches!(input, Input::File(_)) || input.is_read_once()) {
         return Err(Error::usage("tiles are made of files, which can be read again after an interruption")
             .in_file(input.path())
@@ -138,6 +140,11 @@ impl Plan {
         for Spread { min, max, .. } in &spreads {
             [min, max].into_iter().for_each(|&[x, y]| extent.add([x, y, 0.0]));
         }
+        let lines = JobLines::read(request, crs.as_ref(), journal)?;
+        let mut drawn_extent = extent;
+        if let Some(lines) = &lines {
+            [lines.extent.min, lines.extent.max].into_iter().for_each(|corner| drawn_extent.add(corner));
+        }
         let workers = rayon::current_num_threads() as u64;
         let task_memory = options.memory.unwrap_or_else(memory::half_of_free) / workers;
         let most = (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS);
@@ -147,13 +154,13 @@ impl Plan {
                 let [min, max] = [extent.min, extent.max].map(|[x, y, _]| [x, y]);
                 (Layout::grid(min, max, counts), true)
             }
-            Division::Auto => match Layout::of_boxes(&spreads).filter(|_| are_small) {
+            Division::Auto => match Layout::of_boxes(&spreads).filter(|_| are_small && lines.is_none()) {
                 Some(layout) => (layout, false),
                 None => (Layout::balanced(&spreads, most as f64 * AVERAGE), true),
             },
         };
         let placed = |options: &FrameOptions| {
-            let frame = frame::placed(options, extent, crs.as_ref(), journal)?;
+            let frame = frame::placed(options, drawn_extent, crs.as_ref(), journal)?;
             if options.extent.is_none() && !frame.has_shared_centers() {
                 return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
                     .cure("state the extent of the result with --te"));
@@ -164,8 +171,9 @@ impl Plan {
         let units = Units::of(crs.as_ref());
         let max_edge = request.max_edge.length(&units);
         journal.add(request.max_edge.notice(&units));
+        let has_lines = lines.is_some();
         let request = fingerprint(request, systems, product, options);
-        Ok(Plan { request, files, skipped, divides, layout, classes, max_edge, frame, task_memory })
+        Ok(Plan { request, files, skipped, divides, has_lines, layout, classes, max_edge, frame, task_memory })
     }
 
     /// Returns the number of points that the files state.
@@ -207,6 +215,7 @@ impl Plan {
             "files": self.files.iter().map(file).collect::<Vec<_>>(),
             "skipped": self.skipped,
             "divides": self.divides,
+            "has_lines": self.has_lines,
             "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
             "classes": self.classes,
             "max_edge": self.max_edge,
@@ -249,6 +258,7 @@ impl Plan {
             files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
             skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
             divides: value["divides"].as_bool()?,
+            has_lines: value["has_lines"].as_bool()?,
             layout: Layout::from_nodes(nodes)?,
             classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
             max_edge: value["max_edge"].as_f64(),
@@ -279,7 +289,12 @@ pub(super) fn crs_of(
     systems: &SystemOptions,
     journal: &Journal,
 ) -> Result<Option<Crs>> {
-    let Systems { crs, .. } = systems::reconcile_some(&points.stated(&request.classes, journal)?, systems, journal)?;
+    let mut stated = points.stated(&request.classes, journal)?;
+    // The lines themselves are read later, with all that there is to say about them.
+    let context = Context { cancel: journal.context.cancel, ..Context::default() };
+    let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, &Journal::new(&context))?;
+    stated.extend(layers.stated());
+    let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
     Ok(crs)
 }
 

@@ -5,13 +5,13 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::bytes::{self, Reader, put_u32, put_u64};
-use super::contours;
 use super::raster::Drawing;
 use super::task_file::{TaskFile, TaskWriter};
 use super::{BadFiles, Job, Task, TiledProduct};
+use super::{contours, lines};
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Error, Kind, Result};
-use crate::run::context::Context;
+use crate::run::context::{Context, Journal};
 use crate::run::units::neat;
 use crate::run::{frame, open};
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
@@ -31,6 +31,7 @@ impl Job<'_> {
         let mut writer = TaskWriter::create(&self.task_path(number))?;
         let facts = match self.task(number) {
             Task::Divide(file) => self.divide(file, &mut writer, context)?,
+            Task::Lines => self.arrange(&mut writer, context)?,
             Task::Triangulate(step) => match &self.steps[step].work {
                 Work::Leaf(tile) => self.leaf(step, *tile, &mut writer, context)?,
                 Work::Merge(parts) => self.merge(step, parts, &mut writer)?,
@@ -47,7 +48,12 @@ impl Job<'_> {
         writer.begin("points");
         let mut waiting: Vec<[f64; 3]> = Vec::new();
         let layout = &self.plan.layout;
+        let lines = self.lines(&Journal::new(&Context { cancel: context.cancel, ..Context::default() }))?;
+        let mut near = Vec::new();
         let mut write_run = |points: &mut Vec<[f64; 3]>| -> Result<()> {
+            if let Some(lines) = lines {
+                near.append(&mut lines.take_points(points));
+            }
             let mut tiles: Vec<(u32, u32)> =
                 (0..).zip(points.iter()).map(|(i, &[x, y, _])| (layout.tile_of([x, y]), i)).collect();
             // By tiles, and within each in the order of the file.
@@ -75,10 +81,33 @@ impl Job<'_> {
         let facts = self.facts_of_file(file, read.map(|report| facts_of(&report)))?;
         if facts.contains_key("skipped") {
             table.clear();
+            near.clear();
         }
         writer.begin("table");
         writer.put(&table)?;
+        writer.begin("near");
+        writer.put(&bytes::of_points(&near))?;
         Ok(facts)
+    }
+
+    /// Arranges the lines, with the points next to them from all files.
+    fn arrange(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+        let journal = Journal::new(context);
+        let Some(lines) = self.lines(&journal)? else { return Ok(Map::new()) };
+        let mut near = Vec::new();
+        let mut extent = Bounds::default();
+        for (number, file) in self.plan.files.iter().enumerate() {
+            let mut divided = self.open_task(number)?;
+            let bytes = divided.section("near")?;
+            let mut reader = Reader::new(&bytes);
+            while let Some(point) = reader.point() {
+                near.push(point);
+            }
+            [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
+        }
+        let tin = lines.build(near, &extent, self.crs()?.as_ref(), &journal)?;
+        let edges = lines::write(&tin, &self.plan.layout, writer)?;
+        Ok(Map::from_iter([("line_edges".to_owned(), json!(edges))]))
     }
 
     /// Returns the facts of a file that was read; of one that is bad, why it is skipped.
@@ -149,13 +178,21 @@ impl Job<'_> {
             (all, facts)
         };
         let count = points.len();
-        let points = one_per_site(&points, self.request.duplicates)?;
+        let mut points = one_per_site(&points, self.request.duplicates)?;
         facts.insert("duplicates".to_owned(), json!(count - points.len()));
+        let mut constraints = Vec::new();
+        if let Some(task) = self.lines_task() {
+            let lines = lines::read(&mut self.open_task(task)?, tile)?;
+            points = lines.join(points);
+            constraints = lines.constraints;
+        }
         let rectangle = &self.steps[step].tile;
-        self.emitting(writer, facts, |emit| tiles::leaf(rectangle, tile, &points, &[], emit)).map_err(|error| {
-            let error = error.within(format_args!("tile {tile}"));
-            if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
-        })
+        self.emitting(writer, facts, |emit| tiles::leaf(rectangle, tile, &points, &constraints, emit)).map_err(
+            |error| {
+                let error = error.within(format_args!("tile {tile}"));
+                if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
+            },
+        )
     }
 
     /// Returns the points of a tile from the divided files, in the order of the files.

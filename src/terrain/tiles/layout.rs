@@ -206,6 +206,24 @@ impl Layout {
         }
     }
 
+    /// Calls `each` with the number of each tile that has a part of a closed box.
+    pub fn tiles_in(&self, min: [f64; 2], max: [f64; 2], each: &mut dyn FnMut(u32)) {
+        let mut open = vec![0];
+        while let Some(here) = open.pop() {
+            match self.nodes[here as usize] {
+                Node::Tile(number) => each(number),
+                Node::Cut { axis, at, parts } => {
+                    if min[axis] < at {
+                        open.push(parts[0]);
+                    }
+                    if max[axis] >= at {
+                        open.push(parts[1]);
+                    }
+                }
+            }
+        }
+    }
+
     /// Returns the steps of a triangulation, such that each step comes after those that it merges,
     /// and soon after them. The last one covers the plane.
     pub fn steps(&self) -> Vec<Step> {
@@ -302,6 +320,15 @@ mod tests {
             for number in 0..layout.tile_count() as u32 {
                 assert_eq!(tile(number).holds(position), number == owner);
             }
+            let far = position.map(|at| at + [0.0, 0.7][random.index(2)]);
+            let mut met = Vec::new();
+            layout.tiles_in(position, far, &mut |number| met.push(number));
+            met.sort_unstable();
+            let meets = |number: &u32| {
+                let Tile { min, max } = tile(*number);
+                (0..2).all(|k| position[k] < max[k] && far[k] >= min[k])
+            };
+            assert!(met.into_iter().eq((0..layout.tile_count() as u32).filter(meets)));
         }
         let mut merged = vec![0; steps.len()];
         for (at, step) in steps.iter().enumerate() {

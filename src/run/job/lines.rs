@@ -1,0 +1,212 @@
+//! The lines of a surface in tiles: arranged once, by one task, then given to the tiles.
+//!
+//! Where lines cross, and which points bend them, is no local question: it depends on crossings far
+//! away. But it depends on no point that is away from all lines. So the lines are built to a TIN of
+//! their own, together with the points that are on them or next to them. Its constrained edges are
+//! those of the surface, with the same heights, and no two of them cross.
+
+use rustc_hash::FxHashSet;
+
+use super::bytes::{self, CONSTRAINT_BYTES, Reader, put_u32, put_u64};
+use super::task_file::{TaskFile, TaskWriter};
+use crate::crs::Crs;
+use crate::data::{Bounds, Surface};
+use crate::error::{Error, Result};
+use crate::run::context::Journal;
+use crate::run::crossings::{self, LineNames};
+use crate::run::line_inputs::LineLayers;
+use crate::run::line_notes;
+use crate::run::tin::{TinRequest, builder_of};
+use crate::run::transforms::Transforms;
+use crate::run::units::Units;
+use crate::terrain::tiles::{Layout, SubConstraint};
+use crate::terrain::{Inside, Tin, TinBuilder};
+
+/// How far from a line a point may matter to it, in units in the last place of the largest
+/// coordinate. Lines are rounded by half a unit, and bent by points within one.
+const NEAR: f64 = 1024.0;
+
+/// The lines of a request, and what points have to do with them.
+#[derive(Debug)]
+pub(super) struct JobLines {
+    /// Lines without points.
+    builder: TinBuilder,
+    names: LineNames,
+    /// The lines in plan, as rings.
+    index: Inside,
+    near: f64,
+    /// The box around all lines.
+    pub(super) extent: Bounds,
+}
+
+impl JobLines {
+    /// Reads the lines of a request; `None` if there are none.
+    ///
+    /// # Errors
+    /// If a layer cannot be read, or is not what its option takes.
+    pub(super) fn read(request: &TinRequest, crs: Option<&Crs>, journal: &Journal) -> Result<Option<Self>> {
+        let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;
+        if !layers.has_lines_with_heights() {
+            return Ok(None);
+        }
+        let from = vec![None; layers.stated().count()];
+        let transforms = Transforms::new(&from, crs, journal)?;
+        let units = Units::of(crs);
+        let mut builder = builder_of(request, &units, crs.cloned());
+        let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
+        line_notes::note_uneven(&added.uneven, &units, journal);
+        line_notes::note_overlaps(&added.overlaps, journal);
+        let lines = builder.lines_in_plan();
+        let mut extent = Bounds::default();
+        lines.iter().flatten().for_each(|&[x, y]| extent.add([x, y, 0.0]));
+        let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let index = Inside::new(&[lines]);
+        Ok(Some(JobLines { builder, names: added.names, index, near: NEAR * f64::EPSILON * largest, extent }))
+    }
+
+    /// Removes the points that water and walls replace, and returns those of the others that may
+    /// matter to a line.
+    pub(super) fn take_points(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+        self.builder.take_replaced(points);
+        points.iter().copied().filter(|&[x, y, _]| self.index.is_near([x, y], self.near)).collect()
+    }
+
+    /// Builds the lines with the points next to them. `extent` is that of all points.
+    ///
+    /// # Errors
+    /// If lines cross or differ in height where the rules refuse that.
+    pub(super) fn build(
+        &self,
+        near: Vec<[f64; 3]>,
+        extent: &Bounds,
+        crs: Option<&Crs>,
+        journal: &Journal,
+    ) -> Result<Tin> {
+        let mut builder = self.builder.clone();
+        builder.add_owned_points(near);
+        // A single line spans no area. These are far from all lines, and so decide nothing.
+        let mut all = self.extent;
+        [extent.min, extent.max].into_iter().for_each(|corner| all.add(corner));
+        let size = [0, 1].map(|k| 1.0 + all.max[k] - all.min[k]);
+        let sides = [0, 1].map(|k| [all.min[k] - size[k], all.max[k] + size[k]]);
+        builder.add_owned_points(sides[0].iter().flat_map(|&x| sides[1].map(|y| [x, y, 0.0])).collect());
+        builder.max_edge_inside = None;
+        let tin = builder.build_named(&|line| self.names.name(line), journal.context.cancel)?;
+        line_notes::note_walls_in_water(tin.report(), &self.names, journal);
+        crossings::note(tin.report(), &self.names, &Units::of(crs), journal);
+        Ok(tin)
+    }
+}
+
+/// What the lines give to a tile.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LinesOfTile {
+    /// The vertices of lines in the tile.
+    pub(super) vertices: Vec<[f64; 3]>,
+    /// The sub-constraints that may meet the tile.
+    pub(super) constraints: Vec<SubConstraint>,
+}
+
+/// Writes the edges of lines, divided among the tiles. Returns their number.
+pub(super) fn write(tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Result<usize> {
+    let mut tiles = vec![LinesOfTile::default(); layout.tile_count()];
+    let mut is_taken = vec![false; tin.vertex_count()];
+    let mut edges = 0;
+    for face in 0..tin.face_count() as u32 {
+        let Some(corners) = tin.face(face) else { continue };
+        for i in 0..3 {
+            let kind = tin.edge_kind(face, i);
+            if !kind.is_constrained() || tin.neighbor(face, i).is_some_and(|other| other < face) {
+                continue;
+            }
+            edges += 1;
+            let vertices = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+            let [a, b] = vertices.map(|vertex| tin.position(vertex));
+            let constraint = SubConstraint { ends: [[a[0], a[1]], [b[0], b[1]]], kind };
+            let [min, max] = [f64::min, f64::max].map(|of| [of(a[0], b[0]), of(a[1], b[1])]);
+            layout.tiles_in(min, max, &mut |tile| tiles[tile as usize].constraints.push(constraint));
+            for (vertex, position) in vertices.into_iter().zip([a, b]) {
+                if !std::mem::replace(&mut is_taken[vertex as usize], true) {
+                    tiles[layout.tile_of([position[0], position[1]]) as usize].vertices.push(position);
+                }
+            }
+        }
+    }
+    writer.begin("lines");
+    let mut table = Vec::new();
+    for (tile, LinesOfTile { vertices, constraints }) in (0..).zip(&tiles) {
+        if vertices.is_empty() && constraints.is_empty() {
+            continue;
+        }
+        put_u32(&mut table, tile);
+        put_u64(&mut table, writer.position());
+        put_u64(&mut table, vertices.len() as u64);
+        put_u64(&mut table, constraints.len() as u64);
+        writer.put(&bytes::of_points(vertices))?;
+        writer.put(&bytes::of_constraints(constraints))?;
+    }
+    writer.begin("table");
+    writer.put(&table)?;
+    Ok(edges)
+}
+
+/// Reads what the lines give to a tile.
+pub(super) fn read(file: &mut TaskFile, tile: u32) -> Result<LinesOfTile> {
+    let table = file.section("table")?;
+    let (from, length) = file.range("lines");
+    let mut reader = Reader::new(&table);
+    while let Some(of_tile) = reader.u32() {
+        let [Some(at), Some(vertices), Some(constraints)] = [(); 3].map(|()| reader.u64()) else {
+            return Err(file.damaged());
+        };
+        if of_tile != tile {
+            continue;
+        }
+        let sizes = (vertices.checked_mul(24), constraints.checked_mul(CONSTRAINT_BYTES as u64));
+        let (Some(first), Some(second)) = sizes else { return Err(file.damaged()) };
+        let end = first.checked_add(second).and_then(|size| size.checked_add(at));
+        if at < from || end.is_none_or(|end| end > from + length) {
+            return Err(file.damaged());
+        }
+        let mut points = vec![0; first as usize];
+        file.read(at, &mut points)?;
+        let mut edges = vec![0; second as usize];
+        file.read(at + first, &mut edges)?;
+        let mut reader = Reader::new(&points);
+        return Ok(LinesOfTile {
+            vertices: (0..vertices).filter_map(|_| reader.point()).collect(),
+            constraints: bytes::to_constraints(&edges).ok_or_else(|| file.damaged())?,
+        });
+    }
+    Ok(LinesOfTile::default())
+}
+
+impl LinesOfTile {
+    /// Replaces the points at the vertices of lines by these.
+    pub(super) fn join(&self, mut points: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+        let site = |p: &[f64; 3]| [p[0].to_bits(), p[1].to_bits()];
+        let own: FxHashSet<[u64; 2]> = self.vertices.iter().map(site).collect();
+        if !own.is_empty() {
+            points.retain(|point| !own.contains(&site(point)));
+            points.extend_from_slice(&self.vertices);
+        }
+        points
+    }
+}
+
+/// Returns an error for options of lines that tiles do not have yet.
+pub(super) fn require_tiled(request: &TinRequest) -> Result<()> {
+    let refused = [
+        (!request.lines.draped.is_empty(), "--draped-lines"),
+        (!request.lines.holes.is_empty(), "--holes"),
+        (
+            request.max_edge_inside.is_some() && !(request.lines.flats.is_empty() && request.lines.rivers.is_empty()),
+            "--max-edge-inside together with --flat or --rivers",
+        ),
+    ];
+    match refused.iter().find(|(is_given, _)| *is_given) {
+        Some((_, option)) => Err(Error::unsupported(format!("{option} does not work with tiles yet"))
+            .cure("leave one of them out: without --tiles the whole surface is built in memory")),
+        None => Ok(()),
+    }
+}
