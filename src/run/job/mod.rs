@@ -263,7 +263,7 @@ impl<'a> Job<'a> {
         if path.exists() {
             return Err(Error::usage("there is a job in this folder already")
                 .in_file(&self.folder)
-                .cure("go on with it (--resume), or name another folder (--job)"));
+                .cure("go on with it (--resume), remove it (`breakline job clean`), or name another folder (--job)"));
         }
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         std::fs::create_dir_all(self.folder.join("tasks")).map_err(named)?;
