@@ -233,6 +233,7 @@ fn what_tiles_do_not_have_is_refused() {
         (format!("{valley} --draped-lines {lines}"), "--draped-lines does not work with tiles yet"),
         (format!("{valley} --boundary {lines}"), "--boundary does not work with tiles yet"),
         (format!("{valley} --bounds 0,0,1,1"), "--bounds does not work with tiles yet"),
+        (format!("{valley} --crossing-report a.csv"), "--crossing-report does not work with tiles yet"),
         (format!("{valley} --max-edge auto"), "--max-edge auto does not work with tiles yet"),
         (format!("{valley} --method natural"), "tiles have linear heights only"),
         ("-".to_owned(), "tiles are made of files"),

@@ -6,7 +6,7 @@ use crate::cli::input::args::TileArgs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_extent;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::run::units::bytes;
 use crate::run::{self, BadFiles, Job, JobReport, JobSize, TileOptions, TiledProduct};
 
@@ -29,8 +29,14 @@ pub(super) fn run<'a>(
     console: &Console,
 ) -> Result<Tiled<'a>> {
     let context = console.context();
-    if !args.are_asked_for() && !run::needs_tiles(&plan.request, product, args.memory, &context)? {
+    let tables = [(&plan.crossing_report, "--crossing-report"), (&plan.replaced_report, "--flat-points")];
+    let table = tables.iter().find(|(table, _)| table.is_some());
+    if !args.are_asked_for() && (table.is_some() || !run::needs_tiles(&plan.request, product, args.memory, &context)?) {
         return Ok(Tiled::Whole);
+    }
+    if let Some((_, option)) = table {
+        return Err(Error::unsupported(format!("{option} does not work with tiles yet"))
+            .cure("leave one of them out: without --tiles the whole surface is built in memory"));
     }
     let options = options(args, target);
     let resumed = if args.resume { Job::open(&plan.request, product, &options)? } else { None };
