@@ -21,7 +21,8 @@ pub(in crate::cli) fn run(args: &ContourArgs, console: &Console) -> Result<Exit>
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
-        Tiled::Ran(job, report) => {
+        Tiled::Ran(ran) => {
+            let (job, report) = *ran;
             let drawn = write_all(&outputs, console, |target| job.write_contours(&report, target, &console.context()))?;
             tiled::print(&report, console);
             print_contours(&drawn, report.crs.as_ref(), console);

@@ -20,7 +20,8 @@ pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
-        Tiled::Ran(job, report) => {
+        Tiled::Ran(ran) => {
+            let (job, report) = *ran;
             let cells = job.cells(&report, &console.context())?;
             outputs.announce(&cells, |()| 4, console)?;
             let written = write(&cells, &outputs, console)?;

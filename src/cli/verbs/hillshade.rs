@@ -28,7 +28,8 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
-        Tiled::Ran(job, report) => {
+        Tiled::Ran(ran) => {
+            let (job, report) = *ran;
             let cells = job.cells(&report, &console.context())?;
             outputs.announce(&cells, cell_bytes, console)?;
             write(&cells, &outputs, console)?;

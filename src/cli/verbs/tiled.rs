@@ -17,7 +17,7 @@ pub(super) enum Tiled<'a> {
     /// The plan was printed.
     Planned,
     /// All tasks are done.
-    Ran(Box<Job<'a>>, JobReport),
+    Ran(Box<(Job<'a>, JobReport)>),
 }
 
 /// Runs the tasks of a request, if tiles are asked for or memory would not suffice.
@@ -64,7 +64,7 @@ pub(super) fn run<'a>(
     })?;
     drop(lock);
     let report = job.report()?;
-    Ok(Tiled::Ran(Box::new(job), report))
+    Ok(Tiled::Ran(Box::new((job, report))))
 }
 
 /// Prints what a plan consists of.
