@@ -36,6 +36,9 @@ impl Disk {
     ///
     /// The radius is the length of the vector to the center. Both errors of the center are added to
     /// it twice: once for that length, once because the disk lies around the rounded center.
+    ///
+    /// `PERF:` without inlining a leaf takes 10 % longer.
+    #[inline(always)]
     pub(super) fn around([a, b, c]: [[f64; 2]; 3]) -> Option<Self> {
         let [b, c] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
         let products = [b[0] * c[1], b[1] * c[0]];
@@ -63,6 +66,7 @@ impl Disk {
     }
 
     /// Returns true if no point outside of a tile is in the disk.
+    #[inline(always)]
     pub(super) fn is_within(&self, tile: &Tile) -> bool {
         (0..2).all(|axis| {
             let [low, high] = [self.center[axis] - self.radius, self.center[axis] + self.radius];
