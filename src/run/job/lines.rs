@@ -34,6 +34,8 @@ pub(super) struct JobLines {
     names: LineNames,
     /// The lines in plan, as rings.
     index: Inside,
+    /// The bits of the sites of their vertices.
+    sites: FxHashSet<[u64; 2]>,
     near: f64,
     /// The box around all lines.
     pub(super) extent: Bounds,
@@ -60,8 +62,9 @@ impl JobLines {
         let mut extent = Bounds::default();
         lines.iter().flatten().for_each(|&[x, y]| extent.add([x, y, 0.0]));
         let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let sites = lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect();
         let index = Inside::new(&[lines]);
-        Ok(Some(JobLines { builder, names: added.names, index, near: NEAR * f64::EPSILON * largest, extent }))
+        Ok(Some(JobLines { builder, names: added.names, index, sites, near: NEAR * f64::EPSILON * largest, extent }))
     }
 
     /// Removes the points that water and walls replace, and returns those of the others that may
@@ -107,8 +110,8 @@ pub(super) struct LinesOfTile {
     pub(super) constraints: Vec<SubConstraint>,
 }
 
-/// Writes the edges of lines, divided among the tiles. Returns their number.
-pub(super) fn write(tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Result<usize> {
+/// Writes the edges and the vertices of lines, divided among the tiles. Returns the number of edges.
+pub(super) fn write(lines: &JobLines, tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Result<usize> {
     let mut tiles = vec![LinesOfTile::default(); layout.tile_count()];
     let mut is_taken = vec![false; tin.vertex_count()];
     let mut edges = 0;
@@ -125,11 +128,14 @@ pub(super) fn write(tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Resu
             let constraint = SubConstraint { ends: [[a[0], a[1]], [b[0], b[1]]], kind };
             let [min, max] = [f64::min, f64::max].map(|of| [of(a[0], b[0]), of(a[1], b[1])]);
             layout.tiles_in(min, max, &mut |tile| tiles[tile as usize].constraints.push(constraint));
-            for (vertex, position) in vertices.into_iter().zip([a, b]) {
-                if !std::mem::replace(&mut is_taken[vertex as usize], true) {
-                    tiles[layout.tile_of([position[0], position[1]]) as usize].vertices.push(position);
-                }
-            }
+            vertices.iter().for_each(|&vertex| is_taken[vertex as usize] = true);
+        }
+    }
+    // A line without length has a vertex, and a height for it, but no edge.
+    for (vertex, is_taken) in (0..).zip(is_taken) {
+        let [x, y, z] = tin.position(vertex);
+        if is_taken || lines.sites.contains(&[x, y].map(f64::to_bits)) {
+            tiles[layout.tile_of([x, y]) as usize].vertices.push([x, y, z]);
         }
     }
     writer.begin("lines");
