@@ -125,8 +125,8 @@ fn layer(lines: &[Vec<[f64; 3]>], kind: &str) -> String {
     )
 }
 
-/// Lines of all kinds on grids: they cross, overlap, touch points and run along cuts; water replaces
-/// points, and levels lines.
+/// Lines of all kinds on grids: they cross, overlap, touch points and run along cuts; water
+/// replaces points, and levels lines.
 #[test]
 fn lines_of_all_kinds_are_the_same_in_any_tiles() {
     let folder = tempfile::tempdir().unwrap();
@@ -175,8 +175,8 @@ fn lines_of_all_kinds_are_the_same_in_any_tiles() {
     assert!(built * 2 > rounds(), "{built}");
 }
 
-/// The number of sets of lines, which the environment sets: `BREAKLINE_JOBS=2000 cargo test --release
-/// --test tiles`.
+/// The number of sets of lines, which the environment sets: `BREAKLINE_JOBS=2000 cargo test
+/// --release --test tiles`.
 fn rounds() -> usize {
     std::env::var("BREAKLINE_JOBS").ok().and_then(|n| n.parse().ok()).unwrap_or(30)
 }

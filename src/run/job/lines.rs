@@ -110,7 +110,8 @@ pub(super) struct LinesOfTile {
     pub(super) constraints: Vec<SubConstraint>,
 }
 
-/// Writes the edges and the vertices of lines, divided among the tiles. Returns the number of edges.
+/// Writes the edges and the vertices of lines, divided among the tiles. Returns the number of
+/// edges.
 pub(super) fn write(lines: &JobLines, tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Result<usize> {
     let mut tiles = vec![LinesOfTile::default(); layout.tile_count()];
     let mut is_taken = vec![false; tin.vertex_count()];

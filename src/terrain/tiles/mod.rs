@@ -76,14 +76,15 @@ mod lines_tests;
 mod long_edges;
 mod node;
 mod residual;
+mod sub_constraint;
 #[cfg(test)]
 mod tests;
 
 pub use layout::{Layout, Node, Spread, Step, Work};
-pub use lines::SubConstraint;
 pub use long_edges::{EdgeKey, Gate, LongEdges, Rim, Waiting, has_long_edge};
 pub use node::{TileTriangle, leaf, merge};
 pub use residual::{Residual, ResidualEdge, TileVertex};
+pub use sub_constraint::SubConstraint;
 
 /// A rectangle in plan that owns the points in it: each axis includes its lowest coordinate and
 /// excludes its highest.

@@ -2,8 +2,9 @@
 
 use super::Tile;
 use super::disk::Disk;
-use super::lines::{self, KnownLines, Lines, NoLines, SubConstraint};
+use super::lines::{self, KnownLines, Lines, NoLines};
 use super::residual::{Residual, ResidualEdge, TileVertex};
+use super::sub_constraint::SubConstraint;
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::terrain::admitted;

@@ -1,6 +1,6 @@
 //! What may still change of a part of the triangulation.
 
-use super::lines::SubConstraint;
+use super::sub_constraint::SubConstraint;
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 
