@@ -48,6 +48,35 @@ fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
         .fails(1, &["kept/plan.json: the plan of the job is damaged"]);
 }
 
+/// What is left of a job whose plan is gone belongs to no other one.
+#[test]
+fn tasks_without_a_plan_do_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    output_of(&folder, &format!("dem {} --tiles 2x2 --job kept", valley()), "one.tif");
+    std::fs::remove_file(folder.path().join("kept/plan.json")).unwrap();
+    let words = format!("dem {} --tiles 2x2 --class 5 --duplicates highest", valley());
+    let (tiled, _) = output_of(&folder, &format!("{words} --job kept"), "two.tif");
+    let (whole, _) = output_of(&folder, &words.replace(" --tiles 2x2", ""), "three.tif");
+    assert!(tiled == whole);
+}
+
+#[test]
+fn a_plan_is_refused_if_its_output_cannot_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let plan = |words: &str| {
+        let words = format!("job plan j -- dem {valley} {words}");
+        run_in(&folder, &words.split(' ').collect::<Vec<_>>())
+    };
+    plan("-o none/x.tif").fails(1, &["the folder does not exist"]);
+    plan("-o x.docx").fails(2, &["is not a format that can be written here"]);
+    plan("-o x.tif --dry-run").fails(2, &["the command of a job has no --dry-run"]);
+    plan("-o x.tif --tiles 2000000x2").fails(2, &["expected `auto`, or columns and rows"]);
+    let words = format!("dem {valley} --tiles 2x2 --job x.tif -o x.tif");
+    run_in(&folder, &words.split(' ').collect::<Vec<_>>()).fails(2, &["have the same name"]);
+    assert!(files_of(folder.path()).is_empty());
+}
+
 #[test]
 fn a_file_that_changes_after_the_plan_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -57,6 +86,20 @@ fn a_file_that_changes_after_the_plan_is_refused() {
     changed.push(0);
     std::fs::write(folder.path().join("a.laz"), changed).unwrap();
     run_in(&folder, &["job", "run", "j"]).fails(2, &["a.laz: the file has changed since the job was planned"]);
+    std::fs::remove_file(folder.path().join("a.laz")).unwrap();
+    run_in(&folder, &["job", "run", "j"]).fails(1, &["a.laz: "]);
+
+    // Lines, too.
+    let layer = |z: f64| {
+        format!(
+            r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::25832"}}}},"features":[{{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":[[688050,5261050,{z}],[688300,5261250,{z}]]}}}}]}}"#
+        )
+    };
+    std::fs::write(folder.path().join("l.geojson"), layer(800.0)).unwrap();
+    let words = format!("job plan k -- dem {} --breaklines l.geojson -o d.tif --tiles 2x2", valley());
+    run_in(&folder, &words.split(' ').collect::<Vec<_>>()).works(&[]);
+    std::fs::write(folder.path().join("l.geojson"), layer(801.55)).unwrap();
+    run_in(&folder, &["job", "run", "k"]).fails(2, &["l.geojson: the file has changed since the job was planned"]);
 }
 
 #[test]

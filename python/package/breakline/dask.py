@@ -11,10 +11,12 @@ may be repeated, and a task that was done before is not done again.
 
 from __future__ import annotations
 
+import glob
 import json
 import os
 import subprocess
 import sys
+import uuid
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Union
@@ -28,6 +30,10 @@ PathLike = Union[str, "os.PathLike[str]"]
 #: Parameters here, and the options of the program that they stand for.
 _OPTIONS = {parameter: option for option, parameter in RENAMED.items()}
 _OPTIONS["extent"] = "te"
+
+
+#: Options that take several values in one word; others are repeated.
+_IN_ONE_WORD = {"--class", "--te", "--levels"}
 
 
 def dem(
@@ -94,9 +100,9 @@ def _run(
     options: "dict[str, Any]",
 ) -> Path:
     if not hasattr(client, "submit"):
-        raise usage("client is no client of dask.distributed", client, "pass dask.distributed.Client()")
+        raise usage("client is not a client of dask.distributed", client, "pass dask.distributed.Client()")
     files = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
-    command = [verb, *map(_path, files), "-o", _path(output), *_words(options)]
+    command = [verb, *(_path(found) for file in files for found in _found(file)), "-o", _path(output), *_words(options)]
     folder = _path(f"{os.fspath(output)}.job" if job is None else job)
     if not os.path.exists(os.path.join(folder, "plan.json")):
         _program("job", "plan", folder, "--", *command)
@@ -104,7 +110,8 @@ def _run(
     status = json.loads(_program("job", "status", folder, "--json", "--verify"))
     if status["command"] != command:
         raise usage(f"the job in {folder} is that of another call", folder, "pass another job, or remove the folder")
-    name = f"{verb}-{abs(hash(folder)):x}"
+    # New in each call: a scheduler keeps what failed under its key.
+    name = f"{verb}-{uuid.uuid4().hex[:8]}"
     futures: "dict[int, Any]" = {}
     for number, task in enumerate(status["tasks"]):
         if task["done"]:
@@ -114,7 +121,7 @@ def _run(
         title = "-".join(task["name"].split(",")[0].split(" ")[:2]).replace(os.sep, "_")
         # Later tasks first: merges come soon after what they merge.
         futures[number] = client.submit(
-            _task, folder, number, needs, key=f"{title}-{name}-{number}", priority=number, retries=retries, pure=False
+            _task, folder, number, _threads(task), needs, key=f"{title}-{name}-{number}", priority=number, retries=retries, pure=False
         )
     if futures:
         futures[max(futures)].result()
@@ -123,10 +130,21 @@ def _run(
     return Path(output)
 
 
-def _task(folder: str, number: int, needs: "list[int]") -> int:
+def _threads(task: "dict[str, Any]") -> "list[str]":
+    """Return the option for the threads of a task: one, unless it runs alone."""
+    return [] if task["name"] == "output" else ["--threads", "1"]
+
+
+def _task(folder: str, number: int, threads: "list[str]", needs: "list[int]") -> int:
     """Do a task on a worker."""
-    _program("job", "run", folder, "--task", str(number), "--threads", "1")
+    _program("job", "run", folder, "--task", str(number), *threads)
     return number
+
+
+def _found(file: PathLike) -> "list[str]":
+    """Return the files that a glob stands for now: a file that comes later belongs to no job that began before."""
+    text = os.fspath(file)
+    return sorted(glob.glob(text)) or [text]
 
 
 def _program(*words: str) -> str:
@@ -150,8 +168,10 @@ def _words(options: "dict[str, Any]") -> "list[str]":
             continue
         if value is True:
             words.append(option)
-        elif isinstance(value, (list, tuple)):
+        elif isinstance(value, (list, tuple)) and option in _IN_ONE_WORD:
             words.append(f"{option}={','.join(map(str, value))}")
+        elif isinstance(value, (list, tuple)):
+            words.extend(f"{option}={one}" for one in value)
         else:
             words.append(f"{option}={value}")
     return words

@@ -16,18 +16,18 @@ use crate::run::{self, ContourOptions, TiledProduct};
 /// Draws contours of a TIN or of a DEM.
 pub(in crate::cli) fn run(args: &ContourArgs, console: &Console) -> Result<Exit> {
     let (plan, options) = requested(args, console)?;
-    let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Contours, |_| ()), &plan)?;
+    let outputs = outputs_of(args, &plan)?;
     let tiled = TiledProduct::Contours(options.clone());
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {
-            let (job, report) = *ran;
+            let (job, report, lock) = *ran;
             let drawn = write_all(&outputs, console, |target| job.write_contours(&report, target, &console.context()))?;
             tiled::print(&report, console);
             print_contours(&drawn, report.crs.as_ref(), console);
             outputs.commit(console)?;
-            tiled::clean(&args.tiles, &job)?;
+            tiled::clean(&args.tiles, &job, &lock)?;
             return Ok(Exit::Done);
         }
     }
@@ -39,6 +39,11 @@ pub(in crate::cli) fn run(args: &ContourArgs, console: &Console) -> Result<Exit>
     print_contours(&drawn, product.crs(), console);
     outputs.commit(console)?;
     Ok(Exit::Done)
+}
+
+/// Returns the files to write, which can be written.
+pub(super) fn outputs_of(args: &ContourArgs, plan: &SurfacePlan) -> Result<Outputs<()>> {
+    outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Contours, |_| ()), plan)
 }
 
 /// Returns what the arguments ask for. Wrong levels are an error before anything is read.

@@ -15,20 +15,20 @@ use crate::run::{self, CellProduct, DemOptions, TiledProduct};
 /// Writes the heights of a TIN as a raster.
 pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     let (plan, options) = requested(args, console)?;
-    let outputs = outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), &plan)?;
+    let outputs = outputs_of(args, &plan)?;
     let tiled = TiledProduct::Heights(options.clone());
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {
-            let (job, report) = *ran;
+            let (job, report, lock) = *ran;
             let cells = job.cells(&report, &console.context())?;
             outputs.announce(&cells, |()| 4, console)?;
             let written = write(&cells, &outputs, console)?;
             tiled::print(&report, console);
             print_heights(written, report.crs.as_ref(), console);
             outputs.commit(console)?;
-            tiled::clean(&args.tiles, &job)?;
+            tiled::clean(&args.tiles, &job, &lock)?;
             return Ok(Exit::Done);
         }
     }
@@ -41,6 +41,11 @@ pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     print_heights(written, product.crs(), console);
     outputs.commit(console)?;
     Ok(Exit::Done)
+}
+
+/// Returns the files to write, which can be written.
+pub(super) fn outputs_of(args: &DemArgs, plan: &SurfacePlan) -> Result<Outputs<()>> {
+    outputs::resolve_with_report(&args.output, &outputs::formats_of(Product::Heights, |_| ()), plan)
 }
 
 /// Returns what the arguments ask for.

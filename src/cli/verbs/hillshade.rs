@@ -11,7 +11,7 @@ use crate::run::{self, CellProduct, HillshadeOptions, LightOptions, Model, Tiled
 
 /// The file formats of a hillshade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum ShadeFormat {
+pub(super) enum ShadeFormat {
     GeoTiff,
     Png,
 }
@@ -19,23 +19,19 @@ enum ShadeFormat {
 /// Shades a TIN or a DEM.
 pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exit> {
     let (plan, options) = requested(args, console)?;
-    let formats = outputs::formats_of(Product::Shades, |format| match format.content {
-        Content::Picture => ShadeFormat::Png,
-        _ => ShadeFormat::GeoTiff,
-    });
-    let outputs = outputs::resolve_with_report(&args.output, &formats, &plan)?;
+    let outputs = outputs_of(args, &plan)?;
     let tiled = TiledProduct::Shades(options.clone());
     match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {
-            let (job, report) = *ran;
+            let (job, report, lock) = *ran;
             let cells = job.cells(&report, &console.context())?;
             outputs.announce(&cells, cell_bytes, console)?;
             write(&cells, &outputs, console)?;
             tiled::print(&report, console);
             outputs.commit(console)?;
-            tiled::clean(&args.tiles, &job)?;
+            tiled::clean(&args.tiles, &job, &lock)?;
             return Ok(Exit::Done);
         }
     }
@@ -51,6 +47,15 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
     }
     outputs.commit(console)?;
     Ok(Exit::Done)
+}
+
+/// Returns the files to write, which can be written.
+pub(super) fn outputs_of(args: &HillshadeArgs, plan: &SurfacePlan) -> Result<Outputs<ShadeFormat>> {
+    let formats = outputs::formats_of(Product::Shades, |format| match format.content {
+        Content::Picture => ShadeFormat::Png,
+        _ => ShadeFormat::GeoTiff,
+    });
+    outputs::resolve_with_report(&args.output, &formats, plan)
 }
 
 /// Returns what the arguments ask for.

@@ -45,24 +45,28 @@ impl Command {
             let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
             Error::usage(format!("the command of the job: {first}")).cure("`breakline dem --help` lists its options")
         })?;
-        let (plan, product, output) = match &cli.verb {
+        let (plan, product, output, tiles) = match &cli.verb {
             Verb::Dem(args) => {
                 let (plan, options) = super::dem::requested(args, console)?;
-                (plan, TiledProduct::Heights(options), &args.output)
+                (plan, TiledProduct::Heights(options), &args.output, &args.tiles)
             }
             Verb::Contour(args) => {
                 let (plan, options) = super::contour::requested(args, console)?;
-                (plan, TiledProduct::Contours(options), &args.output)
+                (plan, TiledProduct::Contours(options), &args.output, &args.tiles)
             }
             Verb::Hillshade(args) => {
                 let (plan, options) = super::hillshade::requested(args, console)?;
-                (plan, TiledProduct::Shades(options), &args.output)
+                (plan, TiledProduct::Shades(options), &args.output, &args.tiles)
             }
             _ => {
                 return Err(Error::usage("a job makes a DEM, contours or a hillshade")
                     .cure("begin the command with `dem`, `contour` or `hillshade`"));
             }
         };
+        let own = [(tiles.dry_run, "--dry-run"), (tiles.resume, "--resume"), (tiles.job.is_some(), "--job")];
+        if let Some((_, option)) = own.iter().find(|(is_given, _)| *is_given) {
+            return Err(Error::usage(format!("the command of a job has no {option}")).cure("leave it out"));
+        }
         let output = output.output[0].clone();
         Ok(Command { verb: cli.verb, plan, product, output })
     }
@@ -91,13 +95,20 @@ impl Command {
 
 fn plan(job: &Path, words: &[String], console: &Console) -> Result<Exit> {
     let command = Command::parse(words, console)?;
+    // What cannot be written is better known before all tasks are done.
+    match &command.verb {
+        Verb::Dem(args) => super::dem::outputs_of(args, &command.plan).map(drop)?,
+        Verb::Contour(args) => super::contour::outputs_of(args, &command.plan).map(drop)?,
+        Verb::Hillshade(args) => super::hillshade::outputs_of(args, &command.plan).map(drop)?,
+        _ => {}
+    }
     let options = tiled::options(&command.tile_args(job), &command.output);
     let planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
-    planned.create()?;
     let folder = std::env::current_dir()?;
-    let stored = json!({ "command": words, "folder": folder });
-    let path = job.join(COMMAND);
-    std::fs::write(&path, stored.to_string()).map_err(|e| Error::from(e).in_file(&path))?;
+    let Some(folder) = folder.to_str() else {
+        return Err(Error::unsupported("the name is not valid Unicode, which a job needs").in_file(folder));
+    };
+    planned.create(Some(&json!({ "command": words, "folder": folder }).to_string()))?;
     tiled::print_size(&planned.size(), console);
     console.line(format_args!(
         "next        breakline job run {0}, or {0} --task 0 to {1}",

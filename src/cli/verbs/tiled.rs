@@ -8,7 +8,7 @@ use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_extent;
 use crate::error::{Error, Result};
 use crate::run::units::bytes;
-use crate::run::{self, BadFiles, Job, JobReport, JobSize, TileOptions, TiledProduct};
+use crate::run::{self, BadFiles, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct};
 
 /// What becomes of a request.
 pub(super) enum Tiled<'a> {
@@ -17,7 +17,7 @@ pub(super) enum Tiled<'a> {
     /// The plan was printed.
     Planned,
     /// All tasks are done.
-    Ran(Box<(Job<'a>, JobReport)>),
+    Ran(Box<(Job<'a>, JobReport, JobLock)>),
 }
 
 /// Runs the tasks of a request, if tiles are asked for or memory would not suffice.
@@ -31,14 +31,33 @@ pub(super) fn run<'a>(
     let context = console.context();
     let tables = [(&plan.crossing_report, "--crossing-report"), (&plan.replaced_report, "--flat-points")];
     let table = tables.iter().find(|(table, _)| table.is_some());
-    if !args.are_asked_for() && (table.is_some() || !run::needs_tiles(&plan.request, product, args.memory, &context)?) {
-        return Ok(Tiled::Whole);
-    }
-    if let Some((_, option)) = table {
-        return Err(Error::unsupported(format!("{option} does not work with tiles yet"))
-            .cure("leave one of them out: without --tiles the whole surface is built in memory"));
+    let refused = table.map(|(_, option)| {
+        Error::unsupported(format!("{option} does not work with tiles yet"))
+            .cure("leave one of them out: without --tiles the whole surface is built in memory")
+    });
+    if !args.are_asked_for() {
+        let needed = match refused {
+            Some(error) => Err(error),
+            None => run::needs_tiles(&plan.request, product, args.memory, &context),
+        };
+        match needed {
+            Ok(true) => {}
+            Ok(false) => return Ok(Tiled::Whole),
+            Err(error) => {
+                // Building in one piece reports what is wrong with files.
+                if args.memory.is_some() {
+                    console.note(format_args!("--memory has no effect: {error}"));
+                }
+                return Ok(Tiled::Whole);
+            }
+        }
+    } else if let Some(error) = refused {
+        return Err(error);
     }
     let options = options(args, target);
+    if options.folder == target {
+        return Err(Error::usage("the output and the folder of the job have the same name").in_file(target));
+    }
     let resumed = if args.resume { Job::open(&plan.request, product, &options)? } else { None };
     let is_new = resumed.is_none();
     let job = match resumed {
@@ -52,7 +71,7 @@ pub(super) fn run<'a>(
         return Ok(Tiled::Planned);
     }
     if is_new {
-        job.create()?;
+        job.create(None)?;
     }
     let lock = job.lock()?;
     if !is_new {
@@ -62,9 +81,8 @@ pub(super) fn run<'a>(
     job.run(&context).inspect_err(|_| {
         console.note(format_args!("finished tasks are kept in {}: go on with --resume", options.folder.display()));
     })?;
-    drop(lock);
     let report = job.report()?;
-    Ok(Tiled::Ran(Box::new((job, report))))
+    Ok(Tiled::Ran(Box::new((job, report, lock))))
 }
 
 /// Prints what a plan consists of.
@@ -99,7 +117,11 @@ fn folder(args: &TileArgs, target: &Path) -> PathBuf {
 
 /// Prints what the surface was built of, and its size and extent.
 pub(super) fn print(report: &JobReport, console: &Console) {
-    console.line(format_args!("points      {} of {} used", report.used, report.read));
+    let dropped = [(report.other_class, "of other classes"), (report.withheld, "withheld")];
+    let dropped: Vec<String> =
+        dropped.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!("{count} {why}")).collect();
+    let dropped = if dropped.is_empty() { String::new() } else { format!("; dropped: {}", dropped.join(", ")) };
+    console.line(format_args!("points      {} read, {} used{dropped}", report.read, report.used));
     if report.duplicates > 0 {
         console.line(format_args!("            {} at the position of another point", report.duplicates));
     }
@@ -112,11 +134,12 @@ pub(super) fn print(report: &JobReport, console: &Console) {
     };
     console.line(format_args!("triangles   {}{rim}", report.triangles));
     console.line(format_args!("handed up   {} vertices", report.handed_up));
+    report.warnings.iter().for_each(|text| console.warning(text));
     report.skipped.iter().for_each(|text| console.warning(format_args!("skipped: {text}")));
     print_extent(report.extent, report.crs.as_ref(), console);
 }
 
 /// Removes the files of the tasks, unless their folder was named.
-pub(super) fn clean(args: &TileArgs, job: &Job) -> Result<()> {
-    if args.job.is_some() { Ok(()) } else { job.remove() }
+pub(super) fn clean(args: &TileArgs, job: &Job, lock: &JobLock) -> Result<()> {
+    if args.job.is_some() { Ok(()) } else { job.remove(lock) }
 }

@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use super::raster::missing;
 use super::task_file::TaskFile;
 use crate::crs::Crs;
 use crate::data::ContourLine;
@@ -37,7 +36,7 @@ impl DrawnContours {
         let mut edges = 0;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for path in paths {
-            let mut file = TaskFile::open(&path)?.ok_or_else(|| missing().in_file(&path))?;
+            let mut file = TaskFile::open_done(&path)?;
             let (from, length) = file.range(SECTION);
             edges += file.count("edges");
             let table = PartsTable::read(&mut file.reader(from)?, length).map_err(|e| e.in_file(&path))?;
@@ -76,7 +75,7 @@ impl DrawnContours {
         let mut parts = Vec::new();
         for (path, from, table) in &self.tasks {
             let Some(range) = table.range(level) else { continue };
-            let mut file = TaskFile::open(path)?.ok_or_else(|| missing().in_file(path))?;
+            let mut file = TaskFile::open_done(path)?;
             let mut bytes = vec![0; (range.end - range.start) as usize];
             file.read(from + range.start, &mut bytes)?;
             parts.push(LevelParts::read(level, &bytes).map_err(|e| e.in_file(path))?);

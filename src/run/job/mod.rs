@@ -22,6 +22,7 @@ mod tasks;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -194,6 +195,12 @@ pub struct JobReport {
     pub read: u64,
     /// Points used.
     pub used: u64,
+    /// Points left out because they are flagged as withheld.
+    pub withheld: u64,
+    /// Points left out because of their class.
+    pub other_class: u64,
+    /// What readers found wrong in files.
+    pub warnings: Vec<String>,
     /// Points at the position of another.
     pub duplicates: u64,
     /// Edges on lines.
@@ -254,11 +261,11 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Creates the folder of the job, with the plan.
+    /// Creates the folder of the job, with the plan; `command` is kept with it, see [`COMMAND`].
     ///
     /// # Errors
     /// If the folder has a job already, or cannot be written.
-    pub fn create(&self) -> Result<()> {
+    pub fn create(&self, command: Option<&str>) -> Result<()> {
         let path = self.folder.join(PLAN);
         if path.exists() {
             return Err(Error::usage("there is a job in this folder already")
@@ -266,9 +273,21 @@ impl<'a> Job<'a> {
                 .cure("go on with it (--resume), remove it (`breakline job clean`), or name another folder (--job)"));
         }
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
-        std::fs::create_dir_all(self.folder.join("tasks")).map_err(named)?;
+        std::fs::create_dir_all(&self.folder).map_err(named)?;
+        let _lock = self.lock()?;
+        // Tasks of a job that was not removed to its end would count as done.
+        let tasks = self.folder.join("tasks");
+        if tasks.exists() {
+            std::fs::remove_dir_all(&tasks).map_err(named)?;
+        }
+        std::fs::create_dir(&tasks).map_err(named)?;
+        if let Some(command) = command {
+            std::fs::write(self.folder.join(COMMAND), command).map_err(named)?;
+        }
+        let plan = self.plan.to_json().to_string();
         let unfinished = self.folder.join(format!("{PLAN}{UNFINISHED}"));
-        std::fs::write(&unfinished, self.plan.to_json().to_string()).map_err(named)?;
+        std::fs::write(&unfinished, format!("{:08x}\n{plan}", checksum(&plan))).map_err(named)?;
+        // Last, because a folder is a job from here on.
         std::fs::rename(&unfinished, &path).map_err(named)
     }
 
@@ -279,22 +298,26 @@ impl<'a> Job<'a> {
     pub fn open(request: &'a SurfaceRequest, product: &'a TiledProduct, options: &TileOptions) -> Result<Option<Self>> {
         let (request, systems) = tiled(request, product)?;
         let path = options.folder.join(PLAN);
-        let text = match std::fs::read(&path) {
+        let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(Error::from(error).in_file(path)),
         };
-        let value: Option<Value> = serde_json::from_slice(&text).ok();
+        let plan = text.split_once('\n').filter(|(sum, plan)| *sum == format!("{:08x}", checksum(plan)));
+        let value: Option<Value> = plan.and_then(|(_, plan)| serde_json::from_str(plan).ok());
         let plan = value.as_ref().and_then(Plan::from_json).ok_or_else(|| {
             Error::format("the plan of the job is damaged, or that of another version")
                 .in_file(&path)
                 .cure("remove the folder, and begin anew")
         })?;
-        if plan.request != fingerprint(request, systems, product, options) {
+        if plan.files.iter().any(|file| file.input >= request.points.len())
+            || plan.request != fingerprint(request, systems, product, options)
+        {
             return Err(Error::usage("the job in this folder is that of another command")
                 .in_file(&options.folder)
                 .cure("repeat that command, or name another folder (--job)"));
         }
+        plan.require_all_unchanged()?;
         Ok(Some(Self::of_plan(request, systems, product, options, plan, Vec::new())))
     }
 
@@ -437,29 +460,18 @@ impl<'a> Job<'a> {
         matches!(TaskFile::open(&self.task_path(task)), Ok(Some(_)))
     }
 
-    /// Takes the whole job for this process, as long as the result lives.
+    /// Takes the whole job for this process, as long as the result lives. A task that still runs is
+    /// waited for, for some seconds.
     ///
     /// # Errors
     /// If another process works on it.
     pub fn lock(&self) -> Result<JobLock> {
-        self.locked(File::try_lock)
+        JobLock::take(&self.folder, File::try_lock)
     }
 
     /// Takes part in the job, together with other processes that do single tasks.
     fn lock_shared(&self) -> Result<JobLock> {
-        self.locked(File::try_lock_shared)
-    }
-
-    fn locked(&self, lock: impl Fn(&File) -> std::result::Result<(), TryLockError>) -> Result<JobLock> {
-        let path = self.folder.join(LOCK);
-        let file = File::create(&path).map_err(|e| Error::from(e).in_file(&path))?;
-        match lock(&file) {
-            Err(TryLockError::WouldBlock) => Err(Error::usage("another process works on this job")
-                .in_file(&self.folder)
-                .cure("wait for it, or name another folder (--job)")),
-            // Some shared file systems have no locks.
-            Ok(()) | Err(TryLockError::Error(_)) => Ok(JobLock { _file: file }),
-        }
+        JobLock::take(&self.folder, File::try_lock_shared)
     }
 
     /// Returns true if a file exists that was written after all tasks.
@@ -528,6 +540,10 @@ impl<'a> Job<'a> {
             let file = self.open_task(task)?;
             report.read += file.count("read");
             report.used += file.count("used");
+            report.withheld += file.count("withheld");
+            report.other_class += file.count("other_class");
+            let warnings = file.facts.get("warnings").and_then(Value::as_array).into_iter().flatten();
+            report.warnings.extend(warnings.filter_map(|text| text.as_str().map(str::to_owned)));
             report.duplicates += file.count("duplicates");
             report.line_edges += file.count("line_edges");
             report.triangles += file.count("triangles");
@@ -600,11 +616,15 @@ impl<'a> Job<'a> {
         if report.triangles > 0 {
             return Ok(());
         }
-        Err(Error::format(format!(
-            "no triangle is left of {} points: {} have edges over the limit at the rim",
-            report.used, report.beyond_max_edge
-        ))
-        .cure("allow longer edges with --max-edge LENGTH or --max-edge none"))
+        let JobReport { read, used, beyond_max_edge, .. } = report;
+        Err(match (used, beyond_max_edge) {
+            (0, _) => Error::usage(format!("no point is left of {read} read"))
+                .cure("`breakline info` shows the classes of each file: choose with --class"),
+            (_, 0) => Error::format(format!("{used} points on one line, or fewer than three, do not span a surface"))
+                .cure("check the inputs and the classes (--class)"),
+            _ => Error::format(format!("no triangle is left: {beyond_max_edge} have edges over the limit at the rim"))
+                .cure("allow longer edges with --max-edge LENGTH or --max-edge none"),
+        })
     }
 
     /// The files of all tasks that have triangles.
@@ -617,13 +637,42 @@ impl<'a> Job<'a> {
         (0..self.task_count()).filter_map(of_task).sum()
     }
 
-    /// Removes the folder of the job.
+    /// Removes the folder of the job, which must be [locked](Self::lock).
     ///
     /// # Errors
     /// If it cannot be removed.
-    pub fn remove(&self) -> Result<()> {
-        remove_job(&self.folder)
+    pub fn remove(&self, _lock: &JobLock) -> Result<()> {
+        remove_files(&self.folder)
     }
+}
+
+impl JobLock {
+    fn take(folder: &Path, lock: impl Fn(&File) -> std::result::Result<(), TryLockError>) -> Result<Self> {
+        let path = folder.join(LOCK);
+        let file = File::create(&path).map_err(|e| Error::from(e).in_file(&path))?;
+        let start = Instant::now();
+        loop {
+            match lock(&file) {
+                Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => std::thread::sleep(PATIENCE / 50),
+                Err(TryLockError::WouldBlock) => {
+                    return Err(Error::usage("another process works on this job")
+                        .in_file(folder)
+                        .cure("wait for it, or name another folder (--job)"));
+                }
+                // Some shared file systems have no locks.
+                Ok(()) | Err(TryLockError::Error(_)) => return Ok(JobLock { _file: file }),
+            }
+        }
+    }
+}
+
+/// How long a lock is waited for: a worker that was killed may leave a process that ends its task.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+fn checksum(text: &str) -> u32 {
+    let mut sum = flate2::Crc::new();
+    sum.update(text.as_bytes());
+    sum.sum()
 }
 
 /// Removes the files of a job and its folder, if nothing else is in it.
@@ -631,14 +680,18 @@ impl<'a> Job<'a> {
 /// # Errors
 /// If there is no job in the folder, or it cannot be removed.
 pub fn remove_job(folder: &Path) -> Result<()> {
-    let plan = folder.join(PLAN);
-    let named = |e: std::io::Error| Error::from(e).in_file(folder);
-    if !plan.is_file() {
+    if !folder.join(PLAN).is_file() {
         return Err(Error::usage("there is no job in this folder").in_file(folder));
     }
-    // The plan first: what is left without it is no job.
-    std::fs::remove_file(&plan).map_err(named)?;
+    let _lock = JobLock::take(folder, File::try_lock)?;
+    remove_files(folder)
+}
+
+fn remove_files(folder: &Path) -> Result<()> {
+    let named = |e: std::io::Error| Error::from(e).in_file(folder);
+    // The plan last: a job without tasks can go on.
     std::fs::remove_dir_all(folder.join("tasks")).map_err(named)?;
+    std::fs::remove_file(folder.join(PLAN)).map_err(named)?;
     for name in [LOCK, COMMAND] {
         let _ = std::fs::remove_file(folder.join(name));
     }
@@ -646,23 +699,23 @@ pub fn remove_job(folder: &Path) -> Result<()> {
     if is_empty { std::fs::remove_dir(folder).map_err(named) } else { Ok(()) }
 }
 
-/// Returns true if a request would need more memory than there is, and can be done in tiles.
+/// Returns true if a request would need more memory than there is.
 ///
 /// # Errors
-/// If a file cannot be opened.
+/// If it cannot be done in tiles, or a file cannot be opened.
 pub fn needs_tiles(
     request: &SurfaceRequest,
     product: &TiledProduct,
     memory: Option<u64>,
     context: &Context,
 ) -> Result<bool> {
-    let Ok((points, systems)) = tiled(request, product) else { return Ok(false) };
-    if plan::require_tiled(points, systems).is_err() {
-        return Ok(false);
-    }
+    let (points, systems) = tiled(request, product)?;
+    plan::require_tiled(points, systems)?;
     let quiet = Context { monitor: Context::default().monitor, cancel: context.cancel };
     let files = PointFiles::open(&points.points, points.read, &Journal::new(&quiet))?;
-    let count: u64 = files.stated_extents().filter_map(|(count, _)| count).sum();
+    let stated = points.points.iter().zip(files.stated_extents());
+    let count: u64 =
+        stated.map(|(input, (count, _))| count.unwrap_or_else(|| plan::points_of_text(input.path()))).sum();
     Ok(super::memory::need_of(count) > memory.unwrap_or_else(super::memory::half_of_free))
 }
 

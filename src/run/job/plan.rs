@@ -10,6 +10,7 @@ use super::{BadFiles, Division, TileOptions, TiledProduct};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointBatch};
 use crate::error::{Error, Kind, Result};
+use crate::io::layer;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
@@ -56,6 +57,9 @@ pub(super) struct PlannedFile {
     pub(super) max: [f64; 2],
 }
 
+/// The path of a file, its length in bytes, and the time of its last change in nanoseconds.
+type OtherFile = (PathBuf, u64, u64);
+
 /// What all tasks of a job must agree on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Plan {
@@ -63,6 +67,8 @@ pub(super) struct Plan {
     pub(super) request: String,
     /// The files that have points.
     pub(super) files: Vec<PlannedFile>,
+    /// The other files that are read: layers of lines, a raster to align to.
+    pub(super) others: Vec<OtherFile>,
     /// The files that are skipped because they cannot be opened: their positions in the request,
     /// and why.
     pub(super) skipped: Vec<(usize, String)>,
@@ -81,6 +87,14 @@ pub(super) struct Plan {
     pub(super) frame: Option<Frame>,
     /// The memory of one task.
     pub(super) task_memory: u64,
+}
+
+/// The bytes of a point in a text, at least.
+const BYTES_A_POINT_OF_TEXT: u64 = 24;
+
+/// Returns about how many points a file has that does not state it.
+pub(super) fn points_of_text(path: &Path) -> u64 {
+    state_of(path).map_or(0, |(size, _)| size / BYTES_A_POINT_OF_TEXT)
 }
 
 /// Returns an error if the request has something that tiles do not have yet.
@@ -172,8 +186,12 @@ impl Plan {
         let max_edge = request.max_edge.length(&units);
         journal.add(request.max_edge.notice(&units));
         let has_lines = lines.is_some();
+        let others = others(request, product)?;
+        if let Some(path) = files.iter().map(|file| &file.path).find(|path| path.to_str().is_none()) {
+            return Err(Error::unsupported("the name is not valid Unicode, which a plan needs").in_file(path));
+        }
         let request = fingerprint(request, systems, product, options);
-        Ok(Plan { request, files, skipped, divides, has_lines, layout, classes, max_edge, frame, task_memory })
+        Ok(Plan { request, files, others, skipped, divides, has_lines, layout, classes, max_edge, frame, task_memory })
     }
 
     /// Returns the number of points that the files state.
@@ -186,16 +204,16 @@ impl Plan {
         self.layout.steps().iter().filter(|step| matches!(step.work, Work::Merge(_))).count()
     }
 
-    /// Returns an error if a file has changed since the plan was made.
+    /// Returns an error if any file has changed since the plan was made.
+    pub(super) fn require_all_unchanged(&self) -> Result<()> {
+        (0..self.files.len()).try_for_each(|number| self.require_unchanged(number))?;
+        self.others.iter().try_for_each(|(path, size, modified)| require_state(path, (*size, *modified)))
+    }
+
+    /// Returns an error if a file of points has changed since the plan was made.
     pub(super) fn require_unchanged(&self, number: usize) -> Result<()> {
         let file = &self.files[number];
-        let (size, modified) = state_of(&file.path)?;
-        if (size, modified) == (file.size, file.modified) {
-            return Ok(());
-        }
-        Err(Error::usage("the file has changed since the job was planned")
-            .in_file(&file.path)
-            .cure("plan the job again, in another folder"))
+        require_state(&file.path, (file.size, file.modified))
     }
 
     pub(super) fn to_json(&self) -> Value {
@@ -213,6 +231,7 @@ impl Plan {
             "version": env!("CARGO_PKG_VERSION"),
             "request": self.request,
             "files": self.files.iter().map(file).collect::<Vec<_>>(),
+            "others": self.others,
             "skipped": self.skipped,
             "divides": self.divides,
             "has_lines": self.has_lines,
@@ -224,8 +243,11 @@ impl Plan {
         })
     }
 
-    /// Returns the plan that a value states; `None` if it does not.
+    /// Returns the plan that a value states; `None` if it does not, or is that of another version.
     pub(super) fn from_json(value: &Value) -> Option<Self> {
+        if value["version"] != env!("CARGO_PKG_VERSION") {
+            return None;
+        }
         let whole = |value: &Value| usize::try_from(value.as_u64()?).ok();
         let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
         let file = |value: &Value| {
@@ -256,6 +278,7 @@ impl Plan {
         Some(Plan {
             request: value["request"].as_str()?.to_owned(),
             files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
+            others: serde_json::from_value(value["others"].clone()).ok()?,
             skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
             divides: value["divides"].as_bool()?,
             has_lines: value["has_lines"].as_bool()?,
@@ -310,11 +333,15 @@ pub(super) fn fingerprint(
     format!("{} {:08x}", product.name(), sum.sum())
 }
 
-/// Returns the files that cannot be opened, and why.
+/// Returns the files that cannot be planned with, and why.
 fn closed(request: &TinRequest, context: &Context) -> Result<Vec<(usize, String)>> {
     let mut closed = Vec::new();
     for (number, input) in request.points.iter().enumerate() {
-        match open::points(input, request.read, context) {
+        let opened = open::points(input, request.read, context).and_then(|source| {
+            let info = source.info();
+            planned(number, input, request, (info.count, info.bounds), context)
+        });
+        match opened {
             Ok(_) => {}
             Err(error) if error.kind() == Kind::Canceled => return Err(error),
             Err(error) => closed.push((number, error.in_file(input.path()).to_string())),
@@ -375,12 +402,43 @@ fn measured(input: &Input<MemoryPoints>, request: &TinRequest, context: &Context
     }
 }
 
-/// Returns the length of a file and the time of its last change; zeros for a layer in a file, which
-/// has a name of its own.
+/// Returns an error unless a file has this length and this time of its last change.
+fn require_state(path: &Path, planned: (u64, u64)) -> Result<()> {
+    if state_of(path)? == planned {
+        return Ok(());
+    }
+    Err(Error::usage("the file has changed since the job was planned")
+        .in_file(path)
+        .cure("plan the job again, in another folder"))
+}
+
+/// Returns the states of the files that are read beside the points.
+fn others(request: &TinRequest, product: &TiledProduct) -> Result<Vec<OtherFile>> {
+    let layers = request.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs).chain(&request.breaklines);
+    let layers = layers.filter_map(|input| match input {
+        Input::File(path) => Some(path),
+        Input::Memory(_) => None,
+    });
+    let raster = product.frame().and_then(|frame| frame.align_to.as_ref());
+    let state = |path: &PathBuf| {
+        let (size, modified) = state_of(path)?;
+        Ok((path.clone(), size, modified))
+    };
+    layers.chain(raster).map(state).collect()
+}
+
+/// Returns the length of a file, which may be named together with a layer, and the time of its last
+/// change.
 fn state_of(path: &Path) -> Result<(u64, u64)> {
     let about = match std::fs::metadata(path) {
         Ok(about) => about,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok((0, 0)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let spec = path.to_str().and_then(|text| layer::Spec::parse(text).ok());
+            match spec.map(|spec| std::fs::metadata(spec.path)) {
+                Some(Ok(about)) => about,
+                _ => return Err(Error::from(error).in_file(path)),
+            }
+        }
         Err(error) => return Err(Error::from(error).in_file(path)),
     };
     let modified = about.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());

@@ -9,7 +9,7 @@ use super::bytes::{Reader, put_u64};
 use super::task_file::{TaskFile, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::terrain::Canvas;
 
 /// Files that are kept open.
@@ -25,6 +25,9 @@ pub(super) struct Drawing {
 /// Blocks on a canvas before they are written: 32 MB.
 const MOST_BLOCKS: usize = 2048;
 
+/// Rows of blocks that a triangle may meet before it is drawn row by row.
+const MOST_ROWS: usize = 8;
+
 impl Drawing {
     /// Begins the section of cells.
     pub(super) fn new(frame: Frame, writer: &mut TaskWriter) -> Result<Self> {
@@ -33,8 +36,16 @@ impl Drawing {
     }
 
     pub(super) fn draw(&mut self, corners: [[f64; 3]; 3], writer: &mut TaskWriter) -> Result<()> {
-        self.canvas.draw(corners);
-        if self.canvas.block_count() > MOST_BLOCKS { self.write_blocks(writer) } else { Ok(()) }
+        // A large triangle meets more blocks than memory has room for: one row of them at a time.
+        let rows = self.canvas.block_rows(corners);
+        let step = if rows.len() > MOST_ROWS { 1 } else { rows.len().max(1) };
+        for first in rows.clone().step_by(step) {
+            self.canvas.draw_in(corners, first..(first + step).min(rows.end));
+            if self.canvas.block_count() > MOST_BLOCKS {
+                self.write_blocks(writer)?;
+            }
+        }
+        Ok(())
     }
 
     fn write_blocks(&mut self, writer: &mut TaskWriter) -> Result<()> {
@@ -82,7 +93,7 @@ impl DrawnCells {
     pub(super) fn open(paths: Vec<PathBuf>, drawn: Frame, frame: Frame, crs: Option<Crs>) -> Result<Self> {
         let mut blocks: FxHashMap<[u32; 2], Vec<(u32, u64)>> = FxHashMap::default();
         for (number, path) in (0..).zip(&paths) {
-            let mut file = TaskFile::open(path)?.ok_or_else(|| missing().in_file(path))?;
+            let mut file = TaskFile::open_done(path)?;
             let table = file.section("table")?;
             let (from, length) = file.range("cells");
             let mut reader = Reader::new(&table);
@@ -92,7 +103,11 @@ impl DrawnCells {
                 };
                 let side = Canvas::SIDE as u64;
                 let is_block = column < drawn.width as u64 && row < drawn.height as u64;
-                if !is_block || at < from || at >= from + length || column % side + row % side != 0 {
+                if !is_block || column % side + row % side != 0 {
+                    return Err(file.damaged());
+                }
+                let size = 4 * side.min(drawn.width as u64 - column) * side.min(drawn.height as u64 - row);
+                if at < from || at.checked_add(size).is_none_or(|end| end > from + length) {
                     return Err(file.damaged());
                 }
                 blocks.entry([column, row].map(|at| (at / side) as u32)).or_default().push((number, at));
@@ -109,7 +124,7 @@ impl DrawnCells {
             return Ok(Arc::clone(file));
         }
         let path = &self.paths[number as usize];
-        let file = TaskFile::open(path)?.ok_or_else(|| missing().in_file(path))?;
+        let file = TaskFile::open_done(path)?;
         if open.len() >= MOST_OPEN {
             open.clear();
         }
@@ -175,9 +190,4 @@ impl BlockSource for DrawnCells {
         }
         Ok(())
     }
-}
-
-#[cold]
-pub(super) fn missing() -> Error {
-    Error::format("the file of a task is missing").cure("run the job again with --resume")
 }

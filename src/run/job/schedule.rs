@@ -1,9 +1,11 @@
 //! Doing all tasks of a job on this machine.
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Condvar, Mutex, PoisonError};
 
 use super::Job;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Size, Stage};
 
 /// The state of a task.
@@ -20,9 +22,16 @@ struct Board {
     /// The tasks that wait for each task.
     after: Vec<Vec<usize>>,
     left: usize,
-    /// No task below this one waits for nothing.
+    /// All tasks below this one run, are done, or wait for others.
     first: usize,
-    failed: Option<Error>,
+    failed: Option<Failure>,
+}
+
+/// Why no other task begins.
+enum Failure {
+    Error(Error),
+    /// A panic, which goes on when all threads have ended.
+    Panic(Box<dyn Any + Send>),
 }
 
 impl Job<'_> {
@@ -42,8 +51,16 @@ impl Job<'_> {
             for _ in 0..rayon::current_num_threads() {
                 scope.spawn(|| {
                     // A task has one thread: other tasks have the others.
-                    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
+                    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
                     let mut now = lock();
+                    let pool = match pool {
+                        Ok(pool) => pool,
+                        Err(error) => {
+                            now.failed.get_or_insert(Failure::Error(Error::caused_by(Kind::Limit, error)));
+                            changed.notify_all();
+                            return;
+                        }
+                    };
                     loop {
                         if now.left == 0 || now.failed.is_some() {
                             break;
@@ -53,11 +70,13 @@ impl Job<'_> {
                             continue;
                         };
                         drop(now);
-                        let done = pool.install(|| self.do_task(task, context)).and_then(|()| progress.add(1));
+                        let run = || pool.install(|| self.do_task(task, context)).and_then(|()| progress.add(1));
+                        let done = catch_unwind(AssertUnwindSafe(run));
                         now = lock();
                         match done {
-                            Ok(()) => now.finish(task),
-                            Err(error) => _ = now.failed.get_or_insert(error),
+                            Ok(Ok(())) => now.finish(task),
+                            Ok(Err(error)) => _ = now.failed.get_or_insert(Failure::Error(error)),
+                            Err(panic) => _ = now.failed.get_or_insert(Failure::Panic(panic)),
                         }
                         changed.notify_all();
                     }
@@ -66,7 +85,8 @@ impl Job<'_> {
         });
         let mut board = board.into_inner().unwrap_or_else(PoisonError::into_inner);
         match board.failed.take() {
-            Some(error) => Err(error),
+            Some(Failure::Error(error)) => Err(error),
+            Some(Failure::Panic(panic)) => resume_unwind(panic),
             None => progress.end(),
         }
     }

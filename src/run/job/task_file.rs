@@ -121,6 +121,16 @@ impl TaskFile {
         }
     }
 
+    /// Opens the file of a task that is done.
+    ///
+    /// # Errors
+    /// If there is no file, or it is not complete.
+    pub(super) fn open_done(path: &Path) -> Result<Self> {
+        Self::open(path)?.ok_or_else(|| {
+            Error::format("the file of a task is missing").in_file(path).cure("run the job again with --resume")
+        })
+    }
+
     fn read_end(mut file: File, path: &Path) -> Result<Self> {
         let length = file.metadata()?.len();
         let mut end = [0; END as usize];
@@ -139,7 +149,8 @@ impl TaskFile {
             (from <= to && to <= facts_from).then(|| Some((value[0].as_str()?.to_owned(), from, to)))?
         };
         let sections: Option<Vec<_>> = value["sections"].as_array().and_then(|all| all.iter().map(section).collect());
-        let (Some(sections), Value::Object(facts)) = (sections, value["facts"].take()) else { return Err(damaged()) };
+        let facts = value.get_mut("facts").map(Value::take);
+        let (Some(sections), Some(Value::Object(facts))) = (sections, facts) else { return Err(damaged()) };
         Ok(TaskFile { file, path: path.to_path_buf(), sections, facts })
     }
 

@@ -1,7 +1,5 @@
 //! What each task does: files in, one file out.
 
-use std::path::Path;
-
 use serde_json::{Map, Value, json};
 
 use super::bytes::{self, Reader, put_u32, put_u64};
@@ -20,7 +18,11 @@ use crate::terrain::{Classes, Selection, SelectionReport, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
 /// they are sorted.
-const DIVIDED_AT_ONCE: usize = 1 << 20;
+const DIVIDED_AT_ONCE: u64 = 1 << 20;
+
+/// Bytes per point that is read before it is divided: the lists of points and of tiles, and what is
+/// written.
+const BYTES_A_DIVIDED_POINT: u64 = 120;
 
 /// Bytes of an entry in the table of a divided file.
 const ENTRY: usize = 4 + 8 + 8;
@@ -68,17 +70,21 @@ impl Job<'_> {
             points.clear();
             Ok(())
         };
+        let most = (self.plan.task_memory / BYTES_A_DIVIDED_POINT).clamp(1 << 14, DIVIDED_AT_ONCE) as usize;
+        let mut written = Ok(());
         let read = self.read_file(file, context, &mut |mut points| {
             if waiting.is_empty() {
                 waiting = points
             } else {
                 waiting.append(&mut points)
             }
-            if waiting.len() >= DIVIDED_AT_ONCE { write_run(&mut waiting) } else { Ok(()) }
+            if written.is_ok() && waiting.len() >= most {
+                written = write_run(&mut waiting);
+            }
         });
-        let read = read.and_then(|read| write_run(&mut waiting).map(|()| read));
+        written.and_then(|()| write_run(&mut waiting))?;
         // Of a bad file, nothing counts.
-        let facts = self.facts_of_file(file, read.map(|report| facts_of(&report)))?;
+        let facts = self.facts_of_file(file, read)?;
         if facts.contains_key("skipped") {
             table.clear();
             near.clear();
@@ -114,7 +120,7 @@ impl Job<'_> {
     fn facts_of_file(&self, file: usize, read: Result<Map<String, Value>>) -> Result<Map<String, Value>> {
         let path = &self.plan.files[file].path;
         match read {
-            Err(error) if self.bad == BadFiles::Skip && error.kind() != Kind::Canceled => {
+            Err(error) if self.bad == BadFiles::Skip && matches!(error.kind(), Kind::Format | Kind::Unsupported) => {
                 let error = error.in_file(path);
                 Ok(Map::from_iter([("skipped".to_owned(), json!(error.to_string()))]))
             }
@@ -127,8 +133,8 @@ impl Job<'_> {
         &self,
         number: usize,
         context: &Context,
-        take: &mut dyn FnMut(Vec<[f64; 3]>) -> Result<()>,
-    ) -> Result<SelectionReport> {
+        take: &mut dyn FnMut(Vec<[f64; 3]>),
+    ) -> Result<Map<String, Value>> {
         self.plan.require_unchanged(number)?;
         let file = &self.plan.files[number];
         let mut source = open::points(&self.request.points[file.input], self.request.read, context)?;
@@ -138,7 +144,12 @@ impl Job<'_> {
         loop {
             source.read(&mut batch)?;
             if batch.is_empty() {
-                return Ok(selection.finish().1);
+                self.plan.require_unchanged(number)?;
+                let mut facts = facts_of(&selection.finish().1);
+                let name = file.path.display();
+                let warnings: Vec<String> = source.warnings().iter().map(|text| format!("{name}: {text}")).collect();
+                facts.insert("warnings".to_owned(), json!(warnings));
+                return Ok(facts);
             }
             selection.add(&batch)?;
             let points = selection.take_points();
@@ -150,7 +161,7 @@ impl Job<'_> {
                 ))
                 .cure("`breakline points` writes a file with a true header"));
             }
-            take(points)?;
+            take(points);
             context.check()?;
         }
     }
@@ -163,14 +174,9 @@ impl Job<'_> {
             let file = tile as usize;
             let mut all: Vec<[f64; 3]> = Vec::new();
             let read = self.read_file(file, context, &mut |mut points| {
-                if all.is_empty() {
-                    all = points
-                } else {
-                    all.append(&mut points)
-                }
-                Ok(())
+                if all.is_empty() { all = points } else { all.append(&mut points) }
             });
-            let facts = self.facts_of_file(file, read.map(|report| facts_of(&report)));
+            let facts = self.facts_of_file(file, read);
             let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
             if facts.contains_key("skipped") {
                 all.clear();
@@ -210,7 +216,8 @@ impl Job<'_> {
                 if of_tile != tile {
                     continue;
                 }
-                if at < from || count.checked_mul(24).is_none_or(|bytes| at - from + bytes > length) {
+                let end = count.checked_mul(24).and_then(|bytes| at.checked_add(bytes));
+                if at < from || end.is_none_or(|end| end > from + length) {
                     return Err(divided.damaged());
                 }
                 let mut bytes = vec![0; count as usize * 24];
@@ -300,8 +307,7 @@ impl Job<'_> {
 
     /// Opens the file of a task that is done.
     pub(super) fn open_task(&self, number: usize) -> Result<TaskFile> {
-        let path = self.task_path(number);
-        TaskFile::open(&path)?.ok_or_else(|| super::raster::missing().in_file(Path::new(&path)))
+        TaskFile::open_done(&self.task_path(number))
     }
 }
 

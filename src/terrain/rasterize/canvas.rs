@@ -1,5 +1,7 @@
 //! Heights of triangles that come one by one, in blocks of cells.
 
+use std::ops::Range;
+
 use rustc_hash::FxHashMap;
 
 use super::bins::bins_of;
@@ -68,9 +70,24 @@ impl Canvas {
 
     /// Draws a triangle. Its corners may be in any order.
     pub fn draw(&mut self, corners: [[f64; 3]; 3]) {
+        self.draw_in(corners, 0..usize::MAX);
+    }
+
+    /// Returns the rows of blocks, counted from the first, that a triangle may meet.
+    pub fn block_rows(&self, corners: [[f64; 3]; 3]) -> Range<usize> {
+        let ys = corners.map(|p| self.placement.to_plane(p)[1]);
+        let cells = self.placement.rows.cells(ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
+        cells.start / Self::SIDE..cells.end.div_ceil(Self::SIDE)
+    }
+
+    /// Draws what a triangle covers of some rows of blocks.
+    pub fn draw_in(&mut self, corners: [[f64; 3]; 3], block_rows: Range<usize>) {
         let Canvas { frame, placement, blocks, index, recent } = self;
         let corners = corners.map(|p| placement.to_plane(p));
         bins_of(&corners, placement, Self::SIDE, |row, column| {
+            if !block_rows.contains(&row) {
+                return;
+            }
             let at = [row, column];
             if blocks.get(*recent).is_none_or(|block| block.at != at) {
                 *recent = *index.entry(at).or_insert_with(|| {
@@ -147,8 +164,11 @@ mod tests {
             let mut found = vec![f32::NAN; expected.len()];
             let mut canvases = [0, 1].map(|_| Canvas::new(frame).unwrap());
             for face in 0..tin.face_count() as u32 {
-                if let Some(corners) = tin.triangle(face) {
-                    canvases[random.index(2)].draw(corners);
+                let Some(corners) = tin.triangle(face) else { continue };
+                let canvas = &mut canvases[random.index(2)];
+                match face % 2 {
+                    0 => canvas.draw(corners),
+                    _ => canvas.block_rows(corners).for_each(|row| canvas.draw_in(corners, row..row + 1)),
                 }
             }
             for block in canvases.iter_mut().flat_map(Canvas::take_blocks) {

@@ -64,13 +64,14 @@ impl FromStr for TilesArg {
         }
         let count = |text: &str| text.trim().parse().ok().filter(|count| (1..=MOST_TILES).contains(count));
         let counts = text.split_once(['x', 'X']).and_then(|(columns, rows)| Some([count(columns)?, count(rows)?]));
-        let division = counts.map(|counts| TilesArg(Division::Grid(counts)));
-        division.ok_or_else(|| format!("expected `auto`, or columns and rows from 1 to {MOST_TILES}, such as `8x8`"))
+        let division = counts.filter(|[columns, rows]| columns * rows <= MOST_TILES);
+        let division = division.map(|counts| TilesArg(Division::Grid(counts)));
+        division.ok_or_else(|| format!("expected `auto`, or columns and rows, such as `8x8`: up to {MOST_TILES} tiles"))
     }
 }
 
-/// The most tiles in a row.
-const MOST_TILES: usize = 10_000;
+/// The most tiles: each takes some hundred bytes of the plan.
+const MOST_TILES: usize = 1_000_000;
 
 /// Parses a number of bytes, such as `500MB` or `1.5GiB`.
 fn size(text: &str) -> Result<u64, String> {
@@ -95,7 +96,7 @@ fn size(text: &str) -> Result<u64, String> {
     }
 }
 
-/// Less memory suffices for no task.
+/// Less does not suffice for the program itself.
 const LEAST_MEMORY: f64 = 16e6;
 
 #[cfg(test)]
@@ -112,7 +113,7 @@ mod tests {
         }
         assert_eq!("8x3".parse(), Ok(TilesArg(Division::Grid([8, 3]))));
         assert_eq!("AUTO".parse(), Ok(TilesArg(Division::Auto)));
-        for wrong in ["8", "0x3", "3x", "axb", "20000x1"] {
+        for wrong in ["8", "0x3", "3x", "axb", "2000000x1", "2000x2000"] {
             assert!(wrong.parse::<TilesArg>().is_err(), "{wrong}");
         }
     }
