@@ -54,14 +54,15 @@ def test_a_cluster_writes_the_bytes_of_one_machine(client, whole, tmp_path):
 
 def test_workers_may_be_killed(client, whole, tmp_path):
     done = threading.Event()
-    kills = 0
+    kills, count = 0, int(os.environ.get("BREAKLINE_KILLS", 5))
 
     def kill():
         nonlocal kills
-        while not done.wait(random.uniform(0.2, 0.5)) and kills < 5:
-            pids = list(client.run(os.getpid).values())
-            os.kill(random.choice(pids), signal.SIGKILL)
-            kills += 1
+        while not done.wait(random.uniform(0.2, 0.5)) and kills < count:
+            pids = [pid for pid in client.run(os.getpid, on_error="ignore").values() if isinstance(pid, int)]
+            if pids:
+                os.kill(random.choice(pids), signal.SIGKILL)
+                kills += 1
 
     killer = threading.Thread(target=kill)
     killer.start()
@@ -72,7 +73,6 @@ def test_workers_may_be_killed(client, whole, tmp_path):
         killer.join()
     assert kills > 0
     assert made.read_bytes() == whole
-    assert not list((tmp_path / "job" / "tasks").glob(".*.unfinished")) or kills > 0
 
 
 def test_a_job_goes_on_with_what_is_done(client, whole, tmp_path):
@@ -95,7 +95,7 @@ def test_what_is_wrong_is_an_error_with_its_cure(client, tmp_path):
     with pytest.raises(breakline.BreaklineError, match="none.laz"):
         breakline.dask.dem(tmp_path / "none.laz", tmp_path / "dem.tif", client=client)
     with pytest.raises(breakline.BreaklineError, match="does not work with tiles yet"):
-        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, breaklines=FIXTURES / "breaklines.shp")
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, boundary=FIXTURES / "boundary.shp")
     with pytest.raises(breakline.UsageError, match="client"):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=None)
     assert list(tmp_path.glob("*.tif")) == []

@@ -151,8 +151,13 @@ def _program(*words: str) -> str:
     """Run the program and return what it prints."""
     ran = subprocess.run([sys.executable, "-m", "breakline", *words], capture_output=True, text=True)
     if ran.returncode != 0:
-        said = [line for line in ran.stderr.splitlines() if line.startswith(("error: ", "hint: "))]
-        raise BreaklineError("\n".join(said).removeprefix("error: ") if said else ran.stderr)
+        lines = ran.stderr.splitlines()
+        said = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
+        cures = [line.removeprefix("hint: ") for line in lines if line.startswith("hint: ")]
+        error = BreaklineError()
+        error.message = said[0] if said else ran.stderr.strip()
+        error.cure = cures[0] if cures else None
+        raise error
     return ran.stdout
 
 
