@@ -324,8 +324,8 @@ impl<'a> Job<'a> {
     /// Returns the numbers of the plan.
     pub fn size(&self) -> JobSize {
         let plan = &self.plan;
-        // Cells at borders are drawn twice, in part.
-        let cells = plan.frame.map_or(0, |frame| frame.width as u64 * frame.height as u64 * 5);
+        // Blocks at borders are written by each tile that they meet; measured.
+        let cells = plan.frame.map_or(0, |frame| frame.width as u64 * frame.height as u64 * 8);
         let points = plan.point_count();
         JobSize {
             files: plan.files.len(),
