@@ -89,11 +89,14 @@ pub(super) fn run<'a>(
 pub(super) fn print_size(size: &JobSize, console: &Console) {
     let files = if size.divides { format!("of {} files, divided first", size.files) } else { "the files".to_owned() };
     console.line(format_args!("tiles       {} ({files}), {} merges, {} tasks", size.tiles, size.merges, size.tasks));
+    let disk = match size.disk {
+        0 => String::new(),
+        disk => format!(", about {} on the disk", bytes(disk)),
+    };
     console.line(format_args!(
-        "            {} points, {} of memory a task, {} on the disk",
+        "            {} points, {} of memory a task{disk}",
         size.points,
-        bytes(size.task_memory),
-        bytes(size.disk)
+        bytes(size.task_memory)
     ));
 }
 

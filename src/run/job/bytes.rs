@@ -89,7 +89,7 @@ pub(super) fn of_constraints(constraints: &[SubConstraint]) -> Vec<u8> {
 /// The bytes of a sub-constraint.
 pub(super) const CONSTRAINT_BYTES: usize = 4 * 8 + 1;
 
-/// Returns the sub-constraints with these bytes; `None` if they are not those of some.
+/// Returns the sub-constraints with these bytes; `None` if they are damaged.
 pub(super) fn to_constraints(bytes: &[u8]) -> Option<Vec<SubConstraint>> {
     let mut reader = Reader::new(bytes);
     let mut constraints = Vec::with_capacity(bytes.len() / CONSTRAINT_BYTES);
@@ -116,7 +116,7 @@ pub(super) fn of_residual(residual: &Residual) -> Vec<u8> {
     bytes
 }
 
-/// Returns the residual with these bytes; `None` if they are not those of one.
+/// Returns the residual with these bytes; `None` if they are damaged.
 pub(super) fn to_residual(bytes: &[u8]) -> Option<Residual> {
     let mut reader = Reader::new(bytes);
     let has_lines = reader.boolean()?;
@@ -159,7 +159,7 @@ pub(super) fn to_gates(bytes: &[u8]) -> Option<Vec<Gate>> {
 /// The bytes of a triangle that waits.
 pub(super) const WAITING_BYTES: usize = 3 * 32 + 3 + 4;
 
-/// Returns the triangle with these bytes and its group; `None` if they are not those of one.
+/// Returns the triangle with these bytes and its group; `None` if they are damaged.
 pub(super) fn to_waiting(bytes: &[u8]) -> Option<(TileTriangle, u32)> {
     let mut reader = Reader::new(bytes);
     let corners = [reader.vertex()?, reader.vertex()?, reader.vertex()?];

@@ -181,7 +181,7 @@ pub struct JobSize {
     pub merges: usize,
     /// The number of all tasks.
     pub tasks: usize,
-    /// About how many bytes the tasks write.
+    /// About how many bytes the tasks write; 0 if that is not known, as for contours.
     pub disk: u64,
     /// About how much memory each task may need, in bytes.
     pub task_memory: u64,
@@ -474,7 +474,7 @@ impl<'a> Job<'a> {
         JobLock::take(&self.folder, File::try_lock_shared)
     }
 
-    /// Returns true if a file exists that was written after all tasks.
+    /// Returns true if a file was written after all tasks.
     pub fn is_older_than(&self, output: &Path) -> bool {
         let time = |path: &Path| std::fs::metadata(path).and_then(|about| about.modified()).ok();
         let written = time(output);
