@@ -23,24 +23,33 @@ pub(in crate::cli) fn run(args: &DescribeArgs) -> Result<Exit> {
 pub(in crate::cli) fn describe() -> Value {
     let mut program = Cli::command();
     program.build();
-    let is_own = |verb: &&Command| verb.get_name() != "help";
     json!({
         "name": program.get_name(),
         "version": program.get_version(),
         "about": text(program.get_about()),
         "options": program.get_arguments().filter(|arg| arg.is_global_set()).map(option).collect::<Vec<_>>(),
-        "verbs": program.get_subcommands().filter(is_own).map(verb).collect::<Vec<_>>(),
+        "verbs": verbs(&program),
     })
+}
+
+/// Returns what comes next on the command line: verbs, or what is done with the object of a verb.
+fn verbs(command: &Command) -> Vec<Value> {
+    command.get_subcommands().filter(|verb| verb.get_name() != "help").map(verb).collect()
 }
 
 fn verb(verb: &Command) -> Value {
     let own = verb.get_arguments().filter(|arg| !arg.is_global_set() && !is_help(arg));
-    json!({
+    let mut described = json!({
         "name": verb.get_name(),
         "about": text(verb.get_about()),
         "details": text(verb.get_long_about()),
         "options": own.map(option).collect::<Vec<_>>(),
-    })
+    });
+    let actions = verbs(verb);
+    if !actions.is_empty() {
+        described["actions"] = actions.into();
+    }
+    described
 }
 
 fn is_help(arg: &Arg) -> bool {
@@ -90,16 +99,23 @@ fn text(styled: Option<&clap::builder::StyledStr>) -> Option<String> {
 
 /// Returns a line for each verb and each of its options.
 fn as_text(described: &Value) -> String {
+    verbs_as_text(&described["verbs"], "")
+}
+
+/// Returns the lines of verbs, or of the actions of the verb that `before` names.
+fn verbs_as_text(verbs: &Value, before: &str) -> String {
     let string = |value: &Value, key: &str| value[key].as_str().unwrap_or_default().to_owned();
     let mut lines = String::new();
-    for verb in described["verbs"].as_array().into_iter().flatten() {
-        lines += &format!("{}: {}\n", string(verb, "name"), string(verb, "about"));
+    for verb in verbs.as_array().into_iter().flatten() {
+        let name = format!("{before}{}", string(verb, "name"));
+        lines += &format!("{name}: {}\n", string(verb, "about"));
         for option in verb["options"].as_array().into_iter().flatten() {
             let dashes = if option["positional"] == true { "" } else { "--" };
             let value = option["value_name"][0].as_str().filter(|_| dashes == "--");
             let value = value.map_or(String::new(), |name| format!(" {name}"));
             lines += &format!("  {dashes}{}{value}: {}\n", string(option, "name"), string(option, "help"));
         }
+        lines += &verbs_as_text(&verb["actions"], &format!("{name} "));
     }
     lines
 }
@@ -117,8 +133,10 @@ mod tests {
         let names: Vec<_> = described["verbs"].as_array().unwrap().iter().map(|verb| verb["name"].clone()).collect();
         assert_eq!(
             names,
-            ["info", "points", "tin", "triangulate", "dem", "contour", "hillshade", "check", "demo", "describe"]
+            ["info", "points", "tin", "triangulate", "dem", "contour", "hillshade", "check", "job", "demo", "describe"]
         );
+        let job = find(&described["verbs"], "job");
+        assert_eq!(find(&find(&job["actions"], "run")["options"], "task")["takes_value"], true);
         let dem = find(&described["verbs"], "dem");
         let method = find(&dem["options"], "method");
         assert_eq!(method["values"][0]["value"], "linear");
@@ -130,5 +148,6 @@ mod tests {
         assert_eq!(find(&described["options"], "threads")["takes_value"], true);
         let text = as_text(&described);
         assert!(text.contains("\n  --resolution LENGTH: Size of a cell"), "{text}");
+        assert!(text.contains("\njob status: Show which tasks are done\n"), "{text}");
     }
 }
