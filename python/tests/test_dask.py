@@ -54,11 +54,11 @@ def test_a_cluster_writes_the_bytes_of_one_machine(client, whole, tmp_path):
 
 def test_workers_may_be_killed(client, whole, tmp_path):
     done = threading.Event()
-    kills, count = 0, int(os.environ.get("BREAKLINE_KILLS", 5))
+    kills, count = 0, int(os.environ.get("BREAKLINE_KILLS", 2))
 
     def kill():
         nonlocal kills
-        while not done.wait(random.uniform(0.2, 0.5)) and kills < count:
+        while not done.wait(random.uniform(0.5, 1.0)) and kills < count:
             pids = [pid for pid in client.run(os.getpid, on_error="ignore").values() if isinstance(pid, int)]
             if pids:
                 os.kill(random.choice(pids), signal.SIGKILL)
