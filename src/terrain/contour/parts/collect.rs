@@ -104,13 +104,14 @@ impl ContourCollector {
     /// Makes parts from the triangles that are waiting.
     fn make_parts(&mut self) -> Result<()> {
         let patch = std::mem::take(&mut self.patch).linked()?;
-        let [low, high] = find::height_range(&patch);
+        let mesh = &patch.mesh;
+        let [low, high] = find::height_range(mesh);
         let band = self.index.first_from(low)..self.index.first_from(high.next_up());
-        let found = find::arcs(&patch, &self.index, band.clone());
+        let found = find::arcs(mesh, &self.index, band.clone());
         let counts = find::counts_of(&found, band.clone());
         let arcs = LevelArcs::new(found, band.start, &counts);
         let mut parts =
-            trace::each_level(&patch, &self.index, band.clone(), &arcs, |level, traces| patch.parts(level, traces));
+            trace::each_level(mesh, &self.index, band.clone(), &arcs, |level, traces| patch.parts(level, traces));
         for (level, side) in patch.level_sides(&self.index) {
             parts[level - band.start].sides.push(side);
         }

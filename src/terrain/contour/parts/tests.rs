@@ -5,70 +5,23 @@ use super::super::contours;
 use super::super::join::Joined;
 use super::super::line::finish_level;
 use super::*;
-use crate::crs::Crs;
-use crate::data::{ContourLine, EdgeKind, Surface};
+use crate::data::{ContourLine, EdgeKind, Mesh};
 use crate::terrain::Levels;
 use crate::terrain::tiles::{self, Residual, Tile, TileTriangle, TileVertex};
 use std::collections::HashMap;
 use testkit::random::{Random, ulps};
 
-/// Triangles with their neighbors, found naively.
-struct Whole {
-    vertices: Vec<[f64; 3]>,
-    faces: Vec<[u32; 3]>,
-    face_at: HashMap<[u32; 2], u32>,
-}
-
-impl Whole {
-    fn new<'a>(triangles: impl IntoIterator<Item = &'a TileTriangle>) -> Self {
-        let mut whole = Whole { vertices: Vec::new(), faces: Vec::new(), face_at: HashMap::new() };
-        let mut number_of = HashMap::new();
-        for triangle in triangles {
-            let corners = triangle.corners.map(|corner| {
-                *number_of.entry((corner.tile, corner.number)).or_insert_with(|| {
-                    whole.vertices.push(corner.position);
-                    whole.vertices.len() as u32 - 1
-                })
-            });
-            for i in 0..3 {
-                let side = [corners[i], corners[(i + 1) % 3]];
-                assert_eq!(whole.face_at.insert(side, whole.faces.len() as u32), None);
-            }
-            whole.faces.push(corners);
-        }
-        whole
-    }
-}
-
-impl Surface for Whole {
-    fn vertex_count(&self) -> usize {
-        self.vertices.len()
-    }
-
-    fn position(&self, vertex: u32) -> [f64; 3] {
-        self.vertices[vertex as usize]
-    }
-
-    fn face_count(&self) -> usize {
-        self.faces.len()
-    }
-
-    fn face(&self, face: u32) -> Option<[u32; 3]> {
-        self.faces.get(face as usize).copied()
-    }
-
-    fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
-        let corners = self.faces[face as usize];
-        self.face_at.get(&[corners[(i + 2) % 3], corners[(i + 1) % 3]]).copied()
-    }
-
-    fn edge_kind(&self, _face: u32, _i: usize) -> EdgeKind {
-        EdgeKind::Plain
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        None
-    }
+/// The surface of triangles.
+fn whole<'a>(triangles: impl IntoIterator<Item = &'a TileTriangle>) -> Mesh {
+    let (mut vertices, mut number_of) = (Vec::new(), HashMap::new());
+    let mut number = |corner: TileVertex| {
+        *number_of.entry((corner.tile, corner.number)).or_insert_with(|| {
+            vertices.push(corner.position);
+            vertices.len() as u32 - 1
+        })
+    };
+    let faces = triangles.into_iter().map(|triangle| triangle.corners.map(&mut number)).collect();
+    Mesh::new(vertices, faces, &[], None).unwrap()
 }
 
 /// Steps of an `f64` at positions of [`FAR`].
@@ -264,7 +217,7 @@ fn parts_give_the_contours_of_the_whole() {
             _ => Levels::every(0.5, 0.0),
         };
         let levels = levels.unwrap();
-        let expected: Vec<ContourLine> = contours(&Whole::new(tasks.iter().flatten()), &levels).unwrap().collect();
+        let expected: Vec<ContourLine> = contours(&whole(tasks.iter().flatten()), &levels).unwrap().collect();
 
         let patch_size = [1, 2, 7, 1000][random.index(4)];
         let mut parts: Vec<ContourParts> = tasks.iter().map(|task| collected(&levels, task, patch_size)).collect();
@@ -302,7 +255,7 @@ fn numbers_of_vertices_decide_and_not_coordinates() {
     let triangles = [[0, 2, 1], [1, 2, 3], [0, 1, 3], [0, 4, 2], [0, 3, 5]]
         .map(|corners| TileTriangle { corners: corners.map(vertex), edges: [EdgeKind::Plain; 3] });
     let levels = Levels::listed(&[0.5]).unwrap();
-    let expected: Vec<ContourLine> = contours(&Whole::new(&triangles), &levels).unwrap().collect();
+    let expected: Vec<ContourLine> = contours(&whole(&triangles), &levels).unwrap().collect();
     assert_eq!(expected.len(), 1);
     assert_eq!(expected[0].points[1], expected[0].points[4]);
     let files = triangles.map(|triangle| stored(&collected(&levels, &[triangle], 1000)));
@@ -334,7 +287,7 @@ fn wheels_from_parts() {
             })
             .collect();
         let expected: Vec<ContourLine> =
-            contours(&Whole::new(all.iter().map(|(_, triangle)| triangle)), &levels).unwrap().collect();
+            contours(&whole(all.iter().map(|(_, triangle)| triangle)), &levels).unwrap().collect();
         let file = |task| {
             let own: Vec<TileTriangle> = all.iter().filter(|(of, _)| *of == task).map(|(_, t)| *t).collect();
             stored(&collected(&levels, &own, 1000))
@@ -417,7 +370,7 @@ fn levels_are_found_while_heights_rise() {
     let many: Vec<f64> = (0..3000).map(|i| 1e-3 * f64::from(i)).collect();
     for levels in [Levels::every(1e-4, 0.0), Levels::every(0.1, 7.0), Levels::listed(&many)] {
         let levels = levels.unwrap();
-        let expected: Vec<ContourLine> = contours(&Whole::new(&triangles), &levels).unwrap().collect();
+        let expected: Vec<ContourLine> = contours(&whole(&triangles), &levels).unwrap().collect();
         for step in [1, -1] {
             triangles.sort_by(|a, b| a.corners[0].position[2].total_cmp(&b.corners[0].position[2]));
             if step < 0 {
