@@ -42,12 +42,16 @@ pub(super) struct JobLines {
 }
 
 impl JobLines {
-    /// Reads the lines of a request; `None` if there are none.
+    /// Returns the lines of the layers of a request; `None` if there are none.
     ///
     /// # Errors
-    /// If a layer cannot be read, or is not what its option takes.
-    pub(super) fn read(request: &TinRequest, crs: Option<&Crs>, journal: &Journal) -> Result<Option<Self>> {
-        let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;
+    /// If a layer is not what its option takes.
+    pub(super) fn new(
+        layers: &LineLayers,
+        request: &TinRequest,
+        crs: Option<&Crs>,
+        journal: &Journal,
+    ) -> Result<Option<Self>> {
         if !layers.has_lines_with_heights() {
             return Ok(None);
         }

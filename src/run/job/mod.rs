@@ -27,10 +27,9 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use self::contours::DrawnContours;
-use self::lines::JobLines;
-use self::plan::{Plan, crs_of, fingerprint, opened};
+use self::plan::{Known, Plan, fingerprint};
 use self::raster::DrawnCells;
-use self::task_file::{TaskFile, UNFINISHED};
+use self::task_file::{TaskFile, UNFINISHED, checksum};
 use super::cells::{CellProduct, DemOptions, HillshadeOptions};
 use super::context::{Context, Journal};
 use super::contour::ContourOptions;
@@ -152,8 +151,8 @@ pub struct Job<'a> {
     folder: PathBuf,
     plan: Plan,
     steps: Vec<Step>,
-    /// The lines, read by the first task that needs them, and the coordinate system.
-    lines: OnceLock<Option<JobLines>>,
+    /// Read by the first task that needs it, unless the plan was made by this process.
+    known: OnceLock<Known>,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
@@ -235,8 +234,9 @@ impl<'a> Job<'a> {
     ) -> Result<Self> {
         let (request, systems) = tiled(request, product)?;
         let journal = Journal::new(context);
-        let plan = Plan::new(request, systems, product, options, &journal)?;
-        Ok(Self::of_plan(request, systems, product, options, plan, journal.take()))
+        let (plan, known) = Plan::new(request, systems, product, options, &journal)?;
+        let known = OnceLock::from(known);
+        Ok(Job { known, notices: journal.take(), ..Self::of_plan(request, systems, product, options, plan) })
     }
 
     fn of_plan(
@@ -245,7 +245,6 @@ impl<'a> Job<'a> {
         product: &'a TiledProduct,
         options: &TileOptions,
         plan: Plan,
-        notices: Vec<Notice>,
     ) -> Self {
         let steps = plan.layout.steps();
         Job {
@@ -256,8 +255,8 @@ impl<'a> Job<'a> {
             folder: options.folder.clone(),
             plan,
             steps,
-            lines: OnceLock::new(),
-            notices,
+            known: OnceLock::new(),
+            notices: Vec::new(),
         }
     }
 
@@ -318,7 +317,7 @@ impl<'a> Job<'a> {
                 .cure("repeat that command, or name another folder (--job)"));
         }
         plan.require_all_unchanged()?;
-        Ok(Some(Self::of_plan(request, systems, product, options, plan, Vec::new())))
+        Ok(Some(Self::of_plan(request, systems, product, options, plan)))
     }
 
     /// Returns the numbers of the plan.
@@ -372,17 +371,15 @@ impl<'a> Job<'a> {
         self.plan.has_lines.then_some(self.divided())
     }
 
-    /// Returns the lines; `None` if there are none.
-    fn lines(&self, journal: &Journal) -> Result<Option<&JobLines>> {
-        if !self.plan.has_lines {
-            return Ok(None);
+    /// Returns what all tasks have to know; two that ask at once may both read it.
+    fn known(&self, context: &Context) -> Result<&Known> {
+        if let Some(known) = self.known.get() {
+            return Ok(known);
         }
-        if let Some(lines) = self.lines.get() {
-            return Ok(lines.as_ref());
-        }
-        let crs = self.crs()?;
-        let read = JobLines::read(self.request, crs.as_ref(), journal)?;
-        Ok(self.lines.get_or_init(|| read).as_ref())
+        // What there is to say about the files was said with the plan.
+        let quiet = Context { cancel: context.cancel, ..Context::default() };
+        let known = Known::read(self.request, self.systems, &self.plan.skipped, &Journal::new(&quiet))?;
+        Ok(self.known.get_or_init(|| known))
     }
 
     /// Returns the tasks that must be done before a task.
@@ -558,17 +555,8 @@ impl<'a> Job<'a> {
                 report.extent.add([coordinate(0), coordinate(1), coordinate(2)]);
             }
         }
-        report.crs = self.crs()?;
+        report.crs.clone_from(&self.known(&Context::default())?.crs);
         Ok(report)
-    }
-
-    /// Returns the coordinate system of the result, from the headers of all files.
-    fn crs(&self) -> Result<Option<Crs>> {
-        let context = Context::default();
-        let journal = Journal::new(&context);
-        let (_, inputs) = opened(self.request, &self.plan.skipped);
-        let points = PointFiles::open(&inputs, self.request.read, &journal)?;
-        crs_of(&points, self.request, self.systems, &journal)
     }
 
     /// Returns the cells of a raster, once all tasks are done.
@@ -668,12 +656,6 @@ impl JobLock {
 
 /// How long a lock is waited for: a worker that was killed may leave a process that ends its task.
 const PATIENCE: Duration = Duration::from_secs(10);
-
-fn checksum(text: &str) -> u32 {
-    let mut sum = flate2::Crc::new();
-    sum.update(text.as_bytes());
-    sum.sum()
-}
 
 /// Removes the files of a job and its folder, if nothing else is in it.
 ///

@@ -6,6 +6,7 @@ use std::time::UNIX_EPOCH;
 use serde_json::{Value, json};
 
 use super::lines::{self, JobLines};
+use super::task_file::checksum;
 use super::{BadFiles, Division, TileOptions, TiledProduct};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointBatch};
@@ -118,16 +119,45 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
     Ok(())
 }
 
+/// What the tasks get from the headers of all files and from the layers of lines.
+#[derive(Debug)]
+pub(super) struct Known {
+    pub(super) crs: Option<Crs>,
+    pub(super) lines: Option<JobLines>,
+}
+
+impl Known {
+    /// Opens all files but those that the plan skips.
+    pub(super) fn read(
+        request: &TinRequest,
+        systems: &SystemOptions,
+        skipped: &[(usize, String)],
+        journal: &Journal,
+    ) -> Result<Self> {
+        let (_, inputs) = opened(request, skipped);
+        Self::of(&PointFiles::open(&inputs, request.read, journal)?, request, systems, journal)
+    }
+
+    fn of(points: &PointFiles, request: &TinRequest, systems: &SystemOptions, journal: &Journal) -> Result<Self> {
+        let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;
+        let mut stated = points.stated(&request.classes, journal)?;
+        stated.extend(layers.stated());
+        let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
+        let lines = JobLines::new(&layers, request, crs.as_ref(), journal)?;
+        Ok(Known { crs, lines })
+    }
+}
+
 impl Plan {
     /// Chooses the tiles for the files of a request, by what their headers state; files that do not
-    /// state it are read once.
+    /// state it are read once. Also returns what was found out on the way.
     pub(super) fn new(
         request: &TinRequest,
         systems: &SystemOptions,
         product: &TiledProduct,
         options: &TileOptions,
         journal: &Journal,
-    ) -> Result<Self> {
+    ) -> Result<(Self, Known)> {
         require_tiled(request, systems)?;
         let skipped = match options.bad {
             BadFiles::Skip => closed(request, &journal.context)?,
@@ -135,7 +165,8 @@ impl Plan {
         };
         let (numbers, inputs) = opened(request, &skipped);
         let points = PointFiles::open(&inputs, request.read, journal)?;
-        let crs = crs_of(&points, request, systems, journal)?;
+        let known = Known::of(&points, request, systems, journal)?;
+        let Known { crs, lines } = &known;
         let classes = points.used_classes(&request.classes, journal)?;
         if request.classes == Classes::GroundOrAll {
             journal.add(if classes.len() == 1 { Notice::GroundUsed } else { Notice::AllClassesUsed });
@@ -154,9 +185,8 @@ impl Plan {
         for Spread { min, max, .. } in &spreads {
             [min, max].into_iter().for_each(|&[x, y]| extent.add([x, y, 0.0]));
         }
-        let lines = JobLines::read(request, crs.as_ref(), journal)?;
         let mut drawn_extent = extent;
-        if let Some(lines) = &lines {
+        if let Some(lines) = lines {
             [lines.extent.min, lines.extent.max].into_iter().for_each(|corner| drawn_extent.add(corner));
         }
         let workers = rayon::current_num_threads() as u64;
@@ -191,7 +221,9 @@ impl Plan {
             return Err(Error::unsupported("the name is not valid Unicode, which a plan needs").in_file(path));
         }
         let request = fingerprint(request, systems, product, options);
-        Ok(Plan { request, files, others, skipped, divides, has_lines, layout, classes, max_edge, frame, task_memory })
+        let plan =
+            Plan { request, files, others, skipped, divides, has_lines, layout, classes, max_edge, frame, task_memory };
+        Ok((plan, known))
     }
 
     /// Returns the number of points that the files state.
@@ -305,22 +337,6 @@ impl PlannedFile {
     }
 }
 
-/// Returns the coordinate system of the result.
-pub(super) fn crs_of(
-    points: &PointFiles,
-    request: &TinRequest,
-    systems: &SystemOptions,
-    journal: &Journal,
-) -> Result<Option<Crs>> {
-    let mut stated = points.stated(&request.classes, journal)?;
-    // The lines themselves are read later, with all that there is to say about them.
-    let context = Context { cancel: journal.context.cancel, ..Context::default() };
-    let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, &Journal::new(&context))?;
-    stated.extend(layers.stated());
-    let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
-    Ok(crs)
-}
-
 /// Returns a description of everything that the files of the tasks depend on.
 pub(super) fn fingerprint(
     request: &TinRequest,
@@ -328,9 +344,8 @@ pub(super) fn fingerprint(
     product: &TiledProduct,
     options: &TileOptions,
 ) -> String {
-    let mut sum = flate2::Crc::new();
-    sum.update(format!("{request:?} {systems:?} {product:?} {:?} {:?}", options.division, options.memory).as_bytes());
-    format!("{} {:08x}", product.name(), sum.sum())
+    let all = format!("{request:?} {systems:?} {product:?} {:?} {:?}", options.division, options.memory);
+    format!("{} {:08x}", product.name(), checksum(&all))
 }
 
 /// Returns the files that cannot be planned with, and why.
@@ -351,7 +366,7 @@ fn closed(request: &TinRequest, context: &Context) -> Result<Vec<(usize, String)
 }
 
 /// Returns the files that are not skipped, and their positions in the request.
-pub(super) fn opened(request: &TinRequest, skipped: &[(usize, String)]) -> (Vec<usize>, Vec<Input<MemoryPoints>>) {
+fn opened(request: &TinRequest, skipped: &[(usize, String)]) -> (Vec<usize>, Vec<Input<MemoryPoints>>) {
     let is_skipped = |number: &usize| skipped.iter().any(|(skipped, _)| skipped == number);
     let inputs = request.points.iter().cloned().enumerate();
     inputs.filter(|(number, _)| !is_skipped(number)).unzip()

@@ -23,6 +23,13 @@ pub(super) const UNFINISHED: &str = ".unfinished";
 /// The bytes after the facts: their length, the checksum, the magic.
 const END: u64 = 8 + 4 + 8;
 
+/// Returns the CRC-32 of a text.
+pub(super) fn checksum(text: &str) -> u32 {
+    let mut sum = Crc::new();
+    sum.update(text.as_bytes());
+    sum.sum()
+}
+
 /// Writes the file of a task.
 pub(super) struct TaskWriter {
     out: BufWriter<NamedTempFile>,

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::bytes::{self, Reader, put_u32, put_u64};
+use super::plan::Known;
 use super::raster::Drawing;
 use super::task_file::{TaskFile, TaskWriter};
 use super::{BadFiles, Job, Task, TiledProduct};
@@ -50,7 +51,7 @@ impl Job<'_> {
         writer.begin("points");
         let mut waiting: Vec<[f64; 3]> = Vec::new();
         let layout = &self.plan.layout;
-        let lines = self.lines(&Journal::new(&Context { cancel: context.cancel, ..Context::default() }))?;
+        let lines = if self.plan.has_lines { self.known(context)?.lines.as_ref() } else { None };
         let mut near = Vec::new();
         let mut write_run = |points: &mut Vec<[f64; 3]>| -> Result<()> {
             if let Some(lines) = lines {
@@ -99,7 +100,8 @@ impl Job<'_> {
     /// Arranges the lines, with the points next to them from all files.
     fn arrange(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let journal = Journal::new(context);
-        let Some(lines) = self.lines(&journal)? else { return Ok(Map::new()) };
+        let Known { crs, lines } = self.known(context)?;
+        let Some(lines) = lines else { return Ok(Map::new()) };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
@@ -111,7 +113,7 @@ impl Job<'_> {
             }
             [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
-        let tin = lines.build(near, &extent, self.crs()?.as_ref(), &journal)?;
+        let tin = lines.build(near, &extent, crs.as_ref(), &journal)?;
         let edges = lines::write(lines, &tin, &self.plan.layout, writer)?;
         Ok(Map::from_iter([("line_edges".to_owned(), json!(edges))]))
     }
