@@ -4,7 +4,7 @@ use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::{counted, print_surface};
-use crate::cli::verbs::tiled::{self, Tiled};
+use crate::cli::verbs::tiled::{self, Ran, Tiled};
 use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::Destination;
@@ -22,13 +22,11 @@ pub(in crate::cli) fn run(args: &ContourArgs, console: &Console) -> Result<Exit>
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {
-            let (job, report, lock) = *ran;
-            let drawn = write_all(&outputs, console, |target| job.write_contours(&report, target, &console.context()))?;
-            tiled::print(&report, console);
+            let Ran { job, report, .. } = ran.as_ref();
+            let drawn = write_all(&outputs, console, |target| job.write_contours(report, target, &console.context()))?;
+            ran.print(console);
             print_contours(&drawn, report.crs.as_ref(), console);
-            outputs.commit(console)?;
-            tiled::clean(&args.tiles, &job, &lock)?;
-            return Ok(Exit::Done);
+            return ran.commit(outputs, console);
         }
     }
     let product = run::surface(&plan.request, &console.context())?;

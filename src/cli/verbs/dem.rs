@@ -21,21 +21,15 @@ pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {
-            let (job, report, lock) = *ran;
-            let cells = job.cells(&report, &console.context())?;
-            outputs.announce(&cells, |()| 4, console)?;
-            let written = write(&cells, &outputs, console)?;
-            tiled::print(&report, console);
-            print_heights(written, report.crs.as_ref(), console);
-            outputs.commit(console)?;
-            tiled::clean(&args.tiles, &job, &lock)?;
-            return Ok(Exit::Done);
+            let written = write(&ran.job.cells(&ran.report, &console.context())?, &outputs, console)?;
+            ran.print(console);
+            print_heights(written, ran.report.crs.as_ref(), console);
+            return ran.commit(outputs, console);
         }
     }
     let product = run::triangles(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
     let cells = run::dem(&product, &options, &console.context())?;
-    outputs.announce(&cells, |()| 4, console)?;
     let written = write(&cells, &outputs, console)?;
     print_surface(&product, console);
     print_heights(written, product.crs(), console);
@@ -56,6 +50,7 @@ pub(super) fn requested(args: &DemArgs, console: &Console) -> Result<(SurfacePla
 }
 
 fn write(cells: &CellProduct, outputs: &Outputs<()>, console: &Console) -> Result<Option<RasterSummary>> {
+    outputs.announce(cells, |()| 4, console)?;
     let mut written = None;
     for target in &outputs.targets {
         written = Some(cells.write(target.within(&outputs.set), &console.context())?);

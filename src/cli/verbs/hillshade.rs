@@ -25,20 +25,14 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {
-            let (job, report, lock) = *ran;
-            let cells = job.cells(&report, &console.context())?;
-            outputs.announce(&cells, cell_bytes, console)?;
-            write(&cells, &outputs, console)?;
-            tiled::print(&report, console);
-            outputs.commit(console)?;
-            tiled::clean(&args.tiles, &job, &lock)?;
-            return Ok(Exit::Done);
+            write(&ran.job.cells(&ran.report, &console.context())?, &outputs, console)?;
+            ran.print(console);
+            return ran.commit(outputs, console);
         }
     }
     let product = run::surface(&plan.request, &console.context())?;
     outputs.add_report(&plan, &product)?;
     let cells = run::hillshade(&product, &options, &console.context())?;
-    outputs.announce(&cells, cell_bytes, console)?;
     write(&cells, &outputs, console)?;
     match &product.model {
         // The size of the raster is printed already.
@@ -67,6 +61,7 @@ pub(super) fn requested(args: &HillshadeArgs, console: &Console) -> Result<(Surf
 }
 
 fn write(cells: &CellProduct, outputs: &Outputs<ShadeFormat>, console: &Console) -> Result<()> {
+    outputs.announce(cells, cell_bytes, console)?;
     for target in &outputs.targets {
         let destination = target.within(&outputs.set);
         match target.kind {

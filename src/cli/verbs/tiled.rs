@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::cli::Exit;
 use crate::cli::input::args::TileArgs;
+use crate::cli::input::outputs::Outputs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_extent;
@@ -17,7 +19,16 @@ pub(super) enum Tiled<'a> {
     /// The plan was printed.
     Planned,
     /// All tasks are done.
-    Ran(Box<(Job<'a>, JobReport, JobLock)>),
+    Ran(Box<Ran<'a>>),
+}
+
+/// A job whose tasks are done. No other process works on it until its output is written.
+pub(super) struct Ran<'a> {
+    pub(super) job: Job<'a>,
+    pub(super) report: JobReport,
+    lock: JobLock,
+    /// True if the user named the folder of the job.
+    is_kept: bool,
 }
 
 /// Runs the tasks of a request, if tiles are asked for or memory would not suffice.
@@ -82,7 +93,7 @@ pub(super) fn run<'a>(
         console.note(format_args!("finished tasks are kept in {}: go on with --resume", options.folder.display()));
     })?;
     let report = job.report()?;
-    Ok(Tiled::Ran(Box::new((job, report, lock))))
+    Ok(Tiled::Ran(Box::new(Ran { job, report, lock, is_kept: args.job.is_some() })))
 }
 
 /// Prints what a plan consists of.
@@ -118,31 +129,38 @@ fn folder(args: &TileArgs, target: &Path) -> PathBuf {
     })
 }
 
-/// Prints what the surface was built of, and its size and extent.
-pub(super) fn print(report: &JobReport, console: &Console) {
-    let dropped = [(report.other_class, "of other classes"), (report.withheld, "withheld")];
-    let dropped: Vec<String> =
-        dropped.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!("{count} {why}")).collect();
-    let dropped = if dropped.is_empty() { String::new() } else { format!("; dropped: {}", dropped.join(", ")) };
-    console.line(format_args!("points      {} read, {} used{dropped}", report.read, report.used));
-    if report.duplicates > 0 {
-        console.line(format_args!("            {} at the position of another point", report.duplicates));
+impl Ran<'_> {
+    /// Prints what the surface was built of, and its size and extent.
+    pub(super) fn print(&self, console: &Console) {
+        let report = &self.report;
+        let dropped = [(report.other_class, "of other classes"), (report.withheld, "withheld")];
+        let dropped: Vec<String> =
+            dropped.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!("{count} {why}")).collect();
+        let dropped = if dropped.is_empty() { String::new() } else { format!("; dropped: {}", dropped.join(", ")) };
+        console.line(format_args!("points      {} read, {} used{dropped}", report.read, report.used));
+        if report.duplicates > 0 {
+            console.line(format_args!("            {} at the position of another point", report.duplicates));
+        }
+        if report.line_edges > 0 {
+            console.line(format_args!("lines       {} edges", report.line_edges));
+        }
+        let rim = match report.beyond_max_edge {
+            0 => String::new(),
+            count => format!(" ({count} left out at the rim; {} waited for that)", report.waited),
+        };
+        console.line(format_args!("triangles   {}{rim}", report.triangles));
+        console.line(format_args!("handed up   {} vertices", report.handed_up));
+        report.warnings.iter().for_each(|text| console.warning(text));
+        report.skipped.iter().for_each(|text| console.warning(format_args!("skipped: {text}")));
+        print_extent(report.extent, report.crs.as_ref(), console);
     }
-    if report.line_edges > 0 {
-        console.line(format_args!("lines       {} edges", report.line_edges));
-    }
-    let rim = match report.beyond_max_edge {
-        0 => String::new(),
-        count => format!(" ({count} left out at the rim; {} waited for that)", report.waited),
-    };
-    console.line(format_args!("triangles   {}{rim}", report.triangles));
-    console.line(format_args!("handed up   {} vertices", report.handed_up));
-    report.warnings.iter().for_each(|text| console.warning(text));
-    report.skipped.iter().for_each(|text| console.warning(format_args!("skipped: {text}")));
-    print_extent(report.extent, report.crs.as_ref(), console);
-}
 
-/// Removes the files of the tasks, unless their folder was named.
-pub(super) fn clean(args: &TileArgs, job: &Job, lock: &JobLock) -> Result<()> {
-    if args.job.is_some() { Ok(()) } else { job.remove(lock) }
+    /// Makes the output appear, and removes the files of the tasks unless their folder was named.
+    pub(super) fn commit<F>(self, outputs: Outputs<F>, console: &Console) -> Result<Exit> {
+        outputs.commit(console)?;
+        if !self.is_kept {
+            self.job.remove(&self.lock)?;
+        }
+        Ok(Exit::Done)
+    }
 }
