@@ -108,6 +108,8 @@ pub use elevation::elevations;
 pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
 pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
+#[cfg(feature = "cli")]
+pub(crate) use job::not_in_tiles;
 pub use job::{
     BadFiles, COMMAND, Division, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct, needs_tiles, remove_job,
 };

@@ -42,10 +42,7 @@ pub(super) fn run<'a>(
     let context = console.context();
     let tables = [(&plan.crossing_report, "--crossing-report"), (&plan.replaced_report, "--flat-points")];
     let table = tables.iter().find(|(table, _)| table.is_some());
-    let refused = table.map(|(_, option)| {
-        Error::unsupported(format!("{option} does not work with tiles yet"))
-            .cure("leave one of them out: without --tiles the whole surface is built in memory")
-    });
+    let refused = table.map(|(_, option)| run::not_in_tiles(option));
     if !args.are_asked_for() {
         let needed = match refused {
             Some(error) => Err(error),

@@ -11,7 +11,7 @@ use super::bytes::{self, CONSTRAINT_BYTES, Reader, put_u32, put_u64};
 use super::task_file::{TaskFile, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::run::context::Journal;
 use crate::run::crossings::{self, LineNames};
 use crate::run::line_inputs::LineLayers;
@@ -202,22 +202,5 @@ impl LinesOfTile {
             points.extend_from_slice(&self.vertices);
         }
         points
-    }
-}
-
-/// Returns an error for options of lines that tiles do not have yet.
-pub(super) fn require_tiled(request: &TinRequest) -> Result<()> {
-    let refused = [
-        (!request.lines.draped.is_empty(), "--draped-lines"),
-        (!request.lines.holes.is_empty(), "--holes"),
-        (
-            request.max_edge_inside.is_some() && !(request.lines.flats.is_empty() && request.lines.rivers.is_empty()),
-            "--max-edge-inside together with --flat or --rivers",
-        ),
-    ];
-    match refused.iter().find(|(is_given, _)| *is_given) {
-        Some((_, option)) => Err(Error::unsupported(format!("{option} does not work with tiles yet"))
-            .cure("leave one of them out: without --tiles the whole surface is built in memory")),
-        None => Ok(()),
     }
 }

@@ -27,6 +27,8 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use self::contours::DrawnContours;
+#[cfg(feature = "cli")]
+pub(crate) use self::plan::not_in_tiles;
 use self::plan::{Known, Plan, fingerprint};
 use self::raster::DrawnCells;
 use self::task_file::{TaskFile, UNFINISHED, checksum};

@@ -5,7 +5,7 @@ use std::time::UNIX_EPOCH;
 
 use serde_json::{Value, json};
 
-use super::lines::{self, JobLines};
+use super::lines::JobLines;
 use super::task_file::checksum;
 use super::{BadFiles, Division, TileOptions, TiledProduct};
 use crate::crs::Crs;
@@ -98,6 +98,13 @@ pub(super) fn points_of_text(path: &Path) -> u64 {
     state_of(path).map_or(0, |(size, _)| size / BYTES_A_POINT_OF_TEXT)
 }
 
+/// Returns the error for an option that tiles do not have yet.
+#[cold]
+pub(crate) fn not_in_tiles(option: &str) -> Error {
+    Error::unsupported(format!("{option} does not work with tiles yet"))
+        .cure("leave one of them out: without --tiles the whole surface is built in memory")
+}
+
 /// Returns an error if the request has something that tiles do not have yet.
 pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Result<()> {
     let refused = [
@@ -105,12 +112,16 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
         (request.bounds.is_some(), "--bounds"),
         (request.max_edge == EdgeLimit::Auto, "--max-edge auto"),
         (systems.target.is_some(), "--t-srs"),
+        (!request.lines.draped.is_empty(), "--draped-lines"),
+        (!request.lines.holes.is_empty(), "--holes"),
+        (
+            request.max_edge_inside.is_some() && !(request.lines.flats.is_empty() && request.lines.rivers.is_empty()),
+            "--max-edge-inside together with --flat or --rivers",
+        ),
     ];
     if let Some((_, option)) = refused.iter().find(|(is_given, _)| *is_given) {
-        return Err(Error::unsupported(format!("{option} does not work with tiles yet"))
-            .cure("leave one of them out: without --tiles the whole surface is built in memory"));
+        return Err(not_in_tiles(option));
     }
-    lines::require_tiled(request)?;
     if let Some(input) = request.points.iter().find(|input| !matches!(input, Input::File(_)) || input.is_read_once()) {
         return Err(Error::usage("tiles are made of files, which can be read again after an interruption")
             .in_file(input.path())
