@@ -137,8 +137,8 @@ pub enum EdgeLimit {
 }
 
 impl EdgeLimit {
-    /// Returns the length, in the units of the coordinate system; `None` if there is no limit, or
-    /// if it follows from the points.
+    /// Returns the length in the units of the coordinate system. `None` means that there is no
+    /// limit, or that it is derived from the points.
     pub(super) fn length(self, units: &Units) -> Option<f64> {
         match self {
             EdgeLimit::Unlimited | EdgeLimit::Auto => None,

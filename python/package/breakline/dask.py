@@ -1,4 +1,4 @@
-"""Rasters of points that do not fit into memory, made by the workers of a Dask cluster.
+"""Write rasters of points that do not fit into memory, with the workers of a Dask cluster.
 
 >>> import breakline.dask
 >>> breakline.dask.dem("tiles/*.laz", "dem.tif", resolution=1, client=client)  # doctest: +SKIP

@@ -140,7 +140,7 @@ fn stored(job: &Path, console: &Console) -> Result<(PathBuf, Command, Vec<String
 
 #[cold]
 fn no_job(job: &Path) -> Error {
-    Error::usage("there is no job in this folder").in_file(job).cure("create it with `breakline job plan`")
+    Error::usage("there is no job in this folder").in_file(job).cure("`breakline job plan` creates one")
 }
 
 fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {

@@ -1,9 +1,9 @@
 //! The lines of a surface in tiles: arranged once, by one task, then given to the tiles.
 //!
-//! Where lines cross, and which points bend them, is no local question: it depends on crossings far
-//! away. But it depends on no point that is away from all lines. So the lines are built to a TIN of
-//! their own, together with the points that are on them or next to them. Its constrained edges are
-//! those of the surface, with the same heights, and no two of them cross.
+//! A tile alone cannot know where lines cross and which points bend them: crossings far away
+//! matter. Points away from all lines do not. So the lines are built to a TIN of their own,
+//! together with the points that are on them or next to them. Its constrained edges are those of
+//! the surface, with the same heights, and no two of them cross.
 
 use rustc_hash::FxHashSet;
 

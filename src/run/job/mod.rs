@@ -3,12 +3,13 @@
 //! A job lives in a folder: the plan, and a file for each task that is done. So it can be
 //! interrupted at any moment and go on, and its tasks can run anywhere that sees the folder.
 //!
-//! 1. If the files are no tiles, or there are lines, each is *divided* among the tiles.
+//! 1. Unless each file is a tile, and always with lines, files are *divided* among the tiles.
 //! 2. If there are *lines*, one task arranges them, with the points next to them.
 //! 3. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
 //!    are final; see [`tiles`](crate::terrain::tiles).
 //! 4. The *rim* is decided: triangles with edges over the limit wait until all others are known.
-//! 5. The cells that all tasks have drawn are the product, or the contours, joined.
+//! 5. The product is composed of the cells that the tasks have drawn, or joined from their
+//!    contours.
 
 mod bytes;
 mod contours;
@@ -226,8 +227,12 @@ impl<'a> Job<'a> {
     /// Plans a job. Nothing is written.
     ///
     /// # Errors
-    /// If the request has lines, bounds or a method that tiles do not have, a file cannot be
-    /// opened, or those of building a surface.
+    /// If the request has something that tiles do not have yet, or a file cannot be opened; and
+    /// those of building a surface.
+    ///
+    /// # Complexity
+    /// Linear in the files, of which the headers are read; those that state no number or extent are
+    /// read to their end.
     pub fn plan(
         request: &'a SurfaceRequest,
         product: &'a TiledProduct,
@@ -518,7 +523,7 @@ impl<'a> Job<'a> {
     /// Does one task, unless it is done. Needs the files of the tasks before it.
     ///
     /// # Errors
-    /// If the input cannot be read, a task before it is not done, or the run is canceled.
+    /// If the input cannot be read, if a task that it needs is not done, or if the run is canceled.
     pub fn run_task(&self, task: usize, context: &Context) -> Result<()> {
         if task >= self.task_count() {
             return Err(self.no_task(task));
@@ -528,7 +533,7 @@ impl<'a> Job<'a> {
         if self.is_done(task) { Ok(()) } else { self.do_task(task, context) }
     }
 
-    /// Returns what became of the tasks, all of which must be done.
+    /// Returns counts of all tasks, which must be done.
     ///
     /// # Errors
     /// If a task is not done.
@@ -564,7 +569,7 @@ impl<'a> Job<'a> {
     /// Returns the cells of a raster, once all tasks are done.
     ///
     /// # Errors
-    /// If a task is not done, no triangle is left, the product is no raster, or those of
+    /// If a task is not done, if no triangle is left, or if the job makes contours; and those of
     /// [`dem`](super::dem).
     pub fn cells(&self, report: &JobReport, context: &Context) -> Result<CellProduct<'static>> {
         let journal = Journal::new(context);
@@ -591,7 +596,7 @@ impl<'a> Job<'a> {
     /// names. They are drawn level by level, and not kept.
     ///
     /// # Errors
-    /// If a task is not done, no triangle is left, the product is a raster, or those of
+    /// If a task is not done, if no triangle is left, or if the job makes a raster; and those of
     /// [`ContourProduct::write`](super::ContourProduct::write).
     pub fn write_contours(&self, report: &JobReport, target: Destination, context: &Context) -> Result<ContourSummary> {
         self.require_triangles(report)?;
@@ -662,7 +667,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Removes the files of a job and its folder, if nothing else is in it.
 ///
 /// # Errors
-/// If there is no job in the folder, or it cannot be removed.
+/// If the folder has no job, or the job cannot be removed.
 pub fn remove_job(folder: &Path) -> Result<()> {
     if !folder.join(PLAN).is_file() {
         return Err(Error::usage("there is no job in this folder").in_file(folder));

@@ -73,7 +73,7 @@ pub(super) struct Plan {
     /// The files that are skipped because they cannot be opened: their positions in the request,
     /// and why.
     pub(super) skipped: Vec<(usize, String)>,
-    /// True if the files are divided among tiles first, because they are no tiles or there are
+    /// True if the files are divided among tiles first: they are not tiles themselves, or there are
     /// lines.
     pub(super) divides: bool,
     /// True if there are lines, which one task arranges.

@@ -71,7 +71,7 @@ impl Drawing {
 
 /// The heights that all tasks have drawn, as one raster.
 ///
-/// Of the tasks that have a height for a cell, any may be asked: they agree.
+/// Tasks that have a height for the same cell agree on it, so any of them may be asked.
 pub(super) struct DrawnCells {
     /// The frame of the result.
     frame: Frame,
@@ -153,7 +153,7 @@ impl BlockSource for DrawnCells {
         self.frame.check_window(window, out.len())?;
         out.fill(f32::NAN);
         let side = Canvas::SIDE as i64;
-        // In the frame that was drawn in; beyond it there is no height.
+        // Columns and rows of the drawn frame; beyond it no cell has a height.
         let from = [window.column as i64 + self.first[0], window.row as i64 + self.first[1]];
         let size = [window.width as i64, window.height as i64];
         let limits = [self.drawn.width as i64, self.drawn.height as i64];

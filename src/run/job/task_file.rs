@@ -131,7 +131,7 @@ impl TaskFile {
     /// Opens the file of a task that is done.
     ///
     /// # Errors
-    /// If there is no file, or it is not complete.
+    /// If the file is missing or not complete.
     pub(super) fn open_done(path: &Path) -> Result<Self> {
         Self::open(path)?.ok_or_else(|| {
             Error::format("the file of a task is missing").in_file(path).cure("run the job again with --resume")

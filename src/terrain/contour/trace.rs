@@ -153,7 +153,7 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
 }
 
 impl Face {
-    /// The end of an arc at a node beyond which there is no face.
+    /// Returns the loose end of an arc at a node, where the faces end.
     fn loose_end(&self, arc: ContourArc, node: Node) -> LooseEnd {
         match (node, arc) {
             (Node::Edge(i), _) => LooseEnd::Edge([1, 2].map(|k| self.vertices[(i + k) % 3])),

@@ -69,6 +69,9 @@ impl Canvas {
     }
 
     /// Draws a triangle. Its corners may be in any order.
+    ///
+    /// # Complexity
+    /// Linear in the rows of cells that the triangle meets, and in the cells that it covers.
     pub fn draw(&mut self, corners: [[f64; 3]; 3]) {
         self.draw_in(corners, 0..usize::MAX);
     }

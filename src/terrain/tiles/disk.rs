@@ -83,7 +83,7 @@ impl Disk {
         let to_center = [self.center[0] - a[0], self.center[1] - a[1]];
         let share = (dot(along, to_center) / dot(along, along)).clamp(0.0, 1.0);
         let normal = [0, 1].map(|axis| share * along[axis] - to_center[axis]);
-        // So the direction is no shorter than the radius, as the proof of the bound needs it.
+        // The proof of the bound needs a direction that is at least as long as the radius.
         let is_outside = dot(normal, normal) > self.radius * self.radius;
         is_outside && [a, b].iter().all(|&origin| self.is_below([Slope { normal, origin }, Slope::FLAT]))
     }

@@ -89,6 +89,9 @@ impl Layout {
     /// Returns one tile for each box, numbered like the boxes; `None` if no cuts separate them.
     /// Boxes that touch are not separate: both may have points there. Cuts are in the middle of
     /// gaps.
+    ///
+    /// # Complexity
+    /// O(n log^2 n) for n boxes in a grid, O(n^2 log n) at worst.
     pub fn of_boxes(boxes: &[Spread]) -> Option<Self> {
         let mut layout = Layout { nodes: Vec::new() };
         let mut all: Vec<u32> = (0..boxes.len() as u32).collect();
@@ -128,7 +131,10 @@ impl Layout {
         self.add_boxes(boxes, high)
     }
 
-    /// Returns tiles with at most about `most` points each, if these are spread as is stated.
+    /// Returns tiles with at most about `most` points each, if points are spread as is stated.
+    ///
+    /// # Complexity
+    /// Linear in the boxes for each level of cuts.
     pub fn balanced(spreads: &[Spread], most: f64) -> Self {
         let mut layout = Layout { nodes: Vec::new() };
         let mut tiles = 0;
@@ -168,7 +174,7 @@ impl Layout {
         here as u32
     }
 
-    /// Returns the division that a list of nodes states; `None` if it is not one.
+    /// Returns the layout with these tiles and cuts; `None` if they do not form a tree.
     pub fn from_nodes(nodes: Vec<Node>) -> Option<Self> {
         let mut uses = vec![0; nodes.len()];
         for (here, node) in nodes.iter().enumerate() {
@@ -195,7 +201,7 @@ impl Layout {
         self.nodes.len().div_ceil(2)
     }
 
-    /// Returns the number of the tile that owns a position.
+    /// Returns the number of the tile that owns a position, in as many steps as cuts are nested.
     pub fn tile_of(&self, position: [f64; 2]) -> u32 {
         let mut here = 0;
         loop {

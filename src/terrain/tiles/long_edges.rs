@@ -70,7 +70,7 @@ impl LongEdges {
         LongEdges { limit, ..LongEdges::default() }
     }
 
-    /// Takes a triangle, and returns true, if it has to wait.
+    /// Returns true if a triangle has to wait; it is then kept here.
     pub fn take(&mut self, triangle: &TileTriangle) -> bool {
         let corners = triangle.corners.map(|corner| corner.position);
         let mut number = None;
@@ -145,7 +145,7 @@ pub struct Rim {
 }
 
 impl Rim {
-    /// Adds the groups of the next task.
+    /// Adds the groups of the next task. Linear, up to a factor that is nearly constant.
     pub fn add(&mut self, groups: u32, gates: &[Gate]) {
         let first = self.groups.0.len() as u32;
         self.first_of.push(first);

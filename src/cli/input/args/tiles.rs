@@ -87,7 +87,7 @@ fn size(text: &str) -> Result<u64, String> {
         "kib" => 1024.0,
         "mib" => 1024.0 * 1024.0,
         "gib" => 1024.0 * 1024.0 * 1024.0,
-        _ => return Err(format!("`{unit}` is no unit of memory; expected a size such as 500MB, 2GB or 2GiB")),
+        _ => return Err(format!("`{unit}` is not a unit of memory; expected a size such as 500MB, 2GB or 2GiB")),
     };
     match number.parse::<f64>() {
         Ok(count) if count * factor >= LEAST_MEMORY && count * factor < 1e18 => Ok((count * factor) as u64),

@@ -43,9 +43,9 @@
 //!
 //! 1. *Which arcs there are.* An arc across a face depends on this face alone. An arc along an edge
 //!    on the level depends on both faces of the edge. A task that has one of them hands on the side
-//!    that it knows; where both sides are known, the rule decides. A side without another one is at
-//!    the edge of the data, where there is no arc. Crossings are computed from the smaller end of
-//!    an edge, so that tasks agree in every bit.
+//!    that it knows; where both sides are known, the rule decides. A side whose opposite is in no
+//!    task lies at the edge of the data, and makes no arc. The crossing of an edge is computed from
+//!    its smaller end, so that all tasks get the same bits.
 //! 2. *Which arcs follow each other.* At the crossing of an edge there are two arcs at most. At a
 //!    vertex, a task joins an arriving arc with the first leaving one counter-clockwise if it has
 //!    all faces in between. These two are next to each other in the circle around the vertex, so
