@@ -60,6 +60,21 @@ fn tasks_without_a_plan_do_not_count() {
     assert!(tiled == whole);
 }
 
+/// A removal that was killed between the tasks and the plan.
+#[test]
+fn a_plan_without_tasks_can_go_on_or_be_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = format!("dem {} --tiles 2x2 --job kept", valley());
+    let (whole, _) = output_of(&folder, &words, "one.tif");
+    let tasks = folder.path().join("kept/tasks");
+    std::fs::remove_dir_all(&tasks).unwrap();
+    let (again, said) = output_of(&folder, &format!("{words} --resume"), "one.tif");
+    assert!(again == whole && said.contains("0 of 7 tasks are done"), "{said}");
+    std::fs::remove_dir_all(&tasks).unwrap();
+    run_in(&folder, &["job", "clean", "kept"]).works(&[]);
+    assert_eq!(files_of(folder.path()), ["one.tif"]);
+}
+
 #[test]
 fn a_plan_is_refused_if_its_output_cannot_be_written() {
     let folder = tempfile::tempdir().unwrap();

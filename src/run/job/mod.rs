@@ -493,6 +493,8 @@ impl<'a> Job<'a> {
     pub fn clear_up(&self, _lock: &JobLock) -> Result<usize> {
         let folder = self.folder.join("tasks");
         let named = |e: std::io::Error| Error::from(e).in_file(&folder);
+        // An interrupted removal may have taken it.
+        std::fs::create_dir_all(&folder).map_err(named)?;
         for entry in std::fs::read_dir(&folder).map_err(named)? {
             let path = entry.map_err(named)?.path();
             if path.to_string_lossy().ends_with(UNFINISHED) {
@@ -678,8 +680,11 @@ pub fn remove_job(folder: &Path) -> Result<()> {
 
 fn remove_files(folder: &Path) -> Result<()> {
     let named = |e: std::io::Error| Error::from(e).in_file(folder);
-    // The plan last: a job without tasks can go on.
-    std::fs::remove_dir_all(folder.join("tasks")).map_err(named)?;
+    // The plan last: a removal that was interrupted can be repeated.
+    let tasks = folder.join("tasks");
+    if tasks.exists() {
+        std::fs::remove_dir_all(&tasks).map_err(named)?;
+    }
     std::fs::remove_file(folder.join(PLAN)).map_err(named)?;
     for name in [LOCK, COMMAND] {
         let _ = std::fs::remove_file(folder.join(name));
