@@ -705,12 +705,18 @@ pub fn needs_tiles(
 ) -> Result<bool> {
     let (points, systems) = tiled(request, product)?;
     plan::require_tiled(points, systems)?;
-    let quiet = Context { monitor: Context::default().monitor, cancel: context.cancel };
+    let memory = memory.unwrap_or_else(super::memory::half_of_free);
+    // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always suffice.
+    let bytes: u64 = points.points.iter().map(|input| plan::length_of(input.path())).sum();
+    if super::memory::need_of(bytes) <= memory {
+        return Ok(false);
+    }
+    let quiet = Context { cancel: context.cancel, ..Context::default() };
     let files = PointFiles::open(&points.points, points.read, &Journal::new(&quiet))?;
     let stated = points.points.iter().zip(files.stated_extents());
     let count: u64 =
         stated.map(|(input, (count, _))| count.unwrap_or_else(|| plan::points_of_text(input.path()))).sum();
-    Ok(super::memory::need_of(count) > memory.unwrap_or_else(super::memory::half_of_free))
+    Ok(super::memory::need_of(count) > memory)
 }
 
 /// Returns the request of the points of a surface.

@@ -90,12 +90,17 @@ pub(super) struct Plan {
     pub(super) task_memory: u64,
 }
 
+/// Returns the length of a file in bytes; 0 if it cannot be asked for.
+pub(super) fn length_of(path: &Path) -> u64 {
+    state_of(path).map_or(0, |(size, _)| size)
+}
+
 /// The bytes of a point in a text, at least.
 const BYTES_A_POINT_OF_TEXT: u64 = 24;
 
 /// Returns about how many points a file has that does not state it.
 pub(super) fn points_of_text(path: &Path) -> u64 {
-    state_of(path).map_or(0, |(size, _)| size / BYTES_A_POINT_OF_TEXT)
+    length_of(path) / BYTES_A_POINT_OF_TEXT
 }
 
 /// Returns the error for an option that tiles do not have yet.
