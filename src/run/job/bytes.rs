@@ -11,10 +11,14 @@ pub(super) fn put_u64(to: &mut Vec<u8>, value: u64) {
     to.extend_from_slice(&value.to_le_bytes());
 }
 
+fn put_numbers(to: &mut Vec<u8>, values: &[f64]) {
+    values.iter().for_each(|value| to.extend_from_slice(&value.to_le_bytes()));
+}
+
 fn put_vertex(to: &mut Vec<u8>, vertex: &TileVertex) {
     put_u32(to, vertex.tile);
     put_u32(to, vertex.number);
-    vertex.position.iter().for_each(|c| to.extend_from_slice(&c.to_le_bytes()));
+    put_numbers(to, &vertex.position);
 }
 
 /// Takes numbers from bytes; `None` where they end.
@@ -73,14 +77,16 @@ impl<'a> Reader<'a> {
 
 /// Returns the bytes of points.
 pub(super) fn of_points(points: &[[f64; 3]]) -> Vec<u8> {
-    points.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect()
+    let mut bytes = Vec::with_capacity(24 * points.len());
+    put_numbers(&mut bytes, points.as_flattened());
+    bytes
 }
 
 /// Returns the bytes of sub-constraints.
 pub(super) fn of_constraints(constraints: &[SubConstraint]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(CONSTRAINT_BYTES * constraints.len());
     for SubConstraint { ends, kind } in constraints {
-        ends.as_flattened().iter().for_each(|c| bytes.extend_from_slice(&c.to_le_bytes()));
+        put_numbers(&mut bytes, ends.as_flattened());
         bytes.push(kind.number());
     }
     bytes

@@ -57,6 +57,7 @@ impl Job<'_> {
             if let Some(lines) = lines {
                 near.append(&mut lines.take_points(points));
             }
+            let mut own = Vec::new();
             let mut tiles: Vec<(u32, u32)> =
                 (0..).zip(points.iter()).map(|(i, &[x, y, _])| (layout.tile_of([x, y]), i)).collect();
             // By tiles, and within each in the order of the file.
@@ -65,7 +66,8 @@ impl Job<'_> {
                 put_u32(&mut table, of_tile[0].0);
                 put_u64(&mut table, writer.position());
                 put_u64(&mut table, of_tile.len() as u64);
-                let own: Vec<[f64; 3]> = of_tile.iter().map(|(_, i)| points[*i as usize]).collect();
+                own.clear();
+                own.extend(of_tile.iter().map(|(_, i)| points[*i as usize]));
                 writer.put(&bytes::of_points(&own))?;
             }
             points.clear();
