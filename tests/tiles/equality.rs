@@ -2,7 +2,7 @@
 
 use testkit::random::Random;
 
-use super::{landscape, lidar, output_of, program, valley};
+use super::{landscape, layer, lidar, output_of, program, valley};
 use program::{files_of, run_in};
 
 /// Fails unless the verb with these words gives the same file with and without each of the options
@@ -104,25 +104,6 @@ fn breaklines_in_tiles_are_those_of_the_valley() {
     let (whole, _) = output_of(&folder, &words, "whole.geojson");
     let (tiled, said) = output_of(&folder, &format!("{words} --tiles 5x8"), "tiled.geojson");
     assert!(tiled == whole && said.contains("lines       "), "{said}");
-}
-
-/// A layer of lines of one kind.
-fn layer(lines: &[Vec<[f64; 3]>], kind: &str) -> String {
-    let features: Vec<String> = lines
-        .iter()
-        .map(|line| {
-            let points: Vec<String> = line.iter().map(|[x, y, z]| format!("[{x},{y},{z}]")).collect();
-            let (open, close) = if kind == "Polygon" { ("[[", "]]") } else { ("[", "]") };
-            let coordinates = format!("{open}{}{close}", points.join(","));
-            format!(
-                r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}"#
-            )
-        })
-        .collect();
-    format!(
-        r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::25832"}}}},"features":[{}]}}"#,
-        features.join(",")
-    )
 }
 
 /// Lines of all kinds on grids: they cross, overlap, touch points and run along cuts; water

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime};
 
-use super::{bytes, output_of, program, valley};
+use super::{bytes, layer, output_of, program, valley};
 use program::{files_of, run_in};
 
 /// The tasks that are done, with the times at which they were.
@@ -105,15 +105,11 @@ fn a_file_that_changes_after_the_plan_is_refused() {
     run_in(&folder, &["job", "run", "j"]).fails(1, &["a.laz: "]);
 
     // Lines, too.
-    let layer = |z: f64| {
-        format!(
-            r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::25832"}}}},"features":[{{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":[[688050,5261050,{z}],[688300,5261250,{z}]]}}}}]}}"#
-        )
-    };
-    std::fs::write(folder.path().join("l.geojson"), layer(800.0)).unwrap();
+    let line = |z: f64| layer(&[vec![[688_050.0, 5_261_050.0, z], [688_300.0, 5_261_250.0, z]]], "LineString");
+    std::fs::write(folder.path().join("l.geojson"), line(800.0)).unwrap();
     let words = format!("job plan k -- dem {} --breaklines l.geojson -o d.tif --tiles 2x2", valley());
     run_in(&folder, &words.split(' ').collect::<Vec<_>>()).works(&[]);
-    std::fs::write(folder.path().join("l.geojson"), layer(801.55)).unwrap();
+    std::fs::write(folder.path().join("l.geojson"), line(801.55)).unwrap();
     run_in(&folder, &["job", "run", "k"]).fails(2, &["l.geojson: the file has changed since the job was planned"]);
 }
 

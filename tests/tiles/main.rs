@@ -38,3 +38,22 @@ fn output_of(folder: &TempDir, words: &str, out: &str) -> (Vec<u8>, String) {
 fn bytes(path: impl AsRef<Path>) -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
+
+/// A layer of lines of one kind.
+fn layer(lines: &[Vec<[f64; 3]>], kind: &str) -> String {
+    let features: Vec<String> = lines
+        .iter()
+        .map(|line| {
+            let points: Vec<String> = line.iter().map(|[x, y, z]| format!("[{x},{y},{z}]")).collect();
+            let (open, close) = if kind == "Polygon" { ("[[", "]]") } else { ("[", "]") };
+            let coordinates = format!("{open}{}{close}", points.join(","));
+            format!(
+                r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}"#
+            )
+        })
+        .collect();
+    format!(
+        r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::25832"}}}},"features":[{}]}}"#,
+        features.join(",")
+    )
+}
