@@ -706,7 +706,8 @@ pub fn needs_tiles(
     let (points, systems) = tiled(request, product)?;
     plan::require_tiled(points, systems)?;
     let memory = memory.unwrap_or_else(super::memory::half_of_free);
-    // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always suffice.
+    // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
+    // suffice.
     let bytes: u64 = points.points.iter().map(|input| plan::length_of(input.path())).sum();
     if super::memory::need_of(bytes) <= memory {
         return Ok(false);
