@@ -15,11 +15,18 @@ pub(super) const FRAGMENTS: [u8; 8] = *b"fragment";
 /// Edges of triangles that are next to a fragment, or on a line other than a breakline, in order.
 pub(super) const SIDES: [u8; 8] = *b"sides   ";
 
+/// The tile and the number of each vertex of the triangulation, in a TIN that is part of a larger
+/// surface.
+pub(super) const NUMBERS: [u8; 8] = *b"numbers ";
+
 /// Stands for the neighbor of an edge at the rim.
 const NONE: u32 = u32::MAX;
 
 /// Bytes of a row of [`VERTICES`].
 pub(super) const VERTEX: usize = 24;
+
+/// Bytes of a row of [`NUMBERS`].
+pub(super) const NUMBER: usize = 8;
 
 /// Bytes of a row of [`FRAGMENTS`].
 pub(super) const FRAGMENT: usize = 28;

@@ -7,6 +7,7 @@
 mod attributes;
 mod check;
 mod layout;
+mod part;
 mod write;
 
 use std::fmt;
@@ -25,8 +26,8 @@ use crate::triangulation::{Compact, CompactError, CompactSection, Location};
 
 use super::linear::linear;
 use attributes::Attributes;
-use layout::{ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, SIDE, SIDES, Side, VERTEX, VERTICES};
-pub(super) use write::write;
+use layout::{ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, SIDE, SIDES, Side, VERTEX, VERTICES};
+pub(super) use write::{write, write_numbers};
 
 /// A TIN that is used where its bytes are, without being loaded.
 ///
@@ -64,6 +65,8 @@ pub struct CompactTin<B> {
     vertices: Range<usize>,
     fragments: Range<usize>,
     sides: Range<usize>,
+    /// Empty unless it is part of a larger surface.
+    numbers: Range<usize>,
     /// For messages.
     path: PathBuf,
     damage: OnceLock<Damage>,
@@ -149,6 +152,13 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         let vertices = rows(VERTICES, VERTEX)?;
         let fragments = rows(FRAGMENTS, FRAGMENT)?;
         let sides = rows(SIDES, SIDE)?;
+        let numbers = triangulation.section_range(NUMBERS).unwrap_or_default();
+        let vertex_count = triangulation.vertex_count();
+        if !numbers.is_empty() && numbers.len() != NUMBER * vertex_count {
+            return Err(
+                Error::format(format!("{} bytes for {vertex_count} vertices", numbers.len())).at("section `numbers`")
+            );
+        }
         let attributes = &triangulation.bytes()[section(ATTRIBUTES)?];
         let attributes = Attributes::from_json(attributes).map_err(|e| e.at("section `tin`"))?;
         let tin = CompactTin {
@@ -157,6 +167,7 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
             vertices,
             fragments,
             sides,
+            numbers,
             path: path.to_path_buf(),
             damage: OnceLock::new(),
             triangulation,
@@ -448,6 +459,11 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
             let contents = self.triangulation.bytes().get(range.clone()).unwrap_or_default();
             CompactSection { tag, contents }.write(&mut out)?;
         }
-        write::write_attributes(&self.attributes, &mut out)
+        write::write_attributes(&self.attributes, &mut out)?;
+        if !self.numbers.is_empty() {
+            let contents = self.triangulation.bytes().get(self.numbers.clone()).unwrap_or_default();
+            CompactSection { tag: NUMBERS, contents }.write(&mut out)?;
+        }
+        Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 
 use super::attributes::Attributes;
-use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, SIDES, Side, VERTICES};
+use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, NUMBERS, SIDES, Side, VERTICES};
 use crate::data::{EdgeKind, Face, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::terrain::lines::kinds::LineKinds;
@@ -36,7 +36,17 @@ pub(in crate::terrain) fn write(
     Ok(out.flush()?)
 }
 
-/// Writes the last section.
+/// Writes the section of a TIN that is part of a larger surface, after the others: the tile and the
+/// number of each vertex.
+///
+/// # Errors
+/// Those of `out`.
+pub(in crate::terrain) fn write_numbers(numbers: &[[u32; 2]], mut out: &mut dyn Write) -> Result<()> {
+    let contents: Vec<u8> = numbers.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
+    Ok(CompactSection { tag: NUMBERS, contents: &contents }.write(&mut out)?)
+}
+
+/// Writes the section of coordinate system, counts and extent.
 pub(super) fn write_attributes(attributes: &Attributes, out: &mut impl Write) -> Result<()> {
     Ok(CompactSection { tag: ATTRIBUTES, contents: attributes.to_json().as_bytes() }.write(out)?)
 }
@@ -75,7 +85,7 @@ impl Layers {
             let face = cell.index() as u32;
             if surface.face(face).is_none() {
                 if has_kinds {
-                    sides.extend(kinds_under(surface, face, at as u32));
+                    sides.extend(kinds_under(surface, triangulation, cell, at as u32));
                 }
                 continue;
             }
@@ -119,12 +129,23 @@ impl Layers {
 
 /// The rows of the edges of a triangle that is not a face of the surface: of those on lines other
 /// than breaklines, for which methods of interpolation ask.
-fn kinds_under(surface: &dyn Surface, face: u32, number: u32) -> Vec<u8> {
+fn kinds_under(
+    surface: &dyn Surface,
+    triangulation: &ConstrainedDelaunay<Terrain>,
+    cell: CellId,
+    number: u32,
+) -> Vec<u8> {
     let mut under = Vec::new();
+    let face = cell.index() as u32;
     surface.base_faces_in(face..face + 1, &mut under);
-    let kinds = under.first().map_or([EdgeKind::Plain; 3], |face| face.edges);
-    let of_lines = kinds.into_iter().zip(0..).filter(|(kind, _)| kind.is_constrained() && *kind != EdgeKind::Breakline);
-    of_lines.flat_map(|(kind, corner)| Side { face: number, corner, kind, neighbor: None }.to_bytes()).collect()
+    let kinds = under.first().map_or([EdgeKind::Breakline; 3], |face| face.edges);
+    let of_lines = kinds
+        .into_iter()
+        .enumerate()
+        .filter(|&(corner, kind)| kind != EdgeKind::Breakline && triangulation.is_constrained(cell, corner));
+    of_lines
+        .flat_map(|(corner, kind)| Side { face: number, corner: corner as u8, kind, neighbor: None }.to_bytes())
+        .collect()
 }
 
 /// Numbers without gaps, in the same order: first those of used slots, then some beyond all slots.

@@ -8,9 +8,10 @@ use super::residual::{Residual, ResidualEdge};
 use super::sub_constraint::SubConstraint;
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
+use crate::triangulation::geometry::Terrain;
 use crate::triangulation::num::unsigned_zero;
 use crate::triangulation::tds::CellId;
-use crate::triangulation::{ConstrainedDelaunay2, Passage};
+use crate::triangulation::{ConstrainedDelaunay, Passage};
 
 /// How many triangles the search for what a triangle sees may reach; then the triangle waits. So a
 /// task takes linear time, whatever the lines.
@@ -72,55 +73,28 @@ pub(super) fn join_known(tile: &Tile, residual: &mut Residual) -> Result<()> {
     Ok(())
 }
 
-/// What lines mean for the triangles of a task.
-pub(super) trait Lines {
-    /// Returns the kind of the edge opposite corner `i` of a cell.
-    fn kind(&self, cell: CellId, i: usize) -> EdgeKind;
-
-    /// Returns true if a pending sub-constraint enters a cell or runs along one of its edges.
-    fn enter(&self, cell: CellId) -> bool;
-
-    /// Returns true if constraints hide from a cell all that is in its disk outside of the tile. In
-    /// doubt returns false.
-    fn hide_all_outside(&self, tile: &Tile, disk: &Disk, cell: CellId) -> bool;
-}
-
-/// No lines.
-pub(super) struct NoLines;
-
-impl Lines for NoLines {
-    fn kind(&self, _: CellId, _: usize) -> EdgeKind {
-        EdgeKind::Plain
-    }
-
-    fn enter(&self, _: CellId) -> bool {
-        false
-    }
-
-    fn hide_all_outside(&self, _: &Tile, _: &Disk, _: CellId) -> bool {
-        false
-    }
-}
-
-/// The lines of a triangulation whose constraints are the edges of a residual.
-pub(super) struct KnownLines<'a> {
-    t: &'a ConstrainedDelaunay2,
-    edges: &'a [ResidualEdge],
-    /// For each cell, true if a pending sub-constraint enters it or runs along one of its edges.
+/// The lines of a task: the constraints of its triangulation, which are the edges of a residual, and
+/// what they mean for its triangles.
+pub(super) struct Lines<'a> {
+    t: &'a ConstrainedDelaunay<Terrain>,
+    residual: &'a Residual,
+    /// For each cell, true if a pending sub-constraint enters it or runs along one of its edges;
+    /// empty without lines.
     entered: Vec<bool>,
 }
 
-impl<'a> KnownLines<'a> {
+impl<'a> Lines<'a> {
     /// Returns the lines of a triangulation of dimension 2. The ids of its lines are the positions
     /// of the edges.
-    pub(super) fn new(tile: &Tile, t: &'a ConstrainedDelaunay2, residual: &'a Residual) -> Self {
+    pub(super) fn new(tile: &Tile, t: &'a ConstrainedDelaunay<Terrain>, residual: &'a Residual) -> Self {
         let tds = t.tds();
-        let mut entered = vec![false; tds.cell_slots()];
+        let mut entered = vec![false; if residual.has_lines { tds.cell_slots() } else { 0 }];
         for constraint in &residual.pending {
             // From a known end, if there is one: finding the way into the hull takes longer.
-            let [a, b] = &constraint.ends;
-            let ends = if tile.holds(*a) { [a, b] } else { [b, a] };
-            for passage in t.along(ends, None) {
+            let [a, b] = constraint.ends;
+            let ends = if tile.holds(a) { [a, b] } else { [b, a] };
+            let [from, to] = ends.map(|[x, y]| [x, y, 0.0]);
+            for passage in t.along([&from, &to], None) {
                 match passage {
                     Passage::Face(cell) => entered[cell.index()] = true,
                     Passage::Along([from, to]) => {
@@ -133,29 +107,35 @@ impl<'a> KnownLines<'a> {
                 }
             }
         }
-        KnownLines { t, edges: &residual.edges, entered }
+        Lines { t, residual, entered }
     }
-}
 
-impl Lines for KnownLines<'_> {
-    fn kind(&self, cell: CellId, i: usize) -> EdgeKind {
+    /// Returns the kind of the edge opposite corner `i` of a cell.
+    pub(super) fn kind(&self, cell: CellId, i: usize) -> EdgeKind {
         if !self.t.is_constrained(cell, i) {
             return EdgeKind::Plain;
         }
         let [a, b] = self.t.tds().edge_ends(cell, i);
-        let kinds = self.t.lines_through(a, b).map(|line| self.edges[line.index()].kind);
+        let kinds = self.t.lines_through(a, b).map(|line| self.residual.edges[line.index()].kind);
         kinds.min_by_key(|kind| kind.rank()).unwrap_or_default()
     }
 
-    fn enter(&self, cell: CellId) -> bool {
-        self.entered[cell.index()]
+    /// Returns true if a pending sub-constraint enters a cell or runs along one of its edges.
+    pub(super) fn enter(&self, cell: CellId) -> bool {
+        self.entered.get(cell.index()).is_some_and(|is_entered| *is_entered)
     }
 
+    /// Returns true if constraints hide from a cell all that is in its disk outside of the tile. In
+    /// doubt returns false.
+    ///
     /// A line of sight from the cell to a position in the disk stays in the disk, and leaves
     /// triangles by edges that are not constrained. Beyond the line through such an edge it stays,
     /// too. So where the disk misses the edge, or is within the tile beyond its line, there is
     /// nothing to be seen. The search ends there. It fails where it leaves the hull.
-    fn hide_all_outside(&self, tile: &Tile, disk: &Disk, cell: CellId) -> bool {
+    pub(super) fn hide_all_outside(&self, tile: &Tile, disk: &Disk, cell: CellId) -> bool {
+        if !self.residual.has_lines {
+            return false;
+        }
         let tds = self.t.tds();
         let mut reached = vec![cell];
         let mut next = 0;
@@ -166,7 +146,7 @@ impl Lines for KnownLines<'_> {
                 if reached.contains(&beyond) {
                     continue;
                 }
-                let edge = tds.edge_ends(from, i).map(|end| *self.t.point(end));
+                let edge = tds.edge_ends(from, i).map(|end| *self.t.point(end)).map(|[x, y, _]| [x, y]);
                 if disk.misses(edge) || disk.is_within_beyond(edge, tile) {
                     continue;
                 }

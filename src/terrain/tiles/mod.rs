@@ -75,6 +75,7 @@ mod lines;
 mod lines_tests;
 mod long_edges;
 mod node;
+mod part;
 mod residual;
 mod sub_constraint;
 #[cfg(test)]
@@ -82,7 +83,8 @@ mod tests;
 
 pub use layout::{Layout, Node, Spread, Step, Work};
 pub use long_edges::{EdgeKey, Gate, LongEdges, Rim, Waiting, has_long_edge};
-pub use node::{TileTriangle, leaf, merge};
+pub use node::{TileTriangle, leaf, leaf_with_part, merge, merge_with_part};
+pub use part::TinPart;
 pub use residual::{Residual, ResidualEdge, TileVertex};
 pub use sub_constraint::SubConstraint;
 

@@ -2,15 +2,16 @@
 
 use super::Tile;
 use super::disk::Disk;
-use super::lines::{self, KnownLines, Lines, NoLines};
+use super::lines::{self, Lines};
+use super::part::TinPart;
 use super::residual::{Residual, ResidualEdge, TileVertex};
 use super::sub_constraint::SubConstraint;
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::terrain::admitted;
-use crate::triangulation::geometry::Plane;
+use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
-use crate::triangulation::{ConstrainedDelaunay2, Delaunay2, InputError, OnCrossing, Triangulation};
+use crate::triangulation::{ConstrainedDelaunay, InputError, OnCrossing};
 
 /// A triangle that is final.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +47,23 @@ pub fn leaf(
     constraints: &[SubConstraint],
     emit: &mut dyn FnMut(TileTriangle),
 ) -> Result<Residual> {
+    leaf_with_part(tile, number, points, constraints, emit).map(|(residual, _)| residual)
+}
+
+/// Like [`leaf`], also returns the triangulation; `None` if there is no triangle.
+///
+/// # Errors
+/// Those of [`leaf`].
+///
+/// # Complexity
+/// That of [`leaf`].
+pub fn leaf_with_part(
+    tile: &Tile,
+    number: u32,
+    points: &[[f64; 3]],
+    constraints: &[SubConstraint],
+    emit: &mut dyn FnMut(TileTriangle),
+) -> Result<(Residual, Option<TinPart>)> {
     if let Some(at) = points.iter().position(|&[x, y, _]| !tile.holds([x, y])) {
         let ([x, y, _], Tile { min, max }) = (points[at], tile);
         return Err(Error::format(format!(
@@ -74,41 +92,51 @@ pub fn leaf(
 /// # Complexity
 /// That of [`leaf`], for the vertices and edges of the residuals.
 pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+    merge_with_part(tile, parts, emit).map(|(residual, _)| residual)
+}
+
+/// Like [`merge`], also returns the triangulation; `None` if there is no triangle.
+///
+/// # Errors
+/// Those of [`merge`].
+///
+/// # Complexity
+/// That of [`merge`].
+pub fn merge_with_part(
+    tile: &Tile,
+    parts: &[Residual],
+    emit: &mut dyn FnMut(TileTriangle),
+) -> Result<(Residual, Option<TinPart>)> {
     reduce(tile, Residual::joined(parts)?, emit)
 }
 
-fn reduce(tile: &Tile, mut input: Residual, emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+fn reduce(tile: &Tile, mut input: Residual, emit: &mut dyn FnMut(TileTriangle)) -> Result<(Residual, Option<TinPart>)> {
     if let Some(at) = input.vertices.iter().position(|vertex| !vertex.position[2].is_finite()) {
         return Err(refused(InputError::Coordinate(at), &input));
     }
     lines::join_known(tile, &mut input)?;
-    let sites: Vec<[f64; 2]> = input.vertices.iter().map(TileVertex::site).collect();
-    let rest = if input.has_lines {
-        let lines: Vec<[u32; 2]> = input.edges.iter().map(|edge| edge.ends).collect();
-        let (t, ids) = ConstrainedDelaunay2::from_lines(Plane::default(), &sites, &lines, OnCrossing::Reject)
-            .map_err(|error| refused(error, &input))?;
-        match t.dimension() {
-            2 => Some(Task::new(tile, &t, &ids, &input).run(&KnownLines::new(tile, &t, &input), emit)?),
-            _ => None,
-        }
-    } else {
-        let (t, ids) = Delaunay2::from_points(Plane::default(), &sites).map_err(|error| refused(error, &input))?;
-        match t.dimension() {
-            2 => Some(Task::new(tile, &t, &ids, &input).run(&NoLines, emit)?),
-            _ => None,
-        }
-    };
-    if tile.is_plane() {
-        return Ok(Residual::default());
+    let points: Vec<[f64; 3]> = input.vertices.iter().map(|vertex| vertex.position).collect();
+    // Without lines, seams are edges by themselves.
+    let edges = if input.has_lines { &input.edges[..] } else { &[] };
+    let lines: Vec<[u32; 2]> = edges.iter().map(|edge| edge.ends).collect();
+    let (t, ids) = ConstrainedDelaunay::from_lines(Terrain::default(), &points, &lines, OnCrossing::Reject)
+        .map_err(|error| refused(error, &input))?;
+    drop(points);
+    if t.dimension() < 2 {
+        // Nothing is final before there is a triangle.
+        return Ok((if tile.is_plane() { Residual::default() } else { input }, None));
     }
-    // Nothing is final before there is a triangle.
-    Ok(rest.unwrap_or(input))
+    let task = Task::new(tile, &t, &ids, &input);
+    let (residual, emitted) = task.run(&Lines::new(tile, &t, &input), emit)?;
+    let numbers = task.numbers();
+    let kinds = input.edges.iter().filter(|_| input.has_lines).map(|edge| edge.kind).collect();
+    Ok((residual, Some(TinPart::new(t, kinds, emitted, numbers))))
 }
 
 /// A triangulation of the vertices of a residual.
-struct Task<'a, C> {
+struct Task<'a> {
     tile: &'a Tile,
-    t: &'a Triangulation<Plane, 3, (), C>,
+    t: &'a ConstrainedDelaunay<Terrain>,
     /// The vertex of each one of the input.
     ids: &'a [VertexId],
     input: &'a Residual,
@@ -116,8 +144,8 @@ struct Task<'a, C> {
     input_of: Vec<u32>,
 }
 
-impl<'a, C: Copy + Default> Task<'a, C> {
-    fn new(tile: &'a Tile, t: &'a Triangulation<Plane, 3, (), C>, ids: &'a [VertexId], input: &'a Residual) -> Self {
+impl<'a> Task<'a> {
+    fn new(tile: &'a Tile, t: &'a ConstrainedDelaunay<Terrain>, ids: &'a [VertexId], input: &'a Residual) -> Self {
         let mut input_of = vec![u32::MAX; t.tds().vertex_slots()];
         for (at, id) in (0..).zip(ids) {
             let first = &mut input_of[id.index()];
@@ -130,23 +158,33 @@ impl<'a, C: Copy + Default> Task<'a, C> {
         self.input.vertices[self.input_of[id.index()] as usize]
     }
 
-    /// Emits the triangles that are final now, and returns what is left.
-    fn run(&self, lines: &impl Lines, emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+    /// Returns the tile and the number of each vertex, in the order of the vertices.
+    fn numbers(&self) -> Vec<[u32; 2]> {
+        let of = |id: VertexId| self.vertex(id);
+        self.t.tds().vertices().map(of).map(|TileVertex { tile, number, .. }| [tile, number]).collect()
+    }
+
+    /// Emits the triangles that are final now. Returns what is left, and the positions of these
+    /// triangles among all cells.
+    fn run(&self, lines: &Lines, emit: &mut dyn FnMut(TileTriangle)) -> Result<(Residual, Vec<u32>)> {
         let is_known = self.tile.is_plane();
         let is_certain =
             |cell: CellId, disk: Disk| disk.is_within(self.tile) || lines.hide_all_outside(self.tile, &disk, cell);
+        let tds = self.t.tds();
         let mut is_final = self.covered()?;
-        for cell in self.t.finite_cells() {
+        let mut emitted = Vec::new();
+        for (at, cell) in (0..).zip(tds.cells()).filter(|(_, cell)| !tds.is_infinite(*cell)) {
             if !is_final[cell.index()] {
-                let corners = self.t.tds().corners(cell).map(|id| self.vertex(id));
+                let corners = tds.corners(cell).map(|id| self.vertex(id));
                 let disk = || Disk::around(corners.map(|corner| corner.site()));
                 if is_known || !lines.enter(cell) && disk().is_some_and(|disk| is_certain(cell, disk)) {
                     is_final[cell.index()] = true;
+                    emitted.push(at);
                     emit(TileTriangle { corners, edges: [0, 1, 2].map(|i| lines.kind(cell, i)) });
                 }
             }
         }
-        Ok(if is_known { Residual::default() } else { self.rest(&is_final, lines) })
+        Ok((if is_known { Residual::default() } else { self.rest(&is_final, lines) }, emitted))
     }
 
     /// Returns, for each cell, true if triangles in its place were final before: if it is on the
@@ -190,7 +228,7 @@ impl<'a, C: Copy + Default> Task<'a, C> {
 
     /// Returns the vertices of cells that are not final, the edges between these and final ones,
     /// and the constrained edges without a final side.
-    fn rest(&self, is_final: &[bool], lines: &impl Lines) -> Residual {
+    fn rest(&self, is_final: &[bool], lines: &Lines) -> Residual {
         let tds = self.t.tds();
         let mut number_of = vec![u32::MAX; tds.vertex_slots()];
         let mut rest =

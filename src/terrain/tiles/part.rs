@@ -1,0 +1,137 @@
+//! The triangulation of a task, as a file of the triangles that it found.
+
+use std::io::Write;
+
+use crate::data::{EdgeKind, Surface};
+use crate::error::Result;
+use crate::terrain::lines::kinds::LineKinds;
+use crate::terrain::{Tin, compact};
+use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::Terrain;
+
+/// The triangulation of one task, with the triangles that were final there.
+///
+/// Those of all tasks together are the surface; no triangle is in two of them. As a
+/// [`CompactTin`](crate::terrain::CompactTin) it answers queries where it is, and its vertices have
+/// the [numbers](crate::terrain::CompactTin::tile_vertex) that stand for them in all parts.
+#[derive(Debug)]
+pub struct TinPart {
+    tin: Tin,
+    /// The cells of the triangles that were emitted, in that order, as the file numbers them.
+    emitted: Vec<u32>,
+    /// The tile and the number of each vertex.
+    numbers: Vec<[u32; 2]>,
+}
+
+impl TinPart {
+    /// `kinds` are those of the lines of the triangulation; `numbers` follow its vertices.
+    pub(super) fn new(
+        triangulation: ConstrainedDelaunay<Terrain>,
+        kinds: Vec<EdgeKind>,
+        emitted: Vec<u32>,
+        numbers: Vec<[u32; 2]>,
+    ) -> Self {
+        let mut tin = Tin::new(triangulation, LineKinds::new(kinds), None);
+        tin.inside.fill(false);
+        TinPart { tin, emitted, numbers }
+    }
+
+    /// Returns the faces that the triangles became, in the order in which they were emitted.
+    pub fn faces(&self) -> &[u32] {
+        &self.emitted
+    }
+
+    /// Writes a file `.tin` with some of the triangles. `kept` tells for each triangle that was
+    /// emitted, in that order, whether it is a face.
+    ///
+    /// # Errors
+    /// Those of `out`, and if there are too many faces or vertices to be numbered.
+    ///
+    /// # Complexity
+    /// Linear.
+    pub fn write(mut self, kept: impl IntoIterator<Item = bool>, out: &mut dyn Write) -> Result<()> {
+        let cells: Vec<_> = self.tin.triangulation.tds().cells().collect();
+        for (&at, is_kept) in self.emitted.iter().zip(kept) {
+            self.tin.inside[cells[at as usize].index()] = is_kept;
+        }
+        drop(cells);
+        self.tin.write_tin(out)?;
+        compact::write_numbers(&self.numbers, out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::CompactTin;
+    use crate::terrain::tiles::{Residual, SubConstraint, Tile, TileTriangle, leaf_with_part, merge_with_part};
+    use testkit::random::Random;
+
+    fn key(triangle: &TileTriangle) -> ([[u32; 2]; 3], [u8; 3]) {
+        let numbers = triangle.corners.map(|corner| [corner.tile, corner.number]);
+        let first = (0..3).min_by_key(|&i| numbers[i]).unwrap();
+        let order = [0, 1, 2].map(|k| (first + k) % 3);
+        (order.map(|i| numbers[i]), order.map(|i| triangle.edges[i].rank()))
+    }
+
+    /// Writes a part with every second of its triangles, and opens it with all of them.
+    fn opened(part: TinPart) -> CompactTin<Vec<u8>> {
+        let faces = part.faces().to_vec();
+        let mut bytes = Vec::new();
+        part.write((0..faces.len()).map(|at| at % 2 == 0), &mut bytes).unwrap();
+        let some = CompactTin::open(bytes.clone(), "part").unwrap();
+        some.check().unwrap();
+        assert_eq!(some.tile_triangles().count(), faces.len().div_ceil(2));
+        let all = CompactTin::open_with_faces(bytes, "part", &faces).unwrap();
+        all.check().unwrap();
+        assert!(CompactTin::open_with_faces(all.triangulation().bytes().to_vec(), "part", &[u32::MAX]).is_err());
+        // A copy has the numbers, too.
+        let mut copy = Vec::new();
+        all.write_tin(&mut copy).unwrap();
+        CompactTin::open(copy, "copy").unwrap()
+    }
+
+    /// The parts of all tasks have the triangles that were emitted, with their numbers and the kinds
+    /// of their edges.
+    #[test]
+    fn parts_have_the_triangles_of_their_tasks() {
+        let mut random = Random(5);
+        let mut walls = 0;
+        for round in 0..200 {
+            let side = [4, 9, 30][round % 3];
+            let mut site = || [0, 1].map(|_| f64::from(random.below(side) as u32));
+            let mut points: Vec<[f64; 3]> = (0..round % 50).map(|_| site()).map(|[x, y]| [x, y, x - y]).collect();
+            // Lines side by side do not cross; some are short, and end within a tile.
+            let lines: Vec<SubConstraint> = (0..round % 4)
+                .map(|row| {
+                    let (y, ends) = (row as f64 + 0.5, [site()[0], site()[0] + 1.0]);
+                    let kind = [EdgeKind::Breakline, EdgeKind::Wall][row % 2];
+                    SubConstraint { ends: ends.map(|x| [x, y]), kind }
+                })
+                .collect();
+            points.extend(lines.iter().flat_map(|line| line.ends).map(|[x, y]| [x, y, 1.0]));
+            points.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            points.dedup_by_key(|p| [p[0], p[1]]);
+            let cut = [f64::NEG_INFINITY, f64::from(side as u32) / 2.0, f64::INFINITY];
+            let (mut emitted, mut parts) = (Vec::new(), Vec::new());
+            let mut emit = |triangle: TileTriangle| emitted.push(key(&triangle));
+            let residuals: Vec<Residual> = (0..2)
+                .map(|k| {
+                    let tile = Tile { min: [cut[k], cut[0]], max: [cut[k + 1], cut[2]] };
+                    let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
+                    let (residual, part) = leaf_with_part(&tile, k as u32, &own, &lines, &mut emit).unwrap();
+                    parts.extend(part);
+                    residual
+                })
+                .collect();
+            parts.extend(merge_with_part(&Tile::PLANE, &residuals, &mut emit).unwrap().1);
+            let opened: Vec<CompactTin<Vec<u8>>> = parts.into_iter().map(opened).collect();
+            let mut found: Vec<_> = opened.iter().flat_map(|part| part.tile_triangles()).map(|t| key(&t)).collect();
+            found.sort_unstable();
+            emitted.sort_unstable();
+            assert_eq!(found, emitted, "round {round}: {points:?} {lines:?}");
+            walls += found.iter().filter(|(_, edges)| edges.contains(&EdgeKind::Wall.rank())).count();
+        }
+        assert!(walls > 100, "{walls} triangles at walls");
+    }
+}
